@@ -20,7 +20,7 @@ const RUNS: usize = 40;
 const NOISE: f64 = 1e-6;
 const SIZE: f64 = 1e4;
 
-fn normal(random: &mut ChaCha8Rng) -> f64 {
+fn draw_normal(random: &mut ChaCha8Rng) -> f64 {
     let (u, v): (f64, f64) = (
         random.random_range(1e-300..1.0),
         random.random_range(0.0..1.0),
@@ -31,39 +31,41 @@ fn normal(random: &mut ChaCha8Rng) -> f64 {
 /// Rows off the model by 5 % common to a gauge and 2 % more; every loading twice, off by `scatter` each time.
 fn task(scatter: f64) -> Task {
     let mut random = ChaCha8Rng::seed_from_u64(1);
-    let model = Matrix::from_fn(GAUGES, LOADS, |_, _| 1e-8 * normal(&mut random));
+    let model = Matrix::from_fn(GAUGES, LOADS, |_, _| 1e-8 * draw_normal(&mut random));
     let gains: Vec<f64> = (0..GAUGES)
-        .map(|_| 1.0 + 0.05 * normal(&mut random))
+        .map(|_| 1.0 + 0.05 * draw_normal(&mut random))
         .collect();
     let truth = Matrix::from_fn(GAUGES, LOADS, |g, l| {
-        model[(g, l)] * gains[g] * (1.0 + 0.02 * normal(&mut random))
+        model[(g, l)] * gains[g] * (1.0 + 0.02 * draw_normal(&mut random))
     });
     let mut runs = Vec::new();
     for group in 0..RUNS / 2 {
         let f: Vec<f64> = (0..LOADS)
-            .map(|_| SIZE * (1.0 + 0.5 * normal(&mut random)))
+            .map(|_| SIZE * (1.0 + 0.5 * draw_normal(&mut random)))
             .collect();
         for _ in 0..2 {
             let acting: Vec<f64> = f
                 .iter()
-                .map(|f| f * (1.0 + scatter * normal(&mut random)))
+                .map(|f| f * (1.0 + scatter * draw_normal(&mut random)))
                 .collect();
             let strain = (0..GAUGES).map(|g| {
                 let clean: f64 = (0..LOADS).map(|l| truth[(g, l)] * acting[l]).sum();
-                clean + NOISE * normal(&mut random)
+                clean + NOISE * draw_normal(&mut random)
             });
             runs.push(KnownRun {
                 run: format!("R{}", runs.len()),
                 strain: strain.collect(),
                 noise_factor: 1.0,
-                loads: KnownLoads::exact(f.clone()),
+                loads: KnownLoads::from_exact(f.clone()),
                 group,
             });
         }
     }
     Task {
         gauges: (0..GAUGES).map(|g| format!("G{g}")).collect(),
-        loads: (0..LOADS).map(|l| Load::named(format!("L{l}"))).collect(),
+        loads: (0..LOADS)
+            .map(|l| Load::from_name(format!("L{l}")))
+            .collect(),
         noise: NOISE,
         gauge_noise: None,
         model: Some(ModelPrior {

@@ -156,8 +156,14 @@ fn on_frame(
         }
     };
     let at = |p: &usize| std::array::from_fn(|i| number(2 + p * width + i));
-    let c = Candidates::from_tensors(k, places.len(), grid, Scatter::uniform(1.0), fill)
-        .with_positions(places.iter().map(at).collect());
+    let c = Candidates::from_tensors(
+        k,
+        places.len(),
+        grid,
+        Scatter::with_uniform_noise(1.0),
+        fill,
+    )
+    .with_positions(places.iter().map(at).collect());
     writeln!(
         out,
         "{} places, {} rows, {k} loads, spacing {spacing}; made in {:.3} s",
@@ -267,7 +273,7 @@ fn anchors(folder: &str) -> Outcome {
 }
 
 fn matrix(folder: &str, name: &str) -> Result<Candidates, Box<dyn Error>> {
-    let scatter = Scatter::uniform(1.0);
+    let scatter = Scatter::with_uniform_noise(1.0);
     if let Some(rest) = name.strip_prefix("ladder_T_k36_n2e4") {
         let k = if rest.is_empty() { 36 } else { 6 };
         let bytes = std::fs::read(format!("{folder}/ladder_T_k36_n2e4.npy"))?;

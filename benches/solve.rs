@@ -27,7 +27,7 @@ impl Loader for NoFiles {
 const ZONES: usize = 10;
 
 /// The model with one of the zones a tenth thicker.
-fn thicker(model: &Model, zone: usize) -> Model {
+fn thicken_zone(model: &Model, zone: usize) -> Model {
     let mut out = model.clone();
     let n = out.shells.len();
     let shells = out.shells.iter_mut().skip(zone * n / ZONES);
@@ -79,8 +79,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     )?;
     if std::env::args().any(|a| a == "--zones") {
         let start = Instant::now();
-        let variants = (0..ZONES).map(|zone| thicker(&model, zone));
-        let support = Support::free(&model);
+        let variants = (0..ZONES).map(|zone| thicken_zone(&model, zone));
+        let support = Support::without_spc(&model);
         let read = |_: &Model, s: &strainbridge::fe::Solution| s.cases.len();
         solve_variants(&model, support, &loads, variants, &options, read)?;
         let took = start.elapsed().as_secs_f64();

@@ -62,7 +62,9 @@ fn recover_six_loads(bencher: divan::Bencher) {
     let h = read_header(&bytes).unwrap();
     let s = Sensitivity {
         gauges: h.names.clone(),
-        loads: (0..LOADS).map(|l| Load::named(format!("L{l}"))).collect(),
+        loads: (0..LOADS)
+            .map(|l| Load::from_name(format!("L{l}")))
+            .collect(),
         values: Matrix::from_fn(GAUGES, LOADS, |g, l| 1e-8 * ((g * 7 + l * 13) % 11) as f64),
         noise: None,
         uncertainty: None,

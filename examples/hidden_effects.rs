@@ -93,7 +93,9 @@ fn row(name: &str, lines: &[Line], detectable: &str) {
 }
 
 fn main() {
-    let Some(dir) = hidden::shared() else { return };
+    let Some(dir) = hidden::find_shared_folder() else {
+        return;
+    };
     let args: Vec<String> = std::env::args().collect();
     let number = |i: usize, or: u64| args.get(i).and_then(|a| a.parse().ok()).unwrap_or(or);
     let (seeds, controls) = (number(1, 2), number(2, 200));

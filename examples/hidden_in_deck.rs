@@ -22,7 +22,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use strainbridge::fe::strain_tensor::Surface;
 use strainbridge::fe::{SolveOptions, UnitLoad, solve_unit_loads};
-use strainbridge::gauge::{Bridge, CornerRows, Gauge, GaugeSpec, Pair, build, on_refined, reading};
+use strainbridge::gauge::{
+    Bridge, CornerRows, Gauge, GaugeSpec, Pair, build, gauge_reading, on_refined,
+};
 use strainbridge::model::{Model, Vec3};
 use strainbridge::reconcile::Observations;
 use strainbridge::reconcile::strain::{
@@ -62,7 +64,7 @@ fn deck(text: &str) -> Deck {
 }
 
 /// The deck with a property's thickness times `factor`.
-fn thicker(text: &str, property: u32, factor: f64) -> String {
+fn thicken_property(text: &str, property: u32, factor: f64) -> String {
     // Fields of eight columns.
     let change = |line: &str| {
         let field = |k: usize| line.get(8 * k..8 * k + 8).unwrap_or_default().trim();
@@ -89,7 +91,7 @@ struct Glued {
     other: Option<(u32, Surface)>,
 }
 
-fn glued(csv: &str) -> Vec<Glued> {
+fn read_glued_gauges(csv: &str) -> Vec<Glued> {
     let side = |s: &str| {
         if s == "bottom" {
             Surface::Bottom
@@ -117,7 +119,7 @@ fn glued(csv: &str) -> Vec<Glued> {
     csv.lines().skip(1).map(row).collect()
 }
 
-fn laid(model: &Model, g: &Glued, degrees: f64) -> Gauge {
+fn build_gauge(model: &Model, g: &Glued, degrees: f64) -> Gauge {
     let shell = model.shell_ix(g.element).expect("the element");
     let spec = GaugeSpec {
         surface: Some(g.surface),
@@ -130,8 +132,8 @@ fn laid(model: &Model, g: &Glued, degrees: f64) -> Gauge {
         },
         pair: g
             .other
-            .map(|(e, s)| Pair::parallel(model.shell_ix(e).expect("the element"), s)),
-        ..GaugeSpec::on(g.name.clone(), shell)
+            .map(|(e, s)| Pair::with_parallel_axis(model.shell_ix(e).expect("the element"), s)),
+        ..GaugeSpec::place_on_shell(g.name.clone(), shell)
     };
     let built = build(model, &spec, CornerRows::Absent).expect("a gauge");
     built.0.into_iter().next().expect("one channel")
@@ -141,8 +143,8 @@ fn laid(model: &Model, g: &Glued, degrees: f64) -> Gauge {
 fn truth_of(text: &str, gauges: &[Glued], loads: &[(u32, usize, f64)], degrees: f64) -> Vec<f64> {
     let deck = deck(text);
     let model = Model::from_deck(&deck).0;
-    let once = model.refined().expect("the mesh can be divided");
-    let twice = once.model.refined().expect("and again");
+    let once = model.refine_shells().expect("the mesh can be divided");
+    let twice = once.model.refine_shells().expect("and again");
     let unit = |(grid, dof, size): &(u32, usize, f64)| {
         let mut v = Vec3::zeros();
         v[dof % 3] = *size;
@@ -161,11 +163,11 @@ fn truth_of(text: &str, gauges: &[Glued], loads: &[(u32, usize, f64)], degrees: 
     let solved = solve_unit_loads(&twice.model, &loads, &SolveOptions::default()).expect("solved");
     let mut out = Vec::new();
     for g in gauges {
-        let coarse = laid(&model, g, degrees);
+        let coarse = build_gauge(&model, g, degrees);
         let finer = on_refined(&coarse, &model, &once).expect("on the finer mesh");
         let finest = on_refined(&finer, &once.model, &twice).expect("on the finest mesh");
         let cases = solved.0.cases.iter();
-        out.extend(cases.map(|c| MICRO * reading(&finest, c).expect("a reading")));
+        out.extend(cases.map(|c| MICRO * gauge_reading(&finest, c).expect("a reading")));
     }
     out
 }
@@ -201,7 +203,7 @@ fn truth(text: &str, gauges: &[Glued], runs: &str) -> StrainFrame {
         .collect();
     let zone = |(zone, property): &(&str, u32), size: f64| {
         let change = |percent: f64| {
-            let changed = thicker(text, *property, 1.0 + percent / 100.0);
+            let changed = thicken_property(text, *property, 1.0 + percent / 100.0);
             let now = truth_of(&changed, gauges, &loads, 0.0);
             let now = (0..gauges.len()).flat_map(|g| columns(&now, n_9, g));
             let change = now.zip(&influence).map(|(a, b)| a - b).collect();
@@ -381,7 +383,7 @@ fn kinds(ids: &[String]) -> Vec<&str> {
 }
 
 /// `named`, `rival`, `none`, `unknown`, `false`; gap before, after.
-fn answered(case: &Hidden, result: &Value) -> (&'static str, f64) {
+fn score_answer(case: &Hidden, result: &Value) -> (&'static str, f64) {
     let texts = |v: &Value| -> Vec<String> {
         let list = v.as_array().into_iter().flatten();
         list.filter_map(|n| n.as_str().map(str::to_owned)).collect()
@@ -411,7 +413,7 @@ fn answered(case: &Hidden, result: &Value) -> (&'static str, f64) {
 }
 
 fn main() {
-    let Some(dir) = hidden::shared() else {
+    let Some(dir) = hidden::find_shared_folder() else {
         eprintln!("../shared/hidden_effects is absent");
         return;
     };
@@ -430,7 +432,7 @@ fn main() {
     let seeds: u64 = args.get(1).and_then(|a| a.parse().ok()).unwrap_or(1);
     let only = args.get(2).cloned().unwrap_or_default();
     let read = |name: &str| std::fs::read_to_string(dir.join(name)).expect("the file");
-    let gauges = glued(&read("gauges.csv"));
+    let gauges = read_glued_gauges(&read("gauges.csv"));
     let base = truth(&read("nominal.bdf"), &gauges, &read("runs.csv"));
     let folder = std::env::temp_dir().join("strainbridge_hidden_in_deck");
     let mut effects: Vec<(&str, [f64; 5])> = vec![("none", [0.0; 5])];
@@ -469,7 +471,7 @@ fn main() {
                 );
                 let text = std::fs::read_to_string(out.join("result.json")).expect("a result");
                 let result: Value = serde_json::from_str(&text).expect("json");
-                let (word, share) = answered(&case, &result);
+                let (word, share) = score_answer(&case, &result);
                 let at = ["named", "rival", "none", "unknown", "false"]
                     .iter()
                     .position(|w| *w == word);

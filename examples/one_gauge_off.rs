@@ -117,7 +117,7 @@ fn job(frame: &Frame, seed: u64, off: Option<usize>) -> Counts {
         out.stopped = 1;
         return out;
     }
-    out.kept = [holding(frame, &got), asked];
+    out.kept = [count_holding_intervals(frame, &got), asked];
     match got.findings.iter().any(|f| f.code == GAUGE_SUSPECT) {
         true => out.named = 1,
         false => out.silent = out.kept,
@@ -126,7 +126,7 @@ fn job(frame: &Frame, seed: u64, off: Option<usize>) -> Counts {
 }
 
 /// Intervals that hold the load.
-fn holding(frame: &Frame, got: &Recovery) -> usize {
+fn count_holding_intervals(frame: &Frame, got: &Recovery) -> usize {
     let pairs = got.runs.iter().zip(&frame.runs);
     pairs
         .flat_map(|(run, truth)| truth.iter().enumerate().map(move |(l, f)| (run, l, *f)))
@@ -142,7 +142,7 @@ fn readings(frame: &Frame, seed: u64, off: Option<usize>) -> Vec<Readings> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let (n, k) = (frame.s.gauges.len(), frame.s.loads.len());
     let s = Matrix::from_fn(n, k, |g, l| {
-        frame.s.values[(g, l)] * (1.0 + ERRORS.model_rel * gaussian(&mut rng))
+        frame.s.values[(g, l)] * (1.0 + ERRORS.model_rel * draw_gaussian(&mut rng))
     });
     let run = |(i, f): (usize, &Vec<f64>)| Readings {
         run: format!("R{i}"),
@@ -150,7 +150,7 @@ fn readings(frame: &Frame, seed: u64, off: Option<usize>) -> Vec<Readings> {
             .map(|g| {
                 let gain = if off == Some(g) { 1.0 + OFF } else { 1.0 };
                 let strain: f64 = (0..k).map(|l| s[(g, l)] * f[l]).sum();
-                gain * strain + ERRORS.noise * gaussian(&mut rng)
+                gain * strain + ERRORS.noise * draw_gaussian(&mut rng)
             })
             .collect(),
         noise_factor: 1.0,
@@ -201,7 +201,7 @@ fn mean_t(frame: &Frame, gauge: usize) -> f64 {
     let inverse = |g: usize| {
         let noise = ERRORS.noise_variance(1.0);
         let of = |i: usize, j: usize| {
-            let shared = ERRORS.shared(row(g).iter().copied(), &runs[i], &runs[j]);
+            let shared = ERRORS.model_error_covariance(row(g).iter().copied(), &runs[i], &runs[j]);
             shared + if i == j { noise } else { 0.0 }
         };
         Matrix::from_fn(runs.len(), runs.len(), of).try_inverse()
@@ -226,7 +226,7 @@ fn mean_t(frame: &Frame, gauge: usize) -> f64 {
 }
 
 /// Box and Muller's.
-fn gaussian(rng: &mut ChaCha8Rng) -> f64 {
+fn draw_gaussian(rng: &mut ChaCha8Rng) -> f64 {
     let u: f64 = rng.random_range(f64::MIN_POSITIVE..1.0);
     let v: f64 = rng.random_range(0.0..1.0);
     (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
@@ -258,7 +258,7 @@ fn read() -> Result<Frame, Box<dyn Error>> {
         uncertainty: None,
         noise: None,
         gauges,
-        loads: names.iter().map(Load::named).collect(),
+        loads: names.iter().map(Load::from_name).collect(),
     };
     let runs = loads
         .into_iter()

@@ -32,8 +32,8 @@ placement = { gauges = 4, spacing = 10.0, model_uncertainty_rel = 0.02 }
 /// Chooses, and gives the certified efficiency.
 pub fn main() -> Result<(), Box<dyn Error>> {
     let files = InMemory::default()
-        .with("strip.bdf", deck()?)
-        .with("job.toml", JOB);
+        .with_file("strip.bdf", deck()?)
+        .with_file("job.toml", JOB);
     let job = Job::read("job.toml", &files)?;
     let plan = place(&job, &Context::new(&files))?;
     for gauge in &plan.gauges {

@@ -35,8 +35,12 @@ fn tables() -> [String; 3] {
 /// Names the gauge.
 pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [s, strain, runs] = tables();
-    let files = InMemory::default().with("job.toml", JOB).with("s.csv", s);
-    let files = files.with("strain.csv", strain).with("runs.csv", runs);
+    let files = InMemory::default()
+        .with_file("job.toml", JOB)
+        .with_file("s.csv", s);
+    let files = files
+        .with_file("strain.csv", strain)
+        .with_file("runs.csv", runs);
     let job = Job::read("job.toml", &files)?;
     let found = reconcile(&job, &Context::new(&files))?;
     let (before, after) = (100.0 * found.gap.before, 100.0 * found.gap.after);

@@ -111,7 +111,7 @@ fn wilson(k: usize, n: usize) -> [f64; 2] {
 
 /// Frames of the shared static cases, with the name of each.
 fn bases() -> Vec<(String, StrainFrame)> {
-    let folder = hidden::shared().expect("../shared/hidden_effects");
+    let folder = hidden::find_shared_folder().expect("../shared/hidden_effects");
     let names = (1..=9).map(|k| format!("dev-s{k}"));
     let there = names.filter(|n| folder.join("static").join(n).is_dir());
     let read = |n: String| {
@@ -128,7 +128,7 @@ fn case(bases: &[(String, StrainFrame)], number: usize) -> Said {
     let (what, found) = if number.is_multiple_of(2) {
         let (name, base) = &bases[(number / 2) % bases.len()];
         let placed = (number / 6).is_multiple_of(2);
-        let outcome = strain::examine(&still(base, seed, stated, placed), &[]);
+        let outcome = strain::examine(&make_static_control(base, seed, stated, placed), &[]);
         let place = if placed { ", places 2 mm" } else { "" };
         let names = outcome.effects.into_iter().map(|e| e.id).collect();
         (
@@ -136,7 +136,7 @@ fn case(bases: &[(String, StrainFrame)], number: usize) -> Said {
             Ok((outcome.verdict, names)),
         )
     } else {
-        moved(number, seed, stated)
+        run_dynamic_control(number, seed, stated)
     };
     Said {
         what,
@@ -146,27 +146,28 @@ fn case(bases: &[(String, StrainFrame)], number: usize) -> Said {
 }
 
 /// A static control: gains, angles and coefficients off as the generator has them, and places where `placed`.
-fn still(base: &StrainFrame, seed: u64, stated: f64, placed: bool) -> StrainFrame {
+fn make_static_control(base: &StrainFrame, seed: u64, stated: f64, placed: bool) -> StrainFrame {
     use hidden::generator::{Background, hide};
     let mut frame = hide(base, "none", 0.0, Background::Messy, seed).frame;
     frame.noise *= stated;
     if !placed {
         return frame;
     }
-    let mut dice = Dice::of(seed);
+    let mut dice = Dice::from_seed(seed);
     let n_c = frame.n_columns();
     let mut per_mm = frame.influence.clone();
     let mut moved = frame.clone();
     for row in per_mm.chunks_exact_mut(n_c) {
-        let length = dice.between(CHANGES_MM[0], CHANGES_MM[1]);
-        row.iter_mut().for_each(|v| *v *= dice.normal() / length);
+        let length = dice.draw_between(CHANGES_MM[0], CHANGES_MM[1]);
+        row.iter_mut()
+            .for_each(|v| *v *= dice.draw_normal() / length);
     }
     for (row, slope) in moved
         .influence
         .chunks_exact_mut(n_c)
         .zip(per_mm.chunks_exact(n_c))
     {
-        let off = PLACE_MM * dice.normal();
+        let off = PLACE_MM * dice.draw_normal();
         row.iter_mut().zip(slope).for_each(|(v, s)| *v = off * s);
     }
     let change = strain::predict(&moved, &[]);
@@ -179,7 +180,7 @@ fn still(base: &StrainFrame, seed: u64, stated: f64, placed: bool) -> StrainFram
 }
 
 /// A dynamic control.
-fn moved(
+fn run_dynamic_control(
     number: usize,
     seed: u64,
     stated: f64,

@@ -106,12 +106,12 @@ fn main() {
     let mut failed = 0;
     if only != "motion" {
         let bases = bases();
-        let judged = |rules: StrainRules| still(&bases, cases, rules);
+        let judged = |rules: StrainRules| tally_static_cases(&bases, cases, rules);
         failed += rows("strain", &StrainRules::ALL, 0, &wanted, judged);
     }
     if only != "static" {
         let first = StrainRules::ALL.len();
-        let judged = |rules: MotionRules| moved(cases, rules);
+        let judged = |rules: MotionRules| tally_dynamic_cases(cases, rules);
         failed += rows("motion", &MotionRules::ALL, first, &wanted, judged);
     }
     if failed > 0 {
@@ -157,14 +157,14 @@ fn rows<R: Copy + Default>(
 
 /// Frames of shared static cases.
 fn bases() -> Vec<StrainFrame> {
-    let folder = hidden::shared().expect("../shared/hidden_effects");
+    let folder = hidden::find_shared_folder().expect("../shared/hidden_effects");
     ["dev-s1", "dev-s2"]
         .map(|c| hidden::frame_of(&folder.join("static").join(c)))
         .into()
 }
 
 /// Strain: controls on messy backgrounds, then every effect.
-fn still(bases: &[StrainFrame], cases: Cases, rules: StrainRules) -> Tally {
+fn tally_static_cases(bases: &[StrainFrame], cases: Cases, rules: StrainRules) -> Tally {
     use hidden::generator::{Background, EFFECTS, hide};
     use hidden::judge::{Answer, judge};
     let controls = (0..cases.controls).map(|k| ("none", 0.0, 80_000 + k));
@@ -197,7 +197,7 @@ fn still(bases: &[StrainFrame], cases: Cases, rules: StrainRules) -> Tally {
 }
 
 /// Motion: controls on clean and messy backgrounds, then every effect.
-fn moved(cases: Cases, rules: MotionRules) -> Tally {
+fn tally_dynamic_cases(cases: Cases, rules: MotionRules) -> Tally {
     use moving::generator::{Background, hide};
     use moving::{Score, score};
     let controls = (0..cases.controls).map(|k| {

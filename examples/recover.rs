@@ -19,9 +19,9 @@ const STRAIN: &str = "run,G1,G2,G3\nR1,221,139,151\n";
 /// Recovers, and compares with what was put on.
 pub fn main() -> Result<(), Box<dyn Error>> {
     let files = InMemory::default()
-        .with("job.toml", JOB)
-        .with("s.csv", S)
-        .with("strain.csv", STRAIN);
+        .with_file("job.toml", JOB)
+        .with_file("s.csv", S)
+        .with_file("strain.csv", STRAIN);
     let job = Job::read("job.toml", &files)?;
     let found = recover(&job, &Context::new(&files))?;
     let loads = found.runs().ok_or("a table of runs")?;

@@ -6,7 +6,7 @@ mod sentence;
 mod severity;
 
 pub use bounded::shorten_names;
-pub use sentence::capital;
+pub use sentence::capitalize;
 use serde::{Deserialize, Deserializer, Serialize};
 pub use severity::Severity;
 use std::fmt::Display;

@@ -731,7 +731,11 @@ repeats = ["lane"]
 "#;
 
 /// What `reconcile` says of the other runs against what some taught, and what it names.
-fn reconciled(name: &str, bridge: &Bridge, turned: Option<usize>) -> (Value, Vec<String>) {
+fn reconcile_other_runs(
+    name: &str,
+    bridge: &Bridge,
+    turned: Option<usize>,
+) -> (Value, Vec<String>) {
     let folder = scratch(name);
     std::fs::write(folder.join("job.toml"), BRIDGE).unwrap();
     write_runs(&folder, bridge, true, None);
@@ -762,7 +766,8 @@ fn against_a_calibrated_s_reconcile_counts_what_repeats_scatter_by() {
     let hot = (0..bridge.gauges.len()).max_by(|a, b| largest(a).total_cmp(&largest(b)));
     let hot = hot.unwrap();
     for (name, turned) in [("control", None), ("turned", Some(hot))] {
-        let (result, named) = reconciled(&format!("calibrated-reconcile-{name}"), &bridge, turned);
+        let (result, named) =
+            reconcile_other_runs(&format!("calibrated-reconcile-{name}"), &bridge, turned);
         match turned {
             // Whether a gain of a few per cent hides in the scatter may be left open: neither names anything.
             None => assert!(
@@ -787,7 +792,7 @@ fn few_repeats_do_not_hide_channels_that_were_exchanged() {
             return;
         };
         assert_eq!(bridge.runs.iter().filter(|r| r.teaches).count(), 6);
-        let (result, named) = reconciled(&format!("calibrated-{case}"), &bridge, None);
+        let (result, named) = reconcile_other_runs(&format!("calibrated-{case}"), &bridge, None);
         if !has_fault {
             assert!(named.is_empty() && result["verdict"] == "none", "{named:?}");
             continue;

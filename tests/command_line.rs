@@ -308,7 +308,7 @@ fn the_schema_knows_every_key_of_a_job_and_no_misspelt_one() {
     assert_eq!(unknown(job), [".load.froce"]);
     let mut jobs = Vec::new();
     for folder in ["static", "deck", "dynamics"] {
-        let Some(shared) = support::shared(&format!("hidden_effects/{folder}")) else {
+        let Some(shared) = support::find_shared_path(&format!("hidden_effects/{folder}")) else {
             return;
         };
         let cases = std::fs::read_dir(shared).unwrap().flatten();

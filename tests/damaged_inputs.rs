@@ -6,8 +6,8 @@ mod support;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-fn shared() -> Option<PathBuf> {
-    support::shared("nastran")
+fn find_nastran_folder() -> Option<PathBuf> {
+    support::find_shared_path("nastran")
 }
 
 fn scratch(name: &str) -> PathBuf {
@@ -39,7 +39,7 @@ fn files(folder: &Path, ends: &[&str]) -> Vec<PathBuf> {
 
 /// OP2, and the deck beside it where there is one that is no part of another; `None` where the reference material is absent.
 fn sets() -> Option<Vec<(PathBuf, Option<PathBuf>)>> {
-    let mut folders: Vec<PathBuf> = std::fs::read_dir(shared()?)
+    let mut folders: Vec<PathBuf> = std::fs::read_dir(find_nastran_folder()?)
         .unwrap()
         .map(|e| e.unwrap().path())
         .filter(|p| p.is_dir())
@@ -104,7 +104,9 @@ fn every_command_that_reads_a_cut_op2_says_so_and_ends_with_2() {
 
 #[test]
 fn a_job_whose_results_are_cut_names_the_cut() {
-    let Some(shared) = shared() else { return };
+    let Some(shared) = find_nastran_folder() else {
+        return;
+    };
     let folder = scratch("cut_job");
     let frame = shared.join("mystran_frame_units");
     let bytes = std::fs::read(frame.join("frame.op2")).unwrap();
@@ -135,7 +137,9 @@ fn a_job_whose_results_are_cut_names_the_cut() {
 
 #[test]
 fn strains_and_init_on_a_cut_deck_end_with_2() {
-    let Some(shared) = shared() else { return };
+    let Some(shared) = find_nastran_folder() else {
+        return;
+    };
     let folder = scratch("cut_decks");
     let out = folder.join("out").display().to_string();
     let cut = folder.join("cut.bdf").display().to_string();
@@ -192,7 +196,9 @@ fn recommends_place(stdout: &[u8]) -> bool {
 
 #[test]
 fn init_recommends_place_where_the_deck_has_shells_that_tell_its_loads_alone() {
-    let Some(shared) = shared() else { return };
+    let Some(shared) = find_nastran_folder() else {
+        return;
+    };
     // Subcases 1 and 2 of d173 have LOAD = 203 and 205.
     let wing = Holds {
         files: &["msc64_two_cases/d173.bdf", "msc64_two_cases/d173.op2"],

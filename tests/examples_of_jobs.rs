@@ -33,7 +33,7 @@ fn number(value: &Value) -> f64 {
 }
 
 /// The entries of a list, by a key.
-fn by<'a>(list: &'a Value, key: &str, name: &str) -> Vec<&'a Value> {
+fn find_entries<'a>(list: &'a Value, key: &str, name: &str) -> Vec<&'a Value> {
     let all = list.as_array().unwrap().iter();
     all.filter(|e| e[key] == name).collect()
 }
@@ -89,7 +89,7 @@ fn recovered_wheel_forces_hold_those_of_statics() {
         ];
         for (name, force) in truth {
             let run = format!("R{:02}", i + 1);
-            let load = by(&recovered["loads"], "run", &run)
+            let load = find_entries(&recovered["loads"], "run", &run)
                 .into_iter()
                 .find(|l| l["name"] == name)
                 .unwrap();
@@ -135,7 +135,7 @@ fn stress_and_study_answer_for_the_same_runs() {
         assert!(number(&g["residual_rms_microstrain"]) < 1.5, "{g}");
     }
     let study = run("study", "frame", &["study.toml"]);
-    let noise = by(&study["study"], "error", "absolute-normal 1");
+    let noise = find_entries(&study["study"], "error", "absolute-normal 1");
     // More gauges of the same layout never do worse.
     assert_eq!(noise.len(), 2);
     assert!(number(&noise[1]["mean_relative_rms"]) <= number(&noise[0]["mean_relative_rms"]));
@@ -178,7 +178,7 @@ fn the_quarter_truck_is_identified() {
         ("k_s", 4.0e5),
         ("c_s", 1.1e4),
     ] {
-        let p = by(&found["parameters"], "name", name)[0];
+        let p = find_entries(&found["parameters"], "name", name)[0];
         let off = (number(&p["value"]) - truth) / number(&p["sigma"]);
         assert!(off.abs() < 3.5, "{p}");
     }
@@ -195,8 +195,8 @@ fn a_fifth_more_load_is_a_fifth_more_to_the_power_of_the_slope() {
     ];
     let found = run("fleet", "fleet", &files);
     let damage = |vehicle: &str, load: &str| {
-        let v = by(&found["vehicles"], "name", vehicle)[0];
-        number(&by(&v["loads"], "load", load)[0]["damage"])
+        let v = find_entries(&found["vehicles"], "name", vehicle)[0];
+        number(&find_entries(&v["loads"], "load", load)[0]["damage"])
     };
     // N.FZ swings between -2 and 2 kN, or a fifth more: noise of .05 microstrain moves a range by less than 1 %, damage by less than 5 %.
     let ratio = damage("B", "N.FZ") / damage("A", "N.FZ");
@@ -229,7 +229,7 @@ fn masses_springs_and_dampers_of_the_oscillator_and_the_rig_lie_in_their_interva
     for (job, truth) in [("oscillator.toml", &oscillator[..]), ("rig.toml", &rig[..])] {
         let found = run("identify", "rig", &[job]);
         for (name, value) in truth {
-            let p = by(&found["parameters"], "name", name)[0];
+            let p = find_entries(&found["parameters"], "name", name)[0];
             // 95 % intervals of nine parameters: one may be missed by chance, and none by twice its width.
             let away = (number(&p["value"]) - value).abs();
             assert!(away < 2.0 * 1.96 * number(&p["sigma"]), "{job}: {p}");

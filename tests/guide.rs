@@ -117,12 +117,12 @@ fn every_command_of_the_guide_works_and_the_files_it_names_are_written() {
             assert!(toml.parse::<toml::Table>().is_ok(), "{name}: {toml}");
         }
     }
-    documented(&folder);
+    check_documented(&folder);
 }
 
 #[test]
 fn an_export_comes_to_a_gauge_plan_in_three_commands_and_three_edited_lines() {
-    let Some(export) = support::shared("nastran/mystran_frame_units") else {
+    let Some(export) = support::find_shared_path("nastran/mystran_frame_units") else {
         return;
     };
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("first-hour");
@@ -204,7 +204,7 @@ fn fields_of(value: &serde_json::Value, path: &str, out: &mut std::collections::
 }
 
 /// Every field and every column that the commands of the guide wrote stands in the reference.
-fn documented(folder: &Path) {
+fn check_documented(folder: &Path) {
     use strainbridge::report::reference::{columns, fields};
     let mut seen = 0;
     let mut missing = std::collections::BTreeSet::new();

@@ -29,7 +29,7 @@ fn folder(name: &str) -> PathBuf {
 
 #[test]
 fn the_control_job_gives_the_contracts_keys_and_a_closed_mass_balance() {
-    let Some(case) = support::shared("hidden_effects/dynamics/dev-d1/job.toml") else {
+    let Some(case) = support::find_shared_path("hidden_effects/dynamics/dev-d1/job.toml") else {
         return;
     };
     let out = folder("identify_control");
@@ -129,7 +129,7 @@ fn bad_records_end_with_code_2_and_name_file_line_and_remedy() {
 /// levers say.
 #[test]
 fn the_chassis_force_is_told_by_mass_by_springs_and_at_the_seats_of_the_leaf() {
-    let Some(case) = support::shared("hidden_effects/dynamics/dev-d1") else {
+    let Some(case) = support::find_shared_path("hidden_effects/dynamics/dev-d1") else {
         return;
     };
     let out = folder("identify_chassis");
@@ -261,7 +261,7 @@ fn a_model_that_leaves_most_of_a_channel_is_an_error_where_no_noise_is_declared(
 
 #[test]
 fn a_channel_whose_name_is_misspelt_is_named_and_not_taken_for_one_that_was_not_measured() {
-    let Some(job) = support::shared("hidden_effects/dynamics/dev-d1/job.toml") else {
+    let Some(job) = support::find_shared_path("hidden_effects/dynamics/dev-d1/job.toml") else {
         return;
     };
     let here = folder("identify_misspelt");

@@ -51,14 +51,14 @@ gauges = 4
 
 fn files() -> InMemory {
     InMemory::default()
-        .with("strip.bdf", strip())
-        .with("job.toml", JOB)
+        .with_file("strip.bdf", strip())
+        .with_file("job.toml", JOB)
 }
 
 #[test]
 fn a_rule_that_leaves_no_place_is_named() {
     let candidates = "[candidates]\nclear_of = { loads = 1000.0 }\n";
-    let files = files().with("clear.toml", format!("{JOB}{candidates}"));
+    let files = files().with_file("clear.toml", format!("{JOB}{candidates}"));
     let job = Job::read("clear.toml", &files).unwrap();
     let faults = place(&job, &Context::new(&files)).err().unwrap();
     let said = faults.to_string();
@@ -87,7 +87,7 @@ fn a_rule_that_leaves_no_place_is_named() {
     ] {
         let files = files
             .clone()
-            .with("rule.toml", format!("{JOB}[candidates]\n{rules}"));
+            .with_file("rule.toml", format!("{JOB}[candidates]\n{rules}"));
         let job = Job::read("rule.toml", &files).unwrap();
         let faults = place(&job, &Context::new(&files)).err().unwrap();
         let said = faults.to_string();
@@ -112,7 +112,7 @@ fn a_layout_comes_as_a_value_with_its_certificate() {
     // The certificate is a share; what is proved the best has nothing above it.
     assert!(plan.efficiency_bound > 0.0 && plan.efficiency_bound <= 1.0 + 1e-12);
     assert!(plan.log_det <= plan.upper_bound + 1e-9);
-    assert!(plan.findings.worst() < Some(Severity::Error));
+    assert!(plan.findings.worst_severity() < Some(Severity::Error));
     // Asked again, the kept solution gives the same layout.
     let again = place(&job, &context).unwrap();
     assert_eq!(plan.gauges, again.gauges);
@@ -132,7 +132,7 @@ fn the_planned_sigma_is_the_recovered_one_at_the_expected_loads() {
         format!("[[combination]]\nname = \"{name}\"\nterms = {{ {a} = 1, {b} = {factor} }}\n")
     };
     let sums = combination("sum", 1.0) + &combination("difference", -1.0);
-    let plan = files().with(
+    let plan = files().with_file(
         "plan.toml",
         format!("{JOB}spacing = 15.0\nangle_tolerance_deg = 2.0\n{errors}{sums}"),
     );
@@ -153,8 +153,8 @@ fn the_planned_sigma_is_the_recovered_one_at_the_expected_loads() {
     }
     job += &format!("[measured]\nstrain = \"strain.csv\"\n{errors}{sums}");
     let files = files()
-        .with("recover.toml", job)
-        .with("strain.csv", format!("{head}\n{row}\n"));
+        .with_file("recover.toml", job)
+        .with_file("strain.csv", format!("{head}\n{row}\n"));
     let job = Job::read("recover.toml", &files).unwrap();
     let answer = recover(&job, &Context::new(&files)).unwrap();
     let got = answer.runs().unwrap();
@@ -186,7 +186,7 @@ fn an_installed_layout_has_the_sigmas_of_the_same_chosen_one() {
         "gauge_factor_rel = 0.02\n",
     ] {
         let text = format!("{JOB}spacing = 15.0\nnoise_microstrain = 1.0\n{tolerances}");
-        let plan = files().with("plan.toml", &*text);
+        let plan = files().with_file("plan.toml", &*text);
         let job = Job::read("plan.toml", &plan).unwrap();
         let chosen = place(&job, &Context::new(&plan)).unwrap();
         let gauges = chosen.gauges.iter().map(|g| {
@@ -196,7 +196,7 @@ fn an_installed_layout_has_the_sigmas_of_the_same_chosen_one() {
                 g.name, g.element, g.surface
             )
         });
-        let both = files().with("both.toml", text.clone() + &gauges.collect::<String>());
+        let both = files().with_file("both.toml", text.clone() + &gauges.collect::<String>());
         let job = Job::read("both.toml", &both).unwrap();
         let again = place(&job, &Context::new(&both)).unwrap();
         let installed = again.installed.as_ref().unwrap().quality.as_ref().unwrap();
@@ -214,7 +214,7 @@ fn an_installed_layout_has_the_sigmas_of_the_same_chosen_one() {
 
 #[test]
 fn faults_come_with_file_line_and_remedy() {
-    let files = InMemory::default().with("job.toml", "units = \"furlong\"\n");
+    let files = InMemory::default().with_file("job.toml", "units = \"furlong\"\n");
     let faults = Job::read("job.toml", &files).unwrap_err();
     let first = faults.first().unwrap();
     assert_eq!((first.file.as_str(), first.line), ("job.toml", Some(1)));
@@ -261,10 +261,10 @@ noise = { force = 0.02 }
 path = "static"
 "#;
     InMemory::default()
-        .with("job.toml", job)
-        .with("s.csv", s)
-        .with("strain.csv", strain)
-        .with("runs.csv", runs)
+        .with_file("job.toml", job)
+        .with_file("s.csv", s)
+        .with_file("strain.csv", strain)
+        .with_file("runs.csv", runs)
 }
 
 #[test]
@@ -323,12 +323,12 @@ causes = { settlement = "lowered", temperature = "air_C" }
 #[test]
 fn causes_that_changed_together_come_as_rivals_of_the_same_type() {
     let files = InMemory::default()
-        .with("job.toml", CAUSES)
-        .with(
+        .with_file("job.toml", CAUSES)
+        .with_file(
             "strain.csv",
             "run,a,b\nbefore,238.59,1.51\nafter,215.19,35.79\n",
         )
-        .with("runs.csv", "run,lowered,air_C\nbefore,0,2.0\nafter,1,4.0\n");
+        .with_file("runs.csv", "run,lowered,air_C\nbefore,0,2.0\nafter,1,4.0\n");
     let job = Job::read("job.toml", &files).unwrap();
     let found = reconcile(&job, &Context::new(&files)).unwrap();
     assert_eq!(found.verdict, Verdict::Unknown);
@@ -337,12 +337,12 @@ fn causes_that_changed_together_come_as_rivals_of_the_same_type() {
     assert!(found.best_attempt.is_none() && found.extended_model.is_none());
     // The runs file may have the loads of a given S.
     let files = files
-        .with("S.csv", "gauge,F1\na,1\nb,2\n")
-        .with(
+        .with_file("S.csv", "gauge,F1\na,1\nb,2\n")
+        .with_file(
             "job.toml",
             CAUSES.replace("[runs]", "[sensitivity]\nfile = \"S.csv\"\n[runs]"),
         )
-        .with(
+        .with_file(
             "runs.csv",
             "run,lowered,air_C,F1,driver\nbefore,0,2.0,1,7\nafter,1,4.0,1,7\n",
         );
@@ -354,7 +354,7 @@ fn causes_that_changed_together_come_as_rivals_of_the_same_type() {
 
 #[test]
 fn motion_without_a_vehicle_is_refused() {
-    let files = InMemory::default().with(
+    let files = InMemory::default().with_file(
         "job.toml",
         "units = \"m-kg-s\"\n[reconcile]\npath = \"dynamic\"\n",
     );
@@ -392,7 +392,7 @@ fn loads(i: usize) -> [f64; 2] {
 }
 
 /// A job and its strain without noise: `rows` runs (`key` is `run`), or samples at 10 Hz (`time`); `blank` rows lack gauge 2.
-fn measured(key: &str, rows: usize, blank: std::ops::Range<usize>) -> InMemory {
+fn measured_job(key: &str, rows: usize, blank: std::ops::Range<usize>) -> InMemory {
     let mut table = format!("{key},G1,G2,G3\n");
     for i in 0..rows {
         let [a, b] = loads(i);
@@ -413,9 +413,9 @@ fn measured(key: &str, rows: usize, blank: std::ops::Range<usize>) -> InMemory {
         let _ = writeln!(s, "G{},{},{}", g + 1, row[0], row[1]);
     }
     InMemory::default()
-        .with("S.csv", s)
-        .with("strain.csv", table)
-        .with("job.toml", RECOVER)
+        .with_file("S.csv", s)
+        .with_file("strain.csv", table)
+        .with_file("job.toml", RECOVER)
 }
 
 /// Keys of the answer in `result.json`.
@@ -426,7 +426,7 @@ fn keys<A: serde::Serialize>(answer: &A) -> Vec<String> {
 
 #[test]
 fn loads_of_runs_come_as_values_with_intervals_around_the_truth() {
-    let files = measured("run", 5, 0..0);
+    let files = measured_job("run", 5, 0..0);
     let job = Job::read("job.toml", &files).unwrap();
     let answer = recover(&job, &Context::new(&files)).unwrap();
     let runs = answer.runs().unwrap();
@@ -461,7 +461,7 @@ fn loads_of_runs_come_as_values_with_intervals_around_the_truth() {
 
 #[test]
 fn loads_of_a_record_stay_in_memory_sample_by_sample() {
-    let files = measured("time", 500, 100..120);
+    let files = measured_job("time", 500, 100..120);
     let job = Job::read("job.toml", &files).unwrap();
     let answer = recover(&job, &Context::new(&files)).unwrap();
     let record = answer.record().unwrap();
@@ -522,10 +522,10 @@ fn a_gauge_that_the_zero_file_lacks_has_no_part_in_the_loads() {
         let _ = writeln!(strain, "R{i},{},{},{}", told[0], told[1], told[2] + 100.0);
     }
     let job = RECOVER.replace("[measured]\n", "[measured]\nzero = \"zero.csv\"\n");
-    let files = measured("run", 5, 0..0)
-        .with("strain.csv", strain)
-        .with("zero.csv", "run,G1,G2\nparked,0,0\n")
-        .with("job.toml", job);
+    let files = measured_job("run", 5, 0..0)
+        .with_file("strain.csv", strain)
+        .with_file("zero.csv", "run,G1,G2\nparked,0,0\n")
+        .with_file("job.toml", job);
     let job = Job::read("job.toml", &files).unwrap();
     let answer = recover(&job, &Context::new(&files)).unwrap();
     assert_eq!(answer.runs().unwrap().loads.len(), 5 * 3);
@@ -564,7 +564,7 @@ impl RecordSink for Counter {
             self.samples += block.times.len();
         }
         match self.most.is_some_and(|most| self.samples > most) {
-            true => Err(Fault::of("counter", "samples", "too many", "none")),
+            true => Err(Fault::new("counter", "samples", "too many", "none")),
             false => Ok(()),
         }
     }
@@ -582,7 +582,7 @@ impl RecordSink for Counter {
 #[test]
 fn a_sink_of_somebody_else_gets_every_sample_once_and_may_refuse() {
     let job = RECOVER.to_owned() + "[recover]\nfiles = []\n";
-    let files = measured("time", 20_000, 0..0).with("job.toml", job);
+    let files = measured_job("time", 20_000, 0..0).with_file("job.toml", job);
     let job = Job::read("job.toml", &files).unwrap();
     let mut sink = Counter::default();
     let answer = recover_into(&job, &Context::new(&files), &mut sink).unwrap();
@@ -598,7 +598,7 @@ fn a_sink_of_somebody_else_gets_every_sample_once_and_may_refuse() {
     assert_eq!(faults.first().unwrap().wrong, "too many");
     assert_eq!(sink.ended, None);
     // Runs are no record.
-    let files = measured("run", 5, 0..0);
+    let files = measured_job("run", 5, 0..0);
     let job = Job::read("job.toml", &files).unwrap();
     let mut sink = Counter::default();
     recover_into(&job, &Context::new(&files), &mut sink).unwrap();
@@ -610,11 +610,11 @@ fn a_record_kept_in_memory_and_one_written_as_it_comes_give_the_same_files() {
     let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("library_record");
     let _ = std::fs::remove_dir_all(&folder);
     let (kept, streamed) = (folder.join("kept"), folder.join("streamed"));
-    let files = measured("time", 30_000, 17_000..17_010);
+    let files = measured_job("time", 30_000, 17_000..17_010);
     let job = Job::read("job.toml", &files).unwrap();
     let context = Context::new(&files);
     save(&recover(&job, &context).unwrap(), &kept).unwrap();
-    let mut sink = RecordFolder::at(&streamed);
+    let mut sink = RecordFolder::new(&streamed);
     let outcome = recover_into(&job, &context, &mut sink).unwrap();
     assert!(!streamed.join("loads.csv").exists(), "files appear whole");
     let mut out = sink.into_output().unwrap();
@@ -648,19 +648,19 @@ fn wanted_elements_and_picked_lists_are_kept() {
         "[candidates]\nelements = \"1 THRU 8\"\nexclude_elements = [3]\nwanted_elements = [7, 8]\n";
     let job = |more: &str| format!("{JOB}spacing = 15.0\n[candidates]\n{more}");
     let files = files()
-        .with("picked.toml", picked)
-        .with("wanted.toml", job("file = \"picked.toml\"\n"))
-        .with("plain.toml", job("elements = \"1 THRU 8\"\n"))
-        .with(
+        .with_file("picked.toml", picked)
+        .with_file("wanted.toml", job("file = \"picked.toml\"\n"))
+        .with_file("plain.toml", job("elements = \"1 THRU 8\"\n"))
+        .with_file(
             "twice.toml",
             job("file = \"picked.toml\"\nelements = [1]\n"),
         )
-        .with("odd.toml", job("file = \"odd_list.toml\"\n"))
-        .with(
+        .with_file("odd.toml", job("file = \"odd_list.toml\"\n"))
+        .with_file(
             "odd_list.toml",
             "units = \"m-kg-s\"\n[candidates]\nsurfaces = [\"top\"]\n",
         )
-        .with("none.toml", job("wanted_elements = [99]\n"));
+        .with_file("none.toml", job("wanted_elements = [99]\n"));
     let plan = |name: &str| {
         let job = Job::read(name, &files).unwrap();
         place(&job, &Context::new(&files))
@@ -701,8 +701,8 @@ fn a_gauge_that_is_known_to_be_turned_is_turned_in_modes_too() {
     let head = JOB.split("[placement]").next().unwrap();
     let correction = "[[correction]]\ngauge = \"G\"\nangle_deg = 60\n";
     let files = files()
-        .with("drawn.toml", format!("{head}{}", gauge(90)))
-        .with("turned.toml", format!("{head}{}{correction}", gauge(30)));
+        .with_file("drawn.toml", format!("{head}{}", gauge(90)))
+        .with_file("turned.toml", format!("{head}{}{correction}", gauge(30)));
     let strain = |name: &str| -> Vec<f64> {
         let job = Job::read(name, &files).unwrap();
         let modes = strainbridge::modes(&job, 4, &Context::new(&files)).unwrap();
@@ -739,7 +739,7 @@ fn reconcile_has_the_s_that_every_command_has() {
         "units = { force = \"kN\" }",
         "units = { force = \"kN\", moment = \"N mm\" }",
     );
-    let files = files.with("job.toml", text);
+    let files = files.with_file("job.toml", text);
     let job = Job::read("job.toml", &files).unwrap();
     let context = Context::new(&files);
     let s = sensitivity(&job, &context)
@@ -799,14 +799,14 @@ fn a_folder_is_verified_by_whoever_can_answer_again() {
     };
     let same = ask();
     assert!(same.differs.is_empty(), "{:?}", same.differs);
-    assert!(same.same.len() > 2 && same.findings.worst().is_none());
+    assert!(same.same.len() > 2 && same.findings.worst_severity().is_none());
     // Twice as stiff: another input, and half the strain.
     std::fs::write(&deck, strip().replace("210000.", "420000.")).unwrap();
     let other = ask();
     let files: Vec<&str> = other.differs.iter().map(|d| d.file.as_str()).collect();
     assert!(files.iter().any(|f| f.ends_with("strip.bdf")), "{files:?}");
     assert!(files.contains(&"result.json"), "{files:?}");
-    assert_eq!(other.findings.worst(), Some(Severity::Error));
+    assert_eq!(other.findings.worst_severity(), Some(Severity::Error));
     std::fs::remove_file(folder.join("job.toml")).unwrap();
     let none = |_: &strainbridge::workflow::verify::Made, _: &std::path::Path| Ok(anew.clone());
     let fault = strainbridge::verify(&kept, none, &context).unwrap_err();

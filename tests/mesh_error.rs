@@ -207,7 +207,7 @@ fn rows(folder: &Path, job: &str) -> BTreeMap<String, Vec<f64>> {
 }
 
 /// Cells of the first rail at least 200 mm from the support and from the load.
-fn middle() -> Vec<[usize; 3]> {
+fn middle_cells() -> Vec<[usize; 3]> {
     let mut cells = Vec::new();
     for i in (6..29).step_by(3) {
         for (patch, across) in [(0, HEIGHT), (1, FLANGE), (2, FLANGE)] {
@@ -266,7 +266,7 @@ fn entries(folder: &Path) -> Vec<[f64; 4]> {
 /// And S of the command is much nearer to the fine mesh than that of the deck.
 #[test]
 fn the_mesh_error_of_open_rails_is_that_against_a_mesh_a_third_as_wide() {
-    let folder = meshes("frame", &middle());
+    let folder = meshes("frame", &middle_cells());
     let entries = entries(&folder);
     assert!(entries.len() > 300, "{}", entries.len());
     let (mut large, mut near, mut small, mut quiet) = (0, 0, 0, 0);
@@ -298,7 +298,7 @@ fn the_mesh_error_of_open_rails_is_that_against_a_mesh_a_third_as_wide() {
 /// under a point load has no limit.
 #[test]
 fn without_the_key_the_error_is_subtracted_unless_a_load_acts_directly_on_a_shell() {
-    let cells = &middle()[..2];
+    let cells = &middle_cells()[..2];
     let folder = meshes("default", cells);
     let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).unwrap();
     let with = std::fs::read_to_string(folder.join("with.toml")).unwrap();
@@ -325,7 +325,7 @@ fn without_the_key_the_error_is_subtracted_unless_a_load_acts_directly_on_a_shel
 /// their intervals hold scatters more than that of independent runs.
 #[test]
 fn loads_are_recovered_better_without_the_mesh_error_and_intervals_hold_them() {
-    let all = middle();
+    let all = middle_cells();
     let cells: Vec<_> = all.iter().copied().step_by(14).collect();
     let folder = meshes("recover", &cells);
     run(&folder, "sensitivity", "fine.toml");
@@ -340,12 +340,12 @@ fn loads_are_recovered_better_without_the_mesh_error_and_intervals_hold_them() {
     let mut random = drawn::Numbers(7);
     let (mut strain, mut truth) = (format!("run,{}\n", names.join(",")), Vec::new());
     for run in 0..100 {
-        let loads = LOADS.map(|_| EXPECTED * random.normal());
+        let loads = LOADS.map(|_| EXPECTED * random.draw_normal());
         let _ = write!(strain, "r{run}");
         for name in &names {
             let row = &fine[name.rsplit_once('_').unwrap().0];
             let reading: f64 = row.iter().zip(loads).map(|(s, f)| s * f).sum();
-            let _ = write!(strain, ",{:.4}", reading + random.normal());
+            let _ = write!(strain, ",{:.4}", reading + random.draw_normal());
         }
         strain.push('\n');
         truth.push(loads);
@@ -485,15 +485,15 @@ fn a_mesh_divided_round_a_gauge_says_what_one_divided_everywhere_says() {
         let pairs: Vec<_> = coarse.cases.iter().zip(&refined.cases).collect();
         change_by_refining(&model, fine, &pairs)
     };
-    let whole = change(&model.refined().unwrap());
-    let cells = middle();
+    let whole = change(&model.refine_shells().unwrap());
+    let cells = middle_cells();
     let mut missed = Vec::new();
     for rows in [1, 2, 4, 6, 10] {
         let (mut off, mut all) = (0.0, 0.0);
         for cell in cells.iter().step_by(9) {
             let shell = frame.cells.iter().position(|c| c == cell).unwrap();
             let part = model.shells_near(&[ShellIx(shell as u32)], rows);
-            let part = change(&model.refined_at(&part).unwrap());
+            let part = change(&model.refine_shells_at(&part).unwrap());
             for (part, whole) in part.iter().zip(&whole) {
                 let strains = |c: &strainbridge::fe::CaseResult| c.shells.centre[shell];
                 let pairs = strains(part)

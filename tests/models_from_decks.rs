@@ -10,8 +10,8 @@ use strainbridge::host::files::Inputs;
 use strainbridge::model::{GridIx, Model, RigidKind, Vec3};
 use strainbridge::strain_chain::deck::{DeckModel, read_model};
 
-fn shared() -> Option<PathBuf> {
-    support::shared("nastran")
+fn find_nastran_folder() -> Option<PathBuf> {
+    support::find_shared_path("nastran")
 }
 
 fn json(path: &Path) -> Option<Value> {
@@ -23,7 +23,7 @@ const LEAST: usize = 27;
 
 /// Name, expected mesh and our model of every case with a mesh; none where the set is absent.
 fn cases() -> Vec<(String, Value, DeckModel)> {
-    let Some(folder) = shared() else {
+    let Some(folder) = find_nastran_folder() else {
         return Vec::new();
     };
     let mut names: Vec<PathBuf> = std::fs::read_dir(folder)
@@ -49,7 +49,7 @@ fn cases() -> Vec<(String, Value, DeckModel)> {
             .starts_with("op2");
         let file = if from_op2 { &case["op2"] } else { &case["bdf"] };
         let read = read_model(
-            &mut Inputs::of(&strainbridge::host::context::Disk),
+            &mut Inputs::new(&strainbridge::host::context::Disk),
             &path,
             file.as_str().unwrap(),
         )
@@ -247,7 +247,7 @@ fn the_ring_weighs_what_its_solver_printed_about_grid_19() {
         return;
     };
     let expected = json(
-        &shared()
+        &find_nastran_folder()
             .unwrap()
             .join("n95_inertia_relief_ring/expected.json"),
     )
@@ -280,7 +280,13 @@ fn grid_point_weight_of_the_solver_is_ours() {
         let Some(read) = case(name) else {
             return;
         };
-        let expected = json(&shared().unwrap().join(name).join("expected.json")).unwrap();
+        let expected = json(
+            &find_nastran_folder()
+                .unwrap()
+                .join(name)
+                .join("expected.json"),
+        )
+        .unwrap();
         let mo = &expected["op2"]["grid_point_weight"][""]["MO"];
         let m = &read.model;
         // OGPWG is printed without WTMASS.
@@ -309,7 +315,13 @@ fn curved_elements_weigh_what_the_solver_says() {
     let Some(read) = case(name) else {
         return;
     };
-    let expected = json(&shared().unwrap().join(name).join("expected.json")).unwrap();
+    let expected = json(
+        &find_nastran_folder()
+            .unwrap()
+            .join(name)
+            .join("expected.json"),
+    )
+    .unwrap();
     let printed = expected["op2"]["grid_point_weight"][""]["mass"][0]
         .as_f64()
         .unwrap();

@@ -3,7 +3,7 @@
 mod moving;
 
 use moving::generator::{Background, Case, Layout, RATE_HZ, hide};
-use moving::logger::{Fault, spoilt};
+use moving::logger::{Fault, generate_faulty_case};
 use moving::{Score, frame_of, score};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use strainbridge::reconcile::Verdict;
 use strainbridge::reconcile::motion::examine;
 
 /// The fault is named at its channel, its size within a share of the truth.
-fn named(
+fn assert_fault_named(
     layout: Layout,
     fault: Fault,
     channel: &str,
@@ -20,7 +20,7 @@ fn named(
     seed: u64,
     near: f64,
 ) {
-    let case = spoilt(layout, fault, channel, background, seed);
+    let case = generate_faulty_case(layout, fault, channel, background, seed);
     let o = examine(&frame_of(&case), &[]).unwrap();
     let found = score(&case, &o);
     let said = format!(
@@ -44,7 +44,7 @@ fn a_clock_that_is_off_is_named_by_its_channel() {
         (Layout::Front, "a_wheel", -2e-4),
         (Layout::Front, "a_wheel", 3e-3),
     ] {
-        named(
+        assert_fault_named(
             layout,
             Fault::Clock(share),
             channel,
@@ -62,7 +62,7 @@ fn samples_that_are_lost_are_named_by_their_channel() {
         (Layout::Front, "f_wheel", 1, 0.3),
         (Layout::Rear, "f_mid", 5, 0.55),
     ] {
-        named(
+        assert_fault_named(
             layout,
             Fault::Lost(n, at),
             channel,
@@ -82,7 +82,7 @@ fn a_slow_filter_is_named_and_not_a_delay() {
         (Layout::Rear, Fault::LowPass(30.0), "a_mid"),
     ] {
         // The filters of the records are those of a difference equation: beside an RC circuit they are off by (w dt)^2 / 12.
-        named(layout, fault, channel, Background::Clean, 23, 0.03);
+        assert_fault_named(layout, fault, channel, Background::Clean, 23, 0.03);
     }
 }
 
@@ -93,7 +93,7 @@ fn hum_of_the_mains_is_named_by_its_channel() {
         (Layout::Front, 16.64, 0.5, "a_wheel"),
         (Layout::Rear, 16.68, 0.4, "a_rear"),
     ] {
-        named(
+        assert_fault_named(
             layout,
             Fault::Hum(hz, amplitude),
             channel,
@@ -113,7 +113,7 @@ fn before_an_imperfect_background_nothing_false_is_named() {
         (Fault::LowPass(20.0), "a_body"),
         (Fault::Hum(16.7, 0.6), "a_wheel"),
     ] {
-        let case = spoilt(Layout::Front, fault, channel, Background::Messy, 25);
+        let case = generate_faulty_case(Layout::Front, fault, channel, Background::Messy, 25);
         let o = examine(&frame_of(&case), &[]).unwrap();
         let found = score(&case, &o);
         assert!(
@@ -197,7 +197,7 @@ fn the_extended_job_holds_the_fault_of_the_logger() {
         ("slow", Fault::Butterworth(30.0), "a_wheel"),
         ("hum", Fault::Hum(16.7, 0.5), "a_body"),
     ] {
-        let case = spoilt(Layout::Front, fault, channel, Background::Clean, 26);
+        let case = generate_faulty_case(Layout::Front, fault, channel, Background::Clean, 26);
         let folder = workplace(name, &case, known, |_, _| {});
         let r = answer(&run(
             "reconcile",

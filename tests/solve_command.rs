@@ -78,7 +78,7 @@ fn line_of(deck: &str, card: &str) -> usize {
 
 /// Fails unless the deck is refused with a message that stands at the card's line and says all of `words`.
 #[track_caller]
-fn refused(name: &str, deck: &str, card: &str, words: &[&str]) {
+fn assert_deck_refused(name: &str, deck: &str, card: &str, words: &[&str]) {
     let (code, err, dir) = solve(name, deck);
     assert_eq!(code, 2, "{name}: {err}");
     let place = format!("model.bdf:{}:", line_of(deck, card));
@@ -103,61 +103,61 @@ fn a_sound_free_strip_is_solved() {
 
 #[test]
 fn each_kind_of_bad_model_has_a_message_of_its_own_at_its_line() {
-    refused(
+    assert_deck_refused(
         "missing_property",
         &strip("CQUAD4,90,77,1,4,5,2\n"),
         "CQUAD4,90",
         &["CQUAD4 90", "77", "missing"],
     );
-    refused(
+    assert_deck_refused(
         "missing_material",
         &strip("PSHELL,5,44,1.0\nCQUAD4,90,5,1,4,5,2\n"),
         "PSHELL,5",
         &["PSHELL 5", "44", "missing"],
     );
-    refused(
+    assert_deck_refused(
         "zero_length_bar",
         &strip("PBAR,9,1,10.,100.,100.,200.\nGRID,60,,0.,0.,0.\nCBAR,90,9,1,60,0.,0.,1.\n"),
         "CBAR,90",
         &["CBAR 90", "length"],
     );
-    refused(
+    assert_deck_refused(
         "negative_thickness",
         &strip("PSHELL,5,1,-1.0\nCQUAD4,90,5,1,4,5,2\n"),
         "PSHELL,5",
         &["PSHELL 5", "thickness"],
     );
-    refused(
+    assert_deck_refused(
         "duplicate_element",
         &strip("CQUAD4,90,1,1,4,5,2\nCQUAD4,90,1,4,7,8,5\n"),
         "CQUAD4,90,1,4",
         &["CQUAD4 90", "twice"],
     );
-    refused(
+    assert_deck_refused(
         "duplicate_grid",
         &strip("GRID,4,,1.,2.,3.\n"),
         "GRID,4,,1.,2.,3.",
         &["GRID 4", "twice"],
     );
-    refused(
+    assert_deck_refused(
         "missing_grid",
         &strip("CQUAD4,90,1,1,4,5,555\n"),
         "CQUAD4,90",
         &["CQUAD4 90", "555", "missing"],
     );
-    refused(
+    assert_deck_refused(
         "rbe3_on_a_line",
         &strip("GRID,60,,20.,0.,50.\nRBE3,91,,60,123456,1.0,123,1,4,\n,7\n"),
         "RBE3,91",
         &["RBE3 91", "line"],
     );
-    refused(
+    assert_deck_refused(
         "dependent_twice",
         &strip("RBE2,91,1,123456,20\nRBE2,92,2,123456,20\n"),
         "RBE2,92",
         &["92", "grid 20", "dependent already"],
     );
-    refused(
+    assert_deck_refused(
         "no_set",
         &strip("").replace("LOAD = 1", "LOAD = 8"),
         "  LOAD = 8",
@@ -170,7 +170,7 @@ fn mechanisms_are_named_before_anything_is_solved() {
     // A bar that hangs on the strip by a hinge about its own axis and across: nothing holds its turning.
     let hinge =
         strip("PBAR,9,1,10.,100.,100.,200.\nGRID,60,,-80.,0.,0.\nCBAR,90,9,1,60,0.,0.,1.,\n,456\n");
-    refused(
+    assert_deck_refused(
         "hinge",
         &hinge,
         "GRID,60",
@@ -215,7 +215,7 @@ fn a_grid_in_no_element_is_a_note_and_a_load_on_it_an_error() {
         err.contains("GRID 60") && err.contains("no element uses it"),
         "{err}"
     );
-    refused(
+    assert_deck_refused(
         "loaded_unattached",
         &strip("GRID,60,,0.,0.,50.\nFORCE,1,60,0,1.,0.,0.,1.\n"),
         "GRID,60",
@@ -252,7 +252,7 @@ fn answer(dir: &Path) -> String {
         .collect()
 }
 
-fn kept(dir: &Path) -> Vec<PathBuf> {
+fn list_kept_files(dir: &Path) -> Vec<PathBuf> {
     std::fs::read_dir(dir.join("kept"))
         .map(|list| list.map(|e| e.unwrap().path()).collect())
         .unwrap_or_default()
@@ -263,7 +263,7 @@ fn a_kept_solution_gives_the_same_answer_and_nothing_is_kept_beside_the_deck() {
     let (code, first, dir) = solve("kept", &strip(""));
     assert_eq!(code, 0, "{first}");
     assert!(!first.contains("cache"), "{first}");
-    let [file] = kept(&dir).try_into().unwrap();
+    let [file] = list_kept_files(&dir).try_into().unwrap();
     assert!(!dir.join("model.cache").exists());
     let deck = dir.join("model.bdf");
     let run = |out: &str, extra: &[&str]| {
@@ -302,7 +302,7 @@ fn a_kept_solution_gives_the_same_answer_and_nothing_is_kept_beside_the_deck() {
     std::fs::remove_file(&file).unwrap();
     let (_, err) = run("without", &["--no-cache"]);
     assert!(!err.contains("cache"), "{err}");
-    assert!(kept(&dir).is_empty());
+    assert!(list_kept_files(&dir).is_empty());
 }
 
 #[test]
@@ -314,7 +314,7 @@ fn a_changed_deck_is_solved_again() {
     assert_eq!(done.status.code(), Some(0));
     let err = text(&done.stderr);
     assert!(!err.contains("a stored solution is used"), "{err}");
-    assert_eq!(kept(&dir).len(), 2);
+    assert_eq!(list_kept_files(&dir).len(), 2);
 }
 
 /// A job of two loads and three gauges on the strip.
@@ -699,7 +699,7 @@ fn a_set_that_the_deck_lacks_is_refused_at_the_statement_that_selects_it() {
         ("TEMP(LOAD) = 7", "TEMPERATURE = 7"),
     ] {
         let deck = strip("").replace("  LOAD = 1\n", &format!("  LOAD = 1\n  {statement}\n"));
-        refused("set_missing", &deck, &format!("  {statement}"), &[selects]);
+        assert_deck_refused("set_missing", &deck, &format!("  {statement}"), &[selects]);
     }
 }
 

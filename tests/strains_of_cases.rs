@@ -33,7 +33,7 @@ fn tolerance(word_bytes: u64) -> f64 {
 
 /// The set's cases: folder, case.json, expected.json.
 fn cases() -> Vec<(PathBuf, Value, Value)> {
-    let Some(folder) = support::shared("nastran") else {
+    let Some(folder) = support::find_shared_path("nastran") else {
         return Vec::new();
     };
     let entries = std::fs::read_dir(folder).unwrap();
@@ -95,7 +95,7 @@ impl Columns {
     }
 
     /// Largest difference of any column relative to that column's largest value, with its name.
-    fn worst(&self) -> (f64, String) {
+    fn largest_difference(&self) -> (f64, String) {
         let mut worst = (0.0, String::new());
         for (name, pairs) in &self.0 {
             let largest = pairs.iter().fold(0.0_f64, |m, p| m.max(p.1.abs()));
@@ -125,7 +125,7 @@ fn case_of(solution: &Solution, subcase: u64) -> &CaseResult {
 }
 
 /// Strain at the surfaces of a shell: at the centre, or at a corner grid.
-fn at(model: &Model, case: &CaseResult, element: u32, grid: u32) -> [PlaneStrain; 2] {
+fn shell_strain_at(model: &Model, case: &CaseResult, element: u32, grid: u32) -> [PlaneStrain; 2] {
     let ix = model.shell_ix(element).unwrap();
     let i = case.shells.elements.binary_search(&ix).unwrap();
     if grid == 0 {
@@ -190,7 +190,7 @@ fn shell_strain_of_every_case_agrees_in_the_element_frame() {
                 let (i, element) = (row[1].as_u64().unwrap(), row[2].as_u64().unwrap() as u32);
                 let grid = row[3].as_u64().unwrap() as u32;
                 let ix = model.shell_ix(element).unwrap();
-                let strain = at(&model, result, element, grid);
+                let strain = shell_strain_at(&model, result, element, grid);
                 let z = fibres_at(&model, &model.shells[ix.us()], grid);
                 let ours = as_row(strain, z, 1 + (i % 2) as usize, is_fibre);
                 for k in 0..3 {
@@ -198,7 +198,7 @@ fn shell_strain_of_every_case_agrees_in_the_element_frame() {
                     columns.push(&name, ours[k], &row[5 + k]);
                 }
             }
-            let (worst, column) = columns.worst();
+            let (worst, column) = columns.largest_difference();
             let limit = tolerance(expected["op2"]["word_bytes"].as_u64().unwrap());
             assert!(
                 worst <= limit,
@@ -236,7 +236,12 @@ fn strain_of_quads_in_the_basic_frame_agrees_in_every_case() {
             let fibre = row["fiber"].as_f64().unwrap();
             let z = model.fibres(shell).centre;
             let is_fibre = (fibre - z[which - 1]).abs() <= 1e-4 * (z[1] - z[0]);
-            let strain = as_row(at(&model, result, element, 0), z, which, is_fibre);
+            let strain = as_row(
+                shell_strain_at(&model, result, element, 0),
+                z,
+                which,
+                is_fibre,
+            );
             let axes = shell_axes(&model, shell, ShellPlace::Centre).unwrap();
             // The oracle leaves the normal strain out.
             let ours = components(&basic_tensor(strain, 0.0, &axes));
@@ -248,7 +253,7 @@ fn strain_of_quads_in_the_basic_frame_agrees_in_every_case() {
                 );
             }
         }
-        let (worst, column) = columns.worst();
+        let (worst, column) = columns.largest_difference();
         let limit = tolerance(expected["op2"]["word_bytes"].as_u64().unwrap());
         assert!(worst <= limit, "{} {column}: {worst:.2e}", folder.display());
         n_cases += 1;
@@ -271,7 +276,7 @@ fn strain_hidden_in_a_stress_table_is_found_by_its_code() {
             assert!(!result.shells.from_stress);
             let (mut local, mut basic) = (Columns::default(), Columns::default());
             for row in table["rows"].as_array().unwrap() {
-                let strain = at(&model, result, row[0].as_u64().unwrap() as u32, 0);
+                let strain = shell_strain_at(&model, result, row[0].as_u64().unwrap() as u32, 0);
                 for surface in 0..2 {
                     for (k, ours) in strain[surface].iter().enumerate() {
                         local.push(&format!("{k} {surface}"), *ours, &row[2 + 8 * surface + k]);
@@ -288,14 +293,14 @@ fn strain_hidden_in_a_stress_table_is_found_by_its_code() {
                 let shell = &model.shells[model.shell_ix(element).unwrap().us()];
                 let axes = shell_axes(&model, shell, ShellPlace::Centre).unwrap();
                 let ours = components(&basic_tensor(
-                    at(&model, result, element, 0)[surface],
+                    shell_strain_at(&model, result, element, 0)[surface],
                     0.0,
                     &axes,
                 ));
                 (0..6).for_each(|k| basic.push(&format!("{k} {surface}"), ours[k], &row[2 + k]));
             }
             let limit = tolerance(expected["op2"]["word_bytes"].as_u64().unwrap());
-            for (worst, column) in [local.worst(), basic.worst()] {
+            for (worst, column) in [local.largest_difference(), basic.largest_difference()] {
                 assert!(worst <= limit, "{} {column}: {worst:.2e}", folder.display());
             }
             n += 1;
@@ -338,7 +343,7 @@ fn displacements_of_every_case_turned_back_to_their_frames_are_those_of_the_file
                 }
             }
             // pyNastran holds nodal tables in single precision even where the file is double.
-            let (worst, column) = columns.worst();
+            let (worst, column) = columns.largest_difference();
             assert!(
                 worst <= 1e-6,
                 "{} subcase {} {column}: {worst:.2e}",
@@ -353,7 +358,7 @@ fn displacements_of_every_case_turned_back_to_their_frames_are_those_of_the_file
 
 #[test]
 fn the_same_run_read_from_hdf5_gives_the_same_bar_strain_in_double_precision() {
-    let Some(folder) = support::shared("nastran/msc_svanberg_beam") else {
+    let Some(folder) = support::find_shared_path("nastran/msc_svanberg_beam") else {
         return;
     };
     let h5 = std::fs::read(folder.join("static.h5")).unwrap();

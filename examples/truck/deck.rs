@@ -65,7 +65,7 @@ impl DeckText {
             for field in line {
                 let word = match field {
                     Field::Int(v) => v.to_string(),
-                    Field::Real(v) => real(*v),
+                    Field::Real(v) => format_real(*v),
                     Field::Text(t) => (*t).to_owned(),
                     Field::Blank => String::new(),
                 };
@@ -120,7 +120,7 @@ impl DeckText {
 }
 
 /// The shortest form of a real that fits eight columns with the least loss.
-fn real(value: f64) -> String {
+fn format_real(value: f64) -> String {
     let plain = format!("{value:?}");
     if plain.len() <= 8 && plain.contains('.') && !plain.contains('e') {
         return plain;

@@ -33,7 +33,7 @@ pub struct Frame {
 
 impl Frame {
     /// The same in ascending ids, so that every run writes the same deck.
-    pub fn sorted(mut self) -> Self {
+    pub fn sort_by_id(mut self) -> Self {
         self.rail_points.sort_by_key(|p| p.id);
         self.member_centres
             .iter_mut()
@@ -42,7 +42,7 @@ impl Frame {
     }
 
     /// Grids of a rail near a station, between two heights; where the mesh is a line of bars, the nearest grid.
-    fn near(&self, side: Side, x: f64, reach: f64, z: [f64; 2]) -> Vec<u32> {
+    fn rail_grids_near(&self, side: Side, x: f64, reach: f64, z: [f64; 2]) -> Vec<u32> {
         let on_side = || self.rail_points.iter().filter(move |p| p.side == side);
         let found: Vec<u32> = on_side()
             .filter(|p| (p.x[0] - x).abs() <= reach && p.x[2] > z[0] && p.x[2] < z[1])
@@ -322,7 +322,7 @@ fn lower_bracket(
     tie(
         deck,
         id,
-        &frame.near(side, x[0], reach, [low - 1.0, low + 1.0]),
+        &frame.rail_grids_near(side, x[0], reach, [low - 1.0, low + 1.0]),
     );
     id
 }
@@ -399,7 +399,7 @@ fn torque_rods(truck: &Truck, frame: &Frame, deck: &mut DeckText, axle: &Axle) {
     let at = [axle.x, -truck.rails.web_y(), z];
     let anchor = deck.grid(at);
     let high = truck.rails.z()[1];
-    let near = frame.near(Side::Left, axle.x, 70.0, [z, high - 1.0]);
+    let near = frame.rail_grids_near(Side::Left, axle.x, 70.0, [z, high - 1.0]);
     tie(deck, anchor, &near);
     let id = deck.element();
     deck.card("CROD", fields![id, ROD, side_lug, anchor]);
@@ -420,7 +420,7 @@ fn add_mass(truck: &Truck, frame: &Frame, deck: &mut DeckText, grid: u32, mass: 
     let mut arms: Vec<u32> = Vec::new();
     for side in sides {
         for foot in &mass.feet_in {
-            arms.extend(frame.near(*side, foot * INCH, 60.0, [low - 1.0, high + 1.0]));
+            arms.extend(frame.rail_grids_near(*side, foot * INCH, 60.0, [low - 1.0, high + 1.0]));
         }
     }
     arms.sort_unstable();

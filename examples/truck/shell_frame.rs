@@ -166,7 +166,7 @@ pub fn build(truck: &Truck, deck: &mut DeckText) -> Frame {
             .collect(),
         member_centres,
     }
-    .sorted()
+    .sort_by_id()
 }
 
 fn properties(truck: &Truck, deck: &mut DeckText) {

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 /// Files of the shared set up to a size, smallest first.
 fn files(largest: u64) -> Vec<(PathBuf, Vec<u8>)> {
     let mut found = Vec::new();
-    let Some(shared) = support::shared("nastran") else {
+    let Some(shared) = support::find_shared_path("nastran") else {
         return found;
     };
     for folder in std::fs::read_dir(shared).unwrap().flatten() {
@@ -57,7 +57,7 @@ impl Random {
         self.0
     }
 
-    fn below(&mut self, n: usize) -> usize {
+    fn draw_below(&mut self, n: usize) -> usize {
         (self.next() % n.max(1) as u64) as usize
     }
 }
@@ -95,7 +95,7 @@ fn a_file_cut_after_any_record_or_within_one_is_read_as_far_as_it_goes() {
             }
         }
     }
-    assert!(read > 0 || support::shared("nastran").is_none());
+    assert!(read > 0 || support::find_shared_path("nastran").is_none());
 }
 
 #[test]
@@ -122,7 +122,7 @@ fn a_large_file_cut_after_any_record_keeps_the_blocks_before_it() {
             }
         }
     }
-    assert!(kept > 0 || support::shared("nastran").is_none());
+    assert!(kept > 0 || support::find_shared_path("nastran").is_none());
 }
 
 #[test]
@@ -195,7 +195,7 @@ fn ten_thousand_mutations_end_in_an_error_or_a_partial_answer() {
     for i in 0..10_000 {
         let (_, original) = &files[i % files.len()];
         let mut bytes = original.clone();
-        for _ in 0..=random.below(6) {
+        for _ in 0..=random.draw_below(6) {
             mutate(&mut bytes, &mut random);
         }
         read_all(&bytes);
@@ -220,14 +220,14 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
     if n < 16 {
         return;
     }
-    let at = random.below(n - 8);
-    let len = random.below(64.min(n - at));
-    match random.below(6) {
-        0 | 1 => bytes[at] ^= 1 << random.below(8),
+    let at = random.draw_below(n - 8);
+    let len = random.draw_below(64.min(n - at));
+    match random.draw_below(6) {
+        0 | 1 => bytes[at] ^= 1 << random.draw_below(8),
         2 | 3 => {
-            let word = WORDS[random.below(WORDS.len())];
+            let word = WORDS[random.draw_below(WORDS.len())];
             let at = at / 4 * 4;
-            bytes[at..at + 4].copy_from_slice(&if random.below(2) == 0 {
+            bytes[at..at + 4].copy_from_slice(&if random.draw_below(2) == 0 {
                 word.to_le_bytes()
             } else {
                 word.to_be_bytes()
@@ -236,7 +236,7 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
         4 => drop(bytes.drain(at..at + len)),
         _ => {
             let piece = bytes[at..at + len].to_vec();
-            let to = random.below(n);
+            let to = random.draw_below(n);
             bytes.splice(to..to, piece);
         }
     }

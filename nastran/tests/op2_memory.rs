@@ -75,7 +75,7 @@ fn write_large(path: &Path, subcases: u32, elements: u32) {
 fn memory_stays_under_four_times_the_file_and_64_mib() {
     let large = Path::new(env!("CARGO_TARGET_TMPDIR")).join("large.op2");
     write_large(&large, 400, 2_000);
-    let shared = support::shared("nastran").unwrap_or_default();
+    let shared = support::find_shared_path("nastran").unwrap_or_default();
     let mut files = vec![large.clone()];
     for folder in std::fs::read_dir(shared).into_iter().flatten().flatten() {
         let inside = std::fs::read_dir(folder.path())

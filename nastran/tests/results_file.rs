@@ -6,7 +6,7 @@ use nastran::results::{ResultsError, ResultsFile};
 
 #[test]
 fn every_op2_punch_and_h5_of_the_set_opens_and_each_block_decodes_or_says_why_not() {
-    let Some(folder) = support::shared("nastran") else {
+    let Some(folder) = support::find_shared_path("nastran") else {
         return;
     };
     let cases = std::fs::read_dir(folder).unwrap();

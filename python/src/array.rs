@@ -1,6 +1,6 @@
 //! Reads numpy arrays as slices, without a copy, or reports their fault.
 
-use crate::fault::{raise, wrong};
+use crate::fault::{argument_fault, raise};
 use numpy::{PyArrayDescrMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArray};
 use numpy::{PyUntypedArrayMethods, prelude::*};
 use pyo3::exceptions::PyTypeError;
@@ -18,7 +18,7 @@ pub(crate) struct Named<'a> {
 }
 
 impl Named<'_> {
-    fn untyped<'a, 'py>(
+    fn array_of_any_type<'a, 'py>(
         &self,
         a: &'a Bound<'py, PyAny>,
         ndim: usize,
@@ -50,18 +50,21 @@ impl Named<'_> {
 
     /// Two dimensions.
     pub fn matrix<'py>(&self, a: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArray2<'py, f64>> {
-        self.untyped(a, 2)?;
+        self.array_of_any_type(a, 2)?;
         Ok(a.cast::<numpy::PyArray2<f64>>()?.try_readonly()?)
     }
 
     /// Returns an array of one dimension.
     pub fn vector<'py>(&self, a: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArray1<'py, f64>> {
-        self.untyped(a, 1)?;
+        self.array_of_any_type(a, 1)?;
         Ok(a.cast::<numpy::PyArray1<f64>>()?.try_readonly()?)
     }
 
     /// Returns the error about the array.
     pub fn fault(&self, py: Python, said: &str, remedy: &str) -> PyErr {
-        raise(py, wrong(self.function, self.name, said, remedy).into())
+        raise(
+            py,
+            argument_fault(self.function, self.name, said, remedy).into(),
+        )
     }
 }

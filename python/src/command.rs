@@ -1,6 +1,6 @@
 //! Every command that asks a job or files, by its name.
 
-use crate::fault::{raise, wrong};
+use crate::fault::{argument_fault, raise};
 use crate::files::Desk;
 use crate::job::CheckedJob;
 use crate::outcome::{AnyOutcome, keep, keep_calibrated, keep_loads, keep_sensitivity};
@@ -109,11 +109,11 @@ pub(crate) fn ask(
 }
 
 fn shard_of(py: Python, text: &str) -> PyResult<Shard> {
-    Shard::of(text).ok_or_else(|| {
+    Shard::parse(text).ok_or_else(|| {
         let said = format!("`{text}` is not a part such as 3/64");
         raise(
             py,
-            wrong("fleet", "shard", &said, "write it as 3/64").into(),
+            argument_fault("fleet", "shard", &said, "write it as 3/64").into(),
         )
     })
 }
@@ -156,9 +156,9 @@ fn answer(
         }
         (name, Some(job)) => match ON_JOB.iter().find(|c| c.0 == name) {
             Some((_, question)) => question(job, cx),
-            None => Err(wrong("ask", "command", name, "see `commands()`").into()),
+            None => Err(argument_fault("ask", "command", name, "see `commands()`").into()),
         },
-        (name, None) => Err(wrong(name, "job", "no job is given", "give a job").into()),
+        (name, None) => Err(argument_fault(name, "job", "no job is given", "give a job").into()),
     }
 }
 
@@ -175,12 +175,12 @@ pub(crate) fn made(py: Python, folder: PathBuf) -> PyResult<(String, PathBuf, Ve
 #[pyfunction]
 #[pyo3(signature = (folder=None))]
 pub(crate) fn clean(py: Python, folder: Option<PathBuf>) -> PyResult<(PathBuf, usize, u64)> {
-    let folder = folder.map_or_else(Folder::of_user, Folder::at);
+    let folder = folder.map_or_else(Folder::of_user, Folder::new);
     let (removed, bytes) = folder.clean().map_err(|e| {
         let (name, said) = (folder.path().display().to_string(), e.to_string());
         raise(
             py,
-            wrong(&name, "clean", &said, "check the permissions").into(),
+            argument_fault(&name, "clean", &said, "check the permissions").into(),
         )
     })?;
     Ok((folder.path().to_owned(), removed, bytes))
@@ -200,7 +200,7 @@ pub(crate) fn explain(py: Python, code: Option<&str>) -> PyResult<String> {
     said.map_err(|e| {
         raise(
             py,
-            wrong(
+            argument_fault(
                 "explain",
                 "code",
                 &e.to_string(),

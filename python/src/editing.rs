@@ -1,6 +1,6 @@
 //! Cards of a deck changed by columns.
 
-use crate::fault::wrong;
+use crate::fault::argument_fault;
 use nastran::bdf::{Deck, Edits, ToFields};
 use nastran::cards::{Conm2, Grid, MaterialAngle, Shell, ShellShape};
 use nastran::place::Placed;
@@ -29,7 +29,7 @@ struct Rows<'a, 'py> {
 
 impl Rows<'_, '_> {
     fn fault(&self, field: &str, said: &str, remedy: &str) -> Fault {
-        wrong(
+        argument_fault(
             "Deck.write",
             &format!("{}.{field}", self.name),
             said,
@@ -50,7 +50,7 @@ impl Rows<'_, '_> {
     }
 
     /// A finite number, or numbers.
-    fn finite<const N: usize>(&self, column: &str, i: usize) -> Result<[f64; N], Fault> {
+    fn finite_numbers<const N: usize>(&self, column: &str, i: usize) -> Result<[f64; N], Fault> {
         let row = self.reals(column, i)?;
         if row.iter().all(|v| v.is_finite()) {
             return Ok(row);
@@ -151,9 +151,9 @@ fn lay<T: ToFields + Clone + PartialEq>(
 fn grid(rows: &Rows, i: usize, old: Option<&Grid>) -> Result<Grid, Fault> {
     let [id] = rows.ids("id", i, 1.0)?;
     let [cp] = rows.ids("cp", i, 0.0)?;
-    let [cd] = rows.finite("cd", i)?;
+    let [cd] = rows.finite_numbers("cd", i)?;
     let cd = cd as i32;
-    let x = rows.finite("x", i)?;
+    let x = rows.finite_numbers("x", i)?;
     let old = old.copied();
     Ok(Grid {
         id,
@@ -175,13 +175,13 @@ fn grid(rows: &Rows, i: usize, old: Option<&Grid>) -> Result<Grid, Fault> {
 fn conm2(rows: &Rows, i: usize, old: Option<&Conm2>) -> Result<Conm2, Fault> {
     let [id] = rows.ids("id", i, 1.0)?;
     let [grid] = rows.ids("grid", i, 1.0)?;
-    let [mass] = rows.finite("mass", i)?;
+    let [mass] = rows.finite_numbers("mass", i)?;
     Ok(Conm2 {
         id,
         grid,
         cid: old.map_or(0, |o| o.cid),
         mass,
-        offset: rows.finite("offset", i)?,
+        offset: rows.finite_numbers("offset", i)?,
         inertia: old.map_or([0.0; 6], |o| o.inertia),
     })
 }

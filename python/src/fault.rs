@@ -17,6 +17,6 @@ pub(crate) fn raise(py: Python, faults: Faults) -> PyErr {
 }
 
 /// A fault of an argument of a function.
-pub(crate) fn wrong(function: &str, argument: &str, said: &str, remedy: &str) -> Fault {
-    Fault::of(function, argument, said, remedy)
+pub(crate) fn argument_fault(function: &str, argument: &str, said: &str, remedy: &str) -> Fault {
+    Fault::new(function, argument, said, remedy)
 }

@@ -34,7 +34,7 @@ pub(crate) fn job_to_json(py: Python, path: &str, text: &str) -> PyResult<String
         let said = e.to_string();
         raise(
             py,
-            Fault::of(path, "text", said.trim_end(), "write it as TOML").into(),
+            Fault::new(path, "text", said.trim_end(), "write it as TOML").into(),
         )
     };
     let table: toml::Table = toml::from_str(text).map_err(|e| fault(&e))?;

@@ -1,7 +1,7 @@
 //! Layouts of a bare matrix.
 
 use crate::array::Named;
-use crate::fault::{raise, wrong};
+use crate::fault::{argument_fault, raise};
 use crate::work::{Asked, run};
 use numpy::{PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -94,7 +94,7 @@ fn layout(
     spec: &Spec,
 ) -> Result<(Layout, f64), Faults> {
     let fault = |argument: &str, said: &str, remedy: &str| {
-        Faults::from(wrong(S.function, argument, said, remedy))
+        Faults::from(argument_fault(S.function, argument, said, remedy))
     };
     if k == 0 || rows.is_empty() {
         return Err(fault(
@@ -123,15 +123,16 @@ fn layout(
         ));
     }
     let n = rows.len() / k;
-    let mut candidates = Candidates::from_rows(k, n, Scatter::uniform(1.0), |place, row| {
-        row.copy_from_slice(&rows[place * k..][..k]);
-    });
+    let mut candidates =
+        Candidates::from_rows(k, n, Scatter::with_uniform_noise(1.0), |place, row| {
+            row.copy_from_slice(&rows[place * k..][..k]);
+        });
     if let Some(p) = positions {
         candidates = candidates.with_positions(p.to_vec());
     }
     let found = place(&candidates, spec).map_err(|e| {
         let (said, remedy) = e.parts();
-        Faults::from(Fault::of(S.function, "S", said, remedy))
+        Faults::from(Fault::new(S.function, "S", said, remedy))
     })?;
     let place_of = |i: usize| found.gauges[i].place as usize;
     let chosen = Matrix::from_fn(found.gauges.len(), k, |i, l| rows[place_of(i) * k + l]);

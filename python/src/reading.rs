@@ -28,7 +28,11 @@ struct Columns<T> {
 }
 
 /// Puts columns into a dictionary: one number a row as a vector, more as a matrix.
-fn put<T: numpy::Element>(out: &Bound<PyDict>, name: &str, c: Columns<T>) -> PyResult<()> {
+fn insert_columns<T: numpy::Element>(
+    out: &Bound<PyDict>,
+    name: &str,
+    c: Columns<T>,
+) -> PyResult<()> {
     let rows = c.values.len() / c.columns.max(1);
     let array = PyArray1::from_vec(out.py(), c.values);
     match c.columns {
@@ -56,7 +60,7 @@ impl ReadDeck {
     fn new(py: Python, path: PathBuf, files: BTreeMap<PathBuf, Vec<u8>>) -> PyResult<Self> {
         let (given, desk) = (path.display().to_string(), Desk(files));
         let read = run(py, &Asked::default(), |_| {
-            read_model(&mut Inputs::of(&desk), Path::new(""), &given)
+            read_model(&mut Inputs::new(&desk), Path::new(""), &given)
         })?;
         Ok(Self(read.map_err(|f| raise(py, f.into()))?))
     }
@@ -66,8 +70,8 @@ impl ReadDeck {
         let (out, model) = (PyDict::new(py), &self.0.model);
         let values = model.grids.iter().flat_map(|g| [g.x.x, g.x.y, g.x.z]);
         let values = values.collect();
-        put(&out, "points", Columns { values, columns: 3 })?;
-        put(
+        insert_columns(&out, "points", Columns { values, columns: 3 })?;
+        insert_columns(
             &out,
             "grid",
             ids(model.grids.iter().map(|g| i64::from(g.id))),
@@ -79,16 +83,16 @@ impl ReadDeck {
             ends.push(end);
         }
         let corners = cells.iter().flat_map(|c| &c.2);
-        put(&out, "connectivity", ids(corners.map(|g| i64::from(g.0))))?;
-        put(&out, "offsets", ids(ends.into_iter()))?;
-        put(&out, "element", ids(cells.iter().map(|c| i64::from(c.1))))?;
+        insert_columns(&out, "connectivity", ids(corners.map(|g| i64::from(g.0))))?;
+        insert_columns(&out, "offsets", ids(ends.into_iter()))?;
+        insert_columns(&out, "element", ids(cells.iter().map(|c| i64::from(c.1))))?;
         let types = cells.iter().map(|c| c.0).collect();
         out.set_item("types", PyArray1::<u8>::from_vec(py, types))?;
         Ok(out)
     }
 
     /// Name and bytes of the files of the deck with cards changed by columns, INCLUDEs as they are found from `folder`; the first is the deck.
-    fn edited(
+    fn edit_files(
         &self,
         py: Python,
         folder: PathBuf,
@@ -121,9 +125,9 @@ impl ReadDeck {
     /// Returns ids of the grids, and their locations in the basic frame.
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (out, grids) = (PyDict::new(py), &self.0.model.grids);
-        put(&out, "id", ids(grids.iter().map(|g| i64::from(g.id))))?;
+        insert_columns(&out, "id", ids(grids.iter().map(|g| i64::from(g.id))))?;
         let values = grids.iter().flat_map(|g| [g.x.x, g.x.y, g.x.z]).collect();
-        put(&out, "x", Columns { values, columns: 3 })?;
+        insert_columns(&out, "x", Columns { values, columns: 3 })?;
         Ok(out)
     }
 
@@ -133,26 +137,26 @@ impl ReadDeck {
         match name {
             "GRID" => {
                 let list = &cards.grids;
-                put(&out, "id", ids(list.iter().map(|c| i64::from(c.card.id))))?;
+                insert_columns(&out, "id", ids(list.iter().map(|c| i64::from(c.card.id))))?;
                 let cp = |c: Option<u32>| c.map_or(0, i64::from);
-                put(&out, "cp", ids(list.iter().map(|c| cp(c.card.cp))))?;
+                insert_columns(&out, "cp", ids(list.iter().map(|c| cp(c.card.cp))))?;
                 let cd = list.iter().map(|c| i64::from(c.card.cd.unwrap_or(0)));
-                put(&out, "cd", ids(cd))?;
+                insert_columns(&out, "cd", ids(cd))?;
                 let values = list.iter().flat_map(|c| c.card.x).collect();
-                put(&out, "x", Columns { values, columns: 3 })?;
+                insert_columns(&out, "x", Columns { values, columns: 3 })?;
             }
             "CONM2" => {
                 let list = &cards.conm2s;
-                put(&out, "id", ids(list.iter().map(|c| i64::from(c.card.id))))?;
-                put(
+                insert_columns(&out, "id", ids(list.iter().map(|c| i64::from(c.card.id))))?;
+                insert_columns(
                     &out,
                     "grid",
                     ids(list.iter().map(|c| i64::from(c.card.grid))),
                 )?;
                 let values = list.iter().map(|c| c.card.mass).collect();
-                put(&out, "mass", Columns { values, columns: 1 })?;
+                insert_columns(&out, "mass", Columns { values, columns: 1 })?;
                 let values = list.iter().flat_map(|c| c.card.offset).collect();
-                put(&out, "offset", Columns { values, columns: 3 })?;
+                insert_columns(&out, "offset", Columns { values, columns: 3 })?;
             }
             "CQUAD4" | "CQUADR" | "CQUAD8" | "CTRIA3" | "CTRIAR" | "CTRIA6" => {
                 let list = cards.shells.iter().map(|c| &c.card);
@@ -165,7 +169,7 @@ impl ReadDeck {
                     MaterialAngle::Mcid(_) => f64::NAN,
                 });
                 let values = theta.collect();
-                put(&out, "theta", Columns { values, columns: 1 })?;
+                insert_columns(&out, "theta", Columns { values, columns: 1 })?;
             }
             "CHEXA" | "CPENTA" | "CTETRA" | "CPYRAM" => {
                 let list = cards.solids.iter().map(|c| &c.card);
@@ -203,10 +207,10 @@ fn elements<'a>(
         pid.push(i64::from(property.unwrap_or(number)));
         grids.extend(corners.iter().map(|g| i64::from(*g)));
     }
-    put(out, "id", ids(id.into_iter()))?;
-    put(out, "pid", ids(pid.into_iter()))?;
+    insert_columns(out, "id", ids(id.into_iter()))?;
+    insert_columns(out, "pid", ids(pid.into_iter()))?;
     let columns = width;
-    put(
+    insert_columns(
         out,
         "grids",
         Columns {
@@ -224,7 +228,7 @@ pub(crate) struct ReadResults {
 }
 
 impl ReadResults {
-    fn with<T: Send>(
+    fn open_results<T: Send>(
         &self,
         py: Python,
         ask: impl FnOnce(&ResultsFile) -> Result<T, ResultsError> + Send,
@@ -236,7 +240,7 @@ impl ReadResults {
             let remedy = "give an OP2, punch or HDF5 file of Nastran";
             raise(
                 py,
-                Fault::of(&*self.name, "results", e.to_string(), remedy).into(),
+                Fault::new(&*self.name, "results", e.to_string(), remedy).into(),
             )
         })
     }
@@ -250,17 +254,17 @@ impl ReadResults {
     fn new(py: Python, path: PathBuf, files: BTreeMap<PathBuf, Vec<u8>>) -> PyResult<Self> {
         let (name, desk) = (path.display().to_string(), Desk(files));
         let read = run(py, &Asked::default(), |_| {
-            Inputs::of(&desk).read(Path::new(""), &name)
+            Inputs::new(&desk).read(Path::new(""), &name)
         })?;
         let bytes = read.map_err(|f| raise(py, f.into()))?;
         let this = Self { name, bytes };
-        this.with(py, |_| Ok(()))?;
+        this.open_results(py, |_| Ok(()))?;
         Ok(this)
     }
 
     /// Returns the headers of the result tables, as JSON.
     fn tables(&self, py: Python) -> PyResult<String> {
-        self.with(py, |file| {
+        self.open_results(py, |file| {
             let blocks = file.blocks().iter().map(|b| {
                 serde_json::json!({
                     "table": b.table,
@@ -280,22 +284,22 @@ impl ReadResults {
 
     /// The rows of a table: `entity`, `at`, `layer`, and its own columns.
     fn rows<'py>(&self, py: Python<'py>, table: usize) -> PyResult<Bound<'py, PyDict>> {
-        let rows: Rows = self.with(py, |file| file.rows(table))?;
+        let rows: Rows = self.open_results(py, |file| file.rows(table))?;
         let out = PyDict::new(py);
-        put(
+        insert_columns(
             &out,
             "entity",
             ids(rows.ids.iter().map(|r| i64::from(r.entity))),
         )?;
-        put(&out, "at", ids(rows.ids.iter().map(|r| i64::from(r.at))))?;
-        put(
+        insert_columns(&out, "at", ids(rows.ids.iter().map(|r| i64::from(r.at))))?;
+        insert_columns(
             &out,
             "layer",
             ids(rows.ids.iter().map(|r| i64::from(r.layer))),
         )?;
         for (c, name) in rows.columns.iter().enumerate() {
             let values = (0..rows.len()).map(|i| rows.row(i)[c]).collect();
-            put(&out, name, Columns { values, columns: 1 })?;
+            insert_columns(&out, name, Columns { values, columns: 1 })?;
         }
         Ok(out)
     }
@@ -319,7 +323,7 @@ pub(crate) fn shell_strain<'py>(
         let case = case.ok_or_else(|| {
             let said = format!("it has no static subcase {subcase}");
             let remedy = format!("ask for one of {:?}", read.subcase_ids);
-            Faults::from(Fault::of(
+            Faults::from(Fault::new(
                 results.display().to_string(),
                 "subcase",
                 said,
@@ -344,10 +348,10 @@ pub(crate) fn shell_strain<'py>(
     })?;
     let rows = found.map_err(|f: Faults| raise(py, f))?;
     let out = PyDict::new(py);
-    put(&out, "element", ids(rows.0.into_iter()))?;
-    put(&out, "grid", ids(rows.1.into_iter()))?;
-    put(&out, "top", ids(rows.2.into_iter()))?;
-    put(
+    insert_columns(&out, "element", ids(rows.0.into_iter()))?;
+    insert_columns(&out, "grid", ids(rows.1.into_iter()))?;
+    insert_columns(&out, "top", ids(rows.2.into_iter()))?;
+    insert_columns(
         &out,
         "local",
         Columns {
@@ -355,7 +359,7 @@ pub(crate) fn shell_strain<'py>(
             columns: 3,
         },
     )?;
-    put(
+    insert_columns(
         &out,
         "basic",
         Columns {

@@ -1,7 +1,7 @@
 //! Loads of bare readings.
 
 use crate::array::Named;
-use crate::fault::{raise, wrong};
+use crate::fault::{argument_fault, raise};
 use crate::work::{Asked, run};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -79,7 +79,7 @@ pub(crate) fn recover_rows<'py>(
     };
     let found = run(py, &asked, |heard| {
         let begin = Instant::now();
-        let found = recovered(rows, k, samples, noise, &heard.stop())?;
+        let found = recover_readings(rows, k, samples, noise, &heard.stop())?;
         Ok((found, begin.elapsed().as_secs_f64()))
     })?;
     let (found, seconds) = found.map_err(|f: Faults| raise(py, f))?;
@@ -121,7 +121,7 @@ fn parts(f: Finding) -> Parts {
 }
 
 /// The loads of readings, `n` a run.
-fn recovered(
+fn recover_readings(
     rows: &[f64],
     k: usize,
     samples: &[f64],
@@ -130,19 +130,21 @@ fn recovered(
 ) -> Result<Recovered, Faults> {
     if !(noise > 0.0 && noise.is_finite()) {
         let remedy = "give one standard deviation of a reading, in the unit of the readings";
-        return Err(wrong(S.function, "noise", "it is not a positive number", remedy).into());
+        return Err(
+            argument_fault(S.function, "noise", "it is not a positive number", remedy).into(),
+        );
     }
     let n = rows.len().checked_div(k).unwrap_or(0);
     if n == 0 {
         let remedy = "give one row for each gauge and one column for each load";
-        return Err(wrong(S.function, "S", "it is empty", remedy).into());
+        return Err(argument_fault(S.function, "S", "it is empty", remedy).into());
     }
     if let Some(at) = rows.iter().position(|v| !v.is_finite()) {
         let said = format!("row {}, column {} is not a finite number", at / k, at % k);
-        return Err(wrong(S.function, "S", &said, "leave that gauge out").into());
+        return Err(argument_fault(S.function, "S", &said, "leave that gauge out").into());
     }
     if samples.is_empty() {
-        return Err(wrong(
+        return Err(argument_fault(
             S.function,
             "strain",
             "it has no rows",
@@ -157,7 +159,7 @@ fn recovered(
     match in_unit(rows, k, samples, noise, unit_of(&judged), stop)? {
         Some(found) => Ok(found),
         None => in_unit(rows, k, samples, noise, unit_of(samples), stop)?.ok_or_else(|| {
-            wrong(
+            argument_fault(
                 S.function,
                 "strain",
                 "its numbers are indistinguishable",
@@ -180,13 +182,15 @@ fn in_unit(
     let n = rows.len() / k;
     let s = Sensitivity {
         gauges: (0..n).map(|g| format!("row {g}")).collect(),
-        loads: (0..k).map(|l| Load::named(format!("column {l}"))).collect(),
+        loads: (0..k)
+            .map(|l| Load::from_name(format!("column {l}")))
+            .collect(),
         values: Matrix::from_fn(n, k, |g, l| rows[g * k + l] * unit),
         uncertainty: None,
         noise: None,
     };
     let mut findings = check_separability(&s);
-    separable(&s, &findings)?;
+    check_separable(&s, &findings)?;
     let errors = ErrorModel {
         noise: noise * unit,
         model_rel: 0.0,
@@ -201,7 +205,9 @@ fn in_unit(
     let all: Vec<usize> = (0..n).collect();
     let whole = Gain::new(&s, &all, errors, 1.0, &judged.typical)
         .filter(|gain| (0..k).all(|l| gain.is_seen(l)))
-        .ok_or_else(|| wrong(S.function, "S", "it cannot be solved", "check its numbers"))?;
+        .ok_or_else(|| {
+            argument_fault(S.function, "S", "it cannot be solved", "check its numbers")
+        })?;
     let covariance = whole.covariance(&judged.typical, &judged.widening);
     let half: Vec<f64> = (0..k)
         .map(|l| judged.widening.coverage_factor * covariance[l * k + l].max(0.0).sqrt())
@@ -244,7 +250,7 @@ fn unit_of(samples: &[f64]) -> f64 {
 }
 
 /// Returns faults if loads can't be separated.
-fn separable(s: &Sensitivity, findings: &[Finding]) -> Result<(), Faults> {
+fn check_separable(s: &Sensitivity, findings: &[Finding]) -> Result<(), Faults> {
     let (rank, k) = (s.rank(), s.loads.len());
     let errors = findings.iter().filter(|f| f.severity == Severity::Error);
     let mut faults: Vec<Fault> = errors
@@ -252,7 +258,7 @@ fn separable(s: &Sensitivity, findings: &[Finding]) -> Result<(), Faults> {
         .collect();
     if rank < k && faults.is_empty() {
         let said = format!("its rank is {rank}, and it has {k} columns");
-        faults.push(wrong(
+        faults.push(argument_fault(
             S.function,
             "S",
             &said,
@@ -337,8 +343,10 @@ fn of_record(
 ) -> Result<Option<Rows>, Faults> {
     let (n, k) = (s.gauges.len(), s.loads.len());
     let widening: Widening = judged.widening.clone();
-    let filter = Filter::new(s, vec![0.0; n], errors, 1.0, &judged.typical, widening)
-        .ok_or_else(|| wrong(S.function, "S", "it cannot be solved", "check its numbers"))?;
+    let filter =
+        Filter::new(s, vec![0.0; n], errors, 1.0, &judged.typical, widening).ok_or_else(|| {
+            argument_fault(S.function, "S", "it cannot be solved", "check its numbers")
+        })?;
     let blocks: Vec<(SampleLoads, Missing, usize)> = samples
         .par_chunks(BLOCK * n)
         .map(|block| {

@@ -1,7 +1,7 @@
 //! The relaxation of a placement of a bare matrix: weights in place of gauges, and the bound they give.
 
 use crate::array::Named;
-use crate::fault::{raise, wrong};
+use crate::fault::{argument_fault, raise};
 use crate::work::{Asked, run};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -52,7 +52,7 @@ fn weights(
     stop: &Stop,
 ) -> Result<Weighted, Faults> {
     let fault = |argument: &str, said: &str, remedy: &str| {
-        Faults::from(wrong(S.function, argument, said, remedy))
+        Faults::from(argument_fault(S.function, argument, said, remedy))
     };
     if k == 0 || rows.is_empty() {
         let remedy = "give one row for each gauge and one column for each load";
@@ -71,9 +71,10 @@ fn weights(
         let said = format!("{n} of {places} rows are asked for");
         return Err(fault("n", &said, "ask for 1 to as many as there are"));
     }
-    let candidates = Candidates::from_rows(k, places, Scatter::uniform(1.0), |place, row| {
-        row.copy_from_slice(&rows[place * k..][..k]);
-    });
+    let candidates =
+        Candidates::from_rows(k, places, Scatter::with_uniform_noise(1.0), |place, row| {
+            row.copy_from_slice(&rows[place * k..][..k]);
+        });
     let none = vec![0.0; k * k];
     let criterion = Criterion::D;
     let found = solve(

@@ -1,6 +1,6 @@
 //! Tables that any reader of the Arrow PyCapsule interface takes, without a package of Arrow on either side.
 
-use crate::fault::{raise, wrong};
+use crate::fault::{argument_fault, raise};
 use arrow_array::builder::{
     BooleanBuilder, Float64Builder, Int64Builder, ListBuilder, StringBuilder,
 };
@@ -89,7 +89,7 @@ impl Table {
 }
 
 fn fault(py: Python, said: &str, remedy: &str) -> PyErr {
-    raise(py, wrong("to_arrow", "table", said, remedy).into())
+    raise(py, argument_fault("to_arrow", "table", said, remedy).into())
 }
 
 fn of_column(column: &Bound<PyAny>) -> PyResult<ArrayRef> {

@@ -3,7 +3,7 @@
 //!
 //! Every call has its own pool, which ends with it: a process forked from this one finds no threads missing.
 
-use crate::fault::{raise, wrong};
+use crate::fault::{argument_fault, raise};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use std::any::Any;
@@ -99,7 +99,7 @@ pub(crate) fn run<T: Send>(
         .stack_size(STACK)
         .build();
     let pool = pool.map_err(|e| {
-        let fault = wrong(
+        let fault = argument_fault(
             "threads",
             "threads",
             &e.to_string(),

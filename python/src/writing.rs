@@ -1,6 +1,6 @@
 //! Result files and meshes of arrays.
 
-use crate::fault::{raise, wrong};
+use crate::fault::{argument_fault, raise};
 use crate::work::{Asked, run};
 use nastran::op2::write_blocks;
 use nastran::results::{Analysis, Block, ElementType, Quantity, RowId, Rows, ShellForm, columns};
@@ -79,13 +79,13 @@ pub(crate) struct Given<'py> {
 }
 
 fn fault(said: &str, remedy: &str) -> Faults {
-    wrong("write_op2", "tables", said, remedy).into()
+    argument_fault("write_op2", "tables", said, remedy).into()
 }
 
 /// The tables as the bytes of an OP2.
 #[pyfunction]
 pub(crate) fn op2_bytes<'py>(py: Python<'py>, tables: Vec<Given>) -> PyResult<Bound<'py, PyBytes>> {
-    let made: Result<Vec<(Block, Rows)>, Faults> = tables.iter().map(made).collect();
+    let made: Result<Vec<(Block, Rows)>, Faults> = tables.iter().map(prepare_block).collect();
     let made = made.map_err(|f| raise(py, f))?;
     let bytes = run(py, &Asked::default(), |_| {
         write_blocks(made.iter().map(|(b, r)| (b, r)), DATE)
@@ -97,7 +97,7 @@ pub(crate) fn op2_bytes<'py>(py: Python<'py>, tables: Vec<Given>) -> PyResult<Bo
     Ok(PyBytes::new(py, &bytes))
 }
 
-fn made(given: &Given) -> Result<(Block, Rows), Faults> {
+fn prepare_block(given: &Given) -> Result<(Block, Rows), Faults> {
     let quantity = QUANTITIES.iter().find(|q| q.word() == given.quantity);
     let quantity = *quantity.ok_or_else(|| {
         let known: Vec<&str> = QUANTITIES.iter().map(|q| q.word()).collect();
@@ -187,7 +187,7 @@ enum Held<'py> {
     Whole(PyReadonlyArrayDyn<'py, i64>),
 }
 
-fn held<'py>(arrays: &Bound<'py, PyDict>) -> PyResult<Vec<(String, usize, Held<'py>)>> {
+fn extract_arrays<'py>(arrays: &Bound<'py, PyDict>) -> PyResult<Vec<(String, usize, Held<'py>)>> {
     let mut out = Vec::new();
     for (name, a) in arrays {
         let held = match a.extract::<PyReadonlyArrayDyn<f64>>() {
@@ -203,7 +203,7 @@ fn held<'py>(arrays: &Bound<'py, PyDict>) -> PyResult<Vec<(String, usize, Held<'
     Ok(out)
 }
 
-fn named<'a>(list: &'a [(String, usize, Held)]) -> PyResult<Vec<NamedArray<'a>>> {
+fn name_arrays<'a>(list: &'a [(String, usize, Held)]) -> PyResult<Vec<NamedArray<'a>>> {
     let one = |(name, columns, held): &'a (String, usize, Held)| {
         Ok(NamedArray {
             name,
@@ -234,8 +234,13 @@ pub(crate) fn vtu_bytes<'py>(
         offsets: offsets.as_slice()?,
         types: types.as_slice()?,
     };
-    let (of_points, of_cells) = (held(point_data)?, held(cell_data)?);
+    let (of_points, of_cells) = (extract_arrays(point_data)?, extract_arrays(cell_data)?);
     let mut out = Vec::new();
-    write_arrays_vtu(mesh, &named(&of_points)?, &named(&of_cells)?, &mut out)?;
+    write_arrays_vtu(
+        mesh,
+        &name_arrays(&of_points)?,
+        &name_arrays(&of_cells)?,
+        &mut out,
+    )?;
     Ok(PyBytes::new(py, &out))
 }

@@ -43,7 +43,7 @@ pub(super) fn off_drawing(
     g: usize,
 ) -> Option<ShiftWord> {
     let changes = model.off_drawing.as_ref()?;
-    let rivals = Rivals::of(model, changes, scales, evidence, error, g)?;
+    let rivals = Rivals::evaluate_gauge(model, changes, scales, evidence, error, g)?;
     let beats = |own: f64, others: [f64; 3]| others.iter().all(|o| own > o + CLEAR);
     let Rivals {
         gain,
@@ -63,7 +63,7 @@ pub(super) fn off_drawing(
 }
 
 impl Rivals {
-    fn of(
+    fn evaluate_gauge(
         model: &ModelPrior,
         changes: &OffDrawing,
         scales: &[f64],
@@ -86,15 +86,15 @@ impl Rivals {
         }
         let normal = evidence.normals.get(g)?;
         let prior = rows(model, scales, [(g, error.into())]).pop()?;
-        let usual = RowEvidence::of(&prior.mean, &prior.covariance, normal)?;
+        let usual = RowEvidence::from_row_prior(&prior.mean, &prior.covariance, normal)?;
         let square = spd::dot(&prior.mean, &prior.mean) / k.max(1) as f64;
         let mut any = prior.covariance.clone();
         any.iter_mut().step_by(k + 1).for_each(|v| *v += square);
         Some(Self {
-            gain: usual.with(&[&prior.mean], GAIN_SD),
+            gain: usual.log_with_directions(&[&prior.mean], GAIN_SD),
             angle: of_angle(&usual, &turned, &crossed)?,
-            place: usual.with(&[&along, &across], changes.reach),
-            other: RowEvidence::of(&prior.mean, &any, normal)?.log(),
+            place: usual.log_with_directions(&[&along, &across], changes.reach),
+            other: RowEvidence::from_row_prior(&prior.mean, &any, normal)?.log(),
         })
     }
 }

@@ -47,7 +47,7 @@ pub fn recover_checks(found: &Calibration, noise: f64, runs: &[KnownRun]) -> Vec
 
 impl Calibration {
     /// Recovers the runs that S was calibrated with, by their number in the task.
-    pub fn fitted(&self, noise: f64, runs: &[KnownRun]) -> Vec<(usize, CheckedRun)> {
+    pub fn recover_used_runs(&self, noise: f64, runs: &[KnownRun]) -> Vec<(usize, CheckedRun)> {
         let used = (0..runs.len()).filter(|r| !self.refused.contains(r));
         let used: Vec<usize> = used.collect();
         let taken: Vec<KnownRun> = used.iter().map(|r| runs[*r].clone()).collect();

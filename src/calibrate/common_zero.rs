@@ -31,7 +31,7 @@ pub(super) fn add_zero_column(task: &Task) -> Task {
     let k = task.loads.len();
     out.loads.push(Load {
         wanted: false,
-        ..Load::named(NAME)
+        ..Load::from_name(NAME)
     });
     for run in &mut out.runs {
         let known = &run.loads.covariance;
@@ -58,7 +58,7 @@ pub(super) fn remove_zero_column(mut found: Calibration, k: usize) -> Calibratio
 
 impl KnownLoads {
     /// The first `k` loads.
-    pub(super) fn first(&self, k: usize) -> Self {
+    pub(super) fn first_loads(&self, k: usize) -> Self {
         let all = self.mean.len();
         Self {
             mean: self.mean[..k].to_vec(),
@@ -95,7 +95,7 @@ pub(super) struct Centred {
 
 impl Centred {
     /// `c = -(sum_g Cov S_g)^-1 sum_g Cov(S_g, z_g)`, zero where loads are not determined.
-    pub fn of(posterior: &Posterior) -> Self {
+    pub fn from_posterior(posterior: &Posterior) -> Self {
         let (n, all) = (posterior.n, posterior.k);
         let k = all - 1;
         let order = n * all;

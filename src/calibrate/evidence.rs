@@ -13,7 +13,7 @@ pub(super) struct Normal {
 
 impl Normal {
     /// Sums the normal equations of gauge `g` over the runs with a reading of it.
-    pub fn of(g: usize, k: usize, runs: &[ByGauge]) -> Self {
+    pub fn from_runs(g: usize, k: usize, runs: &[ByGauge]) -> Self {
         let mut out = Self {
             matrix: vec![0.0; k * k],
             right: vec![0.0; k],
@@ -28,7 +28,7 @@ impl Normal {
     }
 
     /// Returns the normal equations without a reading `y` at loads `phi`; unchanged if `y` is not finite.
-    pub fn without(&self, phi: &[f64], y: f64, variance: f64) -> Self {
+    pub fn without_reading(&self, phi: &[f64], y: f64, variance: f64) -> Self {
         let mut out = self.clone();
         if y.is_finite() {
             out.add(phi, y, -1.0 / variance);
@@ -61,13 +61,13 @@ pub(super) struct RowEvidence<'a> {
 
 impl<'a> RowEvidence<'a> {
     /// With a row of this mean and covariance; `None` where that is not positive definite.
-    pub fn of(mean: &[f64], covariance: &[f64], normal: &'a Normal) -> Option<Self> {
+    pub fn from_row_prior(mean: &[f64], covariance: &[f64], normal: &'a Normal) -> Option<Self> {
         let k = mean.len();
-        let prior = Precision::of(covariance, k)?;
+        let prior = Precision::from_covariance(covariance, k)?;
         let total: Vec<f64> = (0..k * k)
             .map(|i| prior.entry(i / k, i % k) + normal.matrix[i])
             .collect();
-        let posterior = Precision::of(&total, k)?;
+        let posterior = Precision::from_covariance(&total, k)?;
         let mut known = vec![0.0; k];
         spd::times(&normal.matrix, mean, &mut known);
         let d = normal.right.iter().zip(&known).map(|(b, a)| b - a);
@@ -104,14 +104,14 @@ impl<'a> RowEvidence<'a> {
 
     /// Log marginal likelihood where each direction is added with an independent amount of standard deviation `sd`:
     /// `L(0) - ln |I + Q| / 2 + l' (I + Q)^-1 l / 2`, `l` and `Q` the first and second order in units of `sd`.
-    pub fn with(&self, directions: &[&[f64]], sd: f64) -> f64 {
+    pub fn log_with_directions(&self, directions: &[&[f64]], sd: f64) -> f64 {
         let n = directions.len();
         let (first, second) = self.orders(directions);
         let total: Vec<f64> = (0..n * n)
             .map(|i| sd * sd * second[i] + if i / n == i % n { 1.0 } else { 0.0 })
             .collect();
         let first: Vec<f64> = first.iter().map(|l| sd * l).collect();
-        Precision::of(&total, n).map_or(f64::NEG_INFINITY, |p| {
+        Precision::from_covariance(&total, n).map_or(f64::NEG_INFINITY, |p| {
             self.log + 0.5 * (spd::dot(&p.apply(&first), &first) - p.log_det())
         })
     }

@@ -115,7 +115,7 @@ fn left_by_pair(task: &Task, state: &State) -> Option<(f64, Vec<Pair>)> {
     if *values.first()? <= super::unknown::SPANNED * values.last()? {
         return None;
     }
-    let inverse = Precision::of(&gram, k)?;
+    let inverse = Precision::from_covariance(&gram, k)?;
     let column = |g: usize| -> Vec<f64> { (0..k).map(|l| both[l * n + g]).collect() };
     let explained = |g: usize| spd::dot(&column(g), &inverse.apply(&column(g)));
     let before = y.iter().map(|y| spd::dot(y, y)).sum::<f64>() - (0..n).map(explained).sum::<f64>();

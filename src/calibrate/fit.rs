@@ -40,12 +40,12 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
 
 /// Calibrates with the common zero as one more column, if the task asks for it.
 fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
-    let mut fitted = Fitted::of(task, &[])?;
+    let mut fitted = Fitted::from_task(task, &[])?;
     let mut shifts = shift::check(task, &fitted.state);
     let mut wrongly_wired = shift::wrongly_wired(&shifts);
     if task.model.is_some() && !wrongly_wired.is_empty() {
         // A gauge that is wired backwards says nothing of the model.
-        fitted = Fitted::of(task, &wrongly_wired)?;
+        fitted = Fitted::from_task(task, &wrongly_wired)?;
         shifts = shift::check(task, &fitted.state);
         wrongly_wired = shift::wrongly_wired(&shifts);
     }
@@ -100,7 +100,7 @@ fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
             false => Vec::new(),
         },
         lack_of_fit: lack.answer,
-        range: CalibratedRange::of(task, &state.used, &zero_of(task, &state.posterior)),
+        range: CalibratedRange::from_runs(task, &state.used, &zero_of(task, &state.posterior)),
         model_error,
         shifts,
         as_glued: glued::as_glued(task, &state, model_error),
@@ -129,14 +129,14 @@ struct Fitted {
 }
 
 impl Fitted {
-    /// One contradicting run is refused after the other; see [`State::of`] on `wrongly_wired`.
-    fn of(task: &Task, wrongly_wired: &[usize]) -> Result<Self, String> {
+    /// One contradicting run is refused after the other; see [`State::fit_runs`] on `wrongly_wired`.
+    fn from_task(task: &Task, wrongly_wired: &[usize]) -> Result<Self, String> {
         let mut used: Vec<usize> = (0..task.runs.len()).collect();
         let most = (MOST_REFUSED * used.len() as f64).floor() as usize;
         let mut refused: Vec<(usize, LeftOut)> = Vec::new();
         let mut exchanged: Vec<Exchanged> = Vec::new();
         loop {
-            let state = State::of(task, &used, wrongly_wired)
+            let state = State::fit_runs(task, &used, wrongly_wired)
                 .ok_or("S cannot be computed: the runs give hardly any information on some gauge (is it blank in the runs of known loads?), or contain values that are not numbers")?;
             let known = exchanged.last().is_none_or(|e| e.certain);
             let pair = exchanged::find(task, &state).filter(|_| known);
@@ -155,7 +155,7 @@ impl Fitted {
                 }
             }
             let left_out = held_out::leave_out(task, &state);
-            match held_out::contradicting(&left_out).filter(|_| refused.len() < most) {
+            match held_out::find_contradicting_run(&left_out).filter(|_| refused.len() < most) {
                 Some(run) => {
                     used.retain(|r| *r != run);
                     let out = left_out.into_iter().find(|l| l.number == run);

@@ -46,7 +46,7 @@ pub(super) fn by_gauge(e: &Equation, spread: &[f64], s: &[Vec<f64>]) -> ByGauge 
             false => spread[at],
         })
         .collect();
-    let Some(inverse) = Precision::of(&both, m) else {
+    let Some(inverse) = Precision::from_covariance(&both, m) else {
         return out;
     };
     let left: Vec<f64> = (e.gauges.iter().zip(&e.y))

@@ -20,7 +20,7 @@ pub(super) fn as_glued(task: &Task, state: &State, all: Option<ModelError>) -> V
     }
     let gauges = state.row_errors.iter().enumerate();
     let glued = gauges.map(|(g, error)| {
-        let mut glued = one(model, state, g, error.common)?;
+        let mut glued = estimate_as_glued(model, state, g, error.common)?;
         // Its own error was learnt from its readings: it is not what was known before.
         glued.gain.stated = all.common;
         Some(glued)
@@ -28,7 +28,7 @@ pub(super) fn as_glued(task: &Task, state: &State, all: Option<ModelError>) -> V
     glued.collect::<Option<Vec<_>>>().unwrap_or_default()
 }
 
-fn one(model: &ModelPrior, state: &State, g: usize, common: f64) -> Option<AsGlued> {
+fn estimate_as_glued(model: &ModelPrior, state: &State, g: usize, common: f64) -> Option<AsGlued> {
     let k = state.scales.len();
     let prior = state.prior.get(g)?;
     let scaled = |m: &Matrix| -> Vec<f64> { (0..k).map(|l| m[(g, l)] * state.scales[l]).collect() };
@@ -39,7 +39,7 @@ fn one(model: &ModelPrior, state: &State, g: usize, common: f64) -> Option<AsGlu
     let sd: Vec<f64> = std::iter::once(common)
         .chain(model.moves.iter().map(|m| m.sd))
         .collect();
-    let inverse = Precision::of(&prior.covariance, k)?;
+    let inverse = Precision::from_covariance(&prior.covariance, k)?;
     // Rows of K.
     let gains: Vec<Vec<f64>> = rows
         .iter()

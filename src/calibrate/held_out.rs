@@ -4,7 +4,7 @@ use super::common_zero::{less_zero, zero_of};
 use super::posterior::{Equation, Posterior, solve};
 use super::prior::{RowPrior, rows};
 use super::scatter::{Left, Scatter};
-use super::state::{State, left, sensitivity_of};
+use super::state::{State, run_residuals, sensitivity_of};
 use super::types::{Coverage, KnownLoads, KnownRun, LeftOut, Task};
 use super::unknown::{SPANNED, UNKNOWN, wide_directions};
 use crate::estimate::COVERAGE;
@@ -66,8 +66,8 @@ pub(super) fn recover_left_out(
         && (task.model.is_some() || others_span(state, &group));
     let out = if with_repeats { group } else { gone };
     let mut posterior = match learnt.is_some() || out.len() > 1 {
-        true => again(state, prior, &out, &state.scatter_used)?,
-        false => state.posterior.without(&state.equations[i])?,
+        true => solve_without_runs(state, prior, &out, &state.scatter_used)?,
+        false => state.posterior.without_equation(&state.equations[i])?,
     };
     // One wrong run may be all the scatter there is: what the others then leave is noise, and the run is held against that.
     let scatters = state.scatter.dof.is_finite();
@@ -85,7 +85,7 @@ pub(super) fn recover_left_out(
             return None;
         }
         if affordable {
-            posterior = again(state, prior, &out, &scatter)?;
+            posterior = solve_without_runs(state, prior, &out, &scatter)?;
         }
     }
     let dof = scatter.dof;
@@ -95,9 +95,9 @@ pub(super) fn recover_left_out(
         1.0,
         &state.lack,
     );
-    let found = recovered(task, run, &s, &zero_of(task, &posterior));
+    let found = recover_run(task, run, &s, &zero_of(task, &posterior));
     let k = s.loads.len();
-    let loads = &loads.first(k);
+    let loads = &loads.first_loads(k);
     if found.rank < k {
         return None;
     }
@@ -108,7 +108,7 @@ pub(super) fn recover_left_out(
         found.estimate.covariance[at] + loads.covariance[at]
     };
     let covariance: Vec<f64> = (0..w * w).map(entry).collect();
-    let told = Told::of(loads, &wanted, &state.scales[..k]);
+    let told = Told::from_known_loads(loads, &wanted, &state.scales[..k]);
     if told.combinations == 0 {
         return None;
     }
@@ -149,7 +149,7 @@ pub(super) fn recover_left_out(
 }
 
 /// A run recovered by S, its readings less the common zero.
-fn recovered(task: &Task, run: &KnownRun, s: &Sensitivity, zero: &[f64]) -> RunEstimate {
+fn recover_run(task: &Task, run: &KnownRun, s: &Sensitivity, zero: &[f64]) -> RunEstimate {
     let readings = Readings {
         run: run.run.clone(),
         strain: less_zero(&run.strain, zero),
@@ -171,7 +171,7 @@ struct Told {
 }
 
 impl Told {
-    fn of(known: &KnownLoads, wanted: &[usize], scales: &[f64]) -> Self {
+    fn from_known_loads(known: &KnownLoads, wanted: &[usize], scales: &[f64]) -> Self {
         let (k, w) = (scales.len(), wanted.len());
         let entry = |i: usize| known.covariance[wanted[i / w] * k + wanted[i % w]];
         let loads = KnownLoads {
@@ -195,7 +195,7 @@ fn others_left(task: &Task, state: &State, out: &[usize], posterior: &Posterior)
     let others = (0..state.used.len()).filter(|j| !out.contains(j));
     let one = |j: usize| {
         let run = &task.runs[state.used[j]];
-        left(task, run, posterior, &state.equations[j].phi)
+        run_residuals(task, run, posterior, &state.equations[j].phi)
     };
     others.map(one).collect()
 }
@@ -206,7 +206,12 @@ fn others_left(task: &Task, state: &State, out: &[usize], posterior: &Posterior)
 const AFFORDABLE: f64 = 1e9;
 
 /// The posterior of the runs other than `out` with this scatter.
-fn again(state: &State, prior: &[RowPrior], out: &[usize], scatter: &Scatter) -> Option<Posterior> {
+fn solve_without_runs(
+    state: &State,
+    prior: &[RowPrior],
+    out: &[usize],
+    scatter: &Scatter,
+) -> Option<Posterior> {
     let n = state.posterior.n;
     let others = (0..state.equations.len()).filter(|j| !out.contains(j));
     let equations: Vec<Equation> = others
@@ -384,7 +389,7 @@ fn typical_scale(left_out: &[LeftOut]) -> f64 {
 }
 
 /// The run that contradicts the others most, where it does so beyond doubt: its number.
-pub(super) fn contradicting(left_out: &[LeftOut]) -> Option<usize> {
+pub(super) fn find_contradicting_run(left_out: &[LeftOut]) -> Option<usize> {
     let scale = typical_scale(left_out);
     let worst = left_out
         .iter()

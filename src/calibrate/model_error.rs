@@ -58,13 +58,14 @@ impl ErrorEvidence {
     /// Returns the most probable relative error of the model, given the readings of all gauges except `without`. It is the maximum of the marginal
     /// likelihood (separately for each gauge) times a log-normal prior around the stated error.
     pub fn most_probable(&self, without: &[usize]) -> ModelError {
-        self.best(without).map_or(self.stated, |t| t.error)
+        self.find_best_error(without)
+            .map_or(self.stated, |t| t.error)
     }
 
     /// Returns the error of each gauge, given the most probable common error of all gauges except `without`. The gauges in `without` get the common
     /// error of all gauges instead.
     pub fn by_gauge(&self, without: &[usize]) -> Vec<RowError> {
-        let (all, others) = (self.best(&[]), self.best(without));
+        let (all, others) = (self.find_best_error(&[]), self.find_best_error(without));
         let one = |g: usize| {
             let error = if without.contains(&g) { all } else { others };
             error.map_or(self.stated.into(), |t| t.by_gauge[g].error)
@@ -85,7 +86,7 @@ impl ErrorEvidence {
         let run = &self.by_run[left];
         let readings = run.y.iter().zip(&run.variance);
         let normals: Vec<Normal> = (self.normals.iter().zip(readings))
-            .map(|(normal, (y, v))| normal.without(&run.phi, *y, *v))
+            .map(|(normal, (y, v))| normal.without_reading(&run.phi, *y, *v))
             .collect();
         let own = own_steps();
         let errors: Vec<ModelError> = {
@@ -104,7 +105,7 @@ impl ErrorEvidence {
             };
             let rows = rows(model, scales, (0..n).map(row));
             let log = |(row, normal): (&RowPrior, &Normal)| {
-                let evidence = RowEvidence::of(&row.mean, &row.covariance, normal);
+                let evidence = RowEvidence::from_row_prior(&row.mean, &row.covariance, normal);
                 evidence.map_or(f64::NEG_INFINITY, |e| e.log())
             };
             rows.iter().zip(&normals).map(log).collect()
@@ -117,7 +118,7 @@ impl ErrorEvidence {
             .collect()
     }
 
-    fn best(&self, without: &[usize]) -> Option<&Tried> {
+    fn find_best_error(&self, without: &[usize]) -> Option<&Tried> {
         let score = |t: &Tried| {
             let kept = t.by_gauge.iter().enumerate();
             let kept = kept.filter(|(g, _)| !without.contains(g));
@@ -150,10 +151,10 @@ pub(super) fn error_evidence(
         entry: model.uncertainty_rel,
     };
     let (n, k) = model.values.shape();
-    let normals: Vec<Normal> = (0..n).map(|g| Normal::of(g, k, &runs)).collect();
+    let normals: Vec<Normal> = (0..n).map(|g| Normal::from_runs(g, k, &runs)).collect();
     let tables: Vec<Table> = (0..FLOORS.len())
         .into_par_iter()
-        .map(|floor| Table::of(model, scales, &normals, floor))
+        .map(|floor| Table::compute(model, scales, &normals, floor))
         .collect();
     let own = own_steps();
     let steps: Vec<(i32, i32)> = (-STEPS..=STEPS)
@@ -248,7 +249,7 @@ impl Table {
     const LEAST: i32 = -STEPS + *OWN_STEPS.start();
     const MOST: i32 = STEPS + *OWN_STEPS.end();
 
-    fn of(model: &ModelPrior, scales: &[f64], normals: &[Normal], floor: usize) -> Self {
+    fn compute(model: &ModelPrior, scales: &[f64], normals: &[Normal], floor: usize) -> Self {
         let stated = model.uncertainty_rel;
         let (n, k) = model.values.shape();
         let drawn: Vec<Vec<f64>> = (0..n)
@@ -264,7 +265,7 @@ impl Table {
             let rows = rows(model, scales, (0..n).map(|g| (g, error)));
             // The part common to a gauge is one direction more: with what is known of the rest it costs a few products.
             let one = |((row, normal), s): ((&RowPrior, &Normal), &Vec<f64>)| {
-                let e = RowEvidence::of(&row.mean, &row.covariance, normal)?;
+                let e = RowEvidence::from_row_prior(&row.mean, &row.covariance, normal)?;
                 let (first, second) = e.orders(&[s.as_slice()]);
                 Some((e.log(), *first.first()?, *second.first()?))
             };

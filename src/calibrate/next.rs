@@ -63,13 +63,13 @@ pub fn next_runs(
         .collect();
     let mut out: Vec<NextRun> = candidates
         .par_iter()
-        .filter_map(|f| tried(s, known, noise, f, sizes, &before))
+        .filter_map(|f| evaluate_run(s, known, noise, f, sizes, &before))
         .collect();
     out.sort_by(|a, b| b.information.total_cmp(&a.information));
     Ok(out)
 }
 
-fn tried(
+fn evaluate_run(
     s: &Sensitivity,
     known: &Uncertainty,
     noise: f64,

@@ -46,7 +46,7 @@ pub(super) fn overfit_scatter(
     let size = k as f64;
     let by_others = spd::trace_of_product(&h, &through(&white)) / size;
     let plain = spd::trace_of_product(&information, &through(&basis)) / size;
-    let left = 1.0 - learnt(sample, &basis, w) / dof;
+    let left = 1.0 - effective_factor_count(sample, &basis, w) / dof;
     let widened = match left > 0.0 {
         true => (by_others / (left * left)).min(plain),
         false => plain,
@@ -68,7 +68,7 @@ pub(super) fn overfit_scatter(
 }
 
 /// Factors that the ridge has learnt, `p`.
-fn learnt(sample: &[f64], basis: &[Vec<f64>], w: f64) -> f64 {
+fn effective_factor_count(sample: &[f64], basis: &[Vec<f64>], w: f64) -> f64 {
     let n = basis.first().map_or(0, Vec::len);
     let outside = |x: &mut [f64]| {
         for u in basis {

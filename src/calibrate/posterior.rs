@@ -39,7 +39,7 @@ pub(super) fn solve(prior: &[RowPrior], equations: &[Equation]) -> Option<Poster
     let mut information = vec![0.0; order * order];
     let mut right = vec![0.0; order];
     for (g, row) in prior.iter().enumerate() {
-        let inverse = Precision::of(&row.covariance, k)?;
+        let inverse = Precision::from_covariance(&row.covariance, k)?;
         let weighted = inverse.apply(&row.mean);
         for l in 0..k {
             right[g * k + l] += weighted[l];
@@ -49,7 +49,7 @@ pub(super) fn solve(prior: &[RowPrior], equations: &[Equation]) -> Option<Poster
         }
     }
     for e in equations {
-        let inverse = Precision::of(&e.covariance, e.gauges.len())?;
+        let inverse = Precision::from_covariance(&e.covariance, e.gauges.len())?;
         let weighted = inverse.apply(&e.y);
         for (i, &g) in e.gauges.iter().enumerate() {
             for (l, p) in e.phi.iter().enumerate() {
@@ -67,7 +67,7 @@ pub(super) fn solve(prior: &[RowPrior], equations: &[Equation]) -> Option<Poster
             }
         }
     }
-    let lower = Precision::of(&information, order)?;
+    let lower = Precision::from_covariance(&information, order)?;
     let mean = lower.apply(&right);
     let covariance = (0..order * order)
         .map(|i| lower.entry(i / order, i % order))
@@ -87,7 +87,7 @@ fn solve_by_gauge(prior: &[RowPrior], equations: &[Equation]) -> Option<Posterio
     let order = n * k;
     let mut rows: Vec<(Vec<f64>, Vec<f64>)> = Vec::with_capacity(n);
     for row in prior {
-        let inverse = Precision::of(&row.covariance, k)?;
+        let inverse = Precision::from_covariance(&row.covariance, k)?;
         let information = (0..k * k).map(|i| inverse.entry(i / k, i % k)).collect();
         rows.push((information, inverse.apply(&row.mean)));
     }
@@ -112,7 +112,7 @@ fn solve_by_gauge(prior: &[RowPrior], equations: &[Equation]) -> Option<Posterio
         covariance: vec![0.0; order * order],
     };
     for (g, (information, right)) in rows.iter().enumerate() {
-        let found = Precision::of(information, k)?;
+        let found = Precision::from_covariance(information, k)?;
         out.mean.extend(found.apply(right));
         for l in 0..k {
             for m in 0..k {
@@ -171,7 +171,7 @@ impl Posterior {
     /// The posterior without one of its equations; `None` where the rest does not determine it.
     ///
     /// `s' = s - V A' M^-1 (y - A s)`, `V' = V + V A' M^-1 A V`, `M = R - A V A'`.
-    pub fn without(&self, e: &Equation) -> Option<Self> {
+    pub fn without_equation(&self, e: &Equation) -> Option<Self> {
         let m = e.gauges.len();
         let columns = self.columns(&e.gauges, &e.phi);
         let spread = project(&columns, &e.gauges, &e.phi, self.k);

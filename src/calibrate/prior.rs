@@ -40,7 +40,7 @@ impl From<ModelError> for RowError {
 }
 
 /// Without a model.
-pub(super) fn diffuse(n: usize, k: usize, largest_strain: f64) -> Vec<RowPrior> {
+pub(super) fn diffuse_prior(n: usize, k: usize, largest_strain: f64) -> Vec<RowPrior> {
     let sd = DIFFUSE * largest_strain;
     let row = RowPrior {
         mean: vec![0.0; k],

@@ -6,7 +6,7 @@ use super::unknown::known_of;
 impl CalibratedRange {
     /// Range of the runs with these numbers, strain less the zero of each gauge. A run in which a load is not known does not count for the range
     /// of this load.
-    pub(super) fn of(task: &Task, used: &[usize], zero: &[f64]) -> Self {
+    pub(super) fn from_runs(task: &Task, used: &[usize], zero: &[f64]) -> Self {
         let over = |value: &dyn Fn(usize) -> Option<f64>| {
             let values = used.iter().filter_map(|r| value(*r));
             let values = values.filter(|v| v.is_finite());
@@ -23,7 +23,7 @@ impl CalibratedRange {
     }
 
     /// Largest size of load `l`; 0 where no run has it.
-    pub fn largest(&self, l: usize) -> f64 {
+    pub fn largest_load(&self, l: usize) -> f64 {
         let [low, high] = self.loads.get(l).copied().unwrap_or([0.0; 2]);
         low.abs().max(high.abs())
     }

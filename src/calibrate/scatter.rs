@@ -69,7 +69,7 @@ impl Scatter {
     /// # Reference
     /// Weight of the target: Y. Chen, A. Wiesel, Y. C. Eldar, A. O. Hero, IEEE Trans. Signal Process. 58 (2010) 5016, eq. 23 (oracle
     /// approximating shrinkage), with degrees of freedom for the number of samples.
-    pub fn of(runs: &[Left], fitted: f64, columns: &Matrix) -> Self {
+    pub fn from_residuals(runs: &[Left], fitted: f64, columns: &Matrix) -> Self {
         let n = runs.first().map_or(0, |r| r.residual.len());
         let dof = runs.len() as f64 - fitted;
         if dof < FEWEST || !exceeds_noise(runs, dof) {
@@ -78,8 +78,8 @@ impl Scatter {
         Self::at_most(runs, fitted, columns)
     }
 
-    /// Returns the scatter as [`Scatter::of`], but without the test against noise: the largest scatter that the residuals allow, with its degrees of
-    /// freedom.
+    /// Returns the largest scatter that the residuals allow, with its degrees of freedom: [`Scatter::from_residuals`] without the test against
+    /// noise.
     pub fn at_most(runs: &[Left], fitted: f64, columns: &Matrix) -> Self {
         let n = runs.first().map_or(0, |r| r.residual.len());
         let dof = runs.len() as f64 - fitted;
@@ -91,7 +91,7 @@ impl Scatter {
             dof,
             common,
             explained,
-        } = Sample::of(runs, n, dof);
+        } = Sample::from_residuals(runs, n, dof);
         let trace: f64 = (0..n).map(|g| sample[g * n + g]).sum();
         // Noise stands in the residuals too; it is counted beside the scatter.
         let noise_share = explained * n as f64 / trace;
@@ -149,7 +149,7 @@ impl Sample {
     /// # Reference
     /// S. R. Searle, G. Casella, C. E. McCulloch, Variance Components (1992), chapter 3 (analysis of variance, one way); degrees of freedom
     /// of the sum: F. E. Satterthwaite, Biometrics Bulletin 2 (1946) 110.
-    fn of(runs: &[Left], n: usize, dof: f64) -> Self {
+    fn from_residuals(runs: &[Left], n: usize, dof: f64) -> Self {
         let kept: Vec<&Left> = runs.iter().filter(|r| r.q2 > 0.0).collect();
         let (mut explained, mut readings) = (0.0, 0.0_f64);
         let mut read = vec![0.0; n];
@@ -171,7 +171,7 @@ impl Sample {
                 .collect()
         };
         let dof = dof * all / runs.len().max(1) as f64;
-        let Squares { within, between } = Squares::of(&kept, n);
+        let Squares { within, between } = Squares::from_residuals(&kept, n);
         let total: Vec<f64> = within.iter().zip(&between).map(|(w, b)| w + b).collect();
         let independent = |covariance: Vec<f64>| Self {
             covariance,
@@ -219,7 +219,7 @@ impl Sample {
 const ALIKE: f64 = 0.05;
 
 impl Squares {
-    fn of(runs: &[&Left], n: usize) -> Self {
+    fn from_residuals(runs: &[&Left], n: usize) -> Self {
         let mut out = Self {
             within: vec![0.0; n * n],
             between: vec![0.0; n * n],

@@ -30,7 +30,7 @@ struct Row {
 }
 
 impl Row {
-    fn of(state: &State, g: usize) -> Self {
+    fn from_state(state: &State, g: usize) -> Self {
         let k = state.scales.len();
         let order = state.posterior.n * k;
         let at = |i: usize| (g * k + i / k) * order + g * k + i % k;
@@ -67,7 +67,7 @@ impl Row {
     }
 
     /// Returns the distance of the calibrated row from the model's row with reversed sign, if [`Row::explained_by`] accepts it.
-    fn turned(&self) -> Option<f64> {
+    fn reversed_sign_distance(&self) -> Option<f64> {
         let turned: Vec<f64> = self.model.iter().map(|v| -v).collect();
         self.explained_by(&turned)
     }
@@ -80,13 +80,13 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<GaugeShift> {
     let Some((model, evidence)) = task.model.as_ref().zip(state.error_evidence.as_ref()) else {
         return without_model(task);
     };
-    let rows: Vec<Row> = (0..n).map(|g| Row::of(state, g)).collect();
+    let rows: Vec<Row> = (0..n).map(|g| Row::from_state(state, g)).collect();
     let distance = |g: usize, to: &[f64], without: &[usize]| -> f64 {
         let error = evidence.most_probable(without);
         let prior = model_rows(model, &state.scales, [(g, error.into())]).pop();
         let moved: Vec<f64> = to.iter().zip(&rows[g].model).map(|(a, b)| a - b).collect();
         let k = moved.len();
-        let precision = prior.and_then(|p| Precision::of(&p.covariance, k));
+        let precision = prior.and_then(|p| Precision::from_covariance(&p.covariance, k));
         precision.map_or(0.0, |p| {
             (spd::dot(&p.apply(&moved), &moved) / k.max(1) as f64).sqrt()
         })
@@ -95,11 +95,11 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<GaugeShift> {
     let mut words: Vec<Option<ShiftWord>> = vec![None; n];
     for (g, row) in rows.iter().enumerate() {
         let expected = row.model.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
-        if silent(task, g) && expected > LIVE * LIVE * task.noise {
+        if is_silent(task, g) && expected > LIVE * LIVE * task.noise {
             words[g] = Some(ShiftWord::Dead);
         }
     }
-    for (a, b) in exchanged(&rows) {
+    for (a, b) in find_exchanged_pairs(&rows) {
         let free = words[a].is_none() && words[b].is_none();
         let apart = |g: usize, to: usize| distance(g, &rows[to].model, &[a, b]) > NOTABLE;
         if free && apart(a, b) && apart(b, a) {
@@ -114,7 +114,7 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<GaugeShift> {
             let turned = off_drawing(model, &state.scales, evidence, error, g);
             let turned = turned.filter(|w| *w == ShiftWord::Angle);
             *word = Some(turned.unwrap_or(ShiftWord::Dead));
-        } else if word.is_none() && row.turned().is_some() {
+        } else if word.is_none() && row.reversed_sign_distance().is_some() {
             *word = Some(ShiftWord::Sign);
         }
     }
@@ -178,7 +178,7 @@ fn without_model(task: &Task) -> Vec<GaugeShift> {
         name: name.clone(),
         shift: 0.0,
         scale: 1.0,
-        word: match silent(task, g) {
+        word: match is_silent(task, g) {
             true => ShiftWord::Dead,
             false => ShiftWord::None,
         },
@@ -187,14 +187,14 @@ fn without_model(task: &Task) -> Vec<GaugeShift> {
 }
 
 /// Returns whether a gauge has readings, all of them below [`LIVE`] times the noise.
-fn silent(task: &Task, g: usize) -> bool {
+fn is_silent(task: &Task, g: usize) -> bool {
     let readings = task.runs.iter().filter_map(|r| r.strain.get(g));
     let mut readings = readings.filter(|v| v.is_finite()).peekable();
     readings.peek().is_some() && readings.all(|v| v.abs() < LIVE * task.noise)
 }
 
 /// Pairs of gauges whose calibrated rows are each other's model rows, the clearest first.
-fn exchanged(rows: &[Row]) -> Vec<(usize, usize)> {
+fn find_exchanged_pairs(rows: &[Row]) -> Vec<(usize, usize)> {
     let mut out: Vec<(f64, usize, usize)> = Vec::new();
     for (a, first) in rows.iter().enumerate() {
         for (b, second) in rows.iter().enumerate().skip(a + 1) {
@@ -203,7 +203,9 @@ fn exchanged(rows: &[Row]) -> Vec<(usize, usize)> {
                 continue;
             };
             // Two turned gauges of a pair above and below look much the same.
-            let turned = first.turned().zip(second.turned());
+            let turned = first
+                .reversed_sign_distance()
+                .zip(second.reversed_sign_distance());
             if turned.is_none_or(|(u, v)| x.hypot(y) <= u.hypot(v)) {
                 out.push((x.hypot(y), a, b));
             }

@@ -96,7 +96,7 @@ pub(super) fn from_parts(
     // Directions with their patterns.
     let (mut directions, mut patterns) = (Vec::<Vec<f64>>::new(), Vec::<Vec<f64>>::new());
     for free in &unknown.free {
-        let new = beyond(free, &directions);
+        let new = orthonormal_complement(free, &directions);
         if new.is_empty() {
             continue;
         }
@@ -131,7 +131,7 @@ pub(super) fn from_parts(
 const OVERLAP: f64 = 1e-3;
 
 /// Orthonormal directions of the span of `free` at a right angle to the orthonormal `taken`.
-fn beyond(free: &[Vec<f64>], taken: &[Vec<f64>]) -> Vec<Vec<f64>> {
+fn orthonormal_complement(free: &[Vec<f64>], taken: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut all = taken.to_vec();
     for f in free {
         let mut rest = f.clone();

@@ -5,7 +5,7 @@ use super::given_others;
 use super::known::correct;
 use super::model_error::{ErrorEvidence, error_evidence as learn_error};
 use super::posterior::{Equation, Posterior, solve};
-use super::prior::{FLOORS, RowError, RowPrior, diffuse, rows};
+use super::prior::{FLOORS, RowError, RowPrior, diffuse_prior, rows};
 use super::scatter::{Left, Scatter};
 use super::start::{from_known, from_parts};
 use super::types::{KnownRun, ModelPrior, Task};
@@ -51,7 +51,7 @@ pub(super) struct State {
 
 impl State {
     /// Fits all used runs. Gauges that are `wrongly_wired` do not count for the model's error. `None` if numbers are not finite.
-    pub fn of(task: &Task, used: &[usize], wrongly_wired: &[usize]) -> Option<Self> {
+    pub fn fit_runs(task: &Task, used: &[usize], wrongly_wired: &[usize]) -> Option<Self> {
         let runs: Vec<&KnownRun> = used.iter().filter_map(|&r| task.runs.get(r)).collect();
         let (n, k) = (task.gauges.len(), task.loads.len());
         let scales = load_scales(task, &runs);
@@ -62,14 +62,14 @@ impl State {
             .fold(0.0_f64, |a, v| a.max(v.abs()));
         let alike = |r: &&KnownRun| runs.iter().filter(|o| o.group == r.group).count();
         let repeats: Vec<usize> = runs.iter().map(alike).collect();
-        let without_model = diffuse(n, k, largest);
-        let begun = Begun::of(task, &runs, &scales, &without_model);
+        let without_model = diffuse_prior(n, k, largest);
+        let begun = Begun::from_runs(task, &runs, &scales, &without_model);
         let mut scatter = Scatter::none(n);
         let mut state: Option<Self> = None;
         for _ in 0..ROUNDS {
             let mean: Vec<Vec<f64>> = match (&state, &task.model) {
                 (Some(s), _) => rows_of(&s.posterior),
-                (None, Some(m)) => drawn(m, &scales),
+                (None, Some(m)) => scaled_model_rows(m, &scales),
                 (None, None) => begun.rows.clone(),
             };
             let mut freedom = 0.0;
@@ -77,7 +77,10 @@ impl State {
             for (i, run) in runs.iter().enumerate() {
                 let so_far = state.as_ref();
                 let times = so_far.map(|s| s.lefts[i].q2 * scatter.design(repeats[i]));
-                let free = begun.unknown.as_ref().map_or(Free::NONE, |u| u.free(i));
+                let free = begun
+                    .unknown
+                    .as_ref()
+                    .map_or(Free::NONE, |u| u.free_directions(i));
                 let made = equation(task, (run, free), &scales, &mean, &scatter, times)?;
                 freedom += made.freedom / made.equation.gauges.len().max(1) as f64;
                 by_gauge.push(given_others::by_gauge(&made.equation, &made.spread, &mean));
@@ -95,12 +98,12 @@ impl State {
             let lefts: Vec<Left> = runs
                 .iter()
                 .zip(&equations)
-                .map(|(run, e)| left(task, run, &posterior, &e.phi))
+                .map(|(run, e)| run_residuals(task, run, &posterior, &e.phi))
                 .collect();
-            let fitted = freedom + fitted(&posterior, &equations);
+            let fitted = freedom + fitted_parameters_per_gauge(&posterior, &equations);
             let scatter_used = std::mem::replace(
                 &mut scatter,
-                Scatter::of(&lefts, fitted, &posterior.matrix()),
+                Scatter::from_residuals(&lefts, fitted, &posterior.matrix()),
             );
             let q2_used = (0..runs.len())
                 .map(|i| state.as_ref().map_or(0.0, |s| s.lefts[i].q2))
@@ -167,7 +170,7 @@ pub(super) fn sensitivity_of(
     let mut additive = lack.to_vec();
     let mut center = Vec::new();
     if task.is_extended() {
-        let centred = Centred::of(posterior);
+        let centred = Centred::from_posterior(posterior);
         center = centred
             .center
             .iter()
@@ -228,7 +231,7 @@ fn rows_of(posterior: &Posterior) -> Vec<Vec<f64>> {
 }
 
 /// Rows of the model by gauge, as drawn, in loads of unit size.
-fn drawn(model: &ModelPrior, scales: &[f64]) -> Vec<Vec<f64>> {
+fn scaled_model_rows(model: &ModelPrior, scales: &[f64]) -> Vec<Vec<f64>> {
     let none = RowError {
         common: 0.0,
         entries: [0.0; FLOORS.len()],
@@ -246,14 +249,14 @@ struct Begun {
 }
 
 impl Begun {
-    fn of(task: &Task, runs: &[&KnownRun], scales: &[f64], prior: &[RowPrior]) -> Self {
+    fn from_runs(task: &Task, runs: &[&KnownRun], scales: &[f64], prior: &[RowPrior]) -> Self {
         if task.model.is_some() {
             return Self {
                 rows: Vec::new(),
                 unknown: None,
             };
         }
-        let unknown = Some(Unknown::of(runs, scales)).filter(Unknown::is_any);
+        let unknown = Some(Unknown::from_runs(runs, scales)).filter(Unknown::is_any);
         let rows = match &unknown {
             Some(unknown) => from_parts(task, runs, unknown, prior),
             None => from_known(task, runs, scales, prior).map(|s| rows_of(&s)),
@@ -324,7 +327,12 @@ fn equation(
 }
 
 /// Returns the residuals of a run at loads `phi`.
-pub(super) fn left(task: &Task, run: &KnownRun, posterior: &Posterior, phi: &[f64]) -> Left {
+pub(super) fn run_residuals(
+    task: &Task,
+    run: &KnownRun,
+    posterior: &Posterior,
+    phi: &[f64],
+) -> Left {
     let predicted = posterior.predict(phi);
     let of_loads = less_zero(&predicted, &zero_of(task, posterior));
     let n = predicted.len();
@@ -345,9 +353,10 @@ pub(super) fn left(task: &Task, run: &KnownRun, posterior: &Posterior, phi: &[f6
 }
 
 /// `sum_r trace(R_r^-1 A_r V A_r')` a gauge.
-fn fitted(posterior: &Posterior, equations: &[Equation]) -> f64 {
+fn fitted_parameters_per_gauge(posterior: &Posterior, equations: &[Equation]) -> f64 {
     let one = |e: &Equation| -> Option<f64> {
-        let inverse = crate::linalg::precision::Precision::of(&e.covariance, e.gauges.len())?;
+        let inverse =
+            crate::linalg::precision::Precision::from_covariance(&e.covariance, e.gauges.len())?;
         let spread = posterior.spread(&e.gauges, &e.phi);
         let m = e.gauges.len();
         let trace: f64 = (0..m * m)

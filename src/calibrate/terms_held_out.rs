@@ -55,7 +55,7 @@ fn left_out_error(loadings: &[&Loading], k: usize, with_zero: bool) -> Option<f6
                     .for_each(|(o, y)| *o += w * x * y);
             }
         }
-        let inverse = Precision::of(&gram, p)?;
+        let inverse = Precision::from_covariance(&gram, p)?;
         let column = |g: usize| -> Vec<f64> { (0..p).map(|l| both[l * n + g]).collect() };
         let rows: Vec<Vec<f64>> = (0..n).map(|g| inverse.apply(&column(g))).collect();
         let mut gram = vec![0.0; k * k];
@@ -68,7 +68,7 @@ fn left_out_error(loadings: &[&Loading], k: usize, with_zero: bool) -> Option<f6
                 .zip(s)
                 .for_each(|(r, s)| *r += weight[g] * s * net);
         }
-        let found = Precision::of(&gram, k)?.apply(&right);
+        let found = Precision::from_covariance(&gram, k)?.apply(&right);
         for l in 0..k {
             if largest[l] > 0.0 {
                 sum += ((found[l] - left.phi[l]) / largest[l]).powi(2);

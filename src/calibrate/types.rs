@@ -16,7 +16,7 @@ pub struct KnownLoads {
 
 impl KnownLoads {
     /// Loads known exactly.
-    pub fn exact(mean: Vec<f64>) -> Self {
+    pub fn from_exact(mean: Vec<f64>) -> Self {
         let k = mean.len();
         Self {
             mean,
@@ -132,7 +132,7 @@ impl Task {
     /// Returns the covariance of the noise of gauges `g` and `h` in units of the square of [`Self::noise`].
     pub(super) fn noise_between(&self, g: usize, h: usize) -> f64 {
         match &self.gauge_noise {
-            Some(noise) => noise.between(g, h),
+            Some(noise) => noise.covariance_between(g, h),
             None => f64::from(u8::from(g == h)),
         }
     }
@@ -361,7 +361,7 @@ pub struct AsGlued {
 
 impl AsGlued {
     /// Returns the size of a move from the runs; `None` if the task has no such move.
-    pub fn of(&self, kind: MoveKind) -> Option<Glue> {
+    pub fn find_move(&self, kind: MoveKind) -> Option<Glue> {
         self.moves.iter().find(|m| m.0 == kind).map(|m| m.1)
     }
 }

@@ -19,7 +19,7 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<Undetermined> {
     let runs: Vec<&KnownRun> = (state.used.iter())
         .filter_map(|r| task.runs.get(*r))
         .collect();
-    let directions = Unknown::of(&runs, &state.scales).untold;
+    let directions = Unknown::from_runs(&runs, &state.scales).untold;
     let one = |z: &Vec<f64>| {
         let terms: Vec<f64> = z.iter().zip(&state.scales).map(|(v, c)| v * c).collect();
         let top = terms
@@ -117,7 +117,7 @@ pub(super) fn findings(task: &Task, all: &[Undetermined]) -> Vec<Finding> {
 }
 
 /// Half width of the 95 % interval over the largest load of the kind, from which a load counts as undetermined, as in
-/// [`crate::recovery::determined`].
+/// `crate::recovery::determined`.
 const WIDE: f64 = 0.5;
 /// Degrees of freedom of the scatter above which runs are many: Student's factor is less than a third above that of a normal distribution.
 const ENOUGH: f64 = 5.0;

@@ -41,7 +41,7 @@ pub(super) struct Free<'a> {
 
 impl Unknown {
     /// Finds the unknown directions of these runs.
-    pub fn of(runs: &[&KnownRun], scales: &[f64]) -> Self {
+    pub fn from_runs(runs: &[&KnownRun], scales: &[f64]) -> Self {
         let k = scales.len();
         let mut gram = vec![0.0; k * k];
         let (mut parts, mut wide) = (Vec::new(), Vec::new());
@@ -56,7 +56,7 @@ impl Unknown {
             wide.push(directions);
         }
         let untold = null_space(&gram, k);
-        let free = wide.iter().map(|w| common(&untold, w)).collect();
+        let free = wide.iter().map(|w| common_directions(&untold, w)).collect();
         Self {
             parts,
             untold,
@@ -71,7 +71,7 @@ impl Unknown {
     }
 
     /// Returns the free directions of run number `i`.
-    pub fn free(&self, i: usize) -> Free<'_> {
+    pub fn free_directions(&self, i: usize) -> Free<'_> {
         Free {
             directions: self.free.get(i).map_or(&[], Vec::as_slice),
             variance: self.variance,
@@ -135,7 +135,7 @@ pub(super) fn project_out(x: &mut [f64], directions: &[Vec<f64>]) {
 
 /// Whether two orthonormal sets span the same.
 pub(super) fn span_alike(a: &[Vec<f64>], b: &[Vec<f64>]) -> bool {
-    a.len() == b.len() && common(a, b).len() == a.len()
+    a.len() == b.len() && common_directions(a, b).len() == a.len()
 }
 
 /// Directions of a `k x k` matrix of squares along which there is nothing.
@@ -153,7 +153,7 @@ fn null_space(gram: &[f64], k: usize) -> Vec<Vec<f64>> {
 ///
 /// # Reference
 /// G. H. Golub, C. F. Van Loan, Matrix Computations (4th ed.), section 6.4.3: principal angles.
-fn common(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
+fn common_directions(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
     if a.is_empty() || b.is_empty() {
         return Vec::new();
     }

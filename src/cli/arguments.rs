@@ -196,7 +196,7 @@ fn digests(path: &str) -> Result<BTreeMap<String, String>, String> {
 }
 
 fn shard(text: &str) -> Result<Shard, String> {
-    Shard::of(text).ok_or_else(|| "expected a part such as 3/64, counted from 1".to_owned())
+    Shard::parse(text).ok_or_else(|| "expected a part such as 3/64, counted from 1".to_owned())
 }
 
 /// Which shell.
@@ -383,7 +383,7 @@ pub struct FilesArguments {
 
 impl FilesArguments {
     /// The first file.
-    pub(super) fn first(&self) -> &Path {
+    pub(super) fn first_file(&self) -> &Path {
         self.files.first().map_or(Path::new(""), |f| f)
     }
 }

@@ -21,7 +21,7 @@ pub(super) fn explain(a: &ExplainArguments) -> ExitCode {
         (Some(code), json) => match workflow::explain::explain(code) {
             Ok(entry) if json => print_json(entry),
             Ok(entry) => {
-                let voice = Voice::of(&a.common);
+                let voice = Voice::from_arguments(&a.common);
                 voice.print_lines(&entry_lines(entry, voice.width()))
             }
             Err(faults) => refuse(&faults, &a.common),

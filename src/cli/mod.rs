@@ -22,7 +22,7 @@ use std::process::ExitCode;
 use voice::print;
 
 /// The paths of a list in a file, or on standard input.
-fn listed(list: &Path) -> Result<Vec<PathBuf>, Fault> {
+fn read_file_list(list: &Path) -> Result<Vec<PathBuf>, Fault> {
     let is_input = list == Path::new("-");
     let shown = match is_input {
         true => "standard input".to_owned(),
@@ -35,7 +35,7 @@ fn listed(list: &Path) -> Result<Vec<PathBuf>, Fault> {
     };
     read.map_err(|e| {
         let wrong = format!("the list cannot be read ({e})");
-        Fault::of(
+        Fault::new(
             &*shown,
             "--files",
             wrong,
@@ -49,19 +49,23 @@ fn listed(list: &Path) -> Result<Vec<PathBuf>, Fault> {
 pub fn run(arguments: Arguments) -> ExitCode {
     interrupt::watch();
     match arguments.command {
-        Command::Strains(a) => Run::of(&a.common, &a.deck).files(&a.deck, |cx| {
+        Command::Strains(a) => Run::from_arguments(&a.common, &a.deck).files(&a.deck, |cx| {
             workflow::strains::strains(&a.deck, &a.results, cx)
         }),
-        Command::Check(a) => Run::of(&a.common, a.first()).check(&a.files),
-        Command::Init(a) => Run::of(&a.common, a.main()).init(&a),
-        Command::Cases(a) => Run::of(&a.common, &a.job).job(&a.job, workflow::cases::cases),
-        Command::Place(a) => Run::of(&a.common, &a.job).job(&a.job, workflow::place::place),
-        Command::Calibrate(a) => {
-            Run::of(&a.common, &a.job).job(&a.job, workflow::calibrate::calibrate)
+        Command::Check(a) => Run::from_arguments(&a.common, a.first_file()).check(&a.files),
+        Command::Init(a) => Run::from_arguments(&a.common, a.main()).init(&a),
+        Command::Cases(a) => {
+            Run::from_arguments(&a.common, &a.job).job(&a.job, workflow::cases::cases)
         }
-        Command::Recover(a) => Run::of(&a.common, &a.job).recover(&a.job),
+        Command::Place(a) => {
+            Run::from_arguments(&a.common, &a.job).job(&a.job, workflow::place::place)
+        }
+        Command::Calibrate(a) => {
+            Run::from_arguments(&a.common, &a.job).job(&a.job, workflow::calibrate::calibrate)
+        }
+        Command::Recover(a) => Run::from_arguments(&a.common, &a.job).recover(&a.job),
         Command::Fleet(a) => {
-            let run = Run::of(&a.common, &a.job);
+            let run = Run::from_arguments(&a.common, &a.job);
             let folder = run.folder(&a.job);
             // Shards run at the same time: each writes its answer into a folder of its own.
             let answer = match a.shard {
@@ -77,26 +81,34 @@ pub fn run(arguments: Arguments) -> ExitCode {
             run.job_into(&a.job, &answer, |job, cx| {
                 let mut spec = spec;
                 if let Some(list) = &a.list {
-                    spec.files.extend(listed(list)?);
+                    spec.files.extend(read_file_list(list)?);
                 }
                 workflow::fleet::fleet(job, &spec, cx)
             })
         }
         Command::Sensitivity(a) => {
-            Run::of(&a.common, &a.job).job(&a.job, workflow::sensitivity::sensitivity)
+            Run::from_arguments(&a.common, &a.job).job(&a.job, workflow::sensitivity::sensitivity)
         }
-        Command::Ballast(a) => Run::of(&a.common, &a.job).job(&a.job, workflow::ballast::ballast),
-        Command::Payload(a) => Run::of(&a.common, &a.job).job(&a.job, workflow::payload::payload),
-        Command::Respond(a) => Run::of(&a.common, &a.job).job(&a.job, workflow::respond::respond),
-        Command::Study(a) => Run::of(&a.common, &a.job).job(&a.job, workflow::study::study),
+        Command::Ballast(a) => {
+            Run::from_arguments(&a.common, &a.job).job(&a.job, workflow::ballast::ballast)
+        }
+        Command::Payload(a) => {
+            Run::from_arguments(&a.common, &a.job).job(&a.job, workflow::payload::payload)
+        }
+        Command::Respond(a) => {
+            Run::from_arguments(&a.common, &a.job).job(&a.job, workflow::respond::respond)
+        }
+        Command::Study(a) => {
+            Run::from_arguments(&a.common, &a.job).job(&a.job, workflow::study::study)
+        }
         Command::Demo(a) => {
-            let run = Run::of(&a.common, demo::DECK_NAME.as_ref());
+            let run = Run::from_arguments(&a.common, demo::DECK_NAME.as_ref());
             let folder = a.common.out.clone().or(a.folder);
             let folder = folder.unwrap_or_else(|| demo::FOLDER.into());
             run.ask_into(&folder, |cx| demo::story(&folder, cx))
         }
         Command::Solve(a) => {
-            let (run, options) = (Run::of(&a.job.common, &a.job.job), a.options());
+            let (run, options) = (Run::from_arguments(&a.job.common, &a.job.job), a.options());
             if a.is_job() {
                 run.job(&a.job.job, |job, cx| {
                     workflow::solve::solve(job, options, cx)
@@ -106,17 +118,18 @@ pub fn run(arguments: Arguments) -> ExitCode {
                 run.files(deck, |cx| workflow::solve::solve_deck(deck, options, cx))
             }
         }
-        Command::Modes(a) => {
-            Run::of(&a.common, &a.input).files(&a.input, |cx| match a.input.extension() {
-                Some(e) if e.eq_ignore_ascii_case("toml") => {
-                    let job = job::Job::read(&a.input, cx.files)?;
-                    workflow::modes::modes(&job, a.modes, cx)
-                }
-                _ => workflow::modes::modes_of_deck(&a.input, a.modes, cx),
-            })
-        }
+        Command::Modes(a) => Run::from_arguments(&a.common, &a.input).files(&a.input, |cx| match a
+            .input
+            .extension()
+        {
+            Some(e) if e.eq_ignore_ascii_case("toml") => {
+                let job = job::Job::read(&a.input, cx.files)?;
+                workflow::modes::modes(&job, a.modes, cx)
+            }
+            _ => workflow::modes::modes_of_deck(&a.input, a.modes, cx),
+        }),
         Command::Reconcile(a) => {
-            let run = Run::of(&a.common, &a.job);
+            let run = Run::from_arguments(&a.common, &a.job);
             let folder = run.folder(&a.job);
             run.job_into(&a.job, &folder, |job, cx| {
                 let mut found = workflow::reconcile::reconcile(job, cx)?;
@@ -125,7 +138,7 @@ pub fn run(arguments: Arguments) -> ExitCode {
             })
         }
         Command::Identify(a) => {
-            Run::of(&a.common, &a.job).job(&a.job, workflow::identify::identify)
+            Run::from_arguments(&a.common, &a.job).job(&a.job, workflow::identify::identify)
         }
         Command::Verify(a) => upkeep::verify(&a),
         Command::Cache(CacheArguments {

@@ -28,7 +28,7 @@ impl Meter {
     }
 
     /// Share done and time left after `elapsed`; `None` where nothing is known yet.
-    fn left(&self, elapsed: Duration) -> Option<(f64, Duration)> {
+    fn estimate_time_left(&self, elapsed: Duration) -> Option<(f64, Duration)> {
         let done = self.done.load(Ordering::Relaxed);
         let total = self.total.load(Ordering::Relaxed);
         if done == 0 || total == 0 {
@@ -101,7 +101,7 @@ impl Line {
             spinner.set_message(what.clone());
             spinner.enable_steady_tick(Duration::from_millis(120));
             while stopped.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
-                if let Some((share, left)) = meter.left(began.elapsed()) {
+                if let Some((share, left)) = meter.estimate_time_left(began.elapsed()) {
                     let (percent, seconds) = (100.0 * share, left.as_secs());
                     spinner.set_message(format!("{what}: {percent:.0} %, about {seconds} s left;"));
                 }
@@ -131,10 +131,10 @@ mod tests {
     #[test]
     fn a_quarter_done_in_ten_seconds_leaves_thirty() {
         let meter = Meter::default();
-        assert_eq!(meter.left(Duration::from_secs(10)), None);
+        assert_eq!(meter.estimate_time_left(Duration::from_secs(10)), None);
         meter.begin(8);
         meter.advance(2);
-        let left = meter.left(Duration::from_secs(10));
+        let left = meter.estimate_time_left(Duration::from_secs(10));
         assert_eq!(left, Some((0.25, Duration::from_secs(30))));
     }
 }

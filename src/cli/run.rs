@@ -32,7 +32,7 @@ pub(super) struct Run {
 
 impl Run {
     /// A command on this file.
-    pub fn of(common: &CommonArguments, _main_input: &Path) -> Self {
+    pub fn from_arguments(common: &CommonArguments, _main_input: &Path) -> Self {
         Self {
             common: common.clone(),
             store: (!common.no_cache).then(Folder::of_user),
@@ -95,7 +95,7 @@ impl Run {
         A: Answer + Send,
         Outcome<A>: Report,
     {
-        let done = self.pooled(|cx| {
+        let done = self.run_in_pool(|cx| {
             check_folder::<A>(folder)?;
             let outcome = ask(cx)?;
             let json = save(&outcome, folder)?;
@@ -107,7 +107,7 @@ impl Run {
     /// Recovers the loads of a job into `--out`, else `<job name>.out` next to the job; loads of a record are written as they come.
     pub fn recover(&self, path: &Path) -> ExitCode {
         let folder = self.folder(path);
-        let done = self.pooled(|cx| {
+        let done = self.run_in_pool(|cx| {
             check_folder::<Recovered>(&folder)?;
             recover_and_save(&Job::read(path, cx.files)?, cx, &folder)
         });
@@ -117,7 +117,7 @@ impl Run {
     /// Checks files: written only with `--out`; their faults are part of the answer.
     pub fn check(&self, files: &[PathBuf]) -> ExitCode {
         let folder = self.common.out.as_deref();
-        let done = self.pooled(|cx| {
+        let done = self.run_in_pool(|cx| {
             folder.map_or(Ok(()), check_folder::<Checked>)?;
             let outcome = check(files, cx)?;
             let json = match folder {
@@ -133,7 +133,7 @@ impl Run {
     pub fn init(&self, a: &InitArguments) -> ExitCode {
         let folder = self.common.out.clone();
         let into = folder.clone().unwrap_or_else(|| PathBuf::from("."));
-        let done = self.pooled(|cx| {
+        let done = self.run_in_pool(|cx| {
             let (deck, results) = (a.deck.as_deref(), &a.results);
             let outcome = match a.purpose {
                 Some(purpose) => init_for(purpose, deck, results, &into, cx)?,
@@ -164,7 +164,7 @@ impl Run {
         A: Answer + Send,
         Outcome<A>: Report,
     {
-        let done = self.pooled(|cx| {
+        let done = self.run_in_pool(|cx| {
             out.map_or(Ok(()), check_folder::<A>)?;
             let outcome = ask(cx)?;
             let json = match out {
@@ -178,7 +178,7 @@ impl Run {
 
     /// Work on the asked number of threads. It begins on a thread of the pool: from outside, each of a factorisation's many small
     /// parallel steps would wake two threads and put one to sleep.
-    fn pooled<T: Send>(
+    fn run_in_pool<T: Send>(
         &self,
         work: impl FnOnce(&Context) -> Result<T, Faults> + Send,
     ) -> Result<T, Faults> {
@@ -189,7 +189,7 @@ impl Run {
             .stack_size(STACK)
             .build()
             .map_err(|e| {
-                Fault::of(
+                Fault::new(
                     "--threads",
                     "threads",
                     e.to_string(),
@@ -197,7 +197,7 @@ impl Run {
                 )
             })?;
         let mut cx = Context::new(&Disk);
-        if !Voice::of(&self.common).is_quiet() {
+        if !Voice::from_arguments(&self.common).is_quiet() {
             cx = cx.progress(&terminal);
         }
         if let Some(folder) = &self.store {
@@ -243,7 +243,7 @@ impl Run {
             notes: &notes,
             paths: &paths,
         };
-        let voice = Voice::of(&self.common);
+        let voice = Voice::from_arguments(&self.common);
         let is_printed = voice.outcome(&console, &texts, &json);
         voice.seconds(&outcome.seconds);
         if !faults.is_empty() {
@@ -251,7 +251,7 @@ impl Run {
             voice.note(&summary);
             return ExitCode::from(2);
         }
-        match outcome.findings.worst() {
+        match outcome.findings.worst_severity() {
             _ if !is_printed => ExitCode::from(2),
             Some(Severity::Error) => ExitCode::from(1),
             _ => ExitCode::SUCCESS,
@@ -268,7 +268,7 @@ pub(super) fn recover_and_save(
     cx: &Context,
     folder: &Path,
 ) -> Result<(Outcome<Recovered>, String), Faults> {
-    let mut sink = RecordFolder::at(folder);
+    let mut sink = RecordFolder::new(folder);
     let outcome = recover_into(job, cx, &mut sink)?;
     let mut out = sink.into_output()?;
     outcome.write(&mut out)?;
@@ -286,7 +286,7 @@ fn default_folder(main_input: &Path) -> PathBuf {
 
 /// Prints faults and the note that nothing was written; returns exit code 2.
 pub(super) fn refuse(faults: &Faults, common: &CommonArguments) -> ExitCode {
-    let voice = Voice::of(common);
+    let voice = Voice::from_arguments(common);
     voice.faults(faults);
     voice.note("nothing was written");
     ExitCode::from(2)

@@ -17,16 +17,16 @@ pub(super) fn verify(a: &VerifyArguments) -> ExitCode {
     let folder = std::fs::canonicalize(&a.folder).unwrap_or_else(|_| a.folder.clone());
     let beside = format!(".strainbridge-verify-{}", std::process::id());
     let scratch = Scratch(folder.with_file_name(beside));
-    Run::of(&a.common, &a.folder).question(a.common.out.as_deref(), |cx| {
-        let anew = |made: &Made, main: &Path| again(&a.folder, made, main, &scratch.0);
+    Run::from_arguments(&a.common, &a.folder).question(a.common.out.as_deref(), |cx| {
+        let anew = |made: &Made, main: &Path| rerun_command(&a.folder, made, main, &scratch.0);
         crate::workflow::verify::verify(&a.folder, anew, cx)
     })
 }
 
 /// Runs the command again in a separate process, so that no state of this process affects the answer.
-fn again(folder: &Path, made: &Made, main: &Path, out: &Path) -> Result<PathBuf, Faults> {
+fn rerun_command(folder: &Path, made: &Made, main: &Path, out: &Path) -> Result<PathBuf, Faults> {
     let fault = |wrong: String, remedy: &str| {
-        Faults::from(Fault::of(
+        Faults::from(Fault::new(
             folder.display().to_string(),
             "inputs",
             wrong,
@@ -97,7 +97,7 @@ fn agrees(question: &str) -> Option<bool> {
 
 /// Removes kept solutions, after a question or with `--yes`.
 pub(super) fn clean(a: &CleanArguments) -> ExitCode {
-    let folder = a.folder.as_ref().map_or_else(Folder::of_user, Folder::at);
+    let folder = a.folder.as_ref().map_or_else(Folder::of_user, Folder::new);
     let shown = folder.path().display().to_string();
     let (n, bytes) = folder.size();
     let solutions = count_of(n, "stored solution");
@@ -108,7 +108,7 @@ pub(super) fn clean(a: &CleanArguments) -> ExitCode {
             Some(false) => return print(b"nothing is removed\n"),
             None => {
                 let wrong = format!("{what}: the command needs a terminal to ask for confirmation");
-                let fault = Fault::of(shown, "clean", wrong, "run the command with `--yes`");
+                let fault = Fault::new(shown, "clean", wrong, "run the command with `--yes`");
                 return refuse(&fault.into(), &a.common);
             }
         }
@@ -124,7 +124,7 @@ pub(super) fn clean(a: &CleanArguments) -> ExitCode {
             print(format!("{solutions} removed from `{shown}`, {megabytes:.1} MB\n").as_bytes())
         }
         Err(e) => refuse(
-            &Fault::of(
+            &Fault::new(
                 shown,
                 "clean",
                 format!("the file cannot be removed ({e})"),

@@ -33,7 +33,7 @@ pub(super) struct Voice {
 
 impl Voice {
     /// Returns the settings of printed text that the arguments ask for; in colour if stderr is a terminal and `NO_COLOR` is not set.
-    pub fn of(common: &CommonArguments) -> Self {
+    pub fn from_arguments(common: &CommonArguments) -> Self {
         let level = match (common.quiet, common.verbose) {
             (true, _) => Level::Quiet,
             (false, true) => Level::Verbose,
@@ -81,7 +81,11 @@ impl Voice {
         };
         let [answer, next, paths] =
             [&layout.answer, &layout.next, &layout.paths].map(|lines| text_of(lines));
-        let findings: String = layout.findings.iter().map(|f| self.painted(f)).collect();
+        let findings: String = layout
+            .findings
+            .iter()
+            .map(|f| self.colour_finding(f))
+            .collect();
         match (self.json, self.level) {
             (true, _) => {
                 let printed = is_printed(json.as_bytes());
@@ -101,7 +105,7 @@ impl Voice {
     }
 
     /// Lines of a finding, its severity in colour.
-    fn painted(self, f: &FindingLines) -> String {
+    fn colour_finding(self, f: &FindingLines) -> String {
         let text = text_of(&f.lines);
         match f.severity {
             Some(severity) if self.colour => {
@@ -119,11 +123,11 @@ impl Voice {
 
     /// Prints lines on standard output.
     pub fn print_lines(self, lines: &[String]) -> ExitCode {
-        print(self.shown(text_of(lines)).as_bytes())
+        print(self.printable_text(text_of(lines)).as_bytes())
     }
 
     /// Returns a text with the signs that standard output and standard error show.
-    fn shown(self, text: String) -> String {
+    fn printable_text(self, text: String) -> String {
         match self.room.is_utf8 {
             true => text,
             false => ascii(&text),
@@ -134,7 +138,7 @@ impl Voice {
     pub fn note(self, text: &str) {
         if self.level != Level::Quiet {
             let text = text_of(&wrap_lines(text, self.room.width, 4));
-            say(&self.shown(text));
+            say(&self.printable_text(text));
         }
     }
 
@@ -166,7 +170,7 @@ impl Voice {
     /// Prints faults on standard error only.
     pub fn fault_lines(self, faults: &[Fault]) {
         let n = faults.len();
-        let mut text = self.shown(faults.iter().map(|f| format!("{f}\n")).collect());
+        let mut text = self.printable_text(faults.iter().map(|f| format!("{f}\n")).collect());
         let plural = if n == 1 { "" } else { "s" };
         let total = format!("{n} fault{plural} found");
         text.push_str(&match self.colour {

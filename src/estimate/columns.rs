@@ -87,7 +87,7 @@ pub struct Basis {
 
 impl Basis {
     /// Returns the basis of the columns of a solved model.
-    pub fn of(columns: &[PriorColumn]) -> Self {
+    pub fn from_columns(columns: &[PriorColumn]) -> Self {
         let priors: Vec<usize> = (0..columns.len())
             .filter(|&i| columns[i].prior.is_some())
             .collect();

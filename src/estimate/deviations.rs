@@ -13,7 +13,7 @@ fn largest_square() -> f64 {
         .powi(2)
 }
 
-/// Differences of many samples from true values, over their stated standard deviation. [`Deviations::exceed`] tests the stated intervals.
+/// Differences of many samples from true values, over their stated standard deviation. [`Deviations::is_significant`] tests the stated intervals.
 ///
 /// # Example
 /// Two records of 10 independent samples, one with mean squares as stated and one three times as large:
@@ -41,7 +41,7 @@ pub struct Deviations {
 impl Deviations {
     /// Whether the differences are larger than the intervals allow: more than one common error alone makes with a chance of 0.001, or more than
     /// independent errors make with that chance together with a common error of that chance.
-    pub fn exceed(&self) -> bool {
+    pub fn is_significant(&self) -> bool {
         let common = self.common.clamp(0.0, 1.0);
         let inflated = 1.0 - common + common * largest_square();
         let n = self.effective.max(1.0);
@@ -51,7 +51,7 @@ impl Deviations {
 
     /// Returns the number of independent squares behind the mean of `blocks` of them: the variance of a mean of `n` squares of normal errors
     /// is `2 / n` of its square.
-    pub fn effective(blocks: &[f64]) -> f64 {
+    pub fn effective_count(blocks: &[f64]) -> f64 {
         let n = blocks.len() as f64;
         let mean = blocks.iter().sum::<f64>() / n;
         let variance = blocks.iter().map(|b| (b - mean) * (b - mean)).sum::<f64>() / (n - 1.0);
@@ -75,7 +75,7 @@ mod tests {
                 effective,
                 common,
             }
-            .exceed()
+            .is_significant()
         };
         assert!(!exceed(2.95, 10.0, 0.0) && exceed(2.97, 10.0, 0.0));
         assert!(!exceed(10.8, 1e6, 1.0) && exceed(10.9, 1e6, 1.0));
@@ -87,6 +87,6 @@ mod tests {
         // Means of ten squares scatter by a variance of 2 / 10: values one standard deviation to either side of 1.
         let sd = (0.2_f64 * 3.0 / 4.0).sqrt();
         let blocks = [1.0 - sd, 1.0 + sd, 1.0 - sd, 1.0 + sd];
-        assert!((Deviations::effective(&blocks) - 40.0).abs() < 1e-9);
+        assert!((Deviations::effective_count(&blocks) - 40.0).abs() < 1e-9);
     }
 }

@@ -7,7 +7,7 @@ use statrs::distribution::{
 /// A ratio beyond which the chance is 0 to every digit, and whose square and products don't overflow.
 const FAR: f64 = 1e100;
 
-fn of(x: f64, tail: impl Fn(f64) -> Option<f64>) -> f64 {
+fn evaluate_tail(x: f64, tail: impl Fn(f64) -> Option<f64>) -> f64 {
     if x.is_nan() {
         1.0
     } else if x > FAR {
@@ -52,17 +52,17 @@ pub fn chance_of_so_few(held: usize, of: usize) -> f64 {
 /// assert!((chi_square_tail(6.0, 2.0) - (-3.0_f64).exp()).abs() < 1e-12);
 /// ```
 pub fn chi_square_tail(chi2: f64, dof: f64) -> f64 {
-    of(chi2, |x| Some(ChiSquared::new(dof).ok()?.sf(x)))
+    evaluate_tail(chi2, |x| Some(ChiSquared::new(dof).ok()?.sf(x)))
 }
 
 /// Returns the upper tail probability of Student's t, one side; 1 without degrees of freedom.
 pub fn student_tail(t: f64, dof: f64) -> f64 {
-    of(t, |x| Some(StudentsT::new(0.0, 1.0, dof).ok()?.sf(x)))
+    evaluate_tail(t, |x| Some(StudentsT::new(0.0, 1.0, dof).ok()?.sf(x)))
 }
 
 /// Returns the upper tail probability of a ratio of variances with `dof` and `from` degrees of freedom; 1 if either has none.
 pub fn f_tail(ratio: f64, dof: f64, from: f64) -> f64 {
-    of(ratio, |x| Some(FisherSnedecor::new(dof, from).ok()?.sf(x)))
+    evaluate_tail(ratio, |x| Some(FisherSnedecor::new(dof, from).ok()?.sf(x)))
 }
 
 #[cfg(test)]

@@ -143,7 +143,7 @@ pub(super) fn forces_of(
             continue;
         };
         let fibres = prepared.model.fibres(shell);
-        let z = fibres.at(match t.place {
+        let z = fibres.distances_at(match t.place {
             ShellPlace::Centre => None,
             ShellPlace::Corner(k) => Some(k),
         });

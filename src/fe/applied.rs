@@ -81,7 +81,7 @@ pub(super) fn applied_forces(
 ) -> Result<Vec<[f64; 6]>, FeError> {
     let model = prepared.model;
     let mut f = vec![[0.0; 6]; model.grids.len()];
-    if let Some(t) = Temperatures::of(model, case)? {
+    if let Some(t) = Temperatures::from_case(model, case)? {
         thermal_forces(prepared, &t, &mut f)?;
     }
     for load in &case.loads {

@@ -71,7 +71,7 @@ pub(crate) struct Assembled {
 
 /// Grids whose free dofs an element's stiffness falls on, with those dofs, a bit each. `dofs` are those of its grids that the
 /// element gives stiffness to: the rotations of a grid that holds solids alone are no unknowns.
-fn reached(reduction: &Reduction, grids: &[GridIx], dofs: u8) -> Vec<(u32, u8)> {
+fn find_reached_dofs(reduction: &Reduction, grids: &[GridIx], dofs: u8) -> Vec<(u32, u8)> {
     let mut list: Vec<(u32, u8)> = Vec::with_capacity(grids.len());
     for g in grids {
         for i in (0..6).filter(|i| dofs >> i & 1 == 1) {
@@ -113,7 +113,7 @@ pub(crate) fn assemble(
     let elements: Vec<ElementRef> = model.elements().collect();
     let cliques: Vec<Vec<(u32, u8)>> = elements
         .par_iter()
-        .map(|e| reached(reduction, &model.element_grids(*e), prepared.dofs(*e)))
+        .map(|e| find_reached_dofs(reduction, &model.element_grids(*e), prepared.dofs(*e)))
         .collect();
     let mut free = vec![0_u8; model.grids.len()];
     for &(g, bits) in cliques.iter().flatten() {
@@ -144,9 +144,11 @@ pub(crate) fn assemble(
     let symbolic = Symbolic::analyse(&graph, &sizes).map_err(|_| FeError::TooLarge {
         unknowns: sizes.iter().map(|s| usize::from(*s)).sum(),
     })?;
-    let stiffness = BlockMatrix::assembled(&symbolic, &graph, &groups, |i| {
+    let stiffness = BlockMatrix::assemble_terms(&symbolic, &graph, &groups, |i| {
         let k = prepared.stiffness(elements[i])?;
-        Ok(reduced(prepared, reduction, &numbering, k, &groups[i]))
+        Ok(reduce_stiffness(
+            prepared, reduction, &numbering, k, &groups[i],
+        ))
     })
     .map_err(FeError::Refused)?;
     Ok(Assembled {
@@ -181,7 +183,7 @@ pub(super) fn to_displacement_frames(axes: &[Option<Mat3>], k: &mut ElementMatri
 }
 
 /// T' K T of one element over its groups.
-fn reduced(
+fn reduce_stiffness(
     prepared: &Prepared<'_>,
     reduction: &Reduction,
     numbering: &Numbering,

@@ -35,7 +35,7 @@ pub(crate) struct Weak {
 
 impl Weak {
     /// Returns the part of a load along the direction, 0 if the load does not act along it; both at the unknowns.
-    pub(super) fn aimed(&self, packed: &[f64]) -> f64 {
+    pub(super) fn load_along(&self, packed: &[f64]) -> f64 {
         let pairs = packed.iter().skip(self.first).zip(&self.direction);
         let (along, square) = pairs.fold((0.0, 0.0), |(a, s), (f, d)| (a + f * d, s + f * f));
         let along = f64::abs(along);
@@ -122,7 +122,12 @@ fn well_held(k: &DMatrix<f64>, largest: f64) -> bool {
 }
 
 /// Grid and dof of the first of some unknowns, for messages.
-fn named(model: &Model, numbering: &Numbering, start: &[usize], unknowns: &[usize]) -> String {
+fn describe_unknowns(
+    model: &Model,
+    numbering: &Numbering,
+    start: &[usize],
+    unknowns: &[usize],
+) -> String {
     let names: Vec<String> = unknowns
         .iter()
         .map(|unknown| {
@@ -145,7 +150,7 @@ pub(super) fn autospc_finding(
         Finding::new(
             Severity::Info,
             "autospc",
-            named(model, &assembled.numbering, start, &unknowns),
+            describe_unknowns(model, &assembled.numbering, start, &unknowns),
             format!(
                 "{} dofs without stiffness, or with nearly none compared with the stiffest dof of their grid, were held (AUTOSPC)",
                 weak.len()
@@ -199,7 +204,7 @@ pub(super) fn held_loads(
             "autospc-holds-load",
             format!(
                 "subcase {subcase}, {}",
-                named(model, numbering, start, &unknowns)
+                describe_unknowns(model, numbering, start, &unknowns)
             ),
             format!(
                 "AUTOSPC holds {} dofs with load: up to {:.1e} of the load goes into them instead of into the structure",

@@ -57,7 +57,9 @@ impl BeamField {
             return at(i);
         }
         if let Some(solved) = &self.solved {
-            return solved.at(row, station).map(|s| (s.points, s.axial));
+            return solved
+                .station_strain(row, station)
+                .map(|s| (s.points, s.axial));
         }
         if self.stations_alone.contains(&beam) {
             return None;
@@ -99,7 +101,7 @@ impl BeamField {
 }
 
 impl SolvedBeams {
-    fn at(&self, row: usize, station: f64) -> Option<StationStrain> {
+    fn station_strain(&self, row: usize, station: f64) -> Option<StationStrain> {
         let (shape, forces) = (self.shapes.get(row)?, self.forces.get(row)?);
         let loads = self.loads.get(&row).map_or(&[][..], Vec::as_slice);
         let along = (shape.sections.as_slice(), shape.e, shape.length);

@@ -28,7 +28,7 @@ pub(super) fn beam_fields(
         .map(|(u, between)| {
             let forces: Result<Vec<_>, Refusal> = (0..n)
                 .into_par_iter()
-                .map(|i| beam_forces(model, i, u, &between.of(model, i)))
+                .map(|i| beam_forces(model, i, u, &between.loads_on_beam(model, i)))
                 .collect();
             let forces = forces.map_err(|r| FeError::Refused(vec![r]))?;
             let loads = between.loads_by_beam(model);

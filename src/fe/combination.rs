@@ -19,8 +19,8 @@ pub fn combine_results(
         subcase,
         label,
         shells: ShellField {
-            centre: summed(shells.clone().map(|(f, s)| (f, &s.centre)), add_surfaces)?,
-            corners: summed(shells.map(|(f, s)| (f, &s.corners)), |to, by, c| {
+            centre: sum_lists(shells.clone().map(|(f, s)| (f, &s.centre)), add_surfaces)?,
+            corners: sum_lists(shells.map(|(f, s)| (f, &s.corners)), |to, by, c| {
                 to.iter_mut()
                     .zip(c)
                     .for_each(|(t, c)| add_surfaces(t, by, c));
@@ -28,12 +28,12 @@ pub fn combine_results(
             ..first.shells.clone()
         },
         beams: BeamField {
-            stations: summed(beams.clone().map(|(f, b)| (f, &b.stations)), |to, by, c| {
+            stations: sum_lists(beams.clone().map(|(f, b)| (f, &b.stations)), |to, by, c| {
                 to.iter_mut()
                     .zip(c)
                     .for_each(|(t, c)| add(&mut t.1, by, &c.1));
             })?,
-            axial: summed(beams.map(|(f, b)| (f, &b.axial)), |to, by, c| {
+            axial: sum_lists(beams.map(|(f, b)| (f, &b.axial)), |to, by, c| {
                 to.iter_mut().zip(c).for_each(|(t, c)| *t += by * c);
             })?,
             elements: first.beams.elements.clone(),
@@ -42,15 +42,15 @@ pub fn combine_results(
             stations_alone: first.beams.elements.iter().copied().collect(),
         },
         solids: SolidField {
-            centre: summed(solids.clone().map(|(f, s)| (f, &s.centre)), add)?,
-            corners: summed(solids.map(|(f, s)| (f, &s.corners)), |to, by, c| {
+            centre: sum_lists(solids.clone().map(|(f, s)| (f, &s.centre)), add)?,
+            corners: sum_lists(solids.map(|(f, s)| (f, &s.corners)), |to, by, c| {
                 to.iter_mut().zip(c).for_each(|(t, c)| add(t, by, c));
             })?,
             ..first.solids.clone()
         },
         displacement: Vec::new(),
     };
-    sum.displacement = summed(terms.iter().map(|(f, c)| (*f, &c.displacement)), add)?;
+    sum.displacement = sum_lists(terms.iter().map(|(f, c)| (*f, &c.displacement)), add)?;
     terms.iter().all(|t| same_places(first, t.1)).then_some(sum)
 }
 
@@ -110,7 +110,7 @@ fn add_surfaces(to: &mut [[f64; 3]; 2], factor: f64, by: &[[f64; 3]; 2]) {
 }
 
 /// The sum of lists of equal length, the first minus itself to begin with; `None` where their lengths differ.
-fn summed<'a, T: Clone + 'a>(
+fn sum_lists<'a, T: Clone + 'a>(
     terms: impl Iterator<Item = (f64, &'a Vec<T>)> + Clone,
     add: impl Fn(&mut T, f64, &T),
 ) -> Option<Vec<T>> {

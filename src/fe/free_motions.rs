@@ -6,7 +6,7 @@
 use super::constraint::{Reduction, State, reduce};
 use super::grid_frames::{grid_axes, to_local};
 use super::ground::{Ground, anchors, grounds, to_anchors};
-use super::rigid_motion::rigid;
+use super::rigid_motion::rigid_displacement;
 use crate::finding::list_few;
 use crate::linalg::{DMatrix, DVector, Matrix6, Vector6};
 use crate::model::{ElementRef, GridIx, Mat3, Model, Vec3};
@@ -96,7 +96,10 @@ impl RigidStructure<'_> {
                     let bush = &self.model.bushes[i];
                     for (c, k) in bush.k.iter().enumerate() {
                         if *k != 0.0 {
-                            add(resisted, self.at(&bush.location, &Some(bush.axes), c));
+                            add(
+                                resisted,
+                                self.displacement_at(&bush.location, &Some(bush.axes), c),
+                            );
                         }
                     }
                 }
@@ -132,14 +135,14 @@ impl RigidStructure<'_> {
     }
 
     fn row(&self, grid: usize, dof: usize) -> Vector6<f64> {
-        self.at(&self.model.grids[grid].x, &self.axes[grid], dof)
+        self.displacement_at(&self.model.grids[grid].x, &self.axes[grid], dof)
     }
 
     /// Displacement in one component of a frame at a point, by motion; lengths counted in the size of the structure.
-    fn at(&self, x: &Vec3, axes: &Option<Mat3>, component: usize) -> Vector6<f64> {
+    fn displacement_at(&self, x: &Vec3, axes: &Option<Mat3>, component: usize) -> Vector6<f64> {
         let scale = if component >= 3 { self.size } else { 1.0 };
         Vector6::from_fn(|mode, _| {
-            let moved = to_local(axes, rigid(mode, x, &self.centre))[component];
+            let moved = to_local(axes, rigid_displacement(mode, x, &self.centre))[component];
             moved * scale / if mode >= 3 { self.size } else { 1.0 }
         })
     }

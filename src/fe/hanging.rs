@@ -2,7 +2,7 @@
 
 use super::constraint::{Reduction, State};
 use super::grid_frames::to_local;
-use super::rigid_motion::rigid;
+use super::rigid_motion::rigid_displacement;
 use crate::linalg::{DMatrix, Vector6};
 use crate::model::{GridIx, Mat3, Model, Vec3};
 use std::collections::HashMap;
@@ -12,7 +12,7 @@ const MOST: usize = 500;
 
 /// Where the springs put each of these points in the six rigid motions about `centre`: `K_ss u_s = -K_sb u_b`. Empty where the springs leave one
 /// of them free.
-pub(super) fn hanging(
+pub(super) fn find_hanging_points(
     model: &Model,
     axes: &[Option<Mat3>],
     reduction: &Reduction,
@@ -55,7 +55,7 @@ pub(super) fn hanging(
             } else if !model.grids[g.us()].is_scalar() {
                 for mode in 0..6 {
                     let x = &model.grids[g.us()].x;
-                    let moved = to_local(&axes[g.us()], rigid(mode, x, centre));
+                    let moved = to_local(&axes[g.us()], rigid_displacement(mode, x, centre));
                     pulls[(*i, mode)] += s.k * moved[usize::from(dof).min(5)];
                 }
             }

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 pub fn held_dependents(model: &Model, spc: Option<u32>, mpc: Option<u32>) -> Option<Finding> {
     let mut dependents: BTreeMap<(u32, usize), String> = BTreeMap::new();
     for rigid in &model.rigids {
-        for (g, dofs) in rigid.kind.dependent() {
+        for (g, dofs) in rigid.kind.dependent_dofs() {
             for i in dofs.iter0() {
                 dependents.entry((g.0, i)).or_insert_with(|| name(rigid));
             }

@@ -109,7 +109,7 @@ fn residuals(
 ///
 /// # Errors
 /// See [`FeError`].
-pub(super) fn lowest(
+pub(super) fn find_lowest_modes(
     prepared: &Prepared<'_>,
     mass: &Mass,
     system: &System,
@@ -154,7 +154,7 @@ pub(super) fn lowest(
     let mut projected = DMatrix::<f64>::zeros(0, 0);
     let mut along = DMatrix::zeros(0, block.len());
     let found = loop {
-        let (q, f, kept) = orthonormal(mass, &basis, block, (masses, &along));
+        let (q, f, kept) = orthonormalize_block(mass, &basis, block, (masses, &along));
         let before = basis.len();
         let size = before + q.len();
         // Entries that tie the new vectors to the last ones are those of `kept`, found while they were made orthogonal.
@@ -233,7 +233,7 @@ fn mass_times(mass: &Mass, fields: &[Field]) -> Vec<Field> {
 
 /// A block made orthonormal in M to the basis and in itself: vectors, M times them, and the factor R of `block = basis part + Q R`.
 /// Directions that are left with nothing are dropped. `masses` is M times the block and `along` the basis's dots with that.
-fn orthonormal(
+fn orthonormalize_block(
     mass: &Mass,
     basis: &[Field],
     mut block: Vec<Field>,

@@ -4,7 +4,7 @@ use super::UnitLoad;
 use super::element::beam::{Interior, LineLoad, beam_inertia};
 use super::load_case::LoadCase;
 use super::mass::add_acceleration;
-use super::rigid_motion::rigid;
+use super::rigid_motion::rigid_displacement;
 use super::temperature::{Temperatures, beam_expansion};
 use crate::model::{Load, Model, Vec3};
 use std::collections::HashMap;
@@ -21,12 +21,15 @@ pub(crate) struct Between<'a> {
 /// A PLOAD1 without anything else; empty for other loads.
 pub(crate) fn as_line_load(load: &Load) -> Interior {
     Interior {
-        loads: along(load, 1.0).into_iter().map(|l| l.1).collect(),
+        loads: scale_line_load(load, 1.0)
+            .into_iter()
+            .map(|l| l.1)
+            .collect(),
         ..Interior::default()
     }
 }
 
-fn along(load: &Load, factor: f64) -> Option<(usize, LineLoad)> {
+fn scale_line_load(load: &Load, factor: f64) -> Option<(usize, LineLoad)> {
     let Load::Line {
         beam,
         span,
@@ -57,7 +60,7 @@ impl<'a> Between<'a> {
             let UnitLoad::Set(sid) = load else { continue };
             for set in model.load_sets.iter().filter(|s| s.sid == *sid) {
                 for (factor, load) in &set.loads {
-                    if let Some((beam, line)) = along(load, *factor) {
+                    if let Some((beam, line)) = scale_line_load(load, *factor) {
                         loads.entry(beam).or_default().push(line);
                     }
                 }
@@ -87,7 +90,7 @@ impl<'a> Between<'a> {
     }
 
     /// Returns the loads along beam `i`.
-    pub(crate) fn of(&self, model: &Model, i: usize) -> Interior {
+    pub(crate) fn loads_on_beam(&self, model: &Model, i: usize) -> Interior {
         Interior {
             loads: self.loads.get(&i).cloned().unwrap_or_default(),
             thermal: self.temperatures.and_then(|t| beam_expansion(model, i, t)),
@@ -117,7 +120,7 @@ fn acceleration(
     if let Some((amounts, centre)) = relief {
         for (grid, u) in model.grids.iter().zip(&mut field) {
             for (mode, amount) in amounts.iter().enumerate() {
-                let motion = rigid(mode, &grid.x, &centre);
+                let motion = rigid_displacement(mode, &grid.x, &centre);
                 (0..6).for_each(|i| u[i] -= amount * motion[i]);
             }
         }

@@ -133,7 +133,7 @@ fn pressure_on(
     let mut at_point = |h: &[f64], area: Vec3| {
         let p: f64 = h.iter().zip(pressure).map(|(h, p)| h * p).sum::<f64>() * factor;
         let here = || x.iter().zip(h).map(|(x, h)| x * *h).sum::<Vec3>();
-        let along = direction.map_or(area, |d| d.at(model, here()) * area.norm());
+        let along = direction.map_or(area, |d| d.vector_at(model, here()) * area.norm());
         for (g, h) in corners.iter().zip(h) {
             push(f, *g, 0, &(along * (p * h)));
         }
@@ -180,7 +180,7 @@ fn pressure_on_curved(
             .sum::<f64>()
             * factor;
         let here = || x.iter().zip(functions).map(|(x, h)| x * h[0]).sum::<Vec3>();
-        let along = direction.map_or(area, |d| d.at(model, here()) * area.norm());
+        let along = direction.map_or(area, |d| d.vector_at(model, here()) * area.norm());
         for (g, h) in grids.iter().zip(functions) {
             push(f, *g, 0, &(along * (p * h[0])));
         }

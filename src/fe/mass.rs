@@ -5,7 +5,7 @@ use super::element::shell::{many_mass, output_frame, shell_mass};
 use super::element::solid::solid_mass;
 use super::element::{ElementMatrix, between_dofs, point_mass, rod_mass, shear_panel_mass};
 use super::prepared::Prepared;
-use super::rigid_motion::rigid;
+use super::rigid_motion::rigid_displacement;
 use crate::linalg::Matrix6;
 use crate::model::{Grid, GridIx, Load, Mat3, Model, ScalarMass, Vec3, Weight};
 use nastran::cards::ShellShape;
@@ -176,7 +176,7 @@ impl Mass {
         f
     }
 
-    /// Returns the displacements of rigid motion `mode` about a point: those of [`rigid`], and zeros at scalar points.
+    /// Returns the displacements of rigid motion `mode` about a point: those of [`rigid_displacement`], and zeros at scalar points.
     pub(crate) fn rigid_field(&self, mode: usize, x: &[Vec3], centre: &Vec3) -> Vec<[f64; 6]> {
         let pairs = x.iter().zip(&self.points);
         pairs
@@ -184,7 +184,7 @@ impl Mass {
                 if *point {
                     [0.0; 6]
                 } else {
-                    rigid(mode, x, centre)
+                    rigid_displacement(mode, x, centre)
                 }
             })
             .collect()
@@ -216,7 +216,7 @@ impl Mass {
     }
 
     /// R' M R about a point.
-    pub(crate) fn rigid(&self, x: &[Vec3], centre: &Vec3) -> Matrix6<f64> {
+    pub(crate) fn rigid_mass_matrix(&self, x: &[Vec3], centre: &Vec3) -> Matrix6<f64> {
         let mut matrix = Matrix6::zeros();
         for mode in 0..6 {
             let u = self.rigid_field(mode, x, centre);
@@ -228,11 +228,12 @@ impl Mass {
     /// Mass and centre of gravity; `None` without mass.
     pub(crate) fn properties(&self, x: &[Vec3]) -> Option<MassProperties> {
         let near = x.first().copied().unwrap_or_else(Vec3::zeros);
-        let Weight { mass, cg } = Weight::of(&self.rigid(x, &near), near)?;
+        let Weight { mass, cg } =
+            Weight::from_mass_matrix(&self.rigid_mass_matrix(x, &near), near)?;
         Some(MassProperties {
             mass,
             cg,
-            matrix: self.rigid(x, &cg),
+            matrix: self.rigid_mass_matrix(x, &cg),
         })
     }
 

@@ -1,7 +1,7 @@
 //! Elastic modes of a free or supported structure.
 
 use super::error::FeError;
-use super::lanczos::{Accuracy, Pair, Wanted, lowest};
+use super::lanczos::{Accuracy, Pair, Wanted, find_lowest_modes};
 use super::load_case::{LoadCase, Relief};
 use super::mass::{Mass, MassProperties};
 use super::options::SolveOptions;
@@ -121,7 +121,7 @@ pub fn solve_modes(
     findings.extend(close_modes(&pairs));
     let modes: Vec<Mode> = pairs
         .into_iter()
-        .map(|p| finished(&mass, &x, &centre, p))
+        .map(|p| build_mode(&mass, &x, &centre, p))
         .collect();
     let cases: Vec<LoadCase> = (1..)
         .zip(&modes)
@@ -167,7 +167,7 @@ pub(super) fn frequencies(
         shapes: false,
         stop,
     };
-    let pairs = lowest(prepared, mass, system, factor, wanted)?;
+    let pairs = find_lowest_modes(prepared, mass, system, factor, wanted)?;
     Ok(pairs.iter().map(|p| p.frequency).collect())
 }
 
@@ -196,12 +196,12 @@ fn pairs_of(
         shapes: true,
         stop,
     };
-    let pairs = lowest(prepared, mass, &system, &factor, wanted)?;
+    let pairs = find_lowest_modes(prepared, mass, &system, &factor, wanted)?;
     Ok((pairs, rigid_motions, n))
 }
 
 /// A pair with its masses, its largest translation positive.
-fn finished(mass: &Mass, x: &[Vec3], centre: &Vec3, pair: Pair) -> Mode {
+fn build_mode(mass: &Mass, x: &[Vec3], centre: &Vec3, pair: Pair) -> Mode {
     let frequency_error = pair.frequency_error();
     let mut shape = pair.shape;
     let largest = shape

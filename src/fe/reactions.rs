@@ -4,7 +4,7 @@ use super::constraint::Reduction;
 use super::error::FeError;
 use super::grid_frames::{to_basic, to_local};
 use super::ground::{ground_forces, grounded_points, grounds};
-use super::hanging::hanging;
+use super::hanging::find_hanging_points;
 use super::mass::resultant;
 use super::prepared::Prepared;
 use super::system::System;
@@ -72,7 +72,7 @@ pub(super) fn reactions(
         .filter(|e| model.element_grids(*e).iter().any(|g| holds[g.us()]))
         .collect();
     let internal = internal_forces(prepared, &elements, cases)?;
-    let arriving = Arriving::of(prepared, reduction, cases);
+    let arriving = Arriving::from_cases(prepared, reduction, cases);
     let x: Vec<Vec3> = model.grids.iter().map(|g| g.x).collect();
     let of_case = |(case, internal): (&SolvedCase<'_>, Vec<[f64; 6]>)| {
         let (subcase, u, f) = *case;
@@ -96,7 +96,7 @@ pub(super) fn reactions(
         let largest = super::applied::largest_component(&held);
         let (mut applied, total) = (resultant(&x, &acts, &origin), resultant(&x, &held, &origin));
         arriving.add(f, &mut applied);
-        let left = Left::of(&x, &acts, &held, &applied, &total);
+        let left = Left::from_forces(&x, &acts, &held, &applied, &total);
         let finding = check_balance(prepared, &elements, (subcase, mpc), &left, u)?;
         let reactions = Reactions {
             subcase,
@@ -121,7 +121,11 @@ struct Arriving(Vec<(usize, [f64; 6])>);
 
 impl Arriving {
     /// Returns the points of this model, or none if no case loads a scalar point. Forces of grounded points count as reactions.
-    fn of(prepared: &Prepared<'_>, reduction: &Reduction, cases: &[SolvedCase<'_>]) -> Self {
+    fn from_cases(
+        prepared: &Prepared<'_>,
+        reduction: &Reduction,
+        cases: &[SolvedCase<'_>],
+    ) -> Self {
         let model = prepared.model;
         let grids = || model.grids.iter().enumerate();
         let loaded =
@@ -130,7 +134,7 @@ impl Arriving {
             return Self(Vec::new());
         }
         let grounded = grounded_points(model, reduction);
-        let mut points = hanging(model, &prepared.axes, reduction, &Vec3::zeros());
+        let mut points = find_hanging_points(model, &prepared.axes, reduction, &Vec3::zeros());
         points.retain(|(point, _)| !grounded[*point]);
         Self(points)
     }

@@ -5,7 +5,7 @@ use super::constraint::Reduction;
 use super::error::{FeError, Refusal};
 use super::free_motions::RigidStructure;
 use super::grid_frames::to_local;
-use super::hanging::hanging;
+use super::hanging::find_hanging_points;
 use super::mass::{Mass, MassProperties, resultant};
 use crate::linalg::{DMatrix, DVector};
 use crate::model::{Grid, GridIx, Mat3, Model, ScalarMass, Vec3};
@@ -110,7 +110,7 @@ impl RigidBody {
         let rigid_mass = DMatrix::from_fn(6, 6, |r, c| properties.matrix[(r, c)]);
         let modal = basis.transpose() * rigid_mass * &basis;
         Ok(Some(Self {
-            hanging: hanging(model, axes, reduction, &properties.cg),
+            hanging: find_hanging_points(model, axes, reduction, &properties.cg),
             x,
             scalar,
             properties,
@@ -240,7 +240,7 @@ impl RigidBody {
     ) -> Vec<usize> {
         let fields: Vec<Vec<f64>> = (0..self.n_free())
             .into_par_iter()
-            .map(|c| self.packed(axes, numbering, c))
+            .map(|c| self.pack_motion(axes, numbering, c))
             .collect();
         let n = fields.first().map_or(0, Vec::len);
         let translation: Vec<bool> = {
@@ -323,7 +323,7 @@ impl RigidBody {
             return Err(fault());
         }
         let fields: Vec<Vec<f64>> = (0..self.n_free())
-            .map(|c| self.packed(axes, numbering, c))
+            .map(|c| self.pack_motion(axes, numbering, c))
             .collect();
         let mut rows = DMatrix::from_fn(count, count, |r, c| fields[c][unknowns[r]]);
         for mut row in rows.row_iter_mut() {
@@ -339,13 +339,13 @@ impl RigidBody {
     }
 
     /// A free motion at the unknowns, of the order of one: rotations times the size of the model.
-    pub(crate) fn packed(
+    pub(crate) fn pack_motion(
         &self,
         axes: &[Option<Mat3>],
         numbering: &Numbering,
         column: usize,
     ) -> Vec<f64> {
-        let mut field = self.turned(axes, column);
+        let mut field = self.motion_in_grid_frames(axes, column);
         let largest = field
             .iter()
             .flat_map(|u| {
@@ -374,7 +374,7 @@ impl RigidBody {
         column: usize,
     ) -> Vec<f64> {
         let mut out = vec![0.0; numbering.free.iter().map(|b| b.count_ones() as usize).sum()];
-        let mut field = self.turned(axes, column);
+        let mut field = self.motion_in_grid_frames(axes, column);
         self.let_follow(&self.basis.column(column).into_owned(), &mut field);
         numbering.pack(&field, &mut out);
         let largest = out.iter().fold(f64::MIN_POSITIVE, |a, v| a.max(v.abs()));
@@ -383,7 +383,7 @@ impl RigidBody {
     }
 
     /// A free motion in the displacement frames of the grids.
-    fn turned(&self, axes: &[Option<Mat3>], column: usize) -> Vec<[f64; 6]> {
+    fn motion_in_grid_frames(&self, axes: &[Option<Mat3>], column: usize) -> Vec<[f64; 6]> {
         let mut field = self.motion(column);
         for (u, axes) in field.iter_mut().zip(axes) {
             *u = to_local(axes, *u);

@@ -5,7 +5,7 @@ use crate::linalg::Matrix6;
 use crate::model::{Mat3, Vec3};
 
 /// Displacement of a point by rigid motion `mode` about `centre`: unit translations, then unit rotations, basic frame.
-pub(crate) fn rigid(mode: usize, x: &Vec3, centre: &Vec3) -> [f64; 6] {
+pub(crate) fn rigid_displacement(mode: usize, x: &Vec3, centre: &Vec3) -> [f64; 6] {
     let mut u = [0.0; 6];
     u[mode] = 1.0;
     if mode >= 3 {
@@ -19,7 +19,7 @@ pub(crate) fn rigid(mode: usize, x: &Vec3, centre: &Vec3) -> [f64; 6] {
 pub(super) fn rigid_matrix(x: &Vec3, centre: &Vec3, axes: &Option<Mat3>) -> Matrix6<f64> {
     let mut m = Matrix6::zeros();
     for mode in 0..6 {
-        for (i, v) in to_local(axes, rigid(mode, x, centre))
+        for (i, v) in to_local(axes, rigid_displacement(mode, x, centre))
             .into_iter()
             .enumerate()
         {

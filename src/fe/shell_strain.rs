@@ -18,7 +18,7 @@ type Surfaces = [[f64; 3]; 2];
 /// Part of a field: at the centre and, where wanted, at the corners.
 type Piece<'a> = (&'a mut [Surfaces], &'a mut [[Surfaces; 4]]);
 
-fn local<const M: usize>(u: &[[f64; 6]], grids: &[GridIx]) -> [f64; M] {
+fn gather_displacements<const M: usize>(u: &[[f64; 6]], grids: &[GridIx]) -> [f64; M] {
     let mut out = [0.0; M];
     for (o, g) in out.chunks_exact_mut(6).zip(grids) {
         o.copy_from_slice(&u[g.us()]);
@@ -95,12 +95,12 @@ fn fill(
                     Some(k) => h.rise[k],
                     None => h.rise[..n].iter().sum::<f64>() / n as f64,
                 };
-                h.free(rise, fibres.at(corner))
+                h.free_strain(rise, fibres.distances_at(corner))
             })
         };
         match &matrices {
             AnyShell::Quad(m) => {
-                let local = local::<24>(u, &shell.grids[..4]);
+                let local = gather_displacements::<24>(u, &shell.grids[..4]);
                 centre[at] = surfaces(&m.centre, fibres.centre, &local, &free(None));
                 if let Some(slot) = corners.get_mut(at) {
                     *slot = std::array::from_fn(|k| {
@@ -133,7 +133,7 @@ fn fill(
                 }
             }
             AnyShell::Tria(m) => {
-                let local = local::<18>(u, &shell.grids[..3]);
+                let local = gather_displacements::<18>(u, &shell.grids[..3]);
                 centre[at] = surfaces(&m.centre, fibres.centre, &local, &free(None));
                 if let Some(slot) = corners.get_mut(at) {
                     *slot = [centre[at], centre[at], centre[at], [[f64::NAN; 3]; 2]];

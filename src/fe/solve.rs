@@ -59,7 +59,7 @@ pub fn solve_unit_loads(
     loads: &[UnitLoad],
     options: &SolveOptions,
 ) -> Result<(Solution, SolveReport), FeError> {
-    solve_unit_loads_on(model, Support::free(model), loads, options)
+    solve_unit_loads_on(model, Support::without_spc(model), loads, options)
 }
 
 /// Solves unit loads on a structure held like this, subcases numbered 1 .. n.
@@ -195,7 +195,7 @@ fn solve_group(
     let held = (&system, system.body.as_ref());
     let acting: Vec<Acting> = cases
         .par_iter()
-        .map(|case| acting(prepared, mass, held, report.mass.as_ref(), case))
+        .map(|case| form_case_loads(prepared, mass, held, report.mass.as_ref(), case))
         .collect::<Result<_, FeError>>()?;
     let mut forces = Vec::with_capacity(cases.len());
     for acting in acting {
@@ -234,7 +234,7 @@ fn solve_group(
         for (case, refined) in cases.iter().zip(refined) {
             report.epsilon[0] = report.epsilon[0].max(refined.first);
             report.epsilon[1] = report.epsilon[1].max(refined.last);
-            findings.extend(inaccurate(case.subcase, refined.last));
+            findings.extend(check_accuracy(case.subcase, refined.last));
         }
         for ((case, moved), sizes) in cases.iter().zip(columns.chunks_exact(n)).zip(sizes) {
             let Some(sizes) = sizes else { continue };
@@ -308,7 +308,7 @@ fn nothing_free(cases: &[&LoadCase]) -> Finding {
     )
 }
 
-fn inaccurate(subcase: u32, epsilon: f64) -> Option<Finding> {
+fn check_accuracy(subcase: u32, epsilon: f64) -> Option<Finding> {
     (!(epsilon <= INACCURATE_ABOVE)).then(|| {
         Finding::new(
             Severity::Warning,
@@ -335,7 +335,7 @@ pub(super) struct Acting {
 ///
 /// # Errors
 /// Loads on nothing; numbers beyond all bounds; sets that the deck lacks.
-pub(super) fn acting(
+pub(super) fn form_case_loads(
     prepared: &Prepared<'_>,
     mass: &Mass,
     (system, body): (&System, Option<&RigidBody>),

@@ -75,7 +75,10 @@ fn temperatures_of(
     model: &Model,
     cases: &[LoadCase],
 ) -> Result<Vec<Option<Temperatures>>, FeError> {
-    cases.iter().map(|c| Temperatures::of(model, c)).collect()
+    cases
+        .iter()
+        .map(|c| Temperatures::from_case(model, c))
+        .collect()
 }
 
 /// Every strain of a case that is a number or should be one: what an element lacks (a triangle's fourth corner) is left out.

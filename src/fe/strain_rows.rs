@@ -188,7 +188,7 @@ pub fn largest_strain(row: &StrainRow) -> f64 {
 
 /// The `n` rows of a case with the largest strain ([`largest_strain`]), one an element, largest first: centres of shells and ends of
 /// bars.
-pub fn hottest(model: &Model, case: &CaseResult, n: usize) -> Vec<StrainRow> {
+pub fn largest_strain_rows(model: &Model, case: &CaseResult, n: usize) -> Vec<StrainRow> {
     let mut best: Vec<StrainRow> = Vec::new();
     for i in 0..n_elements(case) {
         let mut top: Option<StrainRow> = None;

@@ -33,7 +33,7 @@ pub struct Support {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SupportError {
     /// The deck has no such SPC set.
-    #[error("the deck has no SPC set {set}: {}", known(.there))]
+    #[error("the deck has no SPC set {set}: {}", list_known_sets(.there))]
     Missing {
         /// The requested set.
         set: u32,
@@ -55,7 +55,7 @@ fn list(sets: &[u32]) -> String {
     words.join(", ")
 }
 
-fn known(sets: &[u32]) -> String {
+fn list_known_sets(sets: &[u32]) -> String {
     match sets {
         [] => "it has none at all".to_owned(),
         _ => format!("it has {}", list(sets)),
@@ -65,7 +65,7 @@ fn known(sets: &[u32]) -> String {
 impl Support {
     /// Returns the support of a model under no SPC set: springs to ground and permanent constraints hold what they resist, and inertia
     /// balances the loads along the rigid motions that nothing resists. PARAM,INREL,-1 states that displacements count from the SUPORT dofs.
-    pub fn free(model: &Model) -> Self {
+    pub fn without_spc(model: &Model) -> Self {
         let held = held_motions(model);
         Self {
             spc: None,
@@ -122,7 +122,9 @@ fn rigid_motions(n: usize) -> String {
 /// A set that the deck lacks; several sets selected where one is required.
 pub fn support_of(model: &Model, wanted: SupportChoice) -> Result<Support, SupportError> {
     let set = match (wanted, model.selected_spcs.as_slice()) {
-        (SupportChoice::Free, _) | (SupportChoice::Deck, []) => return Ok(Support::free(model)),
+        (SupportChoice::Free, _) | (SupportChoice::Deck, []) => {
+            return Ok(Support::without_spc(model));
+        }
         (SupportChoice::Set(set), _) | (SupportChoice::Deck, &[set]) => set,
         (SupportChoice::Deck, several) => {
             return Err(SupportError::Several {

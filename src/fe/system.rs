@@ -146,7 +146,7 @@ impl System {
             Err(FactorError::NotANumber { .. }) if !negative.is_empty() => {
                 return Err(FeError::Refused(negative));
             }
-            Err(e) => return Err(self.refused(model, e)),
+            Err(e) => return Err(self.translate_factor_error(model, e)),
         };
         if factor.lost.is_empty() {
             return Ok(factor);
@@ -257,7 +257,7 @@ impl System {
     }
 
     /// A failure of the factor in the words of the model.
-    pub(super) fn refused(&self, model: &Model, error: FactorError) -> FeError {
+    pub(super) fn translate_factor_error(&self, model: &Model, error: FactorError) -> FeError {
         match error {
             FactorError::NotANumber { unknown } => {
                 let start = self.symbolic.unknown_start();
@@ -341,7 +341,7 @@ impl System {
         let mut packed = vec![0.0; self.symbolic.n_unknowns()];
         self.numbering.pack(&arrives, &mut packed);
         for w in &self.weak {
-            if w.aimed(&packed) > limit {
+            if w.load_along(&packed) > limit {
                 let start = self.symbolic.unknown_start();
                 let (g, dof) = self.numbering.dof_of(w.unknown, start);
                 return Err(fault(g, dof, w.some.then_some(EPZERO)));

@@ -28,7 +28,7 @@ impl Temperatures {
     ///
     /// # Errors
     /// A temperature set that the deck lacks.
-    pub(crate) fn of(model: &Model, case: &LoadCase) -> Result<Option<Self>, FeError> {
+    pub(crate) fn from_case(model: &Model, case: &LoadCase) -> Result<Option<Self>, FeError> {
         let Some((set, initial)) = case.loads.iter().find_map(|l| match l {
             UnitLoad::Temperature { set, initial } => Some((*set, *initial)),
             _ => None,
@@ -59,10 +59,10 @@ impl Temperatures {
 
     /// How much warmer a grid is than where thermal strain counts from; `tref` is the material's reference.
     pub(crate) fn rise(&self, g: GridIx, tref: f64) -> f64 {
-        self.at[g.us()] - self.from(g, tref)
+        self.at[g.us()] - self.initial_temperature(g, tref)
     }
 
-    fn from(&self, g: GridIx, tref: f64) -> f64 {
+    fn initial_temperature(&self, g: GridIx, tref: f64) -> f64 {
         self.initial.as_ref().map_or(tref, |i| i[g.us()])
     }
 
@@ -70,7 +70,7 @@ impl Temperatures {
     pub(super) fn shell_rise(&self, shell: &Shell, tref: f64) -> ([f64; 4], f64) {
         let corner = |k: usize| shell.grids[k.min(shell.shape.n_corners() - 1)];
         if let Some(ElementTemperature::Plate { mean, gradient }) = self.elements.get(&shell.id) {
-            let rise = std::array::from_fn(|k| mean - self.from(corner(k), tref));
+            let rise = std::array::from_fn(|k| mean - self.initial_temperature(corner(k), tref));
             return (rise, *gradient);
         }
         (std::array::from_fn(|k| self.rise(corner(k), tref)), 0.0)
@@ -79,7 +79,7 @@ impl Temperatures {
     /// The rise of a bar, beam or rod at its ends, and its gradients across.
     pub(super) fn line_rise(&self, id: u32, grids: [GridIx; 2], tref: f64) -> LineRise {
         if let Some(ElementTemperature::Line { ends, gradient }) = self.elements.get(&id) {
-            let rise = [0, 1].map(|k| ends[k] - self.from(grids[k], tref));
+            let rise = [0, 1].map(|k| ends[k] - self.initial_temperature(grids[k], tref));
             return (rise, *gradient);
         }
         (grids.map(|g| self.rise(g, tref)), [[0.0; 2]; 2])
@@ -120,7 +120,7 @@ const NO_RISE: f64 = 1e-9;
 /// # Errors
 /// A temperature set that the deck lacks.
 pub(crate) fn is_heated(model: &Model, case: &LoadCase) -> Result<bool, FeError> {
-    let Some(t) = Temperatures::of(model, case)? else {
+    let Some(t) = Temperatures::from_case(model, case)? else {
         return Ok(false);
     };
     let acts = |rise: f64| rise.abs() > NO_RISE;

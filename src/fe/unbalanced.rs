@@ -20,7 +20,7 @@ pub(super) struct Left {
 
 impl Left {
     /// Returns the unbalanced sum of `applied` and `held`, fields over grids at `x`, with these resultants.
-    pub(super) fn of(
+    pub(super) fn from_forces(
         x: &[Vec3],
         applied: &[[f64; 6]],
         held: &[[f64; 6]],
@@ -67,7 +67,7 @@ pub(super) fn check_balance(
     if !(share > LIMIT) || told_otherwise(model) {
         return Ok(None);
     }
-    let rounding = rounding(prepared, elements, u)?;
+    let rounding = estimate_rounding(prepared, elements, u)?;
     if (0..2).all(|i| left.left[i] <= LIMIT * left.size[i] + rounding[i]) {
         return Ok(None);
     }
@@ -131,7 +131,7 @@ fn pushes_ground(prepared: &Prepared<'_>, spring: &Spring) -> bool {
 }
 
 /// Returns the unbalanced forces and moments that rounding may cause: [`ROUNDING`] of the sum of |K| |u| over elements.
-fn rounding(
+fn estimate_rounding(
     prepared: &Prepared<'_>,
     elements: &[ElementRef],
     u: &[[f64; 6]],

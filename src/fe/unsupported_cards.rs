@@ -38,7 +38,7 @@ pub(crate) fn unsupported_cards(model: &Model, cases: &[LoadCase]) -> Vec<Refusa
                 .any(|s| model.shell_properties[s.property.us()].id == p.id)
         };
         match &p.kind {
-            ShellKind::Laminate { lam, .. } if used() && Lamination::of(lam).is_none() => {
+            ShellKind::Laminate { lam, .. } if used() && Lamination::parse_lam(lam).is_none() => {
                 refuse(
                     format!("PCOMP {}", p.id),
                     p.at,

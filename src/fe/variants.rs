@@ -19,7 +19,7 @@ use super::options::SolveOptions;
 use super::prepared::Prepared;
 use super::report::{SolveReport, Solved};
 use super::scalar_points::follow_grids;
-use super::solve::{acting, displacements, go_on, prepare};
+use super::solve::{displacements, form_case_loads, go_on, prepare};
 use super::strain_of_cases::with_strain;
 use super::support::Support;
 use super::system::System;
@@ -154,7 +154,7 @@ impl<'a> Base<'a> {
             .par_iter()
             .map(|case| {
                 let system = (self.system, body.as_ref());
-                acting(variant, mass, system, weight.as_ref(), case)
+                form_case_loads(variant, mass, system, weight.as_ref(), case)
             })
             .collect::<Result<_, FeError>>()?;
         let n = self.system.symbolic.n_unknowns();
@@ -191,7 +191,7 @@ impl<'a> Base<'a> {
         let change = self.change(variant, &elements)?;
         let mass = Mass::new(variant);
         let (forces, loaded) = self.forces_on(variant, &mass, cases)?;
-        let Some(columns) = self.converged(&change, &forces, options)? else {
+        let Some(columns) = self.iterate_to_convergence(&change, &forces, options)? else {
             return Ok(None);
         };
         let n = self.system.symbolic.n_unknowns();
@@ -232,7 +232,7 @@ impl<'a> Base<'a> {
 
     /// Returns the displacements at the unknowns under `forces`, a column a case. `None` if they do not converge in [`MOST_STEPS`], or the variant
     /// has a motion without support.
-    fn converged(
+    fn iterate_to_convergence(
         &self,
         change: &[ElementMatrix],
         forces: &[f64],

@@ -5,7 +5,7 @@ use super::element::shell::{many_mass, shell_mass};
 use super::element::solid::solid_mass;
 use super::element::{ElementMatrix, rod_mass, shear_panel_mass};
 use super::mass::{is_consistent, resultant, shell_offset};
-use super::rigid_motion::rigid;
+use super::rigid_motion::rigid_displacement;
 use crate::linalg::{Matrix6, Vector6};
 use crate::model::{GridIx, Mat3, Model, ScalarMass, Vec3, Weight};
 use rayon::prelude::*;
@@ -21,7 +21,7 @@ impl Model {
             mass: 0.0,
             cg: origin,
         };
-        Weight::of(&self.rigid_body_mass(origin), origin).unwrap_or(nothing)
+        Weight::from_mass_matrix(&self.rigid_body_mass(origin), origin).unwrap_or(nothing)
     }
 
     /// Rigid-body mass matrix (6 x 6: translations, then rotations) about the basic location `about`, WTMASS applied.
@@ -90,7 +90,10 @@ impl Model {
         let x: Vec<Vec3> = mass.grids.iter().map(|g| self.grids[g.us()].x).collect();
         let mut matrix = Matrix6::zeros();
         for mode in 0..6 {
-            let u: Vec<f64> = x.iter().flat_map(|x| rigid(mode, x, about)).collect();
+            let u: Vec<f64> = x
+                .iter()
+                .flat_map(|x| rigid_displacement(mode, x, about))
+                .collect();
             let f = mass.times(&u);
             let (f, _) = f.as_chunks::<6>();
             matrix.set_column(mode, &resultant(&x, f, about).into());

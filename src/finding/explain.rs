@@ -106,7 +106,10 @@ fn read_head(line: &'static str) -> Option<Code> {
     let (code, severity, said_by) = (parts.next()?, parts.next()?, parts.next()?);
     Some(Code {
         code,
-        severity: severity.split(", ").filter_map(Severity::named).collect(),
+        severity: severity
+            .split(", ")
+            .filter_map(Severity::parse_name)
+            .collect(),
         said_by,
         cause: "",
         limit: "",

@@ -1,7 +1,7 @@
 //! Sentences of findings: a capital letter and a full stop.
 
 /// Returns a text with a capital first letter.
-pub fn capital(text: &str) -> String {
+pub fn capitalize(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| {
         first.to_uppercase().chain(letters).collect()
@@ -19,7 +19,7 @@ pub(super) fn sentence(clause: &str, subject: &str) -> String {
         .next()
         .is_some_and(|name| name == letters);
     let text = match is_word && !is_name {
-        true => capital(clause),
+        true => capitalize(clause),
         false => clause.to_owned(),
     };
     match clause.is_empty() || clause.ends_with(['.', '?', '!']) {

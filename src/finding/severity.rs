@@ -38,7 +38,7 @@ impl Severity {
     }
 
     /// Parses a name (`info`, `warning`, `error`); `None` for any other text.
-    pub fn named(name: &str) -> Option<Self> {
+    pub fn parse_name(name: &str) -> Option<Self> {
         let all = [Self::Info, Self::Warning, Self::Error];
         all.into_iter().find(|s| s.name() == name)
     }

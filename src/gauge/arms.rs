@@ -94,7 +94,7 @@ pub fn strain_terms(gauge: &Gauge) -> Vec<StrainTerm> {
 }
 
 /// Returns the reading of a gauge in a load case, strain; `None` if the case has no strain at one of its spots.
-pub fn reading(gauge: &Gauge, case: &CaseResult) -> Option<f64> {
+pub fn gauge_reading(gauge: &Gauge, case: &CaseResult) -> Option<f64> {
     gauge.arms.iter().map(|arm| arm_reading(arm, case)).sum()
 }
 
@@ -115,13 +115,15 @@ fn arm_reading(arm: &Arm, case: &CaseResult) -> Option<f64> {
             station,
         } => {
             let (points, _) = case.beams.strain_at(beam, station)?;
-            finite(a * points.get(point)?)
+            finite_or_none(a * points.get(point)?)
         }
-        Spot::BeamAxis { beam, station } => finite(a * case.beams.strain_at(beam, station)?.1),
+        Spot::BeamAxis { beam, station } => {
+            finite_or_none(a * case.beams.strain_at(beam, station)?.1)
+        }
     }
 }
 
-fn finite(strain: f64) -> Option<f64> {
+fn finite_or_none(strain: f64) -> Option<f64> {
     strain.is_finite().then_some(strain)
 }
 

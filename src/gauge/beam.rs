@@ -21,7 +21,7 @@ pub(super) struct BeamSeat {
 const ALONG: f64 = 0.0175;
 
 /// Returns, in words, the part of a gauge that is not along the axis of its beam.
-fn across(spec: &GaugeSpec, axis: &Vec3) -> Option<&'static str> {
+fn find_off_axis_part(spec: &GaugeSpec, axis: &Vec3) -> Option<&'static str> {
     let turned = |d: &Vec3| d.cross(axis).norm() > ALONG * d.norm();
     if spec.bridge == Bridge::Shear {
         Some("a shear bridge")
@@ -59,7 +59,7 @@ pub(super) fn on_beam(
         station,
     } = seat;
     let b = model.beams.get(beam.us()).ok_or_else(missing)?;
-    if let Some(what) = across(spec, &b.axes.row(0).transpose()) {
+    if let Some(what) = find_off_axis_part(spec, &b.axes.row(0).transpose()) {
         return Err(GaugeError::AcrossBeam {
             gauge: spec.name.clone(),
             element: b.id,

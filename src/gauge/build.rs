@@ -14,7 +14,7 @@ use crate::model::{Mat3, Model, Shell, Vec3};
 
 /// Places a gauge on the model, and returns its channels (three for a rosette) with findings.
 ///
-/// A channel is a linear functional of the strain at the places of its arms; [`reading`](super::reading) evaluates it in a load case.
+/// A channel is a linear functional of the strain at the places of its arms; [`gauge_reading`](super::gauge_reading) evaluates it in a load case.
 ///
 /// # Errors
 /// Returns the reason why the gauge can't be placed on the model.
@@ -126,7 +126,7 @@ pub(super) fn build_by(
             _ => f.distance,
         };
         let f = Foot { distance, ..f };
-        findings.push(found(spec, element.id, side, &f, corners, size));
+        findings.push(report_distance(spec, element.id, side, &f, corners, size));
     }
     let drawn = foot.map_or(middle, |f| f.point);
     let legs: Vec<(String, f64)> = match spec.rosette {
@@ -202,7 +202,7 @@ fn reach(model: &Model, element: &Shell, middle: Vec3) -> f64 {
 /// Distances, in those that a place on the skin may have, beyond which no rounding of a drawing explains it.
 const FAR: f64 = 5.0;
 
-fn found(
+fn report_distance(
     spec: &GaugeSpec,
     element: u32,
     side: Surface,

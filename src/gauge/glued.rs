@@ -22,7 +22,7 @@ pub struct Offset {
 
 impl Offset {
     /// Creates a move along the axis of the gauge.
-    pub fn along(length: f64) -> Self {
+    pub fn shift_along(length: f64) -> Self {
         Self {
             along: length,
             ..Self::default()
@@ -30,7 +30,7 @@ impl Offset {
     }
 
     /// Creates a move across the axis of the gauge.
-    pub fn across(length: f64) -> Self {
+    pub fn shift_across(length: f64) -> Self {
         Self {
             across: length,
             ..Self::default()
@@ -100,7 +100,7 @@ impl<'m> Drawn<'m> {
 
     /// The gauge at an offset, as a job with this position and direction would lay it, and its point on the reference surface. Past the
     /// edge of the surface it stays on the edge.
-    pub fn glued(&self, offset: Offset) -> Option<(Gauge, Vec3)> {
+    pub fn gauge_at_offset(&self, offset: Offset) -> Option<(Gauge, Vec3)> {
         let axis = self.gauge.direction;
         let across = self.gauge.normal.cross(&axis);
         // Without corner rows a gauge reads the middle of its shell wherever it sits on it.
@@ -135,7 +135,7 @@ impl<'m> Drawn<'m> {
     ) -> Option<Vec<f64>> {
         // Where it comes to lie along the way, and what it reads there.
         let end = |asked: f64| -> Option<(f64, Vec<f64>)> {
-            let (gauge, x) = self.glued(way(asked))?;
+            let (gauge, x) = self.gauge_at_offset(way(asked))?;
             let unit = way(1.0);
             let axis = self.gauge.direction;
             let across = self.gauge.normal.cross(&axis);

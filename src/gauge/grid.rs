@@ -3,7 +3,7 @@
 use super::arms::{Arm, Spot};
 use super::error::GaugeError;
 use super::grid_average::{Landing, POINTS, about_centre, place_at};
-use super::side::{normal, opposite, same_side};
+use super::side::{opposite_side, same_side, shell_normal};
 use super::spec::{Bridge, CornerRows, GaugeSpec};
 use super::surface::{centre, foot_on};
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
@@ -75,7 +75,7 @@ impl Site<'_> {
             arms.extend(self.average(&grid));
         }
         Ok(Laid {
-            arms: merged(arms),
+            arms: merge_arms(arms),
             past_edge,
         })
     }
@@ -112,14 +112,14 @@ impl Site<'_> {
     /// Returns where the second pair sits, and the direction there of a grid that has `direction` in the first pair.
     fn on_pair(&self, here: Seat, direction: Vec3) -> Result<(Seat, Vec3), GaugeError> {
         let Some(pair) = self.spec.pair else {
-            let surface = opposite(here.surface);
+            let surface = opposite_side(here.surface);
             return Ok((Seat { surface, ..here }, direction));
         };
         let gauge = || self.spec.name.clone();
         let shell = self.model.shells.get(pair.shell.us());
         let shell = shell.ok_or_else(|| GaugeError::NoElement { gauge: gauge() })?;
         let element = shell.id;
-        let flat = centre(self.model, shell).zip(normal(self.model, pair.shell));
+        let flat = centre(self.model, shell).zip(shell_normal(self.model, pair.shell));
         let (at, z) = flat.ok_or_else(|| GaugeError::NoArea {
             gauge: gauge(),
             element,
@@ -270,7 +270,7 @@ enum Reach {
 }
 
 /// Arms at the same spot added up.
-fn merged(arms: Vec<Arm>) -> Vec<Arm> {
+fn merge_arms(arms: Vec<Arm>) -> Vec<Arm> {
     let mut out: Vec<Arm> = Vec::new();
     for a in arms {
         match out.iter_mut().find(|b| b.spot == a.spot) {

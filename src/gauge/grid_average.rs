@@ -5,7 +5,7 @@
 //! that fits the neighbours across the shell's edges (least squares); neighbours at an angle of more than 20 degrees lie round a bend and
 //! are left out.
 
-use super::side::{normal, same_side};
+use super::side::{same_side, shell_normal};
 use super::surface::{Foot, centre, foot_on};
 use crate::fe::strain_tensor::Surface;
 use crate::model::{Model, ShellIx, Vec3};
@@ -27,7 +27,7 @@ pub fn neighbours(model: &Model, shell: ShellIx) -> Vec<ShellIx> {
     let Some(me) = model.shells.get(shell.us()) else {
         return Vec::new();
     };
-    let Some(n) = normal(model, shell) else {
+    let Some(n) = shell_normal(model, shell) else {
         return Vec::new();
     };
     let mine = &me.grids[..me.shape.n_corners()];
@@ -43,7 +43,7 @@ pub fn neighbours(model: &Model, shell: ShellIx) -> Vec<ShellIx> {
                     >= 2
             })
         })
-        .filter(|&ix| normal(model, ix).is_some_and(|m| m.dot(&n).abs() >= SMOOTH))
+        .filter(|&ix| shell_normal(model, ix).is_some_and(|m| m.dot(&n).abs() >= SMOOTH))
         .collect()
 }
 
@@ -117,7 +117,7 @@ pub(super) fn place_at(
         }
         best = found;
     }
-    let z = normal(model, best.shell)?;
+    let z = shell_normal(model, best.shell)?;
     let off = x - best.point;
     let flat = (off - z * off.dot(&z)).norm();
     // Over a smooth surface a point is off along the normal; at an edge it is off along the surface.

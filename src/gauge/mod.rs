@@ -21,7 +21,7 @@ mod stated_side;
 mod surface;
 mod unverified;
 
-pub use arms::{Arm, Gauge, Spot, reading, shell_strain, strain_terms};
+pub use arms::{Arm, Gauge, Spot, gauge_reading, shell_strain, strain_terms};
 pub use beside::{Beside, beside_beam, beside_shell};
 pub use build::build;
 pub use error::GaugeError;
@@ -30,7 +30,7 @@ pub use grid_average::SMOOTH;
 pub use moved::strain_gradient_gauge;
 pub use off_skin::off_skin;
 pub use on_refined::{change_by_refining, on_refined};
-pub use side::{away_from, opposite};
+pub use side::{away_from, opposite_side};
 pub use spec::{Bridge, CornerRows, GaugePlace, GaugeSpec, Pair, Rosette};
 pub use stated_side::{BetweenSkins, between_skins};
 pub use surface::{Foot, centre, nearest_skin, to_side};

@@ -67,7 +67,7 @@ pub fn change_by_refining(
             subcase: own.subcase,
             label: own.label.clone(),
             shells: change_of_shells(coarse, fine, own, refined),
-            beams: unchanged(&own.beams),
+            beams: zero_beam_field(&own.beams),
             ..CaseResult::default()
         })
         .collect()
@@ -125,7 +125,7 @@ fn strain_on_parts(
 }
 
 /// No strain, where `field` has some.
-fn unchanged(field: &BeamField) -> BeamField {
+fn zero_beam_field(field: &BeamField) -> BeamField {
     let stations = field.stations.iter();
     BeamField {
         elements: field.elements.clone(),

@@ -5,7 +5,7 @@ use crate::fe::strain_tensor::Surface;
 use crate::model::{Model, ShellIx, Vec3};
 
 /// Returns the other side of the same shell.
-pub fn opposite(side: Surface) -> Surface {
+pub fn opposite_side(side: Surface) -> Surface {
     match side {
         Surface::Top => Surface::Bottom,
         Surface::Bottom => Surface::Top,
@@ -13,7 +13,7 @@ pub fn opposite(side: Surface) -> Surface {
 }
 
 /// Returns the unit normal at the centre of a shell, basic frame; `None` without area.
-pub(super) fn normal(model: &Model, ix: ShellIx) -> Option<Vec3> {
+pub(super) fn shell_normal(model: &Model, ix: ShellIx) -> Option<Vec3> {
     let shell = model.shells.get(ix.us())?;
     Some(
         shell_axes(model, shell, ShellPlace::Centre)?
@@ -28,8 +28,8 @@ pub(super) fn same_side(
     (from, side): (ShellIx, Surface),
     other: ShellIx,
 ) -> Option<Surface> {
-    let opposed = normal(model, from)?.dot(&normal(model, other)?) < 0.0;
-    Some(if opposed { opposite(side) } else { side })
+    let opposed = shell_normal(model, from)?.dot(&shell_normal(model, other)?) < 0.0;
+    Some(if opposed { opposite_side(side) } else { side })
 }
 
 /// Cosine of the angle between two normals below which shells face neither the same nor opposite ways: 60 degrees.
@@ -41,8 +41,8 @@ pub fn away_from(
     (from, side): (ShellIx, Surface),
     other: ShellIx,
 ) -> Option<Surface> {
-    let facing = normal(model, from)?.dot(&normal(model, other)?);
+    let facing = shell_normal(model, from)?.dot(&shell_normal(model, other)?);
     (facing.abs() >= FACING)
-        .then(|| same_side(model, (from, side), other).map(opposite))
+        .then(|| same_side(model, (from, side), other).map(opposite_side))
         .flatten()
 }

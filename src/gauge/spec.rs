@@ -124,7 +124,7 @@ pub struct Pair {
 
 impl Pair {
     /// Returns a pair whose axis is parallel to the first pair's.
-    pub fn parallel(shell: ShellIx, surface: Surface) -> Self {
+    pub fn with_parallel_axis(shell: ShellIx, surface: Surface) -> Self {
         Self {
             shell,
             surface,
@@ -164,7 +164,7 @@ pub struct GaugeSpec {
 
 impl GaugeSpec {
     /// A quarter bridge on the top of a shell along its x axis.
-    pub fn on(name: impl Into<String>, shell: ShellIx) -> Self {
+    pub fn place_on_shell(name: impl Into<String>, shell: ShellIx) -> Self {
         Self {
             name: name.into(),
             place: GaugePlace::Shell(shell),

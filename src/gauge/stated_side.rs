@@ -1,7 +1,7 @@
 //! The side of a shell that a stated point is on.
 
 use super::grid_average::neighbours;
-use super::side::normal;
+use super::side::shell_normal;
 use super::surface::{centre, corners, foot_on, from_skins, to_side};
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::fe::strain_tensor::Surface;
@@ -32,7 +32,7 @@ const ON_SKIN: f64 = 0.25;
 
 impl BetweenSkins {
     /// Returns the side whose skin is nearer, the top where both are equally far.
-    pub fn nearer(&self) -> Surface {
+    pub fn nearer_side(&self) -> Surface {
         match self.distance[0] < self.distance[1] {
             true => Surface::Bottom,
             false => Surface::Top,
@@ -55,7 +55,7 @@ impl BetweenSkins {
 
     /// Whether the point is nearer to the other skin than to that of side `stated`, beyond what a drawing leaves open.
     pub fn contradicts(&self, stated: Surface) -> bool {
-        let [here, other] = self.of(stated);
+        let [here, other] = self.skin_distances(stated);
         here - other > OTHER_SIDE * self.thickness && !self.is_within_bulge()
     }
 
@@ -63,11 +63,11 @@ impl BetweenSkins {
     /// their middles there.
     pub fn is_on_other_skin(&self, stated: Surface) -> bool {
         let near = ON_SKIN * self.thickness;
-        self.contradicts(stated) && self.of(stated)[1] <= near && self.from_grids > near
+        self.contradicts(stated) && self.skin_distances(stated)[1] <= near && self.from_grids > near
     }
 
     /// Distances from the skin of this side and from the other one.
-    pub fn of(&self, side: Surface) -> [f64; 2] {
+    pub fn skin_distances(&self, side: Surface) -> [f64; 2] {
         let here = self.distance[side.ix()];
         [here, self.distance[1 - side.ix()]]
     }
@@ -78,7 +78,7 @@ pub fn between_skins(model: &Model, ix: ShellIx, x: Vec3) -> Option<BetweenSkins
     let shell = model.shells.get(ix.us())?;
     let [bottom, top] = [Surface::Bottom, Surface::Top].map(|s| to_side(model, shell, s));
     let thickness = (top - bottom).abs();
-    let (z, middle) = (normal(model, ix)?, 0.5 * (bottom + top));
+    let (z, middle) = (shell_normal(model, ix)?, 0.5 * (bottom + top));
     let foot = foot_on(model, ix, x - z * middle)?.point;
     let found = BetweenSkins {
         distance: from_skins(model, ix, x)?,
@@ -105,7 +105,7 @@ fn bulge(model: &Model, ix: ShellIx, x: Vec3) -> Option<f64> {
     let (mut normal_matrix, mut right) = (Mat3::zeros(), Vec3::zeros());
     for near in neighbours(model, ix) {
         let to = axes * (centre(model, model.shells.get(near.us())?)? - middle);
-        let m = normal(model, near)?;
+        let m = shell_normal(model, near)?;
         let m = axes * m * m.dot(&n).signum();
         // Unknowns: K along the first axis, across, along the second axis.
         let rows = [

@@ -1,6 +1,6 @@
 //! The point of the shells' surfaces, or of their skins, nearest to a given one.
 
-use super::side::{normal, opposite};
+use super::side::{opposite_side, shell_normal};
 use crate::fe::strain_tensor::Surface;
 use crate::model::{Model, Shell, ShellIx, ShellKind, Vec3};
 
@@ -69,7 +69,7 @@ fn to_side_at(model: &Model, shell: &Shell, side: Surface, weights: [f64; 4]) ->
 
 /// Returns the distances of a point from the bottom and the top skin of a shell; `None` where it has no area.
 pub fn from_skins(model: &Model, ix: ShellIx, x: Vec3) -> Option<[f64; 2]> {
-    let z = normal(model, ix)?;
+    let z = shell_normal(model, ix)?;
     let shell = model.shells.get(ix.us())?;
     let from =
         |side: Surface| foot_on(model, ix, x - z * to_side(model, shell, side)).map(|f| f.distance);
@@ -126,11 +126,11 @@ impl Nearness {
 }
 
 fn nearness(model: &Model, ix: ShellIx, x: Vec3, stated: Option<Surface>) -> Option<Nearness> {
-    let z = normal(model, ix)?;
+    let z = shell_normal(model, ix)?;
     let shell = model.shells.get(ix.us())?;
     let layer = |height: f64| foot_on(model, ix, x - z * height);
     let first = stated.unwrap_or(Surface::Top);
-    let sides = [first, opposite(first)];
+    let sides = [first, opposite_side(first)];
     let mut height = sides.map(|s| to_side(model, shell, s));
     if shell.thickness[..shell.shape.n_corners()]
         .windows(2)
@@ -150,7 +150,11 @@ fn nearness(model: &Model, ix: ShellIx, x: Vec3, stated: Option<Surface>) -> Opt
         distance: if inside { middle } else { skin },
         rank: if inside { 2 } else { nearer },
         foot: Foot {
-            side: if nearer == 0 { first } else { opposite(first) },
+            side: if nearer == 0 {
+                first
+            } else {
+                opposite_side(first)
+            },
             ..skins[nearer]
         },
     })
@@ -193,7 +197,7 @@ pub fn foot_on(model: &Model, ix: ShellIx, x: Vec3) -> Option<Foot> {
         on_quad(p, x)
     };
     let point = (0..4).map(|i| p[i] * weights[i]).sum::<Vec3>();
-    let side = if (x - point).dot(&normal(model, ix)?) >= 0.0 {
+    let side = if (x - point).dot(&shell_normal(model, ix)?) >= 0.0 {
         Surface::Top
     } else {
         Surface::Bottom
@@ -243,7 +247,7 @@ fn on_segment(a: Vec3, b: Vec3, x: Vec3) -> f64 {
 }
 
 /// Bilinear shape functions at (xi, eta) in [-1, 1]^2.
-fn bilinear(xi: f64, eta: f64) -> [f64; 4] {
+fn bilinear_shape_functions(xi: f64, eta: f64) -> [f64; 4] {
     [
         0.25 * (1.0 - xi) * (1.0 - eta),
         0.25 * (1.0 + xi) * (1.0 - eta),
@@ -256,7 +260,7 @@ fn bilinear(xi: f64, eta: f64) -> [f64; 4] {
 fn on_quad(p: [Vec3; 4], x: Vec3) -> [f64; 4] {
     let (mut xi, mut eta) = (0.0_f64, 0.0_f64);
     for _ in 0..ITERATIONS {
-        let n = bilinear(xi, eta);
+        let n = bilinear_shape_functions(xi, eta);
         let at = (0..4).map(|i| p[i] * n[i]).sum::<Vec3>();
         let r = 0.25 * ((p[1] - p[0]) * (1.0 - eta) + (p[2] - p[3]) * (1.0 + eta));
         let s = 0.25 * ((p[3] - p[0]) * (1.0 - xi) + (p[2] - p[1]) * (1.0 + xi));
@@ -286,7 +290,7 @@ fn on_quad(p: [Vec3; 4], x: Vec3) -> [f64; 4] {
             break;
         }
     }
-    bilinear(xi, eta)
+    bilinear_shape_functions(xi, eta)
 }
 
 /// Gauss-Newton steps; flat elements need two or three.

@@ -103,12 +103,12 @@ fn read(m: &Model, spec: &GaugeSpec, corners: CornerRows, case: &CaseResult) -> 
         .unwrap()
         .0
         .iter()
-        .map(|g| reading(g, case).unwrap())
+        .map(|g| gauge_reading(g, case).unwrap())
         .collect()
 }
 
 /// Strain along the angle t of a basic tensor.
-fn along(e: [f64; 3], t: f64) -> f64 {
+fn strain_along(e: [f64; 3], t: f64) -> f64 {
     let (s, c) = t.sin_cos();
     e[0] * c * c + e[1] * s * s + 2.0 * e[2] * s * c
 }
@@ -124,11 +124,11 @@ fn a_quarter_gauge_reads_the_strain_along_its_direction_however_the_element_is_n
             let spec = GaugeSpec {
                 direction: Some(Vec3::new(2.0, 0.0, 5.0)),
                 angle_rad: deg.to_radians(),
-                ..GaugeSpec::on("a", ShellIx(0))
+                ..GaugeSpec::place_on_shell("a", ShellIx(0))
             };
             let got = read(&m, &spec, CornerRows::Absent, &case)[0];
             assert!(
-                (got - along(E, deg.to_radians())).abs() < 1e-15,
+                (got - strain_along(E, deg.to_radians())).abs() < 1e-15,
                 "{start} {deg}: {got}"
             );
         }
@@ -143,9 +143,9 @@ fn the_angle_turns_about_the_element_normal_on_the_bottom_as_well() {
         direction: Some(Vec3::x()),
         angle_rad: 0.5,
         surface: Some(Surface::Bottom),
-        ..GaugeSpec::on("a", ShellIx(0))
+        ..GaugeSpec::place_on_shell("a", ShellIx(0))
     };
-    assert!((read(&m, &spec, CornerRows::Absent, &case)[0] - along(E, 0.5)).abs() < 1e-15);
+    assert!((read(&m, &spec, CornerRows::Absent, &case)[0] - strain_along(E, 0.5)).abs() < 1e-15);
     let g = &build(&m, &spec, CornerRows::Absent).unwrap().0[0];
     assert!(
         (g.angle_rad - 0.5).abs() < 1e-12
@@ -162,7 +162,7 @@ fn bridges_are_signed_sums_over_their_factor() {
     });
     let spec = GaugeSpec {
         direction: Some(Vec3::x()),
-        ..GaugeSpec::on("a", ShellIx(0))
+        ..GaugeSpec::place_on_shell("a", ShellIx(0))
     };
     let with = |bridge| {
         read(
@@ -190,7 +190,7 @@ fn bridges_are_signed_sums_over_their_factor() {
     );
     let both = GaugeSpec {
         bridge: Bridge::Shear,
-        pair: Some(Pair::parallel(ShellIx(1), Surface::Bottom)),
+        pair: Some(Pair::with_parallel_axis(ShellIx(1), Surface::Bottom)),
         ..spec.clone()
     };
     assert!((read(&m, &both, CornerRows::Absent, &case)[0] * 1e6 - 120.0).abs() < 1e-9);
@@ -207,7 +207,7 @@ fn rectangular() -> GaugeSpec {
     GaugeSpec {
         direction: Some(Vec3::x()),
         rosette: Some(Rosette::Rectangular),
-        ..GaugeSpec::on("R", ShellIx(0))
+        ..GaugeSpec::place_on_shell("R", ShellIx(0))
     }
 }
 
@@ -251,7 +251,7 @@ fn a_position_is_interpolated_from_corner_rows_and_falls_back_to_the_centre() {
     let spec = GaugeSpec {
         place: GaugePlace::Nearest(Vec3::new(13.0, 4.0, 6.0)),
         direction: Some(Vec3::x()),
-        ..GaugeSpec::on("p", ShellIx(0))
+        ..GaugeSpec::place_on_shell("p", ShellIx(0))
     };
     let (g, findings) = build(&m, &spec, CornerRows::Present).unwrap();
     assert_eq!((g[0].element, g[0].surface), (2, Surface::Top));
@@ -298,7 +298,7 @@ fn a_grid_averages_over_its_length() {
     let spec = GaugeSpec {
         direction: Some(Vec3::x()),
         grid_length: 6.0,
-        ..GaugeSpec::on("g", middle)
+        ..GaugeSpec::place_on_shell("g", middle)
     };
     let linear = |x: Vec3, _: f64| [1e-6 * x.x, 0.0, 0.0];
     for corners in [CornerRows::Present, CornerRows::Absent] {
@@ -354,7 +354,7 @@ fn transverse_sensitivity_reads_the_correct_strain_on_the_makers_bar() {
     let spec = GaugeSpec {
         direction: Some(Vec3::x()),
         transverse_sensitivity: 0.03,
-        ..GaugeSpec::on("k", ShellIx(0))
+        ..GaugeSpec::place_on_shell("k", ShellIx(0))
     };
     let bar = field(&m, CornerRows::Absent, |_, _| {
         [200e-6, -0.285 * 200e-6, 0.0]
@@ -370,7 +370,7 @@ fn a_direction_normal_to_the_surface_is_refused() {
     let m = plate(1, 1, 0);
     let spec = GaugeSpec {
         direction: Some(Vec3::z()),
-        ..GaugeSpec::on("n", ShellIx(0))
+        ..GaugeSpec::place_on_shell("n", ShellIx(0))
     };
     assert!(matches!(
         build(&m, &spec, CornerRows::Absent),
@@ -421,7 +421,7 @@ fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
             &GaugeSpec {
                 place,
                 bridge,
-                ..GaugeSpec::on("b", ShellIx(0))
+                ..GaugeSpec::place_on_shell("b", ShellIx(0))
             },
             CornerRows::Absent,
             &case,
@@ -442,7 +442,7 @@ fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
         },
         direction: Some(Vec3::new(-2.0, 0.0, 0.0)),
         angle_rad: std::f64::consts::PI,
-        ..GaugeSpec::on("b", ShellIx(0))
+        ..GaugeSpec::place_on_shell("b", ShellIx(0))
     };
     assert!(build(&m, &along, CornerRows::Absent).is_ok());
     let across = [
@@ -463,7 +463,7 @@ fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
             ..along.clone()
         },
         GaugeSpec {
-            pair: Some(Pair::parallel(ShellIx(0), Surface::Top)),
+            pair: Some(Pair::with_parallel_axis(ShellIx(0), Surface::Top)),
             ..along
         },
     ];
@@ -480,7 +480,7 @@ fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
 fn a_gauge_on_the_refined_mesh_reads_the_same_even_strain_and_the_same_mean_of_a_linear_one() {
     for start in 0..4 {
         let m = plate(2, 2, start);
-        let fine = m.refined().unwrap();
+        let fine = m.refine_shells().unwrap();
         let even = field(&fine.model, CornerRows::Absent, |_, _| E);
         let linear = |x: Vec3, z: f64| E.map(|e| e * (1.0 + 0.03 * x.x - 0.02 * x.y) * z);
         let bent = field(&fine.model, CornerRows::Absent, linear);
@@ -489,7 +489,7 @@ fn a_gauge_on_the_refined_mesh_reads_the_same_even_strain_and_the_same_mean_of_a
                 direction: Some(Vec3::new(1.0, 0.4, 0.0)),
                 surface: Some(Surface::Bottom),
                 bridge,
-                ..GaugeSpec::on("a", ShellIx(0))
+                ..GaugeSpec::place_on_shell("a", ShellIx(0))
             };
             let (coarse, _) = build(&m, &spec, CornerRows::Absent).unwrap();
             let on = on_refined(&coarse[0], &m, &fine).unwrap();
@@ -499,14 +499,14 @@ fn a_gauge_on_the_refined_mesh_reads_the_same_even_strain_and_the_same_mean_of_a
                 CornerRows::Absent,
                 &field(&m, CornerRows::Absent, |_, _| E),
             );
-            assert!((reading(&on, &even).unwrap() - same[0]).abs() < 1e-15);
+            assert!((gauge_reading(&on, &even).unwrap() - same[0]).abs() < 1e-15);
             let same = read(
                 &m,
                 &spec,
                 CornerRows::Absent,
                 &field(&m, CornerRows::Absent, linear),
             );
-            assert!((reading(&on, &bent).unwrap() - same[0]).abs() < 1e-15);
+            assert!((gauge_reading(&on, &bent).unwrap() - same[0]).abs() < 1e-15);
         }
     }
 }
@@ -519,11 +519,12 @@ fn a_moved_gauge_reads_the_slope_of_a_linear_field_along_the_way_it_moves() {
     // The middle of nine: neighbours on all sides.
     let spec = GaugeSpec {
         direction: Some(Vec3::x()),
-        ..GaugeSpec::on("a", ShellIx(4))
+        ..GaugeSpec::place_on_shell("a", ShellIx(4))
     };
     let (gauges, _) = build(&m, &spec, CornerRows::Absent).unwrap();
     for (way, expected) in [(Vec3::x(), 0.03), (Vec3::y(), -0.02), (-Vec3::x(), -0.03)] {
-        let change = reading(&strain_gradient_gauge(&gauges[0], &m, way).unwrap(), &case).unwrap();
+        let change =
+            gauge_reading(&strain_gradient_gauge(&gauges[0], &m, way).unwrap(), &case).unwrap();
         assert!((change - E[0] * expected).abs() < 1e-12, "{way}: {change}");
     }
 }
@@ -549,13 +550,13 @@ fn a_gauge_at_a_free_edge_has_the_slope_of_a_linear_field_as_one_inside_has() {
             place: GaugePlace::Nearest(Vec3::new(at[0], at[1], 1.0)),
             surface: Some(Surface::Top),
             direction: Some(Vec3::x()),
-            ..GaugeSpec::on("g", ShellIx(0))
+            ..GaugeSpec::place_on_shell("g", ShellIx(0))
         };
         let (gauges, _) = build(&m, &spec, corner).unwrap();
         let drawn = Drawn::new(&m, &spec, &gauges[0], corner, 20.0).unwrap();
-        let read = |g: &Gauge| Some(vec![reading(g, &case)?]);
-        let along = drawn.slope(Offset::along, 3.0, read).unwrap();
-        let across = drawn.slope(Offset::across, 3.0, read).unwrap();
+        let read = |g: &Gauge| Some(vec![gauge_reading(g, &case)?]);
+        let along = drawn.slope(Offset::shift_along, 3.0, read).unwrap();
+        let across = drawn.slope(Offset::shift_across, 3.0, read).unwrap();
         // Round-off of strain of about 100 over a step of 1.
         assert!((along[0] - 2.0).abs() < 1e-9, "{at:?}: {along:?}");
         assert!((across[0] + 5.0).abs() < 1e-9, "{at:?}: {across:?}");

@@ -5,7 +5,9 @@ use serde::Serialize;
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 
-/// Fault of an input, printed as `file:line: field: what is wrong: what to do`. [`bounded`] shortens long names in its text.
+/// Fault of an input, printed as `file:line: field: what is wrong: what to do`.
+///
+/// [`shorten_names`](crate::finding::shorten_names) shortens long names in its text.
 ///
 /// # Example
 /// ```
@@ -37,7 +39,7 @@ pub struct Fault {
 
 impl Fault {
     /// Creates a fault at a line of a file.
-    pub fn at(
+    pub fn with_line(
         file: impl Into<String>,
         line: u32,
         field: impl Into<String>,
@@ -55,7 +57,7 @@ impl Fault {
     }
 
     /// Creates a fault of a whole file.
-    pub fn of(
+    pub fn new(
         file: impl Into<String>,
         field: impl Into<String>,
         wrong: impl Into<String>,
@@ -77,7 +79,7 @@ impl Fault {
         finding: &Finding,
     ) -> Self {
         let remedy = finding.remedy.trim_end_matches('.');
-        Self::of(file, field, finding.clause(), remedy)
+        Self::new(file, field, finding.clause(), remedy)
     }
 }
 
@@ -226,7 +228,7 @@ mod tests {
     #[test]
     fn faults_that_differ_in_quoted_values_alone_are_one_and_others_are_kept() {
         let cell = |line, text: &str| {
-            Fault::at(
+            Fault::with_line(
                 "runs.csv",
                 line,
                 "G1",
@@ -235,7 +237,7 @@ mod tests {
             )
         };
         let grid = |line| {
-            Fault::at(
+            Fault::with_line(
                 "a.bdf",
                 line,
                 "GRID",

@@ -59,7 +59,7 @@ impl Hashing {
 
 impl<'a> Inputs<'a> {
     /// Nothing read so far, of these files.
-    pub fn of(files: &'a dyn Files) -> Self {
+    pub fn new(files: &'a dyn Files) -> Self {
         Self {
             files,
             entries: Vec::new(),
@@ -123,7 +123,10 @@ impl<'a> Inputs<'a> {
         if let Some(bytes) = self.kept.get(&path) {
             return Ok(bytes.clone());
         }
-        let bytes = self.files.load(&path).map_err(|e| unreadable(given, &e))?;
+        let bytes = self
+            .files
+            .load(&path)
+            .map_err(|e| unreadable_file_fault(given, &e))?;
         self.keep(given, &path, &bytes);
         self.record(given, path, &bytes);
         Ok(bytes)
@@ -156,7 +159,7 @@ impl<'a> Inputs<'a> {
         let bytes = as_table(given, self.read(base, given)?)?;
         if let Some(format) = format_of(&bytes) {
             let remedy = "name a table of text or a spreadsheet";
-            return Err(Fault::of(
+            return Err(Fault::new(
                 given,
                 "file",
                 format!("it is {}, not a table", format.words()),
@@ -173,7 +176,7 @@ impl<'a> Inputs<'a> {
             && unsure_end(bytes.as_ref()).is_some()
         {
             // A record is read without its last line.
-            let is_record = || Layout::of(bytes.as_ref()).is_ok_and(|l| l.is_record());
+            let is_record = || Layout::detect(bytes.as_ref()).is_ok_and(|l| l.is_record());
             let severity = match is_cut(bytes.as_ref()) && !is_record() {
                 true => Severity::Error,
                 false => Severity::Warning,
@@ -246,7 +249,7 @@ pub(crate) fn as_table(given: &str, bytes: FileBytes) -> Result<FileBytes, Fault
     if let Some(kind) = no_table(&bytes) {
         let wrong = format!("it is {kind}, neither a table nor a record");
         let remedy = "name a CSV or XLSX table, or a record (CSV, RPC III, Parquet, Feather, TDMS, UFF, MDF4)";
-        return Err(Fault::of(given, "file", wrong, remedy));
+        return Err(Fault::new(given, "file", wrong, remedy));
     }
     if let Some(text) = runs_in_columns(given, &bytes)? {
         return Ok(text.into_bytes().into());
@@ -256,7 +259,7 @@ pub(crate) fn as_table(given: &str, bytes: FileBytes) -> Result<FileBytes, Fault
     }
     let text = csv_of_sheet(&bytes);
     text.map(|text| text.into_bytes().into())
-        .map_err(|wrong| Fault::of(given, "sheet", wrong, "save the sheet as CSV (UTF-8)"))
+        .map_err(|wrong| Fault::new(given, "sheet", wrong, "save the sheet as CSV (UTF-8)"))
 }
 
 /// Returns the table of runs in a Parquet or Feather file as CSV text; `None` for another file.
@@ -265,7 +268,7 @@ fn runs_in_columns(given: &str, bytes: &FileBytes) -> Result<Option<String>, Fau
     let read = runs_as_csv(std::sync::Arc::new(bytes.clone()));
     read.map_err(|e| {
         let (wrong, remedy) = e.parts();
-        Fault::of(given, "record", wrong, remedy)
+        Fault::new(given, "record", wrong, remedy)
     })
 }
 
@@ -281,7 +284,7 @@ pub(crate) fn no_text(given: &str, bytes: &[u8]) -> Fault {
     let before = bytes.get(..valid).unwrap_or_default();
     let line = 1 + before.iter().filter(|b| **b == b'\n').count() as u32;
     let remedy = "save the file as UTF-8 text";
-    Fault::at(given, line, "text", "not UTF-8", remedy)
+    Fault::with_line(given, line, "text", "not UTF-8", remedy)
 }
 
 /// Returns the findings that were noted on a table.
@@ -311,7 +314,7 @@ pub(crate) fn may_be_cut(file: &str, severity: Severity) -> Finding {
     Finding::new(severity, "table-may-be-cut", file, message, remedy)
 }
 
-pub(crate) fn unreadable(given: &str, e: &std::io::Error) -> Fault {
+pub(crate) fn unreadable_file_fault(given: &str, e: &std::io::Error) -> Fault {
     let (mut wrong, mut remedy) = why_unreadable(e);
     // A name in another encoding, such as the one of Windows, arrives with this sign in place of each byte that is not UTF-8.
     if e.kind() == std::io::ErrorKind::NotFound && given.contains('\u{fffd}') {
@@ -319,7 +322,7 @@ pub(crate) fn unreadable(given: &str, e: &std::io::Error) -> Fault {
         remedy =
             "rename it: `convmv -f cp1252 -t utf8 --notest NAME`, or without letters such as ä";
     }
-    Fault::of(given, "file", wrong, remedy)
+    Fault::new(given, "file", wrong, remedy)
 }
 
 /// Why a file can't be read, and what to do.
@@ -380,7 +383,7 @@ mod tests {
             ("record.csv", KEPT + 1, 3),
         ] {
             let files = Counted(AtomicUsize::new(0), vec![b'1'; size]);
-            let mut inputs = Inputs::of(&files);
+            let mut inputs = Inputs::new(&files);
             for _ in 0..3 {
                 assert_eq!(inputs.read(Path::new("a"), given).unwrap().len(), size);
             }

@@ -87,7 +87,7 @@ impl<A> std::ops::Deref for Outcome<A> {
 impl<A> Outcome<A> {
     /// Returns whether no finding has the severity error.
     pub fn is_reliable(&self) -> bool {
-        self.findings.worst() < Some(Severity::Error)
+        self.findings.worst_severity() < Some(Severity::Error)
     }
 }
 
@@ -156,7 +156,7 @@ pub struct Findings(pub Vec<Finding>);
 
 impl Findings {
     /// Returns the worst severity; `None` without findings.
-    pub fn worst(&self) -> Option<Severity> {
+    pub fn worst_severity(&self) -> Option<Severity> {
         worst_severity(&self.0)
     }
 }
@@ -193,7 +193,7 @@ pub struct StatedUnits(Vec<(&'static str, String)>);
 
 impl StatedUnits {
     /// Creates the units of a job from its unit system and its report units.
-    pub fn of(system: UnitSystem, report: &ReportUnits) -> Self {
+    pub fn from_units(system: UnitSystem, report: &ReportUnits) -> Self {
         let unit = |name: &str| name.to_owned();
         Self(vec![
             ("system", unit(system.name())),
@@ -208,7 +208,7 @@ impl StatedUnits {
 
     /// Creates the units of numbers in the unit system of the model.
     pub fn of_model(system: UnitSystem) -> Self {
-        Self::of(system, &ReportUnits::of(system))
+        Self::from_units(system, &ReportUnits::from_system(system))
     }
 
     /// Returns pairs of quantity and unit.
@@ -269,7 +269,7 @@ impl<A: Answer> Outcome<A> {
 
 /// Returns a finite number, or `None`: JSON has no form for infinite numbers and NaN.
 #[must_use]
-pub fn finite(x: f64) -> Option<f64> {
+pub fn finite_or_none(x: f64) -> Option<f64> {
     x.is_finite().then_some(x)
 }
 
@@ -297,7 +297,7 @@ mod tests {
         let finding = |(severity, code, subject): &(Severity, &'static str, &str)| {
             Finding::new(*severity, code, *subject, "message", "remedy")
         };
-        let fault = || Fault::of("job.toml", "units", "unknown", "correct it");
+        let fault = || Fault::new("job.toml", "units", "unknown", "correct it");
         Outcome {
             units: StatedUnits::default(),
             inputs: Vec::new(),

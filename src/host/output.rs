@@ -35,7 +35,7 @@ impl Output {
     /// # Errors
     /// A fault where it can't be created.
     pub fn begin(folder: &Path) -> Result<Self, Fault> {
-        std::fs::create_dir_all(folder).map_err(|e| unwritable(folder, &e))?;
+        std::fs::create_dir_all(folder).map_err(|e| unwritable_file_fault(folder, &e))?;
         half_written::remove_stale(folder);
         Ok(Self {
             folder: folder.to_owned(),
@@ -74,7 +74,7 @@ impl Output {
         fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
     ) -> Result<(), Fault> {
         let part = self.begin_file(name);
-        fill_file(&part, fill).map_err(|e| unwritable(&self.folder.join(name), &e))
+        fill_file(&part, fill).map_err(|e| unwritable_file_fault(&self.folder.join(name), &e))
     }
 
     /// Opens file `name` to be written piece by piece; flush it before [`Output::commit`].
@@ -85,7 +85,7 @@ impl Output {
         let part = self.begin_file(name);
         File::create(part)
             .map(|f| BufWriter::with_capacity(1 << 20, f))
-            .map_err(|e| unwritable(&self.folder.join(name), &e))
+            .map_err(|e| unwritable_file_fault(&self.folder.join(name), &e))
     }
 
     /// Whether file `name` was begun.
@@ -102,7 +102,7 @@ impl Output {
         let target = self.folder.join(name);
         let written = self.pending.iter().rev().find(|p| p.1 == target);
         let part = written.map_or(&target, |p| &p.0);
-        load(part).map_err(|e| unwritable(&target, &e))
+        load(part).map_err(|e| unwritable_file_fault(&target, &e))
     }
 
     /// A temporary name that no other run into the folder has.
@@ -113,7 +113,7 @@ impl Output {
 
     /// A fault for a file of this folder that could not be written on.
     pub fn fault(&self, name: &str, e: &std::io::Error) -> Fault {
-        unwritable(&self.folder.join(name), e)
+        unwritable_file_fault(&self.folder.join(name), e)
     }
 
     /// Writes two files at the same time, each by its own `fill`.
@@ -136,8 +136,8 @@ impl Output {
             || fill_file(&part_one, fill_one),
             || fill_file(&part_two, fill_two),
         );
-        a.map_err(|e| unwritable(&self.folder.join(one), &e))?;
-        b.map_err(|e| unwritable(&self.folder.join(two), &e))
+        a.map_err(|e| unwritable_file_fault(&self.folder.join(one), &e))?;
+        b.map_err(|e| unwritable_file_fault(&self.folder.join(two), &e))
     }
 
     /// Records a file under its temporary name; a file that is begun twice is overwritten.
@@ -166,12 +166,12 @@ impl Output {
     /// # Errors
     /// A fault for each.
     pub fn check_spared(&self, sources: &[PathBuf]) -> Result<(), Faults> {
-        let sources = stored(sources);
+        let sources = canonicalize_paths(sources);
         let ours = Manifest::read(&self.folder);
         let fault = |(part, target): &(PathBuf, PathBuf)| {
             let stands = std::fs::canonicalize(target).ok()?;
             let fault = if sources.contains(&stands) {
-                Fault::of(
+                Fault::new(
                     target.display().to_string(),
                     "output",
                     "the command has read this file, and would overwrite it",
@@ -205,7 +205,7 @@ impl Output {
     pub fn commit(mut self, command: &str, sources: &[PathBuf]) -> Result<(), Faults> {
         let _held = hold(&self.folder);
         self.check_spared(sources)?;
-        let sources = stored(sources);
+        let sources = canonicalize_paths(sources);
         let mut written = Manifest::read(&self.folder);
         let before = written.clone();
         let gone = written.replace(command, &self.names());
@@ -290,7 +290,7 @@ impl Output {
     /// A fault for the first that can't be renamed.
     pub fn rename_all(&mut self) -> Result<(), Fault> {
         while let Some((part, target)) = self.pending.first().cloned() {
-            std::fs::rename(&part, &target).map_err(|e| unwritable(&target, &e))?;
+            std::fs::rename(&part, &target).map_err(|e| unwritable_file_fault(&target, &e))?;
             half_written::forget(&part);
             self.pending.remove(0);
         }
@@ -330,7 +330,7 @@ pub fn left_by_others(folder: &Path, command: &str) -> Option<String> {
 fn not_ours(ours: &Manifest, target: &Path) -> Option<Fault> {
     let name = target.file_name()?.to_string_lossy();
     if is_changed(ours, target) {
-        return Some(Fault::of(
+        return Some(Fault::new(
             target.display().to_string(),
             "output",
             "this file was changed after strainbridge wrote it, and this run would overwrite it",
@@ -338,7 +338,7 @@ fn not_ours(ours: &Manifest, target: &Path) -> Option<Fault> {
         ));
     }
     (!ours.holds(&name)).then(|| {
-        Fault::of(
+        Fault::new(
             target.display().to_string(),
             "output",
             format!(
@@ -388,7 +388,7 @@ fn is_same(a: &Path, b: &Path) -> bool {
 }
 
 /// The files as the system knows them, links followed; files in memory are left out.
-fn stored(paths: &[PathBuf]) -> BTreeSet<PathBuf> {
+fn canonicalize_paths(paths: &[PathBuf]) -> BTreeSet<PathBuf> {
     let known = paths.iter().map(std::fs::canonicalize);
     known.filter_map(Result::ok).collect()
 }
@@ -402,7 +402,7 @@ fn fill_file(
     file.flush()
 }
 
-fn unwritable(path: &Path, e: &std::io::Error) -> Fault {
+fn unwritable_file_fault(path: &Path, e: &std::io::Error) -> Fault {
     let of_format = e.get_ref().and_then(|e| e.downcast_ref::<WriteError>());
     let remedy = match of_format {
         Some(WriteError::Id(_)) => {
@@ -412,7 +412,7 @@ fn unwritable(path: &Path, e: &std::io::Error) -> Fault {
         _ => "choose another folder with `--out`",
     };
     let wrong = format!("the file cannot be written ({e})");
-    Fault::of(path.display().to_string(), "output", wrong, remedy)
+    Fault::new(path.display().to_string(), "output", wrong, remedy)
 }
 
 #[cfg(test)]
@@ -420,7 +420,7 @@ mod tests {
     use super::*;
     use crate::host::other_results::{OtherResult, other_results};
 
-    fn written(folder: &Path, text: &str) -> Result<(), Faults> {
+    fn write_output(folder: &Path, text: &str) -> Result<(), Faults> {
         let mut out = Output::begin(folder)?;
         out.write_bytes("gauges.csv", text.as_bytes())?;
         out.commit("place", &[])
@@ -462,10 +462,10 @@ mod tests {
         let folder =
             std::env::temp_dir().join(format!("strainbridge-changed-{}", std::process::id()));
         let table = folder.join("gauges.csv");
-        written(&folder, "a").unwrap();
-        written(&folder, "b").unwrap();
+        write_output(&folder, "a").unwrap();
+        write_output(&folder, "b").unwrap();
         std::fs::write(&table, "corrected").unwrap();
-        let faults = written(&folder, "c").unwrap_err();
+        let faults = write_output(&folder, "c").unwrap_err();
         assert!(
             faults.iter().any(|f| f.wrong.contains("was changed")),
             "{faults:?}"

@@ -47,7 +47,7 @@ impl std::ops::Deref for FileBytes {
 /// - [`ErrorKind::OutOfMemory`] for a file larger than the free memory;
 /// - [`ErrorKind::ResourceBusy`] for one that changed meanwhile.
 pub fn load(path: &Path) -> std::io::Result<FileBytes> {
-    rest_of(opened(path)?)
+    rest_of(open_file(path)?)
 }
 
 /// Bytes of a file of which the first may have been read.
@@ -91,7 +91,7 @@ impl Opened {
         while from < size {
             let n = PART.min(usize::try_from(size - from).unwrap_or(PART));
             let part = part.get_mut(..n).unwrap_or_default();
-            filled(&file.file, from, part).map_err(cut_meanwhile)?;
+            fill_from_file(&file.file, from, part).map_err(cut_meanwhile)?;
             hash.update(part);
             from += n as u64;
         }
@@ -130,7 +130,7 @@ impl Parts for InParts {
     }
 
     fn read_at(&self, from: u64, out: &mut [u8]) -> std::io::Result<()> {
-        let read = filled(&self.file, from, out);
+        let read = fill_from_file(&self.file, from, out);
         if read.is_err() {
             self.failed.store(true, Ordering::Relaxed);
         }
@@ -139,7 +139,7 @@ impl Parts for InParts {
 }
 
 /// Fills `out` from a place of a file, many threads at a time.
-fn filled(file: &File, mut from: u64, mut out: &mut [u8]) -> std::io::Result<()> {
+fn fill_from_file(file: &File, mut from: u64, mut out: &mut [u8]) -> std::io::Result<()> {
     while !out.is_empty() {
         #[cfg(windows)]
         let read = std::os::windows::fs::FileExt::seek_read(file, out, from);
@@ -193,7 +193,7 @@ pub fn hex(digest: &[u8]) -> String {
 }
 
 /// Opens a file; returns it with its metadata, and room for its bytes.
-fn opened(path: &Path) -> std::io::Result<(File, Metadata, Vec<u8>)> {
+fn open_file(path: &Path) -> std::io::Result<(File, Metadata, Vec<u8>)> {
     // Before it is opened: opening a pipe waits for its writer.
     check_kind(&std::fs::metadata(path)?)?;
     let file = File::open(path)?;
@@ -272,7 +272,7 @@ mod tests {
             let read = open(&path).unwrap();
             let hash = read.sha256().unwrap();
             assert!(matches!(read, Opened::Whole(_)));
-            let whole = read.source().whole().unwrap();
+            let whole = read.source().read_all().unwrap();
             assert!((*whole).as_ref() == bytes.as_slice());
             assert_eq!(hash, hex(&Sha256::digest(&bytes)));
         }
@@ -342,7 +342,7 @@ mod tests {
         for read in [0, SIZE / 2, SIZE] {
             for (what, change) in changes {
                 std::fs::write(&path, vec![1_u8; SIZE]).unwrap();
-                let (file, before, mut bytes) = opened(&path).unwrap();
+                let (file, before, mut bytes) = open_file(&path).unwrap();
                 (&file).take(read as u64).read_to_end(&mut bytes).unwrap();
                 // longer than the clock of the file system ticks, so that every state has a time of its own
                 std::thread::sleep(std::time::Duration::from_millis(20));
@@ -352,7 +352,7 @@ mod tests {
                 assert_eq!(kind, ErrorKind::ResourceBusy, "{what}, {read} bytes read");
             }
             std::fs::write(&path, vec![1_u8; SIZE]).unwrap();
-            let (file, before, mut bytes) = opened(&path).unwrap();
+            let (file, before, mut bytes) = open_file(&path).unwrap();
             (&file).take(read as u64).read_to_end(&mut bytes).unwrap();
             assert!(*rest_of((file, before, bytes)).unwrap() == vec![1; SIZE]);
         }

@@ -1,7 +1,7 @@
 //! Findings in plain words.
 
 use crate::finding::Finding;
-pub use crate::finding::capital;
+pub use crate::finding::capitalize;
 use crate::finding::explain::code;
 
 /// One finding as one line: file and line where they are known, severity, code, subject, sentence, numbers, remedy.
@@ -29,10 +29,10 @@ pub fn numbers_in_words(f: &Finding) -> Option<String> {
     if words.is_empty() {
         return None;
     }
-    let percent = |x: f64| format!("{} %", short(100.0 * x));
+    let percent = |x: f64| format!("{} %", format_number(100.0 * x));
     let of = |words: &str, sign: &str, x: f64| {
         let share = words.replace(&format!("{{{sign}%}}"), &percent(x));
-        share.replace(&format!("{{{sign}}}"), &short(x))
+        share.replace(&format!("{{{sign}}}"), &format_number(x))
     };
     Some(of(&of(words, "m", measured), "l", limit?))
 }
@@ -58,7 +58,7 @@ pub fn count_of(n: usize, what: &str) -> String {
 }
 
 /// A number with four significant digits, plain where that is readable.
-pub fn short(x: f64) -> String {
+pub fn format_number(x: f64) -> String {
     let a = x.abs();
     if x == 0.0 {
         "0".into()

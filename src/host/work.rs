@@ -29,7 +29,7 @@ impl<'a> Work<'a> {
     pub fn new(cx: &Context<'a>) -> Self {
         Self {
             cx: cx.clone(),
-            inputs: Inputs::of(cx.files),
+            inputs: Inputs::new(cx.files),
             findings: Vec::new(),
             notes: Vec::new(),
             sources: Vec::new(),
@@ -89,5 +89,5 @@ impl<'a> Work<'a> {
 
 /// Returns the fault of a command that the receiver of progress stopped.
 pub fn cancelled_fault() -> Fault {
-    Fault::of("work", "progress", "stopped", "ask again")
+    Fault::new("work", "progress", "stopped", "ask again")
 }

@@ -82,7 +82,7 @@ impl InputFault {
     }
 
     /// Returns the inputs without the fault: corrected, or without the readings of a gauge that can't be corrected.
-    pub fn undone(&self, inputs: &Inputs, alternatives: &[AlternativeRows]) -> Inputs {
+    pub fn correct_inputs(&self, inputs: &Inputs, alternatives: &[AlternativeRows]) -> Inputs {
         let mut out = inputs.clone();
         let of = self.gauges();
         let of = |g: usize| of.is_empty() || of.contains(&g);

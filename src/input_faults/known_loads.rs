@@ -58,7 +58,7 @@ impl Misfit for KnownLoads {
 
 impl KnownLoads {
     /// Returns the share of the readings, root mean squares, that the loads leave.
-    pub fn unexplained(&self) -> f64 {
+    pub fn unexplained_share(&self) -> f64 {
         let fit = self.fit(&self.inputs);
         let pairs = self.inputs.strain.iter().zip(&fit.predicted);
         let pairs = pairs.flat_map(|(y, p)| y.iter().zip(p));

@@ -69,7 +69,7 @@ impl ChannelKind {
         }
     }
 
-    fn plural(self) -> &'static str {
+    fn plural_name(self) -> &'static str {
         match self {
             Self::Acceleration => "accelerations",
             Self::Force => "wheel forces",
@@ -182,7 +182,7 @@ impl MotionFault {
             .map(|n| format!("`{n}`"))
             .collect();
         let (who, many) = match kind_of_all(own, channels) {
-            Some(kind) => (format!("all {}", kind.plural()), true),
+            Some(kind) => (format!("all {}", kind.plural_name()), true),
             None => (list_few(&quoted), own.len() > 1),
         };
         match self {

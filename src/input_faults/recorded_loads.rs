@@ -91,7 +91,7 @@ impl RecordedRuns<'_> {
         (0..self.n_gauges()).filter(|g| !self.excluded.contains(g))
     }
 
-    fn reading(&self, g: usize, r: usize) -> Option<f64> {
+    fn reading_at(&self, g: usize, r: usize) -> Option<f64> {
         let value = self.readings.get(r)?.get(g).copied()?;
         value.is_finite().then_some(value)
     }
@@ -109,7 +109,7 @@ impl RecordedRuns<'_> {
     fn noise_squares(&self) -> f64 {
         let readings = self.gauges().flat_map(|g| self.runs().map(move |r| (g, r)));
         let n = readings
-            .filter(|(g, r)| self.reading(*g, *r).is_some())
+            .filter(|(g, r)| self.reading_at(*g, *r).is_some())
             .count();
         n as f64 * self.noise.powi(2)
     }
@@ -117,7 +117,7 @@ impl RecordedRuns<'_> {
     /// Returns gauge, run and reading less the model of each reading, with a factor for each load.
     fn differences(&self, factor: &[f64]) -> Vec<(usize, usize, f64)> {
         let readings = self.gauges().flat_map(|g| self.runs().map(move |r| (g, r)));
-        let each = readings.filter_map(|(g, r)| Some((g, r, self.reading(g, r)?)));
+        let each = readings.filter_map(|(g, r)| Some((g, r, self.reading_at(g, r)?)));
         each.map(|(g, r, y)| {
             let loads = factor.iter().enumerate();
             let model = loads.map(|(l, c)| c * (self.strain_of)(g, r, l, l));
@@ -181,7 +181,7 @@ fn factors_of_loads(runs: &RecordedRuns) -> Vec<(usize, f64)> {
     if acting.is_empty() {
         return Vec::new();
     }
-    let groups: Vec<Vec<usize>> = match separated(runs, &acting) {
+    let groups: Vec<Vec<usize>> = match has_separable_loads(runs, &acting) {
         true => acting.iter().map(|l| vec![*l]).collect(),
         false => vec![acting.clone()],
     };
@@ -205,7 +205,7 @@ fn factors_of_loads(runs: &RecordedRuns) -> Vec<(usize, f64)> {
 }
 
 /// Returns whether the runs separate the loads that act, with runs to spare.
-fn separated(runs: &RecordedRuns, acting: &[usize]) -> bool {
+fn has_separable_loads(runs: &RecordedRuns, acting: &[usize]) -> bool {
     let k = acting.len();
     let mut gram = vec![0.0; k * k];
     for g in runs.gauges() {
@@ -234,7 +234,7 @@ fn factors_at(runs: &RecordedRuns, g: usize, groups: &[Vec<usize>]) -> Vec<(usiz
     };
     let rows: Vec<(Vec<f64>, f64)> = runs
         .runs()
-        .filter_map(|r| Some((row(r), runs.reading(g, r)?)))
+        .filter_map(|r| Some((row(r), runs.reading_at(g, r)?)))
         .collect();
     let norm = |c: usize| rows.iter().map(|r| r.0[c] * r.0[c]).sum::<f64>().sqrt();
     let norms: Vec<f64> = (0..groups.len()).map(norm).collect();
@@ -251,7 +251,7 @@ fn factors_at(runs: &RecordedRuns, g: usize, groups: &[Vec<usize>]) -> Vec<(usiz
         spd::add_outer(&mut gram, &x, 1.0);
         right.iter_mut().zip(&x).for_each(|(b, x)| *b += x * y);
     }
-    let Some(inverse) = Precision::of(&gram, k) else {
+    let Some(inverse) = Precision::from_covariance(&gram, k) else {
         return Vec::new();
     };
     let amounts = inverse.apply(&right);

@@ -33,7 +33,7 @@ pub struct Fitted {
 
 impl Fitted {
     /// Returns the sum of squares over its degrees of freedom; infinite where there are none.
-    pub fn reduced(&self) -> f64 {
+    pub fn reduced_chi2(&self) -> f64 {
         match self.dof {
             0 => f64::INFINITY,
             n => self.chi2 / n as f64,
@@ -111,7 +111,7 @@ impl Rules {
         match self.sigmas {
             None => {
                 let by_chance = chi_square_tail(fit.chi2, fit.dof as f64) > self.explained[1];
-                fit.dof == 0 || by_chance || fit.reduced() < self.explained[0]
+                fit.dof == 0 || by_chance || fit.reduced_chi2() < self.explained[0]
             }
             // No gauge takes more than all.
             Some(sigmas) => fit.chi2 / runs.max(1) as f64 <= self.limit(sigmas, 1.0).powi(2),
@@ -122,7 +122,7 @@ impl Rules {
     fn accepts(&self, base: &Fitted, step: &Step) -> bool {
         match step.found.sigmas {
             Some(sigmas) => sigmas > step.found.limit,
-            None => step.after.reduced() < self.remains * base.reduced(),
+            None => step.after.reduced_chi2() < self.remains * base.reduced_chi2(),
         }
     }
 }
@@ -159,14 +159,17 @@ pub fn search_faults(
         if !accepted && (rules.sigmas.is_some() || step.found.share > PROGRESS) {
             break;
         }
-        inputs = step.found.fault.undone(&inputs, &search.alternatives);
+        inputs = step
+            .found
+            .fault
+            .correct_inputs(&inputs, &search.alternatives);
         now = step.after;
         pending.push(step.found);
         if accepted {
             let group = pending.len() > 1;
             for f in &mut pending {
                 if group {
-                    (f.share, f.together) = (now.reduced() / base.reduced(), true);
+                    (f.share, f.together) = (now.reduced_chi2() / base.reduced_chi2(), true);
                 }
             }
             found.append(&mut pending);
@@ -201,7 +204,9 @@ struct Tried {
 
 impl Search<'_> {
     fn try_fault(&self, inputs: &Inputs, fault: InputFault, rank: u8) -> Tried {
-        let fit = self.misfit.fit(&fault.undone(inputs, &self.alternatives));
+        let fit = self
+            .misfit
+            .fit(&fault.correct_inputs(inputs, &self.alternatives));
         Tried { fault, fit, rank }
     }
 
@@ -215,10 +220,10 @@ impl Search<'_> {
             .map(|g| (g, self.try_fault(inputs, InputFault::Unlike(g), 2).fit))
             .filter(|(_, fit)| fit.dof > 0)
             .collect();
-        order.sort_by(|a, b| a.1.reduced().total_cmp(&b.1.reduced()));
+        order.sort_by(|a, b| a.1.reduced_chi2().total_cmp(&b.1.reduced_chi2()));
         order.truncate(self.rules.tried);
         let (worst, least) = order.first().map(|(g, fit)| (*g, fit.clone()))?;
-        let scale = least.reduced().max(1.0);
+        let scale = least.reduced_chi2().max(1.0);
         let mut tried: Vec<Tried> = Vec::new();
         for (i, (g, without)) in order.iter().enumerate() {
             let best = tried.iter().filter(|t| t.rank < 2).map(|t| t.fit.chi2);
@@ -260,9 +265,9 @@ impl Search<'_> {
         Some(Step {
             found: Found {
                 fault: best.fault,
-                share: best.fit.reduced() / now.reduced(),
+                share: best.fit.reduced_chi2() / now.reduced_chi2(),
                 limit: by_scatter.map_or(self.rules.remains, |s| {
-                    self.rules.limit(s, without.reduced())
+                    self.rules.limit(s, without.reduced_chi2())
                 }),
                 sigmas: by_scatter.map(|_| sigmas),
                 sizes,
@@ -310,7 +315,7 @@ impl Search<'_> {
         }
         let left = without(InputFault::Unlike(g), 2);
         let fall = now.chi2 - left.fit.chi2;
-        let own = 4.0 * pairs.len() as f64 * left.fit.reduced().max(1.0);
+        let own = 4.0 * pairs.len() as f64 * left.fit.reduced_chi2().max(1.0);
         let limit = left.fit.chi2 + own.max(rules.cause_leaves * fall).min(0.5 * fall);
         let tried = faults
             .into_iter()
@@ -332,9 +337,9 @@ impl Search<'_> {
         }
         let tried = faults.into_iter().map(|f| self.try_fault(inputs, f, 0));
         let limit = least.chi2 + self.rules.apart * scale;
-        let remains = self.rules.remains * now.reduced();
+        let remains = self.rules.remains * now.reduced_chi2();
         tried
-            .filter(|t| t.fit.chi2 < limit && t.fit.reduced() < remains)
+            .filter(|t| t.fit.chi2 < limit && t.fit.reduced_chi2() < remains)
             .collect()
     }
 
@@ -357,9 +362,11 @@ impl Search<'_> {
         let InputFault::Exchanged(a, b) = best.fault else {
             return None;
         };
-        let silent = InputFault::Unlike(a).undone(inputs, &[]);
-        let both = self.misfit.fit(&InputFault::Unlike(b).undone(&silent, &[]));
-        let own = 8.0 * inputs.strain.len() as f64 * both.reduced().max(1.0);
+        let silent = InputFault::Unlike(a).correct_inputs(inputs, &[]);
+        let both = self
+            .misfit
+            .fit(&InputFault::Unlike(b).correct_inputs(&silent, &[]));
+        let own = 8.0 * inputs.strain.len() as f64 * both.reduced_chi2().max(1.0);
         let limit = both.chi2 + own.max(self.rules.cause_leaves * (now.chi2 - both.chi2));
         let of_one = singles
             .iter()

@@ -55,7 +55,7 @@ impl Planted {
         }
     }
 
-    fn scaled(mut self, factors: [f64; 4]) -> Self {
+    fn scale_records(mut self, factors: [f64; 4]) -> Self {
         for record in &mut self.records {
             record.iter_mut().zip(factors).for_each(|(f, c)| *f *= c);
         }
@@ -74,13 +74,13 @@ fn right_records_of_a_model_that_is_off_by_three_percent_are_no_fault() {
 #[test]
 fn reversed_records_are_named_and_no_others() {
     for seed in 0..50 {
-        let planted = Planted::new(seed).scaled([1.0, 1.0, -1.0, -1.0]);
+        let planted = Planted::new(seed).scale_records([1.0, 1.0, -1.0, -1.0]);
         let found = findings_of_recorded_loads(&planted.runs(), "runs.csv");
         assert_eq!(found.len(), 1, "{seed}: {found:?}");
         assert_eq!(found[0].code, "input-sign-reversed");
         assert_eq!(found[0].subject, "A.FY, B.FY");
         assert_eq!(found[0].severity, Severity::Error);
-        let all = Planted::new(seed).scaled([-1.0; 4]);
+        let all = Planted::new(seed).scale_records([-1.0; 4]);
         let found = findings_of_recorded_loads(&all.runs(), "runs.csv");
         assert_eq!(found[0].subject, "all", "{seed}: {found:?}");
         assert_eq!(found.len(), 1);
@@ -95,7 +95,7 @@ fn records_in_another_unit_are_named_with_the_pair_of_units() {
             (1e-3, "kN were read as N"),
             (1.0 / 4.448, "lbf were read as N"),
         ] {
-            let planted = Planted::new(seed).scaled([factor; 4]);
+            let planted = Planted::new(seed).scale_records([factor; 4]);
             let found = findings_of_recorded_loads(&planted.runs(), "runs.csv");
             assert_eq!(found.len(), 1, "{seed} {factor}: {found:?}");
             assert_eq!(

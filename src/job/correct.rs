@@ -92,7 +92,7 @@ pub(super) fn correct_legs(job: &mut Job, faults: &mut FaultList) {
         let (own, others) = (legs_of(&c.gauge), other.map(legs_of));
         // A given S may have one row for a rosette: one channel then.
         if others.is_some_and(|o| o.is_some() != own.is_some()) && job.sensitivity.is_none() {
-            faults.push(Fault::at(
+            faults.push(Fault::with_line(
                 &*job.file,
                 c.line,
                 "correction.exchanged_with",
@@ -127,7 +127,7 @@ pub fn check_channels(job: &Job, known: &[String], place: &str) -> Result<(), Fa
     for c in job.corrections.iter().filter(|_| job.gauges.is_empty()) {
         let named = std::iter::once(&c.gauge).chain(&c.exchanged_with);
         for name in named.filter(|n| !known.contains(n)) {
-            faults.push(Fault::at(
+            faults.push(Fault::with_line(
                 &*job.file,
                 c.line,
                 "correction.gauge",

@@ -6,7 +6,7 @@ use super::spanned::Spanned;
 use super::suggest;
 use super::types::NamedFile;
 use crate::host::fault::{Fault, FaultList};
-use crate::host::words::short;
+use crate::host::words::format_number;
 
 /// No quantity of a job is larger in any system of units; the square of one that is smaller stays a number.
 const LARGEST: f64 = 1e30;
@@ -48,7 +48,7 @@ impl<'a> Collector<'a> {
         let (line, column) = line_column(self.text, at.span().start);
         let wrong = format!("{} (column {column})", wrong.into());
         self.faults
-            .push(Fault::at(self.file, line, field, wrong, remedy));
+            .push(Fault::with_line(self.file, line, field, wrong, remedy));
     }
 
     /// The value of a key that must be there; `section` is where it is missed.
@@ -71,7 +71,7 @@ impl<'a> Collector<'a> {
     }
 
     /// A named file.
-    pub(super) fn named(&self, value: &S<String>, key: &str) -> Option<NamedFile> {
+    pub(super) fn named_file(&self, value: &S<String>, key: &str) -> Option<NamedFile> {
         value.as_ref().map(|v| self.named_at(v, key))
     }
 
@@ -112,7 +112,7 @@ impl<'a> Collector<'a> {
                 .collect::<Vec<_>>()
                 .join(", ");
             let wrong = format!("`{}`, expected one of {expected}", word.value());
-            let remedy = match suggest::closest(word.value(), names) {
+            let remedy = match suggest::find_closest_name(word.value(), names) {
                 Some(n) => format!("did you mean `{n}`?"),
                 None => "use one of these words".to_owned(),
             };
@@ -153,8 +153,14 @@ impl<'a> Collector<'a> {
         let percent = |x: f64| x > 1.0 && x <= 100.0;
         match value.as_ref().map(|v| (v, *v.value())) {
             Some((v, x)) if percent(x) => {
-                let wrong = format!("`{x}` is {} %, expected {EXPECTED}", short(100.0 * x));
-                let remedy = format!("if percent was meant, write {} for {x} %", short(x / 100.0));
+                let wrong = format!(
+                    "`{x}` is {} %, expected {EXPECTED}",
+                    format_number(100.0 * x)
+                );
+                let remedy = format!(
+                    "if percent was meant, write {} for {x} %",
+                    format_number(x / 100.0)
+                );
                 self.fault(v, key, wrong, remedy);
                 None
             }
@@ -163,7 +169,7 @@ impl<'a> Collector<'a> {
     }
 
     /// A number above 0.
-    pub(super) fn positive(&mut self, value: &S<f64>, key: &str) -> Option<f64> {
+    pub(super) fn positive_number(&mut self, value: &S<f64>, key: &str) -> Option<f64> {
         self.number(value, key, "a number above 0", |x| x > 0.0)
     }
 

@@ -102,7 +102,7 @@ struct Stated<'a> {
 
 impl GaugeColumns {
     /// Returns the columns of a table; `length_m` are the metres in the job's unit of length.
-    pub fn of(t: &Table, length_m: f64, faults: &mut FaultList) -> Self {
+    pub fn from_table(t: &Table, length_m: f64, faults: &mut FaultList) -> Self {
         let mut out = Self {
             known: Vec::new(),
             unread: Vec::new(),
@@ -142,18 +142,18 @@ impl GaugeColumns {
     /// Adds a warning that names the columns which nothing reads.
     pub fn note_unread(&self, inputs: &mut Inputs, t: &Table) {
         let is_read = |c| !self.unread.contains(&c);
-        note_unread(inputs, t, is_read, &self.lacking());
+        note_unread(inputs, t, is_read, &self.missing_columns());
     }
 
     /// Returns the names of columns that the table does not have.
-    fn lacking(&self) -> Vec<&'static str> {
+    fn missing_columns(&self) -> Vec<&'static str> {
         let names = COLUMNS.iter().map(|c| c.0);
         names.filter(|n| self.column(n).is_none()).collect()
     }
 
     /// Adds a fault for each column that looks like one that the table lacks: an angle that is not read would be 0.
     pub fn check_spelling(&self, t: &Table, faults: &mut FaultList) {
-        let lacking = self.lacking();
+        let lacking = self.missing_columns();
         let long = |n: &&&str| n.len() > 4 && **n != "direction" && **n != "member";
         for at in &self.unread {
             let header = t.header[*at].as_str();
@@ -161,10 +161,10 @@ impl GaugeColumns {
             let whole =
                 |n: &&str| n.split_once('_').is_some_and(|(f, _)| f == lower) && n.len() > 5;
             let meant = lacking.iter().filter(long).copied().find(whole);
-            let near = || suggest::closest(header, lacking.iter().filter(long).copied());
+            let near = || suggest::find_closest_name(header, lacking.iter().filter(long).copied());
             let meant = meant.or_else(near).filter(|_| header.len() > 4);
             if let Some(n) = meant {
-                faults.push(Fault::at(
+                faults.push(Fault::with_line(
                     &*t.file,
                     1,
                     header,
@@ -186,7 +186,7 @@ impl GaugeColumns {
         }
         let remedy = "write its components in the columns `dir_x`, `dir_y`, `dir_z`";
         let wrong = "a direction in one column cannot be read";
-        faults.push(Fault::at(&*t.file, 1, "direction", wrong, remedy));
+        faults.push(Fault::with_line(&*t.file, 1, "direction", wrong, remedy));
     }
 }
 
@@ -229,7 +229,13 @@ fn column_of(
     if let Some(second) = found.next() {
         let wrong = format!("two columns contain `{name}`: `{}` too", t.header[first]);
         let remedy = "delete one of the two columns";
-        faults.push(Fault::at(&*t.file, 1, &*t.header[second], wrong, remedy));
+        faults.push(Fault::with_line(
+            &*t.file,
+            1,
+            &*t.header[second],
+            wrong,
+            remedy,
+        ));
     }
     Some(first)
 }
@@ -338,7 +344,7 @@ fn scale_of(
         Nothing => None,
     };
     let mut fault = |wrong: String, remedy: String| {
-        faults.push(Fault::at(&*t.file, 1, header, wrong, remedy));
+        faults.push(Fault::with_line(&*t.file, 1, header, wrong, remedy));
         1.0
     };
     match (in_name, in_bracket) {

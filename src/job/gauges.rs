@@ -52,7 +52,7 @@ pub(super) fn read_gauges(
         .and_then(|t| Ok(t.check_rows().map(|()| t)?));
     match table {
         Ok(t) => {
-            let columns = GaugeColumns::of(&t, job.units.length_m(), faults);
+            let columns = GaugeColumns::from_table(&t, job.units.length_m(), faults);
             let gauges = gauges_from_table(&t, &columns, faults);
             Some((t, columns, gauges))
         }
@@ -91,11 +91,17 @@ pub(super) fn gauges_from_table(
     faults: &mut FaultList,
 ) -> Vec<JobGauge> {
     if columns.column("name").is_none() {
-        let remedy = suggest::closest("name", t.header.iter().map(String::as_str))
+        let remedy = suggest::find_closest_name("name", t.header.iter().map(String::as_str))
             .map_or("add a column `name`".to_owned(), |n| {
                 format!("rename column `{n}` to `name`")
             });
-        faults.push(Fault::at(&*t.file, 1, "name", "no column `name`", remedy));
+        faults.push(Fault::with_line(
+            &*t.file,
+            1,
+            "name",
+            "no column `name`",
+            remedy,
+        ));
         return Vec::new();
     }
     columns.check_spelling(t, faults);
@@ -141,8 +147,13 @@ impl Row<'_> {
 
     fn fault(&mut self, field: &str, wrong: String, remedy: impl Into<String>) {
         let line = self.line();
-        self.faults
-            .push(Fault::at(&*self.table.file, line, field, wrong, remedy));
+        self.faults.push(Fault::with_line(
+            &*self.table.file,
+            line,
+            field,
+            wrong,
+            remedy,
+        ));
     }
 
     fn number(&mut self, name: &str) -> Option<f64> {

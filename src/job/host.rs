@@ -4,7 +4,7 @@ use super::{Job, NamedFile};
 use crate::finding::list_few;
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
-use crate::host::files::{FileBytes, Inputs, as_table, no_text, unreadable};
+use crate::host::files::{FileBytes, Inputs, as_table, no_text, unreadable_file_fault};
 use crate::host::sheet::sheet_names;
 use crate::host::store::Folder;
 use crate::host::work::Work;
@@ -52,7 +52,7 @@ impl Inputs<'_> {
         }
         match Faults::check(list) {
             Err(faults) => faults,
-            Ok(()) => Fault::of(&*named.given, "sheet", "no table", "write a table").into(),
+            Ok(()) => Fault::new(&*named.given, "sheet", "no table", "write a table").into(),
         }
     }
 
@@ -80,20 +80,20 @@ impl<'a> Work<'a> {
 
 impl Folder {
     /// Returns the folder `<job name>.cache` for solutions, next to the job like `<job name>.out`, which contains the output of a command.
-    pub fn beside(job: &Job) -> Self {
+    pub fn from_job(job: &Job) -> Self {
         let mut name = match Path::new(&job.file).file_stem() {
             Some(stem) => stem.to_owned(),
             None => "strainbridge".into(),
         };
         name.push(".cache");
-        Self::at(job.folder.join(name))
+        Self::new(job.folder.join(name))
     }
 }
 
 fn at_job_line(job: &Job, named: &NamedFile, f: Fault) -> Fault {
     match f.line {
         Some(_) => f,
-        None => Fault::at(
+        None => Fault::with_line(
             &*job.file,
             named.line,
             &*named.key,
@@ -105,5 +105,5 @@ fn at_job_line(job: &Job, named: &NamedFile, f: Fault) -> Fault {
 
 /// The fault, at its line of the job, of a file that can't be read.
 pub(crate) fn unreadable_at(job: &Job, named: &NamedFile, e: &std::io::Error) -> Fault {
-    at_job_line(job, named, unreadable(&named.given, e))
+    at_job_line(job, named, unreadable_file_fault(&named.given, e))
 }

@@ -48,7 +48,7 @@ impl Job {
     /// # Errors
     /// Returns every fault with file and line: syntax, unknown keys, wrong types, contradictions, missing files.
     pub fn read(path: impl AsRef<Path>, files: &dyn Files) -> Result<Self, Faults> {
-        let mut inputs = Inputs::of(files);
+        let mut inputs = Inputs::new(files);
         let mut job = read_job(&mut inputs, path.as_ref())?;
         job.read = inputs.files_read();
         Ok(job)

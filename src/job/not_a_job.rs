@@ -14,7 +14,9 @@ pub(super) fn check_name(given: &str) -> Result<(), Fault> {
     let end = Path::new(given).extension().map(|e| e.to_ascii_lowercase());
     let results = ["op2", "h5", "pch"];
     match end.as_ref().and_then(|e| e.to_str()) {
-        Some(e) if results.contains(&e) => Err(refused(given, "these are results", "DECK ")),
+        Some(e) if results.contains(&e) => {
+            Err(not_a_job_fault(given, "these are results", "DECK "))
+        }
         _ => Ok(()),
     }
 }
@@ -37,13 +39,13 @@ pub(super) fn check_text(given: &str, text: &str) -> Result<(), Fault> {
             || field && ["GRID", "CQUAD4", "CTRIA3", "CHEXA", "CBAR"].contains(&name.as_str())
     };
     if text.lines().take(LINES_LOOKED_AT).any(is_card) {
-        return Err(refused(given, "this is a deck", ""));
+        return Err(not_a_job_fault(given, "this is a deck", ""));
     }
     Ok(())
 }
 
-fn refused(given: &str, what: &str, before: &str) -> Fault {
-    Fault::of(
+fn not_a_job_fault(given: &str, what: &str, before: &str) -> Fault {
+    Fault::new(
         given,
         "job",
         format!("{what}, not a job"),

@@ -38,7 +38,7 @@ pub(super) fn parse_job(file: &str, text: &str) -> (RawJob, FaultList) {
 fn syntax_fault(file: &str, text: &str, e: &Error) -> Fault {
     let (line, column) = line_column(text, e.span().unwrap_or(0..0).start);
     let message = e.message().lines().collect::<Vec<_>>().join("; ");
-    Fault::at(
+    Fault::with_line(
         file,
         line,
         "syntax",
@@ -52,12 +52,12 @@ fn value_fault(file: &str, text: &str, e: &Error, span: &Range<usize>, key: &[St
     let field = if key.is_empty() {
         "job".to_owned()
     } else {
-        dotted(key)
+        format_key_path(key)
     };
     let message = e.message();
     if let Some((word, names)) = unknown_key(message) {
         let wrong = format!("unknown key `{word}` (column {column})");
-        return Fault::at(
+        return Fault::with_line(
             file,
             line,
             field,
@@ -79,7 +79,7 @@ fn value_fault(file: &str, text: &str, e: &Error, span: &Range<usize>, key: &[St
     } else {
         format!(", expected {expected}")
     };
-    Fault::at(
+    Fault::with_line(
         file,
         line,
         field,
@@ -89,7 +89,7 @@ fn value_fault(file: &str, text: &str, e: &Error, span: &Range<usize>, key: &[St
 }
 
 /// `load[2].grid` of `load`, `2`, `grid`.
-fn dotted(key: &[String]) -> String {
+fn format_key_path(key: &[String]) -> String {
     key.iter()
         .fold(String::new(), |path, part| match part.parse::<usize>() {
             Ok(n) => format!("{path}[{n}]"),
@@ -143,7 +143,7 @@ fn remove_entry(table: &mut DeTable, span: &Range<usize>, key: &mut Vec<String>)
     };
     let found = table
         .iter()
-        .filter(|(k, v)| holds(&k.span(), &v.span()) || inside(v, span))
+        .filter(|(k, v)| holds(&k.span(), &v.span()) || has_covering_entry(v, span))
         .map(|(k, _)| k.clone())
         .next();
     let Some(name) = found else { return false };
@@ -158,13 +158,15 @@ fn remove_entry(table: &mut DeTable, span: &Range<usize>, key: &mut Vec<String>)
 }
 
 /// Whether some entry below holds the span (the span of a dotted or array table need not cover its entries).
-fn inside(value: &Spanned<DeValue>, span: &Range<usize>) -> bool {
+fn has_covering_entry(value: &Spanned<DeValue>, span: &Range<usize>) -> bool {
     let covers = |r: &Range<usize>| r.start <= span.start && span.end <= r.end && r.end > r.start;
     match value.get_ref() {
         DeValue::Table(t) => t
             .iter()
-            .any(|(k, v)| covers(&k.span()) || covers(&v.span()) || inside(v, span)),
-        DeValue::Array(a) => a.iter().any(|v| covers(&v.span()) || inside(v, span)),
+            .any(|(k, v)| covers(&k.span()) || covers(&v.span()) || has_covering_entry(v, span)),
+        DeValue::Array(a) => a
+            .iter()
+            .any(|v| covers(&v.span()) || has_covering_entry(v, span)),
         _ => false,
     }
 }
@@ -175,7 +177,7 @@ fn remove_inside(value: &mut Spanned<DeValue>, span: &Range<usize>, key: &mut Ve
         DeValue::Array(a) => {
             let n = a.len();
             for (i, item) in a.iter_mut().enumerate() {
-                if inside(item, span) {
+                if has_covering_entry(item, span) {
                     let mark = key.len();
                     if n > 1 || matches!(item.get_ref(), DeValue::Table(_)) {
                         key.push(format!("{}", i + 1));

@@ -48,7 +48,7 @@ pub(super) fn read_picked(inputs: &mut Inputs, job: &mut Job, faults: &mut Fault
         return;
     };
     match inputs.read_named_text(job, &named) {
-        Ok(text) => put(job, &named, &text, faults),
+        Ok(text) => merge_candidates(job, &named, &text, faults),
         Err(f) => faults.extend(Faults::from(f).into_list()),
     }
 }
@@ -68,7 +68,7 @@ fn strangers(file: &str, text: &str, candidates: &mut Candidates) -> FaultList {
     sections
         .chain(keys.map(|k| format!("candidates.{k}")))
         .map(|k| {
-            Fault::of(
+            Fault::new(
                 file,
                 k,
                 "this key is not used in a file of picked lists",
@@ -78,14 +78,14 @@ fn strangers(file: &str, text: &str, candidates: &mut Candidates) -> FaultList {
         .collect()
 }
 
-fn put(job: &mut Job, named: &NamedFile, text: &str, faults: &mut FaultList) {
+fn merge_candidates(job: &mut Job, named: &NamedFile, text: &str, faults: &mut FaultList) {
     let file = &*named.given;
     let (raw, found) = parse_job(file, text);
     let broken = !found.is_empty();
     faults.extend(found);
     let Some(section) = &raw.candidates else {
         if !broken {
-            faults.push(Fault::at(
+            faults.push(Fault::with_line(
                 file,
                 1,
                 "candidates",

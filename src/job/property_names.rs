@@ -81,7 +81,7 @@ impl Job {
         let mut faults = FaultList::new();
         for (key, line, list) in lists.chain(of_ballast).chain(zones) {
             let wrong = list.take_names(named);
-            let fault = |(wrong, remedy)| Fault::at(&*self.file, line, key, wrong, remedy);
+            let fault = |(wrong, remedy)| Fault::with_line(&*self.file, line, key, wrong, remedy);
             faults.extend(wrong.into_iter().map(fault));
         }
         Faults::check(faults)?;

@@ -22,12 +22,12 @@ impl Job {
     ///
     /// # Errors
     /// One fault where every gauge of the job is a validation gauge.
-    pub fn estimating(&self) -> Result<Self, Faults> {
+    pub fn without_validation_gauges(&self) -> Result<Self, Faults> {
         let mut job = self.clone();
         job.reserved.extend(self.validation_readings());
         job.gauges.retain(|g| g.role == Role::Estimate);
         match (self.gauges.first(), job.gauges.is_empty()) {
-            (Some(first), true) => Err(Fault::at(
+            (Some(first), true) => Err(Fault::with_line(
                 &*first.file,
                 first.line,
                 "role",

@@ -5,7 +5,7 @@
 /// Blanks and `_`, `-`, `.`, `:`, `/` are separators. Between two digits a separator counts: `F1.1` is not `F11`. A minus at an end is a sign:
 /// `FX-` is not `FX`.
 pub fn is_same_name(a: &str, b: &str) -> bool {
-    let (a, b) = (plain(a), plain(b));
+    let (a, b) = (normalize_name(a), normalize_name(b));
     !a.is_empty() && a == b
 }
 
@@ -15,7 +15,7 @@ pub fn is_same_word(a: &str, b: &str) -> bool {
 }
 
 /// Returns a name in lower case without its separators.
-fn plain(name: &str) -> String {
+fn normalize_name(name: &str) -> String {
     let is_separator = |c: char| c.is_whitespace() || ['_', '-', '.', ':', '/'].contains(&c);
     let signs = |separators: &str| separators.replace(|c: char| c != '-', "");
     let (mut out, mut separators) = (String::new(), String::new());

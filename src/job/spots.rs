@@ -51,7 +51,7 @@ fn check_placement(job: &Job, faults: &mut FaultList) {
     for (key, _, remedy) in stated.into_iter().filter(|s| s.1) {
         let wrong = "[candidates] `file` is a table of spots: this key has no use";
         let field = format!("placement.{key}");
-        faults.push(Fault::at(&*job.file, p.line, field, wrong, remedy));
+        faults.push(Fault::with_line(&*job.file, p.line, field, wrong, remedy));
     }
 }
 
@@ -74,7 +74,13 @@ impl Row<'_> {
     fn check_spot(&self, job: &Job, spot: &JobGauge, faults: &mut FaultList) {
         let mut fault = |field: &str, wrong: &str, remedy: &str| {
             let wrong = format!("spot `{}`: {wrong}", spot.name);
-            faults.push(Fault::at(&*spot.file, spot.line, field, wrong, remedy));
+            faults.push(Fault::with_line(
+                &*spot.file,
+                spot.line,
+                field,
+                wrong,
+                remedy,
+            ));
         };
         let of_model = job.model.is_some();
         let is_bar = matches!(spot.place, StatedPlace::BeamPoint { .. });
@@ -109,7 +115,13 @@ impl Row<'_> {
         let line = self.table.rows.get(self.row).map_or(0, |r| r.0);
         let mut fault = |wrong: String| {
             let remedy = "write a cost above 0. A gauge that is installed already is a gauge of the job: [placement] `keep`";
-            faults.push(Fault::at(&*self.table.file, line, "cost", wrong, remedy));
+            faults.push(Fault::with_line(
+                &*self.table.file,
+                line,
+                "cost",
+                wrong,
+                remedy,
+            ));
             None
         };
         match self.table.number(self.row, column.at) {

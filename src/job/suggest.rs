@@ -6,7 +6,10 @@ use crate::finding::list_few;
 const WORD: usize = 200;
 
 /// The name closest to `word` by edit distance, where it is close enough to be meant (two letters, or a third of them).
-pub fn closest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn find_closest_name<'a>(
+    word: &str,
+    names: impl IntoIterator<Item = &'a str>,
+) -> Option<&'a str> {
     let word_lower = word.to_lowercase();
     let n = word.chars().count();
     let limit = (n / 3).max(if n > 3 { 2 } else { 1 });
@@ -23,7 +26,7 @@ pub fn closest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Opti
 
 /// Returns the name that `word` misspells by a letter, or by two of eight; `None` for short words, which are near to anything.
 pub fn misspelt<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let name = closest(word, names)?;
+    let name = find_closest_name(word, names)?;
     let distance = edit_distance(&word.to_lowercase(), &name.to_lowercase());
     let letters = word.chars().count().min(name.chars().count());
     (4 * distance <= letters).then_some(name)
@@ -31,7 +34,7 @@ pub fn misspelt<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Opt
 
 /// Returns the remedy for an unknown name: the closest known name, else the list of names.
 pub fn remedy<'a>(word: &str, names: impl IntoIterator<Item = &'a str> + Clone) -> String {
-    match closest(word, names.clone()) {
+    match find_closest_name(word, names.clone()) {
         Some(n) => format!("did you mean `{n}`?"),
         None => {
             let list: Vec<String> = names.into_iter().map(|n| format!("`{n}`")).collect();
@@ -46,7 +49,7 @@ pub fn header_remedy<'a>(
     headers: impl IntoIterator<Item = &'a str>,
     general: &str,
 ) -> String {
-    closest(word, headers).map_or_else(
+    find_closest_name(word, headers).map_or_else(
         || general.to_owned(),
         |h| format!("{general}: did you mean `{h}` for `{word}`?"),
     )
@@ -57,7 +60,7 @@ pub fn header_remedy<'a>(
 pub fn column_remedy(gauges: &[&str], columns: &[&str]) -> String {
     let mut pairs: Vec<(usize, &str, &str)> = Vec::new();
     for gauge in gauges {
-        let column = closest(gauge, columns.iter().copied());
+        let column = find_closest_name(gauge, columns.iter().copied());
         pairs.extend(column.map(|c| {
             (
                 edit_distance(&gauge.to_lowercase(), &c.to_lowercase()),

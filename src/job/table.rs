@@ -26,7 +26,7 @@ pub struct Table {
 pub fn read_table(file: &str, text: &str) -> Result<Table, Faults> {
     let mut whole: Option<Table> = None;
     each_part(file, text, usize::MAX, &mut |part| whole = Some(part))?;
-    whole.ok_or_else(|| Faults::from(empty(file)))
+    whole.ok_or_else(|| Faults::from(empty_file_fault(file)))
 }
 
 /// Reads a table in parts of `most` rows: fields of a long table take many times the memory of its text. `take` also gets the last part, and a table
@@ -62,7 +62,7 @@ pub fn each_part(
     let header: Vec<String> = match reader.headers() {
         Ok(h) => h.iter().map(|s| remove_guard(s).to_owned()).collect(),
         Err(e) => {
-            return Err(Faults::from(Fault::of(
+            return Err(Faults::from(Fault::new(
                 file,
                 "header",
                 e.to_string(),
@@ -71,10 +71,10 @@ pub fn each_part(
         }
     };
     if header.iter().all(String::is_empty) {
-        return Err(Faults::from(empty(file)));
+        return Err(Faults::from(empty_file_fault(file)));
     }
     faults.extend(named_twice(file, &header));
-    let mark = DecimalMark::beside(delimiter);
+    let mark = DecimalMark::from_delimiter(delimiter);
     let mut part = Table {
         file: file.to_owned(),
         header,
@@ -94,7 +94,7 @@ pub fn each_part(
                         r.len(),
                         part.header.len()
                     );
-                    faults.push(Fault::at(
+                    faults.push(Fault::with_line(
                         file,
                         line,
                         "row",
@@ -118,7 +118,7 @@ pub fn each_part(
                         .collect(),
                 ));
             }
-            Err(e) => faults.push(Fault::of(file, "row", e.to_string(), "write a CSV file")),
+            Err(e) => faults.push(Fault::new(file, "row", e.to_string(), "write a CSV file")),
         }
     }
     Faults::check(faults)?;
@@ -136,9 +136,9 @@ fn stated_delimiter(text: &str) -> Option<(u8, &str)> {
     is_stated.then_some((delimiter, rest))
 }
 
-fn empty(file: &str) -> Fault {
+fn empty_file_fault(file: &str) -> Fault {
     let remedy = "write a header and one row for each entry";
-    Fault::of(file, "header", "the file is empty", remedy)
+    Fault::new(file, "header", "the file is empty", remedy)
 }
 
 fn named_twice(file: &str, header: &[String]) -> Vec<Fault> {
@@ -146,7 +146,7 @@ fn named_twice(file: &str, header: &[String]) -> Vec<Fault> {
     let twice = header.iter().filter(|name| !seen.insert(*name));
     let fault = |name: &String| {
         let remedy = "give every column a separate name";
-        Fault::at(file, 1, name, "column named twice", remedy)
+        Fault::with_line(file, 1, name, "column named twice", remedy)
     };
     twice.map(fault).collect()
 }
@@ -178,7 +178,7 @@ impl Table {
     pub fn check_rows(&self) -> Result<(), Fault> {
         let remedy = "write one row for each entry";
         match self.rows.is_empty() {
-            true => Err(Fault::at(
+            true => Err(Fault::with_line(
                 &*self.file,
                 1,
                 "rows",
@@ -207,7 +207,7 @@ impl Table {
                 let wrong =
                     format!("{what} `{name}` has a row in line {before} and one in line {line}");
                 let remedy = "keep the row that is right";
-                faults.push(Fault::at(&*self.file, *line, what, wrong, remedy));
+                faults.push(Fault::with_line(&*self.file, *line, what, wrong, remedy));
             }
         }
         faults
@@ -231,11 +231,17 @@ impl Table {
                 let name = self.header.get(column).map_or("", String::as_str);
                 let wrong = format!("column `{name}`: `{text}` has a mark between thousands");
                 let remedy = "write numbers without marks between thousands";
-                Err(Fault::at(&*self.file, *line, "numbers", wrong, remedy))
+                Err(Fault::with_line(
+                    &*self.file,
+                    *line,
+                    "numbers",
+                    wrong,
+                    remedy,
+                ))
             }
             _ => {
                 let name = self.header.get(column).map_or("", String::as_str);
-                Err(Fault::at(
+                Err(Fault::with_line(
                     &*self.file,
                     *line,
                     name,
@@ -264,7 +270,7 @@ impl Table {
         let name = self.header.get(column).map_or("", String::as_str);
         let wrong = format!("a standard deviation of {v} is below zero");
         let remedy = "write its standard deviation, or leave it blank to use `[runs] noise`";
-        Err(Fault::at(&*self.file, line, name, wrong, remedy))
+        Err(Fault::with_line(&*self.file, line, name, wrong, remedy))
     }
 
     /// The number in a field that counts in units of `si` SI units of a quantity of loads or payloads; blank gives `None`.
@@ -290,7 +296,7 @@ impl Table {
                     in_words(most / si)
                 );
                 let remedy = "correct the number, or the unit of its column";
-                Err(Fault::at(&*self.file, line, name, wrong, remedy))
+                Err(Fault::with_line(&*self.file, line, name, wrong, remedy))
             }
             value => Ok(value),
         }

@@ -269,7 +269,7 @@ fn contradictions_between_keys_are_faults() {
 
 /// Gauges of a table; `length_m` are the metres in the job's unit of length.
 fn gauges_from_table(t: &table::Table, length_m: f64, faults: &mut Vec<Fault>) -> Vec<JobGauge> {
-    let columns = gauge_table::GaugeColumns::of(t, length_m, faults);
+    let columns = gauge_table::GaugeColumns::from_table(t, length_m, faults);
     gauges::gauges_from_table(t, &columns, faults)
 }
 

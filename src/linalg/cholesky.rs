@@ -35,7 +35,7 @@ pub struct Cholesky {
 
 impl Cholesky {
     /// The factor of `covariance` (`n x n` by rows, lower triangle read), or `None` where it is not positive definite.
-    pub fn of(covariance: &[f64], n: usize) -> Option<Self> {
+    pub fn from_covariance(covariance: &[f64], n: usize) -> Option<Self> {
         if covariance.len() != n * n {
             return None;
         }
@@ -76,7 +76,7 @@ impl Cholesky {
 
     /// `C^-1 x`.
     pub fn solve(&self, x: &[f64]) -> Vec<f64> {
-        let mut out = self.whitened(x);
+        let mut out = self.whiten_vector(x);
         for j in (0..self.n).rev() {
             let (own, column) = self.column(j);
             let (head, tail) = out.split_at_mut(j + 1);
@@ -87,11 +87,11 @@ impl Cholesky {
 
     /// `x' C^-1 x`.
     pub fn chi2(&self, x: &[f64]) -> f64 {
-        self.whitened(x).iter().map(|v| v * v).sum()
+        self.whiten_vector(x).iter().map(|v| v * v).sum()
     }
 
     /// `L^-1 x`; what `x` lacks is zero.
-    fn whitened(&self, x: &[f64]) -> Vec<f64> {
+    fn whiten_vector(&self, x: &[f64]) -> Vec<f64> {
         let mut out = x.to_vec();
         out.resize(self.n, 0.0);
         for j in 0..self.n {

@@ -37,7 +37,7 @@ struct Problem<'a, F> {
 }
 
 impl<F: Fn(&[f64]) -> Option<Vec<f64>> + Sync> Problem<'_, F> {
-    fn at(&self, u: &DVector<f64>) -> Option<DVector<f64>> {
+    fn residuals_at(&self, u: &DVector<f64>) -> Option<DVector<f64>> {
         let x: Vec<f64> = u.iter().zip(self.scale).map(|(u, s)| u * s).collect();
         let r = (self.residuals)(&x)?;
         r.iter()
@@ -62,7 +62,7 @@ impl<F: Fn(&[f64]) -> Option<Vec<f64>> + Sync> LeastSquaresProblem<f64, Dyn, Dyn
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        self.at(&self.u)
+        self.residuals_at(&self.u)
     }
 
     /// Central differences of 1e-5 of the scale: truncation and rounding both near 1e-10.
@@ -74,7 +74,7 @@ impl<F: Fn(&[f64]) -> Option<Vec<f64>> + Sync> LeastSquaresProblem<f64, Dyn, Dyn
                 let shifted = |h: f64| {
                     let mut u = self.u.clone();
                     u[j] += h;
-                    self.at(&u)
+                    self.residuals_at(&u)
                 };
                 Some((shifted(STEP)? - shifted(-STEP)?) / (2.0 * STEP))
             })

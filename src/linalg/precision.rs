@@ -13,9 +13,9 @@ pub struct Precision {
 
 impl Precision {
     /// The precision of `covariance` (`n x n` by rows, lower triangle read), or `None` where it is not positive definite.
-    pub fn of(covariance: &[f64], n: usize) -> Option<Self> {
+    pub fn from_covariance(covariance: &[f64], n: usize) -> Option<Self> {
         Some(Self {
-            factor: Cholesky::of(covariance, n)?,
+            factor: Cholesky::from_covariance(covariance, n)?,
             inverse: OnceLock::new(),
         })
     }

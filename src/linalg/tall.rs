@@ -79,7 +79,7 @@ pub fn solve(blocks: &[(f64, &Triangle)], n: usize) -> Solution {
 }
 
 /// The answer to numbers that are none.
-fn undetermined(n: usize) -> Solution {
+fn undetermined_solution(n: usize) -> Solution {
     Solution {
         x: vec![f64::NAN; n],
         inverse: vec![vec![f64::NAN; n]; n],
@@ -91,7 +91,7 @@ fn undetermined(n: usize) -> Solution {
 fn solve_dense(mut a: DMatrix<f64>, y: &DVector<f64>) -> Solution {
     let n = a.ncols();
     if a.iter().chain(y.iter()).any(|v| !v.is_finite()) {
-        return undetermined(n);
+        return undetermined_solution(n);
     }
     if a.is_empty() {
         return Solution {
@@ -109,10 +109,10 @@ fn solve_dense(mut a: DMatrix<f64>, y: &DVector<f64>) -> Solution {
         a.column_mut(j).scale_mut(1.0 / norm);
     }
     let Some(svd) = bounded_svd(a) else {
-        return undetermined(n);
+        return undetermined_solution(n);
     };
     let (Some(u), Some(vt)) = (&svd.u, &svd.v_t) else {
-        return undetermined(n);
+        return undetermined_solution(n);
     };
     let mut order: Vec<usize> = (0..svd.singular_values.len()).collect();
     order.sort_by(|&i, &j| svd.singular_values[j].total_cmp(&svd.singular_values[i]));

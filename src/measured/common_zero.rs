@@ -29,7 +29,7 @@ pub(crate) fn common_zero(
     let table = read_table(&named.given, &text)?;
     let column = |name: &str| {
         table.column(&[name]).ok_or_else(|| {
-            Fault::at(
+            Fault::with_line(
                 &*table.file,
                 1,
                 name,

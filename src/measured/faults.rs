@@ -8,7 +8,7 @@ use crate::series::SeriesError;
 
 /// Returns the fault of a record where runs are needed.
 pub(crate) fn no_runs(file: &str) -> Fault {
-    Fault::of(
+    Fault::new(
         file,
         "run",
         "the rows are samples of a record, which cannot be read as runs",
@@ -43,13 +43,13 @@ pub(crate) fn no_gauge_column(
             "{wrong}; columns and gauges differ by case or separators: {}",
             list_few(&alike)
         );
-        return Fault::at(file, 1, "gauge", wrong, "use the same names in both tables");
+        return Fault::with_line(file, 1, "gauge", wrong, "use the same names in both tables");
     }
     let wrong = match columns.is_empty() {
         true => format!("{wrong}; the file has no column of numbers"),
         false => format!("{wrong}; its columns are {}", list_few(columns)),
     };
-    Fault::at(file, 1, "gauge", wrong, remedy)
+    Fault::with_line(file, 1, "gauge", wrong, remedy)
 }
 
 /// The fault of a record that can't be read.
@@ -57,25 +57,25 @@ pub(crate) fn record_fault(file: &str, e: &SeriesError) -> Fault {
     let (wrong, remedy) = e.parts();
     match e {
         SeriesError::Line { line, what, remedy } => {
-            Fault::at(file, *line as u32, "row", what, *remedy)
+            Fault::with_line(file, *line as u32, "row", what, *remedy)
         }
         SeriesError::NotAscending { line, .. } | SeriesError::NoTime { line } => {
-            Fault::at(file, *line as u32, "time", wrong, remedy)
+            Fault::with_line(file, *line as u32, "time", wrong, remedy)
         }
-        SeriesError::Empty => Fault::at(
+        SeriesError::Empty => Fault::with_line(
             file,
             1,
             "rows",
             "the file has a header and no rows",
             "write one row for each sample",
         ),
-        SeriesError::NoRate => Fault::at(
+        SeriesError::NoRate => Fault::with_line(
             file,
             1,
             "time",
             "no column `time`",
             "add a column `time` in seconds",
         ),
-        _ => Fault::of(file, "record", wrong, remedy),
+        _ => Fault::new(file, "record", wrong, remedy),
     }
 }

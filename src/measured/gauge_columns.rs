@@ -26,7 +26,7 @@ pub fn find_gauge_columns(
     columns: &[Column],
     gauges: &[String],
 ) -> Result<Vec<StrainColumn>, Faults> {
-    let names = Names::of(columns, gauges);
+    let names = Names::from_columns(columns, gauges);
     let mut faults = FaultList::new();
     let mut taken: HashSet<String> = HashSet::new();
     let mut out: Vec<Option<StrainColumn>> = Vec::with_capacity(columns.len());
@@ -39,7 +39,13 @@ pub fn find_gauge_columns(
             Holds::Gauge(name, microstrain) => {
                 if !taken.insert(name.clone()) {
                     let remedy = "give every column a separate name";
-                    faults.push(Fault::at(file, 1, &*name, "column named twice", remedy));
+                    faults.push(Fault::with_line(
+                        file,
+                        1,
+                        &*name,
+                        "column named twice",
+                        remedy,
+                    ));
                 }
                 let microstrain = Some(microstrain);
                 Some(StrainColumn { name, microstrain })
@@ -66,7 +72,7 @@ pub fn find_gauge_columns(
 pub fn no_strain(file: &str, column: &Column) -> Fault {
     let units = [&column.header.bracket, &column.stated];
     let unit = units.into_iter().find(|u| microstrain_in(u).is_none());
-    Fault::of(
+    Fault::new(
         file,
         &*column.header.name,
         format!("`{}` is not a unit of strain", unit.unwrap_or(&column.unit)),
@@ -85,7 +91,7 @@ struct Names<'a> {
 }
 
 impl<'a> Names<'a> {
-    fn of(columns: &'a [Column], gauges: &'a [String]) -> Self {
+    fn from_columns(columns: &'a [Column], gauges: &'a [String]) -> Self {
         let wholes: HashSet<&str> = columns.iter().map(|c| c.header.whole.as_str()).collect();
         let mut split: HashMap<String, Vec<(Header, &str)>> = HashMap::new();
         for gauge in gauges.iter().filter(|g| !wholes.contains(g.as_str())) {
@@ -136,7 +142,7 @@ impl Wrong {
     fn fault(&self, file: &str, column: &Column) -> Fault {
         match self {
             Self::NoStrain => no_strain(file, column),
-            Self::Clash => Fault::at(
+            Self::Clash => Fault::with_line(
                 file,
                 1,
                 &*column.header.whole,

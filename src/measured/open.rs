@@ -41,7 +41,7 @@ impl MeasuredStrain {
 
 /// Whether a strain file is a record, a row a sample, rather than runs.
 pub(super) fn is_record(bytes: &FileBytes) -> bool {
-    is_format(bytes) || Layout::of(bytes).is_ok_and(|l| l.is_record())
+    is_format(bytes) || Layout::detect(bytes).is_ok_and(|l| l.is_record())
 }
 
 /// Opens a strain file of a job: reads the runs, or opens the record, whose pieces are read later.
@@ -79,7 +79,7 @@ fn open_first_sheet(
     };
     if looks_like_record {
         // Its layout is what keeps it from being a record.
-        let wrong = Layout::of(&bytes).err();
+        let wrong = Layout::detect(&bytes).err();
         let wrong = wrong.map_or_else(|| no_runs(&named.given), |e| record_fault(&named.given, &e));
         return Err(wrong.into());
     }

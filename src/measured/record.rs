@@ -114,7 +114,7 @@ impl Record {
     }
 
     /// Returns the record with blank readings in these spans: number of the column, and samples.
-    pub fn without(self, blank: Vec<(usize, Range<usize>)>) -> Self {
+    pub fn with_blank_readings(self, blank: Vec<(usize, Range<usize>)>) -> Self {
         Self { blank, ..self }
     }
 
@@ -132,9 +132,9 @@ impl Record {
     ///
     /// # Errors
     /// A piece that can't be read.
-    pub fn throughout(&self, looked: &Still) -> Result<Vec<Gives>, Fault> {
+    pub fn column_contents(&self, looked: &Still) -> Result<Vec<Gives>, Fault> {
         let columns: Vec<Option<usize>> = self.columns.iter().map(|c| c.0).collect();
-        let found = looked.throughout(&self.inner, &columns);
+        let found = looked.columns_in_record(&self.inner, &columns);
         found.map_err(|e| record_fault(&self.file, &e))
     }
 
@@ -146,7 +146,7 @@ impl Record {
         let n = self.columns.len();
         let mut out = vec![Vec::with_capacity(self.clock().samples); n];
         for i in 0..self.n_pieces() {
-            self.each(i, |strain| {
+            self.each_strain_block(i, |strain| {
                 for row in strain.chunks_exact(n.max(1)) {
                     out.iter_mut().zip(row).for_each(|(c, v)| c.push(*v));
                 }
@@ -240,11 +240,11 @@ impl Record {
     ///
     /// # Errors
     /// A piece that can't be read.
-    pub fn each(&self, i: usize, mut sink: impl FnMut(&[f64])) -> Result<(), Fault> {
+    pub fn each_strain_block(&self, i: usize, mut sink: impl FnMut(&[f64])) -> Result<(), Fault> {
         let n = self.columns.len().max(1);
         self.each_microstrain(i, |first, values| {
             values.iter_mut().for_each(|v| *v *= MICROSTRAIN);
-            still::blank(values, n, first, &self.blank);
+            still::blank_readings(values, n, first, &self.blank);
             sink(values);
         })
     }
@@ -279,14 +279,14 @@ impl Record {
     /// Times, s, and readings of a piece, strain.
     pub fn piece(&self, i: usize) -> Result<(Vec<f64>, Vec<f64>), Fault> {
         let mut values = Vec::new();
-        self.each(i, |strain| values.extend_from_slice(strain))?;
+        self.each_strain_block(i, |strain| values.extend_from_slice(strain))?;
         Ok((self.times(i), values))
     }
 
     /// How many readings of a piece, less `zero`, are too large to be strain.
-    pub fn impossible(&self, i: usize, zero: &[f64]) -> Result<u64, Fault> {
+    pub fn count_impossible_readings(&self, i: usize, zero: &[f64]) -> Result<u64, Fault> {
         let mut n = 0;
-        self.each(i, |strain| {
+        self.each_strain_block(i, |strain| {
             for row in strain.chunks_exact(zero.len().max(1)) {
                 let large = |(v, z): &(&f64, &f64)| (**v - **z).abs() > LARGEST_STRAIN;
                 n += row.iter().zip(zero).filter(large).count() as u64;
@@ -302,6 +302,6 @@ impl Record {
 
     /// Returns the findings on the times of the record.
     pub fn findings(&self) -> Vec<Finding> {
-        clock::irregular(&self.file, self.clock())
+        clock::check_time_steps(&self.file, self.clock())
     }
 }

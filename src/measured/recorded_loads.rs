@@ -131,11 +131,11 @@ pub(crate) fn read_load_record(
                 "name the columns after the loads, or map them: [compare] columns = { \"LF.FZ\" = \"FZ_LF\" }"
             }
         };
-        return Err(Fault::of(&**file, "columns", wrong, remedy).into());
+        return Err(Fault::new(&**file, "columns", wrong, remedy).into());
     }
     Ok(LoadRecord {
         samples: samples_of(&record, &picks).map_err(|e| record_fault(file, &e))?,
-        findings: clock::irregular(file, &record.clock),
+        findings: clock::check_time_steps(file, &record.clock),
         clock: record.clock.clone(),
         file: file.clone(),
         loads,

@@ -1,7 +1,7 @@
 //! The strain of the reference state, which makes totals of changes.
 
 use crate::fe::floor::solve_standing;
-use crate::gauge::reading;
+use crate::gauge::gauge_reading;
 use crate::host::fault::{Fault, Faults};
 use crate::job::{Job, Measured, Reference};
 use crate::measured::wheels::{floor_fault, wheels_of};
@@ -17,7 +17,7 @@ pub(crate) fn reference_strain(
 ) -> Result<Vec<f64>, Faults> {
     let n = prepared.sensitivity.gauges.len();
     let fault = |wrong: String, remedy: &str| {
-        Faults::from(Fault::at(
+        Faults::from(Fault::with_line(
             &*job.file,
             measured.line,
             "measured.reference",
@@ -44,7 +44,7 @@ pub(crate) fn reference_strain(
                 .gauges
                 .iter()
                 .map(|g| {
-                    reading(g, case).ok_or_else(|| {
+                    gauge_reading(g, case).ok_or_else(|| {
                         fault(
                             format!("gauge `{}` has no strain in subcase {id}", g.name),
                             "ask for STRAIN of its element there",

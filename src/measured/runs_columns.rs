@@ -93,7 +93,7 @@ fn sole_column(
     let first = meant.next();
     match meant.next() {
         None => Ok(first.map(|(i, _)| i)),
-        Some((_, second)) => Err(Fault::at(
+        Some((_, second)) => Err(Fault::with_line(
             &*t.file,
             1,
             &*second.header.whole,
@@ -132,17 +132,17 @@ fn column_among(
         return Ok(exact);
     }
     let is_other = |c: &Column| names.iter().any(|n| is_called(c, n));
-    let is_meant = |c: &Column| called(c).iter().any(|n| is_same_word(n, name));
+    let is_meant = |c: &Column| header_names(c).iter().any(|n| is_same_word(n, name));
     sole_column(t, columns, name, |c| is_meant(c) && !is_other(c))
 }
 
 /// Returns the names that a header may state.
-fn called(c: &Column) -> [&str; 3] {
+fn header_names(c: &Column) -> [&str; 3] {
     [&c.header.whole, &c.name, &c.header.name]
 }
 
 fn is_called(c: &Column, name: &str) -> bool {
-    called(c).contains(&name)
+    header_names(c).contains(&name)
 }
 
 /// Names of the payload in a runs file.
@@ -214,7 +214,7 @@ pub fn column_meant<'a>(
         words
     };
     let turned = free.iter().find(|c| words(c) == words(name)).copied();
-    turned.or_else(|| suggest::closest(name, free))
+    turned.or_else(|| suggest::find_closest_name(name, free))
 }
 
 /// Adds a warning that names the columns of the runs file which no command reads; `given` are the loads of a given S.
@@ -244,7 +244,7 @@ pub fn asked_column(
     let missing = || {
         let wrong = format!("`{}` has no column `{name}`", t.file);
         let remedy = suggest::remedy(name, t.header.iter().map(String::as_str));
-        Fault::at(&*job.file, line, key, wrong, remedy)
+        Fault::with_line(&*job.file, line, key, wrong, remedy)
     };
     place_of(t, columns, name)
         .and_then(|at| at.ok_or_else(missing))
@@ -261,7 +261,7 @@ pub fn run_column(job: &Job, t: &Table, columns: &[Column]) -> Result<usize, Fau
         let headers = t.header.iter().map(String::as_str);
         let general = "add a column `run` with the runs' names";
         let remedy = suggest::header_remedy("run", headers, general);
-        Fault::at(&*t.file, 1, "run", "no column `run`", remedy)
+        Fault::with_line(&*t.file, 1, "run", "no column `run`", remedy)
     })
 }
 
@@ -311,7 +311,13 @@ pub fn known_column(
             true => "correct the wrong one",
             false => "correct the wrong one, or name the column in the job (`columns`)",
         };
-        faults.push(Fault::at(&*t.file, 1, header, stated.clash_words(), remedy));
+        faults.push(Fault::with_line(
+            &*t.file,
+            1,
+            header,
+            stated.clash_words(),
+            remedy,
+        ));
         return Some(here);
     }
     if matches!(stated.unit.as_str(), "" | "-") {
@@ -328,7 +334,7 @@ pub fn known_column(
                 stated.unit
             );
             let remedy = "write how many times the set acts, without a unit";
-            faults.push(Fault::at(&*t.file, 1, header, wrong, remedy));
+            faults.push(Fault::with_line(&*t.file, 1, header, wrong, remedy));
         }
         return Some(here);
     };
@@ -336,7 +342,7 @@ pub fn known_column(
         if !is_name {
             let wrong = format!("`{}` is not a unit of {}", stated.unit, quantity.word());
             let remedy = format!("write one of {}", unit_names(quantity).join(", "));
-            faults.push(Fault::at(&*t.file, 1, header, wrong, remedy));
+            faults.push(Fault::with_line(&*t.file, 1, header, wrong, remedy));
         }
         return Some(here);
     };
@@ -352,7 +358,7 @@ pub fn known_column(
             "correct the wrong one; without {}.units the unit of the column is used",
             runs.section
         );
-        faults.push(Fault::at(&*t.file, 1, header, wrong, remedy));
+        faults.push(Fault::with_line(&*t.file, 1, header, wrong, remedy));
     } else if unit != of_job {
         let doubt = noise_in_doubt(job, runs, quantity, unit, of_job);
         if let Some(fault) = doubt.filter(|f| !faults.contains(f)) {
@@ -383,7 +389,7 @@ fn noise_in_doubt(
     };
     let noise = noise.filter(|n| *n > 0.0)?;
     let word = quantity.word();
-    Some(Fault::at(
+    Some(Fault::with_line(
         &*job.file,
         runs.line,
         format!("{}.noise.{word}", runs.section),

@@ -67,7 +67,7 @@ fn runs_of_first_sheet(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Ve
         let run = fields.get(key).cloned().unwrap_or_default();
         if !seen.insert(fields.get(key).map_or("", String::as_str)) {
             let wrong = format!("run `{run}` occurs twice");
-            faults.push(Fault::at(
+            faults.push(Fault::with_line(
                 &*t.file,
                 *line,
                 "run",
@@ -126,7 +126,7 @@ pub fn no_load_column(
         None => "add the column, or name it in the job under [runs] columns".to_owned(),
     };
     let wrong = format!("no run has a value for load `{name}`");
-    Ok(Fault::at(&*t.file, 1, name, wrong, remedy))
+    Ok(Fault::with_line(&*t.file, 1, name, wrong, remedy))
 }
 
 /// Loads of a given S; where the job does not list them, S's own table does.

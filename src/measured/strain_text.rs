@@ -23,7 +23,7 @@ pub fn strain_from_text(file: &str, text: &str, gauges: &[String]) -> Result<Str
     each_part(file, text, PART, &mut |mut part| {
         let reading = reading.get_or_insert_with(|| {
             let headers = take_units(&mut part);
-            Reading::of(&part, &headers, gauges)
+            Reading::from_table(&part, &headers, gauges)
         });
         if let Ok(reading) = reading {
             reading.add(&part);
@@ -48,7 +48,7 @@ fn number(t: &Table, row: usize, column: usize, faults: &mut FaultList) -> f64 {
 }
 
 fn no_rows(file: &str) -> Fault {
-    Fault::at(
+    Fault::with_line(
         file,
         1,
         "rows",
@@ -75,7 +75,7 @@ struct Reading {
 }
 
 impl Reading {
-    fn of(t: &Table, headers: &[Column], known: &[String]) -> Result<Self, Faults> {
+    fn from_table(t: &Table, headers: &[Column], known: &[String]) -> Result<Self, Faults> {
         let run = headers.iter().position(|c| c.name == "run");
         let mut times = headers.iter().enumerate();
         let time = times.find(|(i, c)| c.is_time(*i == 0)).map(|t| t.0);
@@ -83,7 +83,7 @@ impl Reading {
         let any_case = || headers.iter().position(Column::is_run);
         let run = run.or_else(|| if time.is_none() { any_case() } else { None });
         let Some(key) = run.or(time) else {
-            return Err(Faults::from(Fault::at(
+            return Err(Faults::from(Fault::with_line(
                 &*t.file,
                 1,
                 "run",
@@ -99,14 +99,14 @@ impl Reading {
         if let Some(column) = clashing.filter(|_| run.is_none()) {
             let remedy = "correct the wrong one";
             let wrong = column.clash_words();
-            return Err(Fault::at(&*t.file, 1, "time", wrong, remedy).into());
+            return Err(Fault::with_line(&*t.file, 1, "time", wrong, remedy).into());
         }
         let unit = headers.get(key).map_or("", |c| c.unit.as_str());
         let second = match run {
             Some(_) => 1.0,
             None => seconds_in(unit).ok_or_else(|| {
                 let wrong = format!("`{unit}` is not a unit of time");
-                Faults::from(Fault::at(
+                Faults::from(Fault::with_line(
                     &*t.file,
                     1,
                     "time",
@@ -158,7 +158,7 @@ impl Reading {
                 if !self.seen.insert(name.clone()) {
                     let wrong = format!("run `{name}` occurs twice");
                     let remedy = "give every run a separate name";
-                    faults.push(Fault::at(&*t.file, *line, "run", wrong, remedy));
+                    faults.push(Fault::with_line(&*t.file, *line, "run", wrong, remedy));
                 }
                 self.runs.push(name);
             } else {
@@ -170,7 +170,7 @@ impl Reading {
                     self.ascends = false;
                     let wrong = format!("time {time} after {before}");
                     let remedy = "write samples in order of time";
-                    faults.push(Fault::at(&*t.file, *line, "time", wrong, remedy));
+                    faults.push(Fault::with_line(&*t.file, *line, "time", wrong, remedy));
                 }
                 self.times.push(time);
             }

@@ -7,8 +7,8 @@ use crate::job::tests::read_text;
 use crate::series::record::{Column, name_and_unit};
 use std::path::{Path, PathBuf};
 
-fn shared() -> Option<PathBuf> {
-    crate::support::shared(".")
+fn shared_folder() -> Option<PathBuf> {
+    crate::support::find_shared_path(".")
 }
 
 fn jobs_below(folder: &Path, out: &mut Vec<PathBuf>) {
@@ -24,12 +24,14 @@ fn jobs_below(folder: &Path, out: &mut Vec<PathBuf>) {
 
 #[test]
 fn every_shared_job_is_read_with_all_files_it_names() {
-    let Some(shared) = shared() else { return };
+    let Some(shared) = shared_folder() else {
+        return;
+    };
     let mut jobs = Vec::new();
     jobs_below(&shared, &mut jobs);
     assert!(jobs.len() >= 10, "{jobs:?}");
     for path in jobs {
-        let mut inputs = Inputs::of(&crate::host::context::Disk);
+        let mut inputs = Inputs::new(&crate::host::context::Disk);
         let job =
             read_job(&mut inputs, &path).unwrap_or_else(|f| panic!("{}: {f:?}", path.display()));
         if let Some(m) = &job.measured {
@@ -55,8 +57,10 @@ fn every_shared_job_is_read_with_all_files_it_names() {
 
 #[test]
 fn a_runs_file_is_read_in_si_by_the_jobs_names() {
-    let Some(shared) = shared() else { return };
-    let mut inputs = Inputs::of(&crate::host::context::Disk);
+    let Some(shared) = shared_folder() else {
+        return;
+    };
+    let mut inputs = Inputs::new(&crate::host::context::Disk);
     let job = read_job(
         &mut inputs,
         &shared.join("hidden_effects/static/dev-s1/job.toml"),
@@ -110,14 +114,14 @@ fn a_long_table_in_parts_is_the_whole_table() {
 
 /// The runs of a table, read for a job with these further lines under `[runs]`.
 fn runs_of(table: &str, more: &str) -> Result<Vec<runs_file::RunRow>, Faults> {
-    let files = crate::host::context::InMemory::default().with("runs.csv", table);
+    let files = crate::host::context::InMemory::default().with_file("runs.csv", table);
     let text = format!(
         "units = \"m-kg-s\"\nreport_units = {{ force = \"kN\" }}\n[[load]]\nname = \"LF.FZ\"\n[[load]]\nname = \"LF.MX\"\n\
          [calibration]\n[runs]\nfile = \"runs.csv\"\n{more}"
     );
     let job = read_text(&text)?;
     let runs = job.runs.as_ref().unwrap();
-    runs_file::read_runs(&mut Inputs::of(&files), &job, runs)
+    runs_file::read_runs(&mut Inputs::new(&files), &job, runs)
 }
 
 #[test]
@@ -386,7 +390,7 @@ fn a_row_of_units_tells_which_of_two_columns_holds_a_load() {
 #[test]
 fn a_channel_that_is_ignored_is_not_asked_for_its_unit() {
     let files = crate::host::context::InMemory::default()
-        .with("s.csv", "run,G1,G2 [mV/V]\nR1,1,2\nR2,2,3\n");
+        .with_file("s.csv", "run,G1,G2 [mV/V]\nR1,1,2\nR2,2,3\n");
     let job = read_text(
         "units = \"m-kg-s\"\n[model]\ndeck = \"d.bdf\"\n[[load]]\nname = \"a\"\ngrid = 1\ncomponent = \"FZ\"\n[[gauge]]\nname = \"G1\"\nelement = 1\n\
          [[gauge]]\nname = \"G2\"\nelement = 2\n[measured]\nstrain = \"s.csv\"\n\
@@ -394,7 +398,7 @@ fn a_channel_that_is_ignored_is_not_asked_for_its_unit() {
     )
     .unwrap();
     let measured = job.measured.as_ref().unwrap();
-    let mut inputs = Inputs::of(&files);
+    let mut inputs = Inputs::new(&files);
     let wanted = strain_file::wanted_columns(&mut inputs, &job);
     let table = strain_file::read_strain(&mut inputs, &job, &measured.strain, &wanted).unwrap();
     assert_eq!(table.gauges, ["G1", "G2"]);

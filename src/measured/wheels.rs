@@ -66,7 +66,7 @@ pub fn wheels_of(job: &Job, model: &Model) -> Result<Wheels, Faults> {
                 out.loads.push(i);
                 out.grids.push(g);
             }
-            None => faults.push(Fault::at(
+            None => faults.push(Fault::with_line(
                 &*job.file,
                 job.loads[i].line,
                 "load.grid",
@@ -76,7 +76,7 @@ pub fn wheels_of(job: &Job, model: &Model) -> Result<Wheels, Faults> {
         }
     }
     if out.grids.len() < 3 && faults.is_empty() {
-        faults.push(Fault::of(
+        faults.push(Fault::new(
             &*job.file,
             "load",
             format!(
@@ -117,7 +117,7 @@ pub fn floor_fault(job: &Job, e: &FloorError) -> Faults {
     if matches!(e, FloorError::Solver(FeError::Stopped)) {
         return cancelled_fault().into();
     }
-    let of = |(wrong, remedy)| Fault::of(&*job.file, "model", wrong, remedy);
-    let unknown = Fault::of(&*job.file, "model", e.to_string(), "repair the deck");
+    let of = |(wrong, remedy)| Fault::new(&*job.file, "model", wrong, remedy);
+    let unknown = Fault::new(&*job.file, "model", e.to_string(), "repair the deck");
     Faults::or(e.parts().into_iter().map(of).collect(), unknown)
 }

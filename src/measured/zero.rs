@@ -181,7 +181,7 @@ pub(crate) fn some_left(file: &str, readings: &[Readings]) -> Result<(), Faults>
     if all.any(|v| v.is_finite()) {
         return Ok(());
     }
-    Err(Fault::of(
+    Err(Fault::new(
         file,
         "strain",
         "no gauge of the job has a reading in the range of strain",
@@ -235,7 +235,7 @@ fn held_out_runs(job: &Job, measured: &Measured, table: &StrainTable) -> Result<
         .iter()
         .filter(|n| !runs.contains(n))
         .map(|n| {
-            Fault::at(
+            Fault::with_line(
                 &*job.file,
                 measured.line,
                 "measured.hold_out",
@@ -270,7 +270,7 @@ pub(crate) fn zeros_by_row(
     let mut at = zero_rows(work, job, measured, table, names)?;
     at.sort_unstable();
     at.dedup();
-    let drift = Drift::of(table, &at, measured.noise_microstrain);
+    let drift = Drift::from_zero_runs(table, &at, measured.noise_microstrain);
     let step = (drift.walk + drift.steady).sqrt();
     let noise = measured.noise_microstrain * measured.noise_microstrain;
     let (mut zero, mut noise_factor) = (Vec::new(), Vec::new());
@@ -280,7 +280,7 @@ pub(crate) fn zeros_by_row(
             weights,
             wander,
             outside,
-        } = between(if others.is_empty() { &at } else { &others }, i);
+        } = zero_run_weights(if others.is_empty() { &at } else { &others }, i);
         let of = |g: usize| -> f64 {
             let parts = weights.iter().map(|(a, w)| w * table.row(*a)[g]);
             parts.sum()
@@ -333,7 +333,7 @@ fn zero_rows(
         }
     }
     let fault = |wrong: String, remedy: &str| {
-        Fault::at(
+        Fault::with_line(
             &*job.file,
             measured.line,
             "measured.zero_runs",
@@ -365,7 +365,7 @@ pub(crate) fn no_zero_runs(job: &Job, measured: &Measured, file: &str) -> Result
     if measured.zero_runs.is_empty() {
         return Ok(());
     }
-    Err(Fault::at(
+    Err(Fault::with_line(
         &*job.file,
         measured.line,
         "measured.zero_runs",
@@ -383,7 +383,7 @@ struct Between {
     outside: f64,
 }
 
-fn between(at: &[usize], i: usize) -> Between {
+fn zero_run_weights(at: &[usize], i: usize) -> Between {
     let after = at.partition_point(|a| *a < i);
     let steps = |a: usize| (i as f64 - a as f64).abs();
     match (after.checked_sub(1).and_then(|b| at.get(b)), at.get(after)) {
@@ -423,7 +423,7 @@ impl Drift {
     ///
     /// A steady change is `u = sum d_j / T`, `T = sum t_j`; the remainder is a walk: `E (d_j - u t_j)^2 = walk (t_j - t_j^2 / T) + s^2 (2 - 2 (t_j /
     /// T) e_j + 2 (t_j / T)^2)`, `e_j` how many ends of the whole stretch the difference has, and `E u^2 = steady + walk / T + 2 s^2 / T^2`.
-    fn of(table: &StrainTable, at: &[usize], noise: f64) -> Self {
+    fn from_zero_runs(table: &StrainTable, at: &[usize], noise: f64) -> Self {
         let noise = noise * noise;
         let (mut walk, mut free) = (0.0, 0.0);
         let mut slopes = Vec::new();

@@ -34,7 +34,7 @@ impl Builder<'_> {
             else {
                 continue;
             };
-            (beam.warping, beam.idle_points) = match self.warping(&beam, points) {
+            (beam.warping, beam.idle_points) = match self.find_warping_points(&beam, points) {
                 Some((stated, true)) => (Some(stated), false),
                 Some((_, false)) => (None, true),
                 None => (None, false),
@@ -135,7 +135,11 @@ impl Builder<'_> {
     }
 
     /// The warping points of a CBEAM, SA and SB together, and whether its property has a warping constant.
-    fn warping(&mut self, beam: &Beam, points: [Option<u32>; 2]) -> Option<([GridIx; 2], bool)> {
+    fn find_warping_points(
+        &mut self,
+        beam: &Beam,
+        points: [Option<u32>; 2],
+    ) -> Option<([GridIx; 2], bool)> {
         let name = format!("CBEAM {}", beam.id);
         let [Some(a), Some(b)] = points.map(|p| p.filter(|p| *p > 0)) else {
             if points.iter().flatten().any(|p| *p > 0) {

@@ -65,7 +65,7 @@ impl Builder<'_> {
         (out.into_iter().map(|o| o.1).collect(), ix)
     }
 
-    fn positive(
+    fn check_positive(
         &mut self,
         what: &'static str,
         value: f64,
@@ -179,7 +179,7 @@ impl Builder<'_> {
                 (x, section)
             })
             .collect();
-        self.close(&mut sections, &name, p.at)?;
+        self.complete_sections(&mut sections, &name, p.at)?;
         for (_, s) in &sections {
             if self
                 .not_negative("torsion constant", s.j, &name, "J", p.at)
@@ -225,7 +225,7 @@ impl Builder<'_> {
                 },
             ));
         }
-        self.close(&mut sections, &name, p.at)?;
+        self.complete_sections(&mut sections, &name, p.at)?;
         Some(BeamProperty {
             id: p.id,
             material,
@@ -239,7 +239,12 @@ impl Builder<'_> {
     }
 
     /// Sections by ascending station, with one at each end.
-    fn close(&mut self, sections: &mut Vec<(f64, Section)>, name: &str, at: Place) -> Option<()> {
+    fn complete_sections(
+        &mut self,
+        sections: &mut Vec<(f64, Section)>,
+        name: &str,
+        at: Place,
+    ) -> Option<()> {
         sections.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (first, last) = (*sections.first()?, *sections.last()?);
         if first.0 > 0.0 {
@@ -250,7 +255,7 @@ impl Builder<'_> {
         }
         for (_, s) in sections.iter() {
             if !(s.area > 0.0) {
-                self.positive("area", s.area, name, "A", at);
+                self.check_positive("area", s.area, name, "A", at);
                 break;
             }
         }

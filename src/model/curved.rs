@@ -68,7 +68,7 @@ pub(super) fn shell_area(shape: ShellShape, x: &[Option<Vec3>]) -> Option<f64> {
     } else {
         Domain::Square
     };
-    Some(Map::of(domain, face_edges(n), x)?.area())
+    Some(Map::from_node_locations(domain, face_edges(n), x)?.area())
 }
 
 /// Value, then exact derivatives: every function is of second degree at most in each parameter.
@@ -126,7 +126,11 @@ pub(crate) fn face_edges(n_corners: usize) -> &'static [(usize, usize)] {
 }
 
 impl Map {
-    fn of(domain: Domain, edges: &[(usize, usize)], x: &[Option<Vec3>]) -> Option<Self> {
+    fn from_node_locations(
+        domain: Domain,
+        edges: &[(usize, usize)],
+        x: &[Option<Vec3>],
+    ) -> Option<Self> {
         let n = domain.corners();
         let corners: Vec<Vec3> = x.iter().take(n).flatten().copied().collect();
         if corners.len() != n {

@@ -13,7 +13,7 @@ pub struct Fibres {
 
 impl Fibres {
     /// Returns the distances at a corner, or at the centre.
-    pub fn at(&self, corner: Option<usize>) -> [f64; 2] {
+    pub fn distances_at(&self, corner: Option<usize>) -> [f64; 2] {
         let corner = corner.and_then(|k| self.corners.get(k));
         corner.copied().unwrap_or(self.centre)
     }

@@ -10,7 +10,7 @@ use nastran::place::Place;
 ///
 /// # Reference
 /// MSC Nastran Quick Reference Guide, MAT1, remarks on blank fields.
-fn isotropic(m: &Mat1) -> Option<(f64, f64, f64)> {
+fn complete_moduli(m: &Mat1) -> Option<(f64, f64, f64)> {
     match (m.e, m.g, m.nu) {
         (Some(e), Some(g), Some(nu)) => Some((e, g, nu)),
         (Some(e), None, Some(nu)) => Some((e, e / (2.0 * (1.0 + nu)), nu)),
@@ -25,7 +25,7 @@ fn isotropic(m: &Mat1) -> Option<(f64, f64, f64)> {
 
 /// Returns the material of a MAT1; `None` where E, G and nu do not define it.
 pub(super) fn isotropic_material(m: &Mat1, at: Place) -> Option<Material> {
-    let (e, g, nu) = isotropic(m)?;
+    let (e, g, nu) = complete_moduli(m)?;
     let kind = MaterialKind::Isotropic {
         e,
         g,
@@ -43,7 +43,7 @@ pub(super) fn isotropic_material(m: &Mat1, at: Place) -> Option<Material> {
 
 /// Returns the faults in E and nu of a MAT1, each with its field.
 pub(super) fn moduli_faults(m: &Mat1) -> Vec<(&'static str, FaultKind)> {
-    let Some((_, _, nu)) = isotropic(m) else {
+    let Some((_, _, nu)) = complete_moduli(m) else {
         return vec![("E", FaultKind::Underdetermined)];
     };
     let mut out = Vec::new();

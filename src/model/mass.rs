@@ -17,7 +17,7 @@ impl Weight {
     ///
     /// Where the mass differs by direction (CONM1, scalar masses), it is the largest of the three along its principal directions, as
     /// Nastran's grid point weight generator lists them in its mass axis system.
-    pub(crate) fn of(m: &Matrix6<f64>, about: Vec3) -> Option<Self> {
+    pub(crate) fn from_mass_matrix(m: &Matrix6<f64>, about: Vec3) -> Option<Self> {
         let by_axis = [m[(0, 0)], m[(1, 1)], m[(2, 2)]];
         let translation = m.fixed_view::<3, 3>(0, 0).into_owned();
         let even = translation == Mat3::from_diagonal_element(by_axis[0]);
@@ -45,7 +45,7 @@ impl Weight {
 }
 
 impl Model {
-    fn at(&self, g: GridIx) -> Vec3 {
+    fn grid_location(&self, g: GridIx) -> Vec3 {
         self.grids.get(g.us()).map_or_else(Vec3::zeros, |g| g.x)
     }
 
@@ -62,7 +62,7 @@ impl Model {
         let Some(panel) = self.shear_panels.get(i) else {
             return 0.0;
         };
-        let x = panel.grids.map(|g| self.at(g));
+        let x = panel.grids.map(|g| self.grid_location(g));
         let twice = |t: [usize; 3]| {
             let [a, b, c] = t.map(|k| x[k]);
             (b - a).cross(&(c - a)).norm()
@@ -74,7 +74,7 @@ impl Model {
     /// Returns the length of bar or beam `i`, offsets included.
     pub(super) fn beam_length(&self, i: usize) -> f64 {
         let length = |b: &Beam| {
-            let [a, e] = [0, 1].map(|k| self.at(b.grids[k]) + b.offsets[k]);
+            let [a, e] = [0, 1].map(|k| self.grid_location(b.grids[k]) + b.offsets[k]);
             (e - a).norm()
         };
         self.beams.get(i).map_or(0.0, length)
@@ -82,7 +82,8 @@ impl Model {
 
     /// Returns the length of rod `i`.
     pub(super) fn rod_length(&self, i: usize) -> f64 {
-        let length = |r: &Rod| (self.at(r.grids[1]) - self.at(r.grids[0])).norm();
+        let length =
+            |r: &Rod| (self.grid_location(r.grids[1]) - self.grid_location(r.grids[0])).norm();
         self.rods.get(i).map_or(0.0, length)
     }
 
@@ -95,7 +96,7 @@ impl Model {
                     .get(i)
                     .filter(|g| i < n || s.grids.get(i - n) != Some(g))
             })
-            .map(|g| g.map(|g| self.at(*g)))
+            .map(|g| g.map(|g| self.grid_location(*g)))
             .collect()
     }
 }

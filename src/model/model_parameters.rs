@@ -30,7 +30,7 @@ const DEFAULTS: [(&str, &str); 7] = [
 ///
 /// OFFDEF acts on elements with offsets. The standard offset ELMOFF is carried. Other values move thermal loads and masses, and take the
 /// shell normal at each grid as direction. A parameter that is in no table acts.
-pub(super) fn acting(deck: &Deck, card: &OtherCard) -> Vec<UnsupportedCard> {
+pub(super) fn find_acting_parameters(deck: &Deck, card: &OtherCard) -> Vec<UnsupportedCard> {
     let fields = deck.fields(card);
     let filled = fields.iter().map(String::as_str).filter(|w| !w.is_empty());
     let mut words = filled.peekable();
@@ -88,7 +88,7 @@ mod tests {
     use nastran::bdf::{MemoryLoader, read_deck};
 
     /// Names of what the solver refuses of a bar with `offset` at its first end.
-    fn refused(offset: &str, entries: &str) -> Vec<String> {
+    fn list_unsupported_names(offset: &str, entries: &str) -> Vec<String> {
         let text = format!(
             "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCBAR,1,1,1,2,0.,0.,1.\n,,,0.,0.,{offset}\n\
              PBAR,1,1,.01,1.-4,1.-4,1.-4\nMAT1,1,2.+11,,.3\n{entries}\nENDDATA\n"
@@ -124,8 +124,8 @@ mod tests {
             ),
             ("MDLPRM,NEWNAME,3", &["MDLPRM NEWNAME"]),
         ] {
-            assert_eq!(refused(".1", entry), named, "{entry}");
+            assert_eq!(list_unsupported_names(".1", entry), named, "{entry}");
         }
-        assert!(refused("0.", "MDLPRM,OFFDEF,LROFF").is_empty());
+        assert!(list_unsupported_names("0.", "MDLPRM,OFFDEF,LROFF").is_empty());
     }
 }

@@ -19,11 +19,11 @@ pub(super) fn add_selected(
     let subcases = deck.case_control.effective_subcases();
     let Some(set) = subcases.first().and_then(|s| s.nsm) else {
         let odd = subcases.iter().find(|s| s.nsm.is_some());
-        refused.extend(odd.map(|s| differing(s.nsm, s.at)));
+        refused.extend(odd.map(|s| unsupported_subcase_nsm(s.nsm, s.at)));
         return (refused, faults);
     };
     if let Some(odd) = subcases.iter().find(|s| s.nsm != Some(set)) {
-        refused.push(differing(Some(set), odd.at));
+        refused.push(unsupported_subcase_nsm(Some(set), odd.at));
         return (refused, faults);
     }
     let cards = &deck.cards;
@@ -41,14 +41,14 @@ pub(super) fn add_selected(
             },
         });
     }
-    let carriers = Carriers::of(model, cards);
+    let carriers = Carriers::from_model(model, cards);
     let mut added: BTreeMap<Carrier, f64> = BTreeMap::new();
     for card in cards.nsms.iter().filter(|c| sets.contains(&c.sid)) {
         let Some(named) = carriers.by_type.get(card.of.as_str()) else {
             refused.push(not_carried(card, format!("NSM of {}", card.of)));
             continue;
         };
-        let known = |id: &u32| named.contains_key(id) || carriers.unused(&card.of, *id);
+        let known = |id: &u32| named.contains_key(id) || carriers.has_property(&card.of, *id);
         for id in named_ids(card).filter(|id| !known(id)) {
             faults.push(ModelFault {
                 card: format!("NSM {}", card.sid),
@@ -131,7 +131,7 @@ struct Carriers {
 }
 
 impl Carriers {
-    fn of(model: &Model, cards: &Cards) -> Self {
+    fn from_model(model: &Model, cards: &Cards) -> Self {
         let properties = properties(cards);
         let is = |word: &str, id: u32| properties.get(word).is_some_and(|ids| ids.contains(&id));
         let types = properties.keys().map(|word| (*word, BTreeMap::new()));
@@ -199,7 +199,7 @@ impl Carriers {
     }
 
     /// Whether the deck has a property of that type and id.
-    fn unused(&self, word: &str, id: u32) -> bool {
+    fn has_property(&self, word: &str, id: u32) -> bool {
         let ids = self.properties.get(word);
         ids.is_some_and(|ids| ids.contains(&id))
     }
@@ -267,7 +267,7 @@ fn add(model: &mut Model, added: &BTreeMap<Carrier, f64>) {
     }
 }
 
-fn differing(set: Option<u32>, at: Place) -> UnsupportedCard {
+fn unsupported_subcase_nsm(set: Option<u32>, at: Place) -> UnsupportedCard {
     UnsupportedCard {
         card: "NSM that differs between subcases".to_owned(),
         id: set,

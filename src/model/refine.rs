@@ -26,7 +26,7 @@ impl RefinedModel {
 }
 
 impl Model {
-    /// Returns the model with every shell divided in four at the middles of its sides, see [`Model::refined_at`]. `None` if that is impossible.
+    /// Returns the model with every shell divided in four at the middles of its sides, see [`Model::refine_shells_at`]. `None` if that is impossible.
     ///
     /// # Example
     /// ```
@@ -43,8 +43,8 @@ impl Model {
     /// // Division changes neither mass nor centre of gravity by more than the rule of the shell.
     /// assert!((fine.model.weight().mass / coarse.weight().mass - 1.0).abs() < 1e-12);
     /// ```
-    pub fn refined(&self) -> Option<RefinedModel> {
-        self.refined_at(&vec![true; self.shells.len()])
+    pub fn refine_shells(&self) -> Option<RefinedModel> {
+        self.refine_shells_at(&vec![true; self.shells.len()])
     }
 
     /// Returns the model with the shells that `divided` marks, by index, divided in four at the middles of their sides. `None` if that would tear the
@@ -55,7 +55,7 @@ impl Model {
     /// surface keeps its facets. They are constrained where both ends of their side are, by PS as by SPC sets. Bars, rods, shear panels
     /// and solids stay as they are, and so do shells that are not marked; where one of them goes along a side of a marked shell, the new grid
     /// there moves as the mean of the ends does, linear as the edges of those elements and of the shell itself were.
-    pub fn refined_at(&self, divided: &[bool]) -> Option<RefinedModel> {
+    pub fn refine_shells_at(&self, divided: &[bool]) -> Option<RefinedModel> {
         if !self.can_be_refined(divided) {
             return None;
         }
@@ -331,7 +331,7 @@ impl Builder {
         Some(ix)
     }
 
-    fn middle(&mut self, a: GridIx, b: GridIx) -> Option<GridIx> {
+    fn add_middle_grid(&mut self, a: GridIx, b: GridIx) -> Option<GridIx> {
         if let Some(&known) = self.middles.get(&side(a, b)) {
             return Some(known);
         }
@@ -347,9 +347,9 @@ impl Builder {
         let four = |g: [GridIx; 4]| [g[0], g[1], g[2], g[3], g[0], g[1], g[2], g[3]];
         if shell.shape.n_corners() == 3 {
             let (a, b, c) = (
-                self.middle(p0, p1)?,
-                self.middle(p1, p2)?,
-                self.middle(p2, p0)?,
+                self.add_middle_grid(p0, p1)?,
+                self.add_middle_grid(p1, p2)?,
+                self.add_middle_grid(p2, p0)?,
             );
             let (ta, tb, tc) = (mean(t0, t1), mean(t1, t2), mean(t2, t0));
             let three = |g: [GridIx; 3]| [g[0], g[1], g[2], g[0], g[1], g[2], g[0], g[1]];
@@ -361,10 +361,10 @@ impl Builder {
             ]);
         }
         let (a, b, c, d) = (
-            self.middle(p0, p1)?,
-            self.middle(p1, p2)?,
-            self.middle(p2, p3)?,
-            self.middle(p3, p0)?,
+            self.add_middle_grid(p0, p1)?,
+            self.add_middle_grid(p1, p2)?,
+            self.add_middle_grid(p2, p3)?,
+            self.add_middle_grid(p3, p0)?,
         );
         let m = self.add(&[p0, p1, p2, p3])?;
         let (ta, tb, tc, td) = (mean(t0, t1), mean(t1, t2), mean(t2, t3), mean(t3, t0));

@@ -105,7 +105,7 @@ impl Builder<'_> {
         }
         let um = self.grid_dofs(&r.um, &name, "UM", r.at);
         let reference = reference?;
-        if self.collinear(&arms, reference, r.refc) {
+        if self.has_free_rotation(&arms, reference, r.refc) {
             self.fault(name, "G", r.at, FaultKind::CollinearArms);
         }
         let kind = RigidKind::Mean {
@@ -124,7 +124,12 @@ impl Builder<'_> {
 
     /// Whether the arms leave a rotation free that the reference grid is asked to follow: the weighted sum of their rigid-body
     /// rows, scaled to lengths about 1, has no full rank.
-    fn collinear(&self, arms: &[(f64, Dofs, GridIx)], reference: GridIx, refc: Dofs) -> bool {
+    fn has_free_rotation(
+        &self,
+        arms: &[(f64, Dofs, GridIx)],
+        reference: GridIx,
+        refc: Dofs,
+    ) -> bool {
         let x0 = self.x(reference);
         let reach = arms
             .iter()
@@ -177,7 +182,7 @@ impl Builder<'_> {
             };
             let name = || format!("{} {}", r.kind.card(), r.id);
             let mut note = |kind| found.push((name(), r.kind.field(), r.at, kind));
-            for (g, dofs) in r.kind.dependent() {
+            for (g, dofs) in r.kind.dependent_dofs() {
                 for i in dofs.iter0() {
                     let grid = self.model.grids.get(g.us()).map_or(0, |g| g.id);
                     let dof = i as u8 + 1;

@@ -14,7 +14,7 @@ type Terms = Vec<(GridIx, u8, f64)>;
 impl Builder<'_> {
     /// The equations of rigid bushes, after all that makes dofs dependent or holds them.
     pub(super) fn rigid_bushes(&mut self) {
-        let [mut taken, in_sets] = self.taken();
+        let [mut taken, in_sets] = self.constrained_dofs();
         for i in 0..self.model.bushes.len() {
             let Some(bush) = self.model.bushes.get(i).copied() else {
                 continue;
@@ -60,7 +60,7 @@ impl Builder<'_> {
     }
 
     /// Dofs that rigid elements make dependent or a grid holds, whatever the load case; then those that some MPC or SPC set does.
-    fn taken(&self) -> [HashSet<(GridIx, u8)>; 2] {
+    fn constrained_dofs(&self) -> [HashSet<(GridIx, u8)>; 2] {
         let m = &self.model;
         let each = |(g, dofs): (GridIx, nastran::cards::Dofs)| {
             dofs.iter0().map(move |i| (g, i as u8)).collect::<Vec<_>>()
@@ -69,7 +69,7 @@ impl Builder<'_> {
         all.extend(
             m.rigids
                 .iter()
-                .flat_map(|r| r.kind.dependent())
+                .flat_map(|r| r.kind.dependent_dofs())
                 .flat_map(each),
         );
         let permanent = m.grids.iter().enumerate();

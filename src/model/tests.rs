@@ -21,7 +21,7 @@ fn errors(bulk: &str) -> Vec<(u32, String)> {
         .collect()
 }
 
-fn near(a: Vec3, b: [f64; 3]) -> bool {
+fn is_near(a: Vec3, b: [f64; 3]) -> bool {
     (a - Vec3::from(b)).amax() < 1e-12
 }
 
@@ -40,13 +40,13 @@ fn chained_coordinate_systems_of_all_kinds_end_in_basic() {
     );
     let at = |id: u32| m.grids[m.grid_ix(id).unwrap().us()];
     // Theta 90 degrees of system 2 is along the y axis of system 1, which is minus basic x.
-    assert!(near(at(1).x, [8.0, 0.0, 5.0]), "{}", at(1).x);
+    assert!(is_near(at(1).x, [8.0, 0.0, 5.0]), "{}", at(1).x);
     // System 3: origin grid 1, z up, x along grid 3 (minus basic x). Theta 90, phi 0: along its x.
-    assert!(near(at(4).x, [6.0, 0.0, 5.0]), "{}", at(4).x);
-    assert!(near(at(5).x, [8.0, 0.0, 7.0]), "{}", at(5).x);
+    assert!(is_near(at(4).x, [6.0, 0.0, 5.0]), "{}", at(4).x);
+    assert!(is_near(at(5).x, [8.0, 0.0, 7.0]), "{}", at(5).x);
     // Grid 5 moves in system 2: radial at (8, 0) is minus basic x.
     let axes = m.cd_axes(m.grid_ix(5).unwrap());
-    assert!(near(axes.row(0).transpose(), [-1.0, 0.0, 0.0]), "{axes}");
+    assert!(is_near(axes.row(0).transpose(), [-1.0, 0.0, 0.0]), "{axes}");
 }
 
 #[test]
@@ -74,12 +74,12 @@ fn a_blank_field_takes_grdset_and_a_stated_zero_does_not() {
     let (m, _) = model(
         "CORD2R,1,,0.,0.,5.,0.,0.,6.\n,1.,0.,5.\nGRDSET,,1,,,,1,456\nGRID,1,,0.,0.,0.\nGRID,2,0,0.,0.,0.,0",
     );
-    assert!(near(m.grids[0].x, [0.0, 0.0, 5.0]));
+    assert!(is_near(m.grids[0].x, [0.0, 0.0, 5.0]));
     assert_eq!(
         m.grids[0].ps,
         nastran::cards::Dofs::from_digits(456).unwrap()
     );
-    assert!(near(m.grids[1].x, [0.0; 3]));
+    assert!(is_near(m.grids[1].x, [0.0; 3]));
     assert_eq!(m.frames[m.grids[0].cd.us()].id, 1);
     assert_eq!(m.grids[1].cd, FrameIx(0));
 }
@@ -154,15 +154,15 @@ fn offsets_and_orientation_are_counted_in_the_displacement_frames() {
     assert!(faults.is_empty(), "{faults:?}");
     let b = &m.beams[0];
     let s = 1.0 / SQRT_2;
-    assert!(near(b.offsets[0], [-s, -s, 0.0]), "{}", b.offsets[0]);
-    assert!(near(b.axes.row(0).transpose(), [0.0, 0.0, 1.0]));
+    assert!(is_near(b.offsets[0], [-s, -s, 0.0]), "{}", b.offsets[0]);
+    assert!(is_near(b.axes.row(0).transpose(), [0.0, 0.0, 1.0]));
     assert!(
-        near(b.axes.row(1).transpose(), [s, s, 0.0]),
+        is_near(b.axes.row(1).transpose(), [s, s, 0.0]),
         "y along the radial orientation vector"
     );
     let w = m.weight();
     assert!(
-        (w.mass - 4.0).abs() < 1e-12 && near(w.cg, [0.0, 0.0, 1.0]),
+        (w.mass - 4.0).abs() < 1e-12 && is_near(w.cg, [0.0, 0.0, 1.0]),
         "{w:?}"
     );
 }
@@ -173,7 +173,7 @@ fn an_offset_with_o_is_counted_along_the_element() {
         "{BAR}GRID,1,,0.,0.,0.\nGRID,2,,0.,0.,2.\nCBAR,1,1,1,2,0.,1.,0.,GOO\n,,,.5,.1,0.,-.5,.1,0."
     ));
     assert!(
-        near(m.beams[0].offsets[0], [0.0, 0.1, 0.5]),
+        is_near(m.beams[0].offsets[0], [0.0, 0.1, 0.5]),
         "{}",
         m.beams[0].offsets[0]
     );
@@ -196,15 +196,18 @@ fn a_bush_takes_its_frame_from_cid_then_orientation_then_the_line() {
     };
     let (m, _) = bush("CBUSH,1,1,1,2,1.,0.,0.,4", "1.,1.,1.");
     assert!(
-        near(m.bushes[0].axes.row(0).transpose(), [0.0, 1.0, 0.0]),
+        is_near(m.bushes[0].axes.row(0).transpose(), [0.0, 1.0, 0.0]),
         "x of system 4"
     );
     let (m, _) = bush("CBUSH,1,1,1,2,0.,0.,1.", "1.,1.,1.");
-    assert!(near(m.bushes[0].axes.row(1).transpose(), [0.0, 0.0, 1.0]));
-    assert!(near(m.bushes[0].location, [0.0, 1.5, 0.0]));
+    assert!(is_near(
+        m.bushes[0].axes.row(1).transpose(),
+        [0.0, 0.0, 1.0]
+    ));
+    assert!(is_near(m.bushes[0].location, [0.0, 1.5, 0.0]));
     let (m, faults) = bush("CBUSH,1,1,1,2", "5.,,,7.");
     assert!(
-        faults.is_empty() && near(m.bushes[0].axes.row(0).transpose(), [0.0, 1.0, 0.0]),
+        faults.is_empty() && is_near(m.bushes[0].axes.row(0).transpose(), [0.0, 1.0, 0.0]),
         "{faults:?}"
     );
     let (_, faults) = bush("CBUSH,1,1,1,2", "5.,3.");
@@ -215,7 +218,7 @@ fn a_bush_takes_its_frame_from_cid_then_orientation_then_the_line() {
     // Grounded, without a line or a CID: the basic frame, and it is said.
     let (m, faults) = bush("CBUSH,1,1,1", "5.,3.");
     assert!(
-        m.bushes[0].frame_assumed && near(m.bushes[0].axes.row(0).transpose(), [1.0, 0.0, 0.0]),
+        m.bushes[0].frame_assumed && is_near(m.bushes[0].axes.row(0).transpose(), [1.0, 0.0, 0.0]),
         "{faults:?}"
     );
 }
@@ -224,7 +227,7 @@ fn a_bush_takes_its_frame_from_cid_then_orientation_then_the_line() {
 fn a_conm2_with_cid_minus_1_states_a_location_and_its_products_of_inertia_change_sign() {
     let (m, _) = model("GRID,1,,1.,2.,3.\nCONM2,1,1,-1,2.,1.,2.,4.\n,10.,1.,20.,2.,3.,30.");
     let c = &m.masses[0];
-    assert!(near(c.offset, [0.0, 0.0, 1.0]));
+    assert!(is_near(c.offset, [0.0, 0.0, 1.0]));
     assert_eq!(c.matrix[(3, 4)], -1.0);
     assert_eq!(c.matrix[(3, 5)], -2.0);
     // Parallel axes: two units of mass one above the grid.
@@ -233,14 +236,14 @@ fn a_conm2_with_cid_minus_1_states_a_location_and_its_products_of_inertia_change
         (12.0, 22.0, 30.0)
     );
     let w = m.weight();
-    assert!(near(w.cg, [1.0, 2.0, 4.0]) && w.mass == 2.0);
+    assert!(is_near(w.cg, [1.0, 2.0, 4.0]) && w.mass == 2.0);
 }
 
 #[test]
 fn wtmass_scales_mass_once() {
     let (m, _) = model(&format!("{QUAD}CQUAD4,1,1,1,2,3,4\nPARAM,WTMASS,.5"));
     assert!((m.weight().mass - 0.5 * 78.5).abs() < 1e-12);
-    assert!(near(m.weight().cg, [0.5, 0.5, 0.0]));
+    assert!(is_near(m.weight().cg, [0.5, 0.5, 0.0]));
 }
 
 #[test]
@@ -283,7 +286,7 @@ fn pressure_on_a_solid_points_into_it() {
         assert_eq!(*pressure, [2.0; 4]);
         let x: Vec<Vec3> = grids.iter().flatten().map(|g| m.grids[g.us()].x).collect();
         let n = (x[1] - x[0]).cross(&(x[2] - x[0]));
-        assert!(near(n / n.norm(), inward), "{face}: {n}");
+        assert!(is_near(n / n.norm(), inward), "{face}: {n}");
     }
 }
 
@@ -444,7 +447,7 @@ fn a_refined_mesh_weighs_the_same_and_divides_every_shell_at_the_middles_of_its_
     let (m, _) = model(&format!(
         "{QUAD}GRID,5,,2.,0.,0.\nCQUAD4,1,1,1,2,3,4\nCTRIA3,2,1,2,5,3\nCONM2,9,2,,5."
     ));
-    let fine = m.refined().unwrap();
+    let fine = m.refine_shells().unwrap();
     // A square and a triangle on one of its sides: five corners, seven sides, a middle of the square.
     assert_eq!(fine.model.grids.len(), 5 + 7 + 1 - 1);
     assert_eq!(fine.model.shells.len(), 8);
@@ -463,7 +466,7 @@ fn a_refined_mesh_weighs_the_same_and_divides_every_shell_at_the_middles_of_its_
 fn the_middle_of_a_side_with_a_bar_along_it_moves_as_the_mean_of_its_ends() {
     let bar = "CROD,7,3,1,2\nPROD,3,1,1.-4";
     let (m, _) = model(&format!("{QUAD}CQUAD4,1,1,1,2,3,4\n{bar}"));
-    let fine = m.refined().unwrap().model;
+    let fine = m.refine_shells().unwrap().model;
     let set = fine.mpcs.iter().find(|s| Some(s.sid) == fine.mpc).unwrap();
     assert_eq!(set.equations.len(), 6);
     for (dof, (terms, _)) in set.equations.iter().enumerate() {
@@ -478,7 +481,7 @@ fn the_middle_of_a_side_with_a_bar_along_it_moves_as_the_mean_of_its_ends() {
         "{QUAD}CQUAD4,1,1,1,2,3,4\n{}",
         bar.replace("1,2", "1,3")
     ));
-    assert!(m.refined().unwrap().model.mpcs.is_empty());
+    assert!(m.refine_shells().unwrap().model.mpcs.is_empty());
 }
 
 #[test]

@@ -36,7 +36,7 @@ pub(super) fn of_deck(deck: &Deck) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard
             Some(Effect::Load) => loads.push(card),
             Some(Effect::Acts | Effect::Carried) => structure.push(card),
             Some(Effect::ActsWith("separate values")) => {
-                structure.extend(super::model_parameters::acting(deck, c));
+                structure.extend(super::model_parameters::find_acting_parameters(deck, c));
             }
             Some(Effect::ActsWith(what)) if is_present(deck, what) => structure.push(card),
             _ => {}

@@ -46,14 +46,14 @@ pub(super) fn estimate_payload(
         }
         Place::Known => {
             let entry = |g: usize, _| (0..3).map(|k| model.payload[(g, k)] * p[k]).sum::<f64>();
-            (Matrix::from_fn(n, 1, entry), known.along(&p))
+            (Matrix::from_fn(n, 1, entry), known.combine_loads(&p))
         }
     };
     let s = Sensitivity {
         values,
         gauges: model.gauges.clone(),
         loads: (columns.iter())
-            .map(|k| Load::named(["F", "F dx", "F dy"][*k]))
+            .map(|k| Load::from_name(["F", "F dx", "F dy"][*k]))
             .collect(),
         uncertainty: None,
         noise: model.noise.clone(),

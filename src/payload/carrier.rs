@@ -19,13 +19,13 @@ pub struct Carriers {
 impl Carriers {
     /// Grids of the shells (of the bars and beams where `model` has no such shell) whose property id `allowed` takes, less those that a
     /// rigid element already moves. `axis` points up.
-    pub fn of(model: &Model, axis: usize, allowed: impl Fn(u32) -> bool) -> Self {
+    pub fn from_model(model: &Model, axis: usize, allowed: impl Fn(u32) -> bool) -> Self {
         let dependent: BTreeSet<GridIx> = model
             .rigids
             .iter()
             .flat_map(|r| match &r.kind {
                 RigidKind::Mean { reference, .. } => vec![*reference],
-                other => other.dependent().iter().map(|d| d.0).collect(),
+                other => other.dependent_dofs().iter().map(|d| d.0).collect(),
             })
             .collect();
         let shells = model.shells.iter().filter(|s| {

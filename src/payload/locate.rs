@@ -84,15 +84,7 @@ pub fn locate(
 /// Returns whether a run alone determines all unknowns.
 pub fn tells(model: &PayloadModel, run: &PayloadRun, spec: &WeighSpec) -> bool {
     let weights = vec![1.0; model.gauges.len()];
-    solve_run(
-        model,
-        run,
-        spec,
-        Balance::Kept,
-        &weights,
-        &Located::nothing(),
-    )
-    .is_some()
+    solve_run(model, run, spec, Balance::Kept, &weights, &Located::zeros()).is_some()
 }
 
 fn expectation_maximisation(
@@ -103,7 +95,7 @@ fn expectation_maximisation(
     mut weights: Vec<f64>,
     steps: usize,
 ) -> Option<State> {
-    let mut found: Vec<Located> = runs.iter().map(|_| Located::nothing()).collect();
+    let mut found: Vec<Located> = runs.iter().map(|_| Located::zeros()).collect();
     let mut before = f64::NEG_INFINITY;
     let mut end = None;
     for _ in 0..steps {

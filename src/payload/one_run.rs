@@ -24,7 +24,7 @@ pub struct Located {
 
 impl Located {
     /// Before the first answer.
-    pub(super) fn nothing() -> Self {
+    pub(super) fn zeros() -> Self {
         Self {
             p: [0.0; 3],
             covariance: [0.0; 9],
@@ -61,11 +61,11 @@ pub(super) fn solve_run(
     weights: &[f64],
     old: &Located,
 ) -> Option<Solved> {
-    let u = Unknowns::of(model, run, spec);
+    let u = Unknowns::from_run(model, run, spec);
     let mut rows = gauge_rows(&u, model, run, spec, old)?;
     let wheel_variance = spec.reaction_sigma.powi(2);
     for (w, y) in run.reactions.iter().enumerate().filter(|r| r.1.is_finite()) {
-        rows.push(u.one(w, *y, wheel_variance));
+        rows.push(u.single_unknown_row(w, *y, wheel_variance));
     }
     if u.n_wheels > 0 && balance == Balance::Kept {
         rows.extend(equilibrium(&u, model, spec, wheel_variance));
@@ -83,7 +83,7 @@ pub(super) fn solve_run(
         } else {
             1.0
         };
-        rows.push(u.one(c, 0.0, sd * sd));
+        rows.push(u.single_unknown_row(c, 0.0, sd * sd));
     }
     let variances: Vec<f64> = rows
         .iter()
@@ -137,7 +137,7 @@ pub(super) fn solve_run(
         }
     }
     Some(Solved {
-        found: u.located(model, &solved),
+        found: u.locate_payload(model, &solved),
         gauges,
         wheels,
     })
@@ -166,7 +166,7 @@ struct Unknowns {
 }
 
 impl Unknowns {
-    fn of(model: &PayloadModel, run: &PayloadRun, spec: &WeighSpec) -> Self {
+    fn from_run(model: &PayloadModel, run: &PayloadRun, spec: &WeighSpec) -> Self {
         let n_wheels = run.reactions.len();
         let q = if spec.place == Place::Free { 3 } else { 1 };
         let (at_p, at_c) = (n_wheels, n_wheels + q);
@@ -195,7 +195,7 @@ impl Unknowns {
     }
 
     /// The equation that one unknown is `y`.
-    fn one(&self, unknown: usize, y: f64, variance: f64) -> Row {
+    fn single_unknown_row(&self, unknown: usize, y: f64, variance: f64) -> Row {
         let mut a = self.row();
         a[unknown] = 1.0;
         Row {
@@ -225,7 +225,7 @@ impl Unknowns {
     }
 
     /// The answer in `(F, F dx, F dy)`.
-    fn located(&self, model: &PayloadModel, solved: &LinearEstimate) -> Located {
+    fn locate_payload(&self, model: &PayloadModel, solved: &LinearEstimate) -> Located {
         let p: [f64; 3] = std::array::from_fn(|k| {
             let (i, c) = self.back(k);
             c * solved.value[i]
@@ -364,7 +364,7 @@ fn patterns_shut(u: &Unknowns, spec: &WeighSpec, old: &Located) -> Vec<Row> {
     // Before the first answer there is no size to compare with: the patterns stay shut.
     let sd = if old.p[0] == 0.0 { SHUT } else { share };
     (u.at_z..u.width)
-        .map(|unknown| u.one(unknown, 0.0, sd * sd))
+        .map(|unknown| u.single_unknown_row(unknown, 0.0, sd * sd))
         .collect()
 }
 
@@ -376,7 +376,8 @@ fn within_region(u: &Unknowns, spec: &WeighSpec, old: &Located) -> Vec<Row> {
         for (axis, [low, high]) in region.into_iter().enumerate() {
             let half = (high - low) / 2.0;
             if size > 0.0 && half > 0.0 {
-                let mut row = u.one(u.at_p + 1 + axis, 0.0, (size * half * REGION_SD).powi(2));
+                let mut row =
+                    u.single_unknown_row(u.at_p + 1 + axis, 0.0, (size * half * REGION_SD).powi(2));
                 row.a[u.at_p] = -(low + high) / 2.0;
                 rows.push(row);
             }

@@ -49,7 +49,7 @@ pub fn weigh(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     // Single gauges whose noise is correlated are no independent witnesses.
     let is_correlated = model.noise.as_ref().is_some_and(GaugeNoise::is_correlated);
     if has_strain && !has_wheels && spec.place == Place::Known && !is_correlated {
-        return calibrated(model, runs, spec, by_strain(model, runs, spec));
+        return apply_calibration(model, runs, spec, by_strain(model, runs, spec));
     }
     let told: Vec<bool> = runs.iter().map(|r| tells(model, r, spec)).collect();
     if told.contains(&false) && told.contains(&true) {
@@ -59,7 +59,7 @@ pub fn weigh(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
         let mut weighed = found.runs.into_iter();
         let of = |(r, t): (&PayloadRun, &bool)| {
             let found = if *t { weighed.next() } else { None };
-            found.unwrap_or_else(|| undetermined(r, n))
+            found.unwrap_or_else(|| undetermined_run(r, n))
         };
         return Weighing {
             runs: runs.iter().zip(&told).map(of).collect(),
@@ -69,7 +69,7 @@ pub fn weigh(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     }
     let Some(location) = locate(model, runs, spec, Balance::Kept) else {
         return Weighing {
-            runs: runs.iter().map(|r| undetermined(r, n)).collect(),
+            runs: runs.iter().map(|r| undetermined_run(r, n)).collect(),
             gauges: Vec::new(),
             unlike: Vec::new(),
         };
@@ -82,7 +82,7 @@ pub fn weigh(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
         .zip(&location.runs)
         .enumerate()
         .map(|(i, (run, found))| {
-            let mut w = weighed(model, run, found, spec);
+            let mut w = weigh_run(model, run, found, spec);
             let strain_alone = apart.as_ref().and_then(|a| a.runs.get(i));
             if let (None, Some(alone)) = (w.refused, strain_alone) {
                 w.refused = out_of_balance(run, alone, spec);
@@ -102,13 +102,13 @@ pub fn weigh(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     };
     match has_wheels {
         true => found,
-        false => calibrated(model, runs, spec, found),
+        false => apply_calibration(model, runs, spec, found),
     }
 }
 
 /// Replaces weight and place by estimates with the whole covariance of a calibrated S, if the payload's columns are its own. It uses the gauges that
 /// count, like `recover`. A place without a column in the calibration is unchanged.
-fn calibrated(
+fn apply_calibration(
     model: &PayloadModel,
     runs: &[PayloadRun],
     spec: &WeighSpec,
@@ -128,7 +128,7 @@ fn calibrated(
             continue;
         };
         weighing.unlike.extend(found.unlike);
-        let mut located = Located::nothing();
+        let mut located = Located::zeros();
         // As it was, for what has no column.
         let force = w.force;
         for k in 1..3 {
@@ -143,7 +143,7 @@ fn calibrated(
             }
         }
         let old = (w.estimates.clone(), w.estimate_sigma.clone());
-        *w = weighed(model, run, &located, spec);
+        *w = weigh_run(model, run, &located, spec);
         (w.estimates, w.estimate_sigma) = old;
         w.dof = found.dof;
         let free = located.p[0];
@@ -156,7 +156,7 @@ fn calibrated(
     weighing
 }
 
-fn undetermined(run: &PayloadRun, n: usize) -> WeighedRun {
+fn undetermined_run(run: &PayloadRun, n: usize) -> WeighedRun {
     WeighedRun {
         run: run.run.clone(),
         force: f64::NAN,
@@ -172,7 +172,7 @@ fn undetermined(run: &PayloadRun, n: usize) -> WeighedRun {
 }
 
 /// Estimates the payload of a run from each gauge alone: reading, less strain by measured wheel forces, over the response to a unit weight.
-fn alone(
+fn estimate_by_gauge(
     model: &PayloadModel,
     run: &PayloadRun,
     shift: [f64; 2],
@@ -224,7 +224,7 @@ fn alone_on_floor(
             .map(|w| (0..3).map(|k| floor[(w, k)] * p[k]).sum())
             .collect()
     });
-    alone(model, run, run.shift, &reactions, size, spec)
+    estimate_by_gauge(model, run, run.shift, &reactions, size, spec)
 }
 
 /// Known place, strain alone.
@@ -237,7 +237,7 @@ fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     // Sizes for the model's error: from the gauges' median first, then from the answer.
     let mut sizes: Vec<f64> = Vec::new();
     for (i, run) in runs.iter().enumerate() {
-        let (estimates, estimate_sigma) = alone(model, run, run.shift, &[], 0.0, spec);
+        let (estimates, estimate_sigma) = estimate_by_gauge(model, run, run.shift, &[], 0.0, spec);
         let possible = |e: &f64| *e > 0.0 && *e <= spec.largest;
         let size = median_of(&estimates, &estimate_sigma, possible).unwrap_or(0.0);
         let (estimates, estimate_sigma) = match size > 0.0 {
@@ -258,7 +258,7 @@ fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
             refused,
             estimates,
             estimate_sigma,
-            ..undetermined(run, n)
+            ..undetermined_run(run, n)
         });
     }
     let mut answer = None;
@@ -349,7 +349,7 @@ fn refused_by_itself(estimates: &[f64], sigma: &[f64], largest: f64) -> Option<R
     (!pairs().any(possible)).then_some(Refusal::Undetermined)
 }
 
-fn weighed(
+fn weigh_run(
     model: &PayloadModel,
     run: &PayloadRun,
     found: &Located,
@@ -389,7 +389,7 @@ fn weighed(
     let (estimates, estimate_sigma) = if run.strain.is_empty() {
         (Vec::new(), Vec::new())
     } else {
-        alone(model, run, shift, &found.reactions, force, spec)
+        estimate_by_gauge(model, run, shift, &found.reactions, force, spec)
     };
     let outside = spec.region.filter(|_| free).map(|region| {
         (0..2)

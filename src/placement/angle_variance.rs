@@ -49,13 +49,13 @@ fn overshoot(p: &Trig, h: f64) -> f64 {
     h * h / 8.0 * (p[1].hypot(p[2]) + 4.0 * p[3].hypot(p[4]))
 }
 
-fn less(f: &Trig, v: &Trig, lambda: f64) -> Trig {
+fn subtract_scaled(f: &Trig, v: &Trig, lambda: f64) -> Trig {
     std::array::from_fn(|i| f[i] - lambda * v[i])
 }
 
 /// True where `f / v` certainly stays under `limit` at every angle (`v` is positive).
 pub fn stays_under(f: &Trig, v: &Trig, limit: f64, samples: &[[f64; 4]; SAMPLES]) -> bool {
-    let g = less(f, v, limit);
+    let g = subtract_scaled(f, v, limit);
     let slack = overshoot(&g, std::f64::consts::TAU / SAMPLES as f64);
     samples.iter().all(|cs| value(&g, cs) + slack < 0.0)
 }
@@ -83,7 +83,7 @@ pub fn largest_ratio(f: &Trig, v: &Trig, samples: &[[f64; 4]; SAMPLES]) -> (f64,
     }
     // Certify: f - lambda v must be negative everywhere, else a point above lambda has been found.
     for _ in 0..8 {
-        let g = less(f, v, best.0 * (1.0 + CERTIFIED_EXCESS) + f64::MIN_POSITIVE);
+        let g = subtract_scaled(f, v, best.0 * (1.0 + CERTIFIED_EXCESS) + f64::MIN_POSITIVE);
         match first_above(&g, 0.0, std::f64::consts::TAU, 0) {
             None => break,
             Some(u) => {

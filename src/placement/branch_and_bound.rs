@@ -81,7 +81,7 @@ pub fn prove(
     excludes: &(impl Fn(usize, usize) -> bool + Sync),
 ) -> Proof {
     let n = p.active.len();
-    let rules = Rules::of(p.active, excludes);
+    let rules = Rules::from_active(p.active, excludes);
     let mut known = p.incumbent;
     let mut best: Option<Chosen> = None;
     let mut open = vec![Node {
@@ -123,7 +123,7 @@ pub fn prove(
 }
 
 impl Rules {
-    fn of(active: &Active, excludes: &(impl Fn(usize, usize) -> bool + Sync)) -> Self {
+    fn from_active(active: &Active, excludes: &(impl Fn(usize, usize) -> bool + Sync)) -> Self {
         let n = active.len();
         let conflicts: Vec<Vec<u32>> = (0..n)
             .into_par_iter()
@@ -161,7 +161,10 @@ fn information(p: &Problem, rows: &[u32]) -> Vec<f64> {
 
 /// The criterion of a complete layout.
 fn layout(p: &Problem, rows: &[u32]) -> Option<Chosen> {
-    let point = p.active.criterion.at(&information(p, rows), p.active.k)?;
+    let point = p
+        .active
+        .criterion
+        .evaluate_at(&information(p, rows), p.active.k)?;
     let mut rows: Vec<usize> = rows.iter().map(|&i| i as usize).collect();
     rows.sort_unstable();
     Some(Chosen {
@@ -190,7 +193,7 @@ fn evaluate(p: &Problem, rules: &Rules, mut node: Node, known: f64) -> Step {
             if s > 0 {
                 all.extend(&node.free);
             }
-            if compatible(rules, &all) {
+            if has_no_conflict(rules, &all) {
                 step.found
                     .extend(layout(p, &all).filter(|c| c.log_det > known));
             }
@@ -205,7 +208,7 @@ fn evaluate(p: &Problem, rules: &Rules, mut node: Node, known: f64) -> Step {
         node.weights.clone_from(&relaxed.weights);
         node.bound = node.bound.min(relaxed.value() + degree * relaxed.gap);
         // The heaviest rows as a layout.
-        if let Some(found) = rounded(p, rules, &node, s)
+        if let Some(found) = choose_heaviest_rows(p, rules, &node, s)
             && found.log_det > known + SAME
         {
             known = found.log_det;
@@ -217,7 +220,7 @@ fn evaluate(p: &Problem, rules: &Rules, mut node: Node, known: f64) -> Step {
         let before = (node.inside.len(), node.free.len());
         let marks = marks(&relaxed, &sub, s, known, degree);
         fix(rules, &mut node, &marks);
-        if p.s < node.inside.len() || !compatible(rules, &node.inside) {
+        if p.s < node.inside.len() || !has_no_conflict(rules, &node.inside) {
             return step;
         }
         // Another round where much was fixed: the relaxation of what is left is tighter.
@@ -247,7 +250,7 @@ fn free_rows(p: &Problem, node: &Node) -> Active {
     sub
 }
 
-fn compatible(rules: &Rules, rows: &[u32]) -> bool {
+fn has_no_conflict(rules: &Rules, rows: &[u32]) -> bool {
     rows.iter().enumerate().all(|(n, &i)| {
         let c = &rules.conflicts[i as usize];
         c.is_empty() || rows[..n].iter().all(|j| c.binary_search(j).is_err())
@@ -351,7 +354,7 @@ fn refill(weights: &mut [f64], sub: &Active, s: f64) {
 }
 
 /// The heaviest rows that go together.
-fn rounded(p: &Problem, rules: &Rules, node: &Node, s: usize) -> Option<Chosen> {
+fn choose_heaviest_rows(p: &Problem, rules: &Rules, node: &Node, s: usize) -> Option<Chosen> {
     let mut order: Vec<usize> = (0..node.free.len()).collect();
     order.sort_by(|&a, &b| node.weights[b].total_cmp(&node.weights[a]).then(a.cmp(&b)));
     let mut rows = node.inside.clone();

@@ -36,7 +36,7 @@ pub struct Scatter {
 
 impl Scatter {
     /// Returns equal noise at all places, as the only error.
-    pub fn uniform(noise: f64) -> Self {
+    pub fn with_uniform_noise(noise: f64) -> Self {
         Self {
             noise,
             angle_sd: 0.0,
@@ -201,7 +201,7 @@ impl Candidates {
 
     /// Returns these candidates with noise as the only error.
     pub fn with_noise_only(mut self) -> Self {
-        self.scatter = Scatter::uniform(self.scatter.noise);
+        self.scatter = Scatter::with_uniform_noise(self.scatter.noise);
         self.slopes = Vec::new();
         self
     }

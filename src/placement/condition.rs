@@ -76,7 +76,7 @@ pub fn find_least_condition(
             let first = if n == 0 {
                 known.clone()
             } else {
-                search.moved(&known, known.len(), &mut rng)
+                search.perturb_rows(&known, known.len(), &mut rng)
             };
             let mut best = search.improve(first);
             for _ in 0..perturbations {
@@ -85,12 +85,15 @@ pub fn find_least_condition(
                 }
                 let from = best.as_ref().map_or(&known, |b| &b.rows).clone();
                 let count = 1 + rng.random_range(0..3.min(from.len()));
-                best = better(best, search.improve(search.moved(&from, count, &mut rng)));
+                best = choose_better(
+                    best,
+                    search.improve(search.perturb_rows(&from, count, &mut rng)),
+                );
             }
             best
         })
         .collect();
-    let best = found.into_iter().fold(None, better)?;
+    let best = found.into_iter().fold(None, choose_better)?;
     let mut gauges: Vec<Choice> = best.rows.iter().map(|&i| choices[i]).collect();
     gauges.sort_by(|a, b| a.place.cmp(&b.place).then(a.angle.total_cmp(&b.angle)));
     Some(Conditioned {
@@ -112,7 +115,7 @@ fn taking_part(c: &Candidates, layout: &[Choice], most: usize) -> Vec<Choice> {
     let all = c.n_places() * angles.len();
     // A stride without a common factor with the number of angles meets all of them.
     let mut stride = all.div_ceil(most.max(1)).max(1);
-    while stride > 1 && common(stride, angles.len()) > 1 {
+    while stride > 1 && greatest_common_divisor(stride, angles.len()) > 1 {
         stride += 1;
     }
     let mut out = layout.to_vec();
@@ -133,8 +136,12 @@ fn taking_part(c: &Candidates, layout: &[Choice], most: usize) -> Vec<Choice> {
     out
 }
 
-fn common(a: usize, b: usize) -> usize {
-    if b == 0 { a } else { common(b, a % b) }
+fn greatest_common_divisor(a: usize, b: usize) -> usize {
+    if b == 0 {
+        a
+    } else {
+        greatest_common_divisor(b, a % b)
+    }
 }
 
 struct Found {
@@ -144,7 +151,7 @@ struct Found {
     least: f64,
 }
 
-fn better(a: Option<Found>, b: Option<Found>) -> Option<Found> {
+fn choose_better(a: Option<Found>, b: Option<Found>) -> Option<Found> {
     match (a, b) {
         (Some(a), Some(b)) => {
             let least = a.least.min(b.least);
@@ -189,7 +196,7 @@ impl<E: Fn(usize, usize) -> bool> Search<'_, E> {
         (value.is_finite()).then_some((value, condition))
     }
 
-    fn moved(&self, from: &[usize], count: usize, rng: &mut ChaCha8Rng) -> Vec<usize> {
+    fn perturb_rows(&self, from: &[usize], count: usize, rng: &mut ChaCha8Rng) -> Vec<usize> {
         move_gauges(from, count, self.len(), self.excludes, rng)
     }
 
@@ -212,7 +219,7 @@ impl<E: Fn(usize, usize) -> bool> Search<'_, E> {
                     .map(|(_, &r)| r)
                     .collect();
                 let m = self.information(&rest);
-                for i in self.promising(&m, &rows, slot) {
+                for i in self.rank_rows(&m, &rows, slot) {
                     let mut with = m.clone();
                     spd::add_outer(&mut with, self.row(i), 1.0);
                     if let Some(v) = self.value(&with) {
@@ -236,7 +243,7 @@ impl<E: Fn(usize, usize) -> bool> Search<'_, E> {
     }
 
     /// Returns the rows that give the least `tr(M) tr(M^-1)` together with the rest `m`, and fit.
-    fn promising(&self, m: &[f64], rows: &[usize], slot: usize) -> Vec<usize> {
+    fn rank_rows(&self, m: &[f64], rows: &[usize], slot: usize) -> Vec<usize> {
         let k = self.k;
         let trace: f64 = (0..k).map(|p| m[p * k + p]).sum();
         let mut m = m.to_vec();

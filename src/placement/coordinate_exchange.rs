@@ -41,7 +41,7 @@ impl<'a, E: Fn(usize, usize) -> bool> List<'a, E> {
     pub fn new(active: &'a Active, prior: &'a [f64], excludes: &'a E) -> Self {
         Self {
             active,
-            packed: Packed::of(active),
+            packed: Packed::from_active(active),
             prior,
             excludes,
             partners: vec![OnceLock::new(); active.len()],
@@ -79,7 +79,7 @@ pub(super) struct CoordinateExchange {
 
 impl CoordinateExchange {
     /// Begins with these rows and `base` as prior information; `None` where that is singular.
-    pub fn of<E: Fn(usize, usize) -> bool>(
+    pub fn from_rows<E: Fn(usize, usize) -> bool>(
         list: &List<E>,
         base: &[f64],
         rows: Vec<usize>,
@@ -123,7 +123,7 @@ impl CoordinateExchange {
         for &i in &self.rows {
             spd::add_outer(&mut m, active.row(i), 1.0);
         }
-        let Some(point) = active.criterion.at(&m, active.k) else {
+        let Some(point) = active.criterion.evaluate_at(&m, active.k) else {
             return false;
         };
         self.value = point.value;
@@ -143,7 +143,7 @@ impl CoordinateExchange {
                 if ratio < LEAST_PART {
                     return 0.0;
                 }
-                let (x, y) = (self.full.cross(slot, i), g.cross(slot, i));
+                let (x, y) = (self.full.cross_variance(slot, i), g.cross_variance(slot, i));
                 let fall = g.d[i] - g.d[j] + 2.0 * x * y
                     - g.d[i] * self.full.d[j]
                     - g.d[j] * self.full.d[i];
@@ -155,7 +155,7 @@ impl CoordinateExchange {
     }
 
     /// The row that gains most in a slot, with its gain.
-    fn best<E: Fn(usize, usize) -> bool>(
+    fn find_best_exchange<E: Fn(usize, usize) -> bool>(
         &self,
         list: &List<E>,
         slot: usize,
@@ -166,7 +166,9 @@ impl CoordinateExchange {
         let least = 1.0 + LEAST_GAIN;
         let better = |best: &Option<(f64, usize)>, g: f64| g > best.map_or(least, |b| b.0);
         if self.second.is_none() {
-            best = self.full.best(&list.packed, slot, j, &self.mask, least);
+            best = self
+                .full
+                .find_best_row(&list.packed, slot, j, &self.mask, least);
         } else {
             for i in 0..list.active.len() {
                 let g = self.gain(criterion, slot, i, j);
@@ -226,7 +228,7 @@ impl CoordinateExchange {
         for _ in 0..MAX_SWEEPS {
             let mut gained = false;
             for slot in 0..self.rows.len() {
-                if let Some((_, i)) = self.best(list, slot) {
+                if let Some((_, i)) = self.find_best_exchange(list, slot) {
                     if !self.swap(list, base, slot, i) {
                         return false;
                     }

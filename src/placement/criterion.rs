@@ -12,7 +12,7 @@
 
 use crate::linalg::spd;
 
-/// Criterion that a layout maximises. [`Criterion::at`] gives its value at an information matrix `M`.
+/// Criterion that a layout maximises. [`Criterion::evaluate_at`] gives its value at an information matrix `M`.
 ///
 /// # Example
 /// ```
@@ -61,18 +61,18 @@ impl Criterion {
     /// The degree `q`: `value` rises by `q ln t` where `M` is multiplied by `t`, so `exp(difference / q)` is an efficiency.
     pub fn degree(&self, k: usize) -> usize {
         match self {
-            Self::Ds(nuisance) => k - self.leading(k, *nuisance),
+            Self::Ds(nuisance) => k - self.n_nuisance_columns(k, *nuisance),
             _ => k,
         }
     }
 
     /// At least one column is asked for.
-    fn leading(&self, k: usize, nuisance: usize) -> usize {
+    fn n_nuisance_columns(&self, k: usize, nuisance: usize) -> usize {
         nuisance.min(k.saturating_sub(1))
     }
 
     /// Value and slope at `m`; `None` where it is singular.
-    pub fn at(&self, m: &[f64], k: usize) -> Option<Point> {
+    pub fn evaluate_at(&self, m: &[f64], k: usize) -> Option<Point> {
         let l = spd::cholesky(m, k)?;
         let mut root = spd::inverse_lower(&l, k);
         let inverse = spd::gram_of_lower(&root, k);
@@ -85,7 +85,7 @@ impl Criterion {
                 spread: 0.0,
             }),
             Self::Ds(nuisance) => {
-                let q = self.leading(k, *nuisance);
+                let q = self.n_nuisance_columns(k, *nuisance);
                 // The leading block of the factor is the factor of the leading block.
                 let mut head = root.clone();
                 head[q * k..].fill(0.0);

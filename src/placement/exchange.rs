@@ -61,12 +61,14 @@ pub fn search(
             let first = match (start, known) {
                 (0, Some(rows)) => rows.to_vec(),
                 (1, _) => Vec::new(),
-                _ => compatible(&order, s, excludes),
+                _ => choose_compatible_rows(&order, s, excludes),
             };
-            let first =
-                complete(active, &list.packed, s, &ridge, first, excludes).or_else(|| {
-                    (0..REPAIRS).find_map(|_| loosest(active.len(), s, excludes, &mut rng))
-                })?;
+            let first = complete_layout(active, &list.packed, s, &ridge, first, excludes).or_else(
+                || {
+                    (0..REPAIRS)
+                        .find_map(|_| draw_loosest_rows(active.len(), s, excludes, &mut rng))
+                },
+            )?;
             let mut at = improve(&list, &ridge, first)?;
             let mut best = (at.value, at.rows.clone());
             let mut now = at.clone();
@@ -144,7 +146,7 @@ fn by_lot(weights: &[f64], rng: &mut ChaCha8Rng) -> Vec<usize> {
     keyed.into_iter().map(|(_, i)| i).collect()
 }
 
-fn compatible(
+fn choose_compatible_rows(
     order: &[usize],
     s: usize,
     excludes: &(impl Fn(usize, usize) -> bool + Sync),
@@ -165,7 +167,7 @@ fn compatible(
 const REPAIRS: usize = 200;
 
 /// Any `s` compatible rows, those that exclude the fewest others first; ties and one row in eight by lot.
-fn loosest(
+fn draw_loosest_rows(
     n: usize,
     s: usize,
     excludes: &(impl Fn(usize, usize) -> bool + Sync),
@@ -188,7 +190,7 @@ fn loosest(
 }
 
 /// Adds the row of largest variance until there are `s`.
-fn complete(
+fn complete_layout(
     active: &Active,
     packed: &Packed,
     s: usize,
@@ -244,12 +246,12 @@ fn improve<E: Fn(usize, usize) -> bool + Sync>(
     ridge: &[f64],
     chosen: Vec<usize>,
 ) -> Option<CoordinateExchange> {
-    let mut found = match CoordinateExchange::of(list, list.prior, chosen.clone()) {
+    let mut found = match CoordinateExchange::from_rows(list, list.prior, chosen.clone()) {
         Some(found) => found,
         None => {
-            let mut found = CoordinateExchange::of(list, ridge, chosen)?;
+            let mut found = CoordinateExchange::from_rows(list, ridge, chosen)?;
             found.improve(list, ridge).then_some(())?;
-            CoordinateExchange::of(list, list.prior, found.rows)?
+            CoordinateExchange::from_rows(list, list.prior, found.rows)?
         }
     };
     found.improve(list, list.prior).then_some(found)
@@ -260,7 +262,7 @@ fn value(active: &Active, prior: &[f64], rows: &[usize]) -> Option<f64> {
     let mut m = prior.to_vec();
     rows.iter()
         .for_each(|&i| spd::add_outer(&mut m, active.row(i), 1.0));
-    active.criterion.at(&m, active.k).map(|p| p.value)
+    active.criterion.evaluate_at(&m, active.k).map(|p| p.value)
 }
 
 /// Gauges from which a perturbation moves more of them.

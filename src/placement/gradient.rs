@@ -42,7 +42,7 @@ pub fn forms(
     sites
         .par_iter()
         .map(|&(shell, side)| {
-            let near = beside(model, &edges, shell);
+            let near = find_adjacent_shells(model, &edges, shell);
             let mut form = [0.0; 6];
             for (load, scale) in loads.iter().zip(scales) {
                 let factor = scale / load.applied / MICROSTRAIN;
@@ -79,7 +79,11 @@ fn edges(model: &Model) -> HashMap<[u32; 2], Vec<ShellIx>> {
     edges
 }
 
-fn beside(model: &Model, edges: &HashMap<[u32; 2], Vec<ShellIx>>, shell: ShellIx) -> Vec<Beside> {
+fn find_adjacent_shells(
+    model: &Model,
+    edges: &HashMap<[u32; 2], Vec<ShellIx>>,
+    shell: ShellIx,
+) -> Vec<Beside> {
     let Some(me) = model.shells.get(shell.us()) else {
         return Vec::new();
     };

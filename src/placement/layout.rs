@@ -122,7 +122,7 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
     // Loads asked for.
     let k = spec.criterion.degree(c.n_loads());
     let spaced = spec.spacing > 0.0 && !c.positions().is_empty();
-    let mut bound = Bound::of(c, spec, spaced)?;
+    let mut bound = Bound::from_candidates(c, spec, spaced)?;
     let quick = Effort {
         starts: if spaced { 4 } else { 2 },
         perturbations: 0,
@@ -144,7 +144,7 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
                 gauges: spec.gauges,
                 spacing: spec.spacing,
             },
-            false => singular(c, spec),
+            false => singular_error(c, spec),
         }
     })?;
     // What can't be in a better layout may be in one that loses less.
@@ -159,7 +159,7 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
         Loss::Judged => None,
     };
     let end = match robust {
-        Some(found) => End::unproved(found),
+        Some(found) => End::without_proof(found),
         None => certify(c, spec, &mut bound, found),
     };
     let (mut gauges, log_det) = end.found;
@@ -183,7 +183,7 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
     })
 }
 
-fn singular(c: &Candidates, spec: &Spec) -> PlaceError {
+fn singular_error(c: &Candidates, spec: &Spec) -> PlaceError {
     PlaceError::Singular {
         gauges: spec.gauges,
         loads: c.n_loads(),
@@ -203,7 +203,7 @@ struct Bound {
 }
 
 impl Bound {
-    fn of(c: &Candidates, spec: &Spec, spaced: bool) -> Result<Self, PlaceError> {
+    fn from_candidates(c: &Candidates, spec: &Spec, spaced: bool) -> Result<Self, PlaceError> {
         let groups = if spaced || *c.angles() == Angles::Continuous {
             Groups::Places
         } else {
@@ -218,7 +218,7 @@ impl Bound {
         if places < gauges || gauges == 0 {
             return Err(PlaceError::TooFewPlaces { gauges, places });
         }
-        let col = relaxed(c, spec, &groups, &[]).ok_or_else(|| singular(c, spec))?;
+        let col = solve_relaxed(c, spec, &groups, &[]).ok_or_else(|| singular_error(c, spec))?;
         Ok(Self {
             groups,
             upper: col.upper_bound,
@@ -228,7 +228,7 @@ impl Bound {
     }
 }
 
-fn relaxed(c: &Candidates, spec: &Spec, groups: &Groups, warm: &[Choice]) -> Option<Columns> {
+fn solve_relaxed(c: &Candidates, spec: &Spec, groups: &Groups, warm: &[Choice]) -> Option<Columns> {
     column_generation::solve(
         c,
         spec.gauges,
@@ -267,7 +267,7 @@ fn tighten(
         );
         let of = spacing::cliques(c.n_places(), &priced, c.positions(), spec.spacing);
         bound.groups = Groups::Cliques(of);
-        let Some(next) = relaxed(c, spec, &bound.groups, &bound.col.choices) else {
+        let Some(next) = solve_relaxed(c, spec, &bound.groups, &bound.col.choices) else {
             break;
         };
         bound.passes += next.passes;
@@ -328,7 +328,7 @@ struct End {
 }
 
 impl End {
-    fn unproved(found: Found) -> Self {
+    fn without_proof(found: Found) -> Self {
         Self {
             found,
             proved: false,
@@ -340,7 +340,7 @@ impl End {
 
 /// The layout held against the bound, and the proof where the bound leaves room and one is asked for.
 fn certify(c: &Candidates, spec: &Spec, bound: &mut Bound, found: Found) -> End {
-    let mut end = End::unproved(found);
+    let mut end = End::without_proof(found);
     end.proved = end.found.1 >= bound.upper - branch_and_bound::SAME;
     if end.proved || !(spec.proof > 0.0) || *c.angles() == Angles::Continuous {
         return end;

@@ -33,7 +33,7 @@ pub(super) fn step(
     }
     rows.extend(&out[..join]);
     rows.sort_unstable();
-    let model = Model::of(active, state, &rows);
+    let model = Model::from_rows(active, state, &rows);
     let mut aim = weights.to_vec();
     model.solve(active, &rows, &mut aim);
     let mut size = 1.0;
@@ -59,7 +59,7 @@ struct Model {
 }
 
 impl Model {
-    fn of(active: &Active, state: &Relaxed, rows: &[usize]) -> Self {
+    fn from_rows(active: &Active, state: &Relaxed, rows: &[usize]) -> Self {
         let (k, f) = (active.k, rows.len());
         let mut v = vec![0.0; f * k];
         for (&i, out) in rows.iter().zip(v.chunks_exact_mut(k)) {
@@ -190,5 +190,5 @@ fn value(active: &Active, prior: &[f64], weights: &[f64]) -> Option<f64> {
             spd::add_outer(&mut m, active.row(i), w);
         }
     }
-    Criterion::D.at(&m, active.k).map(|p| p.value)
+    Criterion::D.evaluate_at(&m, active.k).map(|p| p.value)
 }

@@ -144,5 +144,5 @@ pub fn value(rows: &[Vec<f64>], prior: &[f64], k: usize, criterion: &Criterion) 
     for r in rows {
         spd::add_outer(&mut m, r, 1.0);
     }
-    criterion.at(&m, k).map(|p| p.value)
+    criterion.evaluate_at(&m, k).map(|p| p.value)
 }

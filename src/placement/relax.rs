@@ -389,7 +389,7 @@ fn measure(active: &Active, s: usize, prior: &[f64], weights: &[f64]) -> Option<
             spd::add_outer(&mut m, active.row(i), w);
         }
     }
-    let point = active.criterion.at(&m, k)?;
+    let point = active.criterion.evaluate_at(&m, k)?;
     let slope = if active.criterion == Criterion::D {
         point.inverse.clone()
     } else {

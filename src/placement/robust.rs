@@ -68,17 +68,17 @@ pub fn search(
                 let count = 1 + rng.random_range(0..2);
                 let rows = move_gauges(from, count, active.len(), excludes, &mut rng);
                 let next = improve(active, prior, rows, excludes, stop);
-                best = better(best, next);
+                best = choose_better(best, next);
             }
             best
         })
         .collect();
-    found.into_iter().fold(None, better)
+    found.into_iter().fold(None, choose_better)
 }
 
 type Found = Option<(Vec<usize>, f64)>;
 
-fn better(a: Found, b: Found) -> Found {
+fn choose_better(a: Found, b: Found) -> Found {
     match (a, b) {
         (Some(a), Some(b)) => Some(if b.1 > a.1 { b } else { a }),
         (a, b) => a.or(b),

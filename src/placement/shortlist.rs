@@ -94,7 +94,7 @@ pub(super) fn largest_variance_rows(c: &Candidates, spec: &Spec, gauges: &[Choic
     for &g in gauges {
         spd::add_outer(&mut m, &c.row(g), 1.0);
     }
-    let Some(point) = spec.criterion.at(&m, k) else {
+    let Some(point) = spec.criterion.evaluate_at(&m, k) else {
         return Vec::new();
     };
     let slope = point.slope(k);
@@ -226,7 +226,7 @@ pub(super) fn polish(
             for p in 0..k {
                 m[p * k + p] += scale;
             }
-            let Some(point) = spec.criterion.at(&m, k) else {
+            let Some(point) = spec.criterion.evaluate_at(&m, k) else {
                 continue;
             };
             let one = c.subset(&[gauges[i].place]);
@@ -259,5 +259,5 @@ pub(super) fn value_of(c: &Candidates, spec: &Spec, gauges: &[Choice]) -> Option
     for &g in gauges {
         spd::add_outer(&mut m, &c.row(g), 1.0);
     }
-    spec.criterion.at(&m, c.n_loads()).map(|p| p.value)
+    spec.criterion.evaluate_at(&m, c.n_loads()).map(|p| p.value)
 }

@@ -22,9 +22,12 @@ fn matrix(path: &str) -> Option<Vec<Vec<f64>>> {
 }
 
 fn rows_of(m: &[Vec<f64>]) -> Candidates {
-    Candidates::from_rows(m[0].len(), m.len(), Scatter::uniform(1.0), |i, out| {
-        out.copy_from_slice(&m[i])
-    })
+    Candidates::from_rows(
+        m[0].len(),
+        m.len(),
+        Scatter::with_uniform_noise(1.0),
+        |i, out| out.copy_from_slice(&m[i]),
+    )
 }
 
 /// The tensors of `ladder_T_k36_n2e4.npy` (float32, places x 3 x 36, C order).
@@ -63,9 +66,15 @@ fn benchmark(name: &str) -> Option<Candidates> {
         _ => {
             let k = if name.ends_with("first6") { 6 } else { 36 };
             let (n, t) = tensors(k)?;
-            Candidates::from_tensors(k, n, grid15(), Scatter::uniform(1.0), |p, out| {
-                out.copy_from_slice(&t[p * 3 * k..(p + 1) * 3 * k]);
-            })
+            Candidates::from_tensors(
+                k,
+                n,
+                grid15(),
+                Scatter::with_uniform_noise(1.0),
+                |p, out| {
+                    out.copy_from_slice(&t[p * 3 * k..(p + 1) * 3 * k]);
+                },
+            )
         }
     })
 }
@@ -258,11 +267,16 @@ fn continuous_angles_are_certified_over_a_fine_grid_and_not_worse_than_it() {
     let Some((n, t)) = tensors(6) else { return };
     let fill = |p: usize, out: &mut [f64]| out.copy_from_slice(&t[p * 18..(p + 1) * 18]);
     let sparse: Vec<u32> = (0..n as u32).step_by(10).collect();
-    let continuous =
-        Candidates::from_tensors(6, n, Angles::Continuous, Scatter::uniform(1.0), fill)
-            .subset(&sparse);
+    let continuous = Candidates::from_tensors(
+        6,
+        n,
+        Angles::Continuous,
+        Scatter::with_uniform_noise(1.0),
+        fill,
+    )
+    .subset(&sparse);
     let fine = Angles::Grid((0..180).map(|i| f64::from(i).to_radians()).collect());
-    let fine = Candidates::from_tensors(6, n, fine, Scatter::uniform(1.0), fill)
+    let fine = Candidates::from_tensors(6, n, fine, Scatter::with_uniform_noise(1.0), fill)
         .subset(&sparse)
         .with_positions((0..sparse.len()).map(|i| [i as f64, 0.0, 0.0]).collect());
     for s in [6, 10] {

@@ -19,7 +19,7 @@ pub(super) struct Packed {
 }
 
 impl Packed {
-    pub fn of(active: &Active) -> Self {
+    pub fn from_active(active: &Active) -> Self {
         let k = active.k;
         let n = active.len().next_multiple_of(WIDE);
         let mut blocks = vec![0.0; n * k];
@@ -119,18 +119,18 @@ impl Table {
     }
 
     /// Cross variance of row `i` with the gauge in `slot`.
-    pub fn cross(&self, slot: usize, i: usize) -> f64 {
+    pub fn cross_variance(&self, slot: usize, i: usize) -> f64 {
         self.cross[slot * self.d.len() + i]
     }
 
     /// Factor on the determinant when row `i` takes the place of row `j` in `slot`.
     pub fn ratio(&self, slot: usize, i: usize, j: usize) -> f64 {
-        let cross = self.cross(slot, i);
+        let cross = self.cross_variance(slot, i);
         (1.0 + self.d[i]) * (1.0 - self.d[j]) + cross * cross
     }
 
     /// The largest factor above `least` of a row in place of `j` in `slot`, and the row; `mask` is added to the factors.
-    pub fn best(
+    pub fn find_best_row(
         &self,
         packed: &Packed,
         slot: usize,

@@ -166,7 +166,7 @@ fn channel(observations: &Observations, c: usize) -> Option<Channel> {
 }
 
 /// Values of a cause from their middle, over their range.
-fn scaled(cause: &Cause) -> (Vec<f64>, f64) {
+fn scale_values(cause: &Cause) -> (Vec<f64>, f64) {
     let finite = || cause.values.iter().copied().filter(|v| v.is_finite());
     let most = finite().fold(f64::NEG_INFINITY, f64::max);
     let least = finite().fold(f64::INFINITY, f64::min);
@@ -179,7 +179,7 @@ fn scaled(cause: &Cause) -> (Vec<f64>, f64) {
 }
 
 fn weigh(observations: &Observations, noise: &[f64], causes: &[&Cause]) -> CauseSet {
-    let x: Vec<(Vec<f64>, f64)> = causes.iter().map(|c| scaled(c)).collect();
+    let x: Vec<(Vec<f64>, f64)> = causes.iter().map(|c| scale_values(c)).collect();
     let at = |k: usize, r: usize| x[k].0.get(r).copied().unwrap_or(0.0);
     let mut out = CauseSet {
         names: causes.iter().map(|c| c.name.clone()).collect(),
@@ -208,7 +208,7 @@ fn weigh(observations: &Observations, noise: &[f64], causes: &[&Cause]) -> Cause
                 covariance[i * n + j] = shared(r, s) + if i == j { sigma * sigma } else { 0.0 };
             }
         }
-        let Some(p) = Precision::of(&covariance, n) else {
+        let Some(p) = Precision::from_covariance(&covariance, n) else {
             continue;
         };
         let weighted = p.apply(&ch.readings);

@@ -11,7 +11,7 @@ pub(super) struct Check {
 
 impl Check {
     /// Returns a check that `passes`, or fails for the reason `against`.
-    pub fn of(passes: bool, against: impl FnOnce() -> String) -> Self {
+    pub fn from_condition(passes: bool, against: impl FnOnce() -> String) -> Self {
         Self {
             against: (!passes).then(against),
         }
@@ -57,7 +57,7 @@ impl Fall {
     ///
     /// A right model leaves at each reading what its floor is, whatever the effect takes there: the error of the sum of squares is
     /// `2 sqrt(sum floor^2 (without - with)^2)`.
-    pub fn between(without: &[f64], with: &[f64], floor: &[f64]) -> Self {
+    pub fn from_residuals(without: &[f64], with: &[f64], floor: &[f64]) -> Self {
         let (mut by, mut variance) = (0.0, 0.0);
         for ((a, b), f) in without.iter().zip(with).zip(floor) {
             by += a * a - b * b;
@@ -77,7 +77,7 @@ impl Fall {
 
 /// Returns the reason against a set of `n` effects and log evidence `level` where an alternative is ahead by more than `limit`, and by `decisive` for
 /// each effect that it has more: explanations with their log evidence.
-pub(super) fn ahead<'a>(
+pub(super) fn describe_better_alternative<'a>(
     (n, level): (usize, f64),
     [limit, decisive]: [f64; 2],
     alternatives: impl Iterator<Item = (&'a [String], f64)>,
@@ -94,13 +94,16 @@ pub(super) fn ahead<'a>(
 
 #[cfg(test)]
 mod tests {
-    use super::{Check, Fall, ahead, reasons, verdict};
+    use super::{Check, Fall, describe_better_alternative, reasons, verdict};
     use crate::reconcile::Verdict;
 
     #[test]
     fn one_failed_check_withholds_a_name_and_the_residual_without_it_decides_between_unknown_and_below()
      {
-        let fine = [Check::of(true, || "never".into()), Check::unless(None)];
+        let fine = [
+            Check::from_condition(true, || "never".into()),
+            Check::unless(None),
+        ];
         let failed = [fine[0].clone(), Check::unless(Some("too small".into()))];
         assert_eq!(verdict(false, &fine, false, false), Verdict::Named);
         assert_eq!(verdict(false, &failed, false, true), Verdict::Unknown);
@@ -120,17 +123,19 @@ mod tests {
     /// One reading off by 3 at a floor of 1, taken whole: falls by 9, error 2 * 3. Off by 1: falls by 1, error 2.
     #[test]
     fn a_fall_counts_only_beyond_its_standard_error() {
-        let large = Fall::between(&[3.0, 1.0], &[0.0, 1.0], &[1.0, 1.0]);
+        let large = Fall::from_residuals(&[3.0, 1.0], &[0.0, 1.0], &[1.0, 1.0]);
         assert_eq!((large.by, large.error), (9.0, 6.0));
         assert!(large.is_seen());
-        assert!(!Fall::between(&[1.0], &[0.0], &[1.0]).is_seen());
-        assert!(!Fall::between(&[1.0], &[1.0], &[1.0]).is_seen());
+        assert!(!Fall::from_residuals(&[1.0], &[0.0], &[1.0]).is_seen());
+        assert!(!Fall::from_residuals(&[1.0], &[1.0], &[1.0]).is_seen());
     }
 
     #[test]
     fn an_alternative_is_ahead_only_beyond_the_limit() {
         let ids = ["a".to_owned()];
-        let one = |n: usize, e: f64| ahead((n, 10.0), [3.0, 5.0], [(&ids[..], e)].into_iter());
+        let one = |n: usize, e: f64| {
+            describe_better_alternative((n, 10.0), [3.0, 5.0], [(&ids[..], e)].into_iter())
+        };
         assert_eq!(one(1, 12.9), None);
         assert!(one(1, 13.1).is_some_and(|w| w.contains('a')));
         // One effect more than the set has none of.

@@ -168,7 +168,7 @@ pub struct LoadShift {
 
 impl LoadShift {
     /// Returns whether the load changes by more than two standard deviations.
-    pub fn moved(&self) -> bool {
+    pub fn is_significant(&self) -> bool {
         (self.after - self.before).abs() > 2.0 * self.sigma
     }
 }

@@ -39,7 +39,7 @@ pub trait Scorer {
     /// Candidates to add to `base`, best first.
     fn screen(&mut self, base: &Scored<Self::Fit>) -> Vec<Addition>;
     /// Returns whether both candidates can be in one set.
-    fn compatible(&self, a: usize, b: usize) -> bool;
+    fn is_compatible_pair(&self, a: usize, b: usize) -> bool;
     /// Returns a number that is common to candidates without a relevant difference. The screen keeps few candidates of each number.
     fn kin(&self, candidate: usize) -> usize;
     /// Returns whether the search is to stop; its result is then of no use.
@@ -166,7 +166,10 @@ fn extend<S: Scorer>(
             break;
         }
         if base.set.contains(&candidate)
-            || base.set.iter().any(|&m| !scorer.compatible(m, candidate))
+            || base
+                .set
+                .iter()
+                .any(|&m| !scorer.is_compatible_pair(m, candidate))
         {
             continue;
         }

@@ -147,7 +147,7 @@ fn solve(
         for (i, v) in covariance.iter_mut().enumerate() {
             let (g, h) = (i / n, i % n);
             if let Some(of_gauges) = of_gauges.filter(|_| g != h) {
-                *v += noise * of_gauges.between(g, h);
+                *v += noise * of_gauges.covariance_between(g, h);
             } else if g == h {
                 let own = of_gauges.map_or(1.0, |o| o.variance(g));
                 *v = (*v + noise * own) * (1.0 + excess.each);

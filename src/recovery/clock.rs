@@ -16,7 +16,7 @@ const ENOUGH: usize = 200;
 const SMOOTH: f64 = 0.5;
 
 /// Returns findings on uneven steps, missing samples and a unit of time that only the size of the times shows. They do not stop a record.
-pub fn irregular(subject: &str, clock: &Clock) -> Vec<Finding> {
+pub fn check_time_steps(subject: &str, clock: &Clock) -> Vec<Finding> {
     let mut out = Vec::new();
     out.extend(
         clock

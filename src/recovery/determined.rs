@@ -26,7 +26,7 @@ pub fn check(s: &Sensitivity, runs: &[RunEstimate]) -> Vec<Finding> {
         .filter_map(|(l, load)| beyond_expected(&load.name, load.expected, values(l)))
         .collect();
     out.extend(far_below_expected(s, runs));
-    out.extend(undetermined(s, runs));
+    out.extend(report_undetermined_loads(s, runs));
     out
 }
 
@@ -84,7 +84,7 @@ fn far_below_expected(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> 
 }
 
 /// Returns the finding on wanted loads that the gauges do not determine: in every run, the half width of the interval exceeds half the largest load.
-fn undetermined(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> {
+fn report_undetermined_loads(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> {
     let mut out: Vec<(&str, f64)> = Vec::new();
     for (l, load) in s.loads.iter().enumerate().filter(|(_, l)| l.wanted) {
         let widths = runs.iter().map(|r| {

@@ -41,7 +41,12 @@ impl ErrorModel {
 
     /// Covariance of what the model's error puts into one gauge at loads `f` and at loads `g`; `row` is the gauge's row of S:
     /// `model_rel^2 sum_l S_l^2 f_l g_l`.
-    pub fn shared(&self, row: impl Iterator<Item = f64>, f: &[f64], g: &[f64]) -> f64 {
+    pub fn model_error_covariance(
+        &self,
+        row: impl Iterator<Item = f64>,
+        f: &[f64],
+        g: &[f64],
+    ) -> f64 {
         let sum: f64 = row
             .zip(f.iter().zip(g))
             .map(|(s, (a, b))| s * s * a * b)
@@ -53,7 +58,7 @@ impl ErrorModel {
     pub fn variances(&self, s: &Matrix, f: &[f64], noise_factor: f64) -> Vec<f64> {
         let own = self.noise_variance(noise_factor);
         s.row_iter()
-            .map(|row| own + self.shared(row.iter().copied(), f, f))
+            .map(|row| own + self.model_error_covariance(row.iter().copied(), f, f))
             .collect()
     }
 

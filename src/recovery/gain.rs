@@ -229,7 +229,10 @@ impl Gain {
         let model: Vec<f64> = self
             .s
             .row_iter()
-            .map(|row| self.errors.shared(row.iter().copied(), f, f))
+            .map(|row| {
+                self.errors
+                    .model_error_covariance(row.iter().copied(), f, f)
+            })
             .collect();
         let calibrated = self.calibrated_covariance(f);
         let shifts = self.shifts(f, widening);

@@ -325,7 +325,7 @@ impl Filter {
     }
 
     /// The estimate from all gauges.
-    pub fn whole(&self) -> &Gain {
+    pub fn gain_of_all_gauges(&self) -> &Gain {
         &self.whole
     }
 

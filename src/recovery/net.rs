@@ -62,7 +62,7 @@ impl Series {
         // Sums of all but the last and of all but the first, which is zero.
         let ends = 2.0 * self.sum - (self.last - self.first);
         let lag = self.products - mean * ends + (n - 1.0) * mean * mean;
-        effective(n, var, lag)
+        effective_count(n, var, lag)
     }
 
     /// Returns the net reading, like [`mean_of`] of all readings.
@@ -94,10 +94,10 @@ pub fn effective_samples(v: &[f64]) -> f64 {
     let mean = v.iter().sum::<f64>() / n;
     let var: f64 = v.iter().map(|x| (x - mean).powi(2)).sum();
     let lag: f64 = v.windows(2).map(|w| (w[0] - mean) * (w[1] - mean)).sum();
-    effective(n, var, lag)
+    effective_count(n, var, lag)
 }
 
-fn effective(n: f64, var: f64, lag: f64) -> f64 {
+fn effective_count(n: f64, var: f64, lag: f64) -> f64 {
     let r = if var > 0.0 {
         (lag / var).clamp(0.0, 0.999)
     } else {

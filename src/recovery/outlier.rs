@@ -168,7 +168,7 @@ fn by_others(
             let with = |g: usize| {
                 let parts = others.iter().zip(&shares);
                 parts
-                    .map(move |(h, a)| a * of_gauges.between(g, *h))
+                    .map(move |(h, a)| a * of_gauges.covariance_between(g, *h))
                     .sum::<f64>()
             };
             let each = others.iter().zip(&shares);
@@ -295,7 +295,7 @@ fn put_right(judged: &Judged, first: &GaugeTest) -> Option<Suspect> {
                 gain.loads(&y)
             })
             .collect();
-        let together = projection.together(pattern, strain, &loads)?;
+        let together = projection.joint_residuals(pattern, strain, &loads)?;
         suspect.test = projection.test(&together, pattern, &loads, i, first.kind)?;
         suspect.chi2 = together.chi2;
     }
@@ -321,7 +321,7 @@ fn worst_shift<'a>(
             };
             let sigma = match beyond.get(i) {
                 Some(b) => gain
-                    .with_noise(&b.of(&gain.used))
+                    .with_noise(&b.total_covariance(&gain.used))
                     .sigma(f, &Widening::none()),
                 None => gain.sigma(f, &Widening::none()),
             };

@@ -58,7 +58,7 @@ pub fn check(
     };
     let mut findings = Vec::new();
     let (names, largest) = named(&impossible_of);
-    findings.extend(impossible(&names, largest));
+    findings.extend(report_impossible_readings(&names, largest));
     let (names, largest) = named(&beyond_of);
     findings.extend(beyond_gauges(&names, largest, median_size(&readings)));
     findings.extend(too_quiet(&readings, errors, UNRESOLVED));
@@ -99,7 +99,7 @@ fn beyond_gauges(gauges: &[&str], largest: f64, median_size: f64) -> Option<Find
 }
 
 /// The finding on readings too large to be strain; `None` without gauges.
-pub fn impossible(gauges: &[&str], largest: f64) -> Option<Finding> {
+pub fn report_impossible_readings(gauges: &[&str], largest: f64) -> Option<Finding> {
     (!gauges.is_empty()).then(|| {
         Finding::new(
             Severity::Error,

@@ -155,7 +155,11 @@ impl Projection {
     }
 
     /// Returns the projection with a covariance of the readings beyond noise, by gauge of S; `None` if the sum is not a covariance.
-    pub fn beyond(mut self, pattern: &Pattern, of_readings: &Matrix) -> Option<Self> {
+    pub fn with_reading_covariance(
+        mut self,
+        pattern: &Pattern,
+        of_readings: &Matrix,
+    ) -> Option<Self> {
         let m = self.m();
         let added = self.of_readings(pattern, of_readings);
         self.noise_covariance
@@ -183,7 +187,7 @@ impl Projection {
     }
 
     /// `T y`.
-    pub fn of(&self, pattern: &Pattern, strain: &[f64]) -> Vec<f64> {
+    pub fn project_strain(&self, pattern: &Pattern, strain: &[f64]) -> Vec<f64> {
         (0..self.m())
             .map(|a| {
                 let terms = pattern.used.iter().enumerate();
@@ -193,12 +197,15 @@ impl Projection {
     }
 
     /// `T M(f, g) T'`, by rows.
-    fn shared(&self, f: &[f64], g: &[f64]) -> Vec<f64> {
+    fn model_error_covariance(&self, f: &[f64], g: &[f64]) -> Vec<f64> {
         let m = self.m();
         let by_gauge: Vec<f64> = self
             .s
             .row_iter()
-            .map(|row| self.errors.shared(row.iter().copied(), f, g))
+            .map(|row| {
+                self.errors
+                    .model_error_covariance(row.iter().copied(), f, g)
+            })
             .collect();
         let mut out = vec![0.0; m * m];
         for a in 0..m {
@@ -222,7 +229,7 @@ impl Projection {
     ) -> f64 {
         let mut x = z.to_vec();
         if self.errors.model_rel > 0.0 || beyond.is_some() {
-            let mut covariance = self.shared(f, f);
+            let mut covariance = self.model_error_covariance(f, f);
             let beyond = beyond.map(|b| self.of_readings(pattern, b));
             for part in std::iter::once(&self.noise_covariance).chain(&beyond) {
                 covariance.iter_mut().zip(part).for_each(|(c, n)| *c += n);
@@ -240,7 +247,7 @@ impl Projection {
     /// All runs of a pattern together; `strain` and `loads` by run of the pattern.
     pub fn judge(&self, pattern: &Pattern, strain: &[&[f64]], loads: &[Vec<f64>]) -> Option<Joint> {
         let m = self.m();
-        let together = self.together(pattern, strain, loads)?;
+        let together = self.joint_residuals(pattern, strain, loads)?;
         let runs = (strain.len() as f64 * self.share).round().max(1.0);
         let dof = m * runs as usize;
         let share = self.share_of_model(loads);
@@ -262,7 +269,7 @@ impl Projection {
     }
 
     /// The residuals of all runs over their covariance at `loads`.
-    pub fn together(
+    pub fn joint_residuals(
         &self,
         pattern: &Pattern,
         strain: &[&[f64]],
@@ -271,12 +278,12 @@ impl Projection {
         let white: Vec<Vec<f64>> = strain
             .iter()
             .map(|y| {
-                let mut z = self.of(pattern, y);
+                let mut z = self.project_strain(pattern, y);
                 spd::solve_lower(&self.noise, &mut z);
                 z
             })
             .collect();
-        let turned = self.turned(pattern, strain, loads)?;
+        let turned = self.model_error_blocks(pattern, strain, loads)?;
         let mut chi2: f64 = white.iter().map(|z| spd::dot(z, z)).sum();
         for block in &turned {
             chi2 += block.chi2 - block.chi2_of_noise;
@@ -344,12 +351,15 @@ impl Projection {
         let m = self.m();
         let trace = |c: &[f64]| (0..m).map(|a| c[a * m + a]).sum::<f64>();
         let noise = trace(&self.noise_covariance) * loads.len() as f64;
-        let model: f64 = loads.iter().map(|f| trace(&self.shared(f, f))).sum();
+        let model: f64 = loads
+            .iter()
+            .map(|f| trace(&self.model_error_covariance(f, f)))
+            .sum();
         model / (model + noise)
     }
 
     /// The turned runs that hold errors of the model.
-    fn turned(
+    fn model_error_blocks(
         &self,
         pattern: &Pattern,
         strain: &[&[f64]],
@@ -363,7 +373,10 @@ impl Projection {
         let d = dense::svd(&Matrix::from_fn(runs, k, |i, l| loads[i][l]))?;
         let least = d.s.first().copied().unwrap_or(0.0) * EMPTY;
         let held = d.s.iter().filter(|s| **s > least && **s > 0.0).count();
-        let z: Vec<Vec<f64>> = strain.iter().map(|y| self.of(pattern, y)).collect();
+        let z: Vec<Vec<f64>> = strain
+            .iter()
+            .map(|y| self.project_strain(pattern, y))
+            .collect();
         let together = (TOGETHER / m.max(1)).clamp(1, held.max(1)).min(held);
         let sets = std::iter::once((0..together).collect::<Vec<_>>())
             .chain((together..held).map(|j| vec![j]));
@@ -388,7 +401,7 @@ impl Projection {
         let mut covariance = vec![0.0; size * size];
         for (a, f) in loads.iter().enumerate() {
             for (b, g) in loads.iter().enumerate() {
-                let shared = self.shared(f, g);
+                let shared = self.model_error_covariance(f, g);
                 for i in 0..m {
                     for j in 0..m {
                         let noise = if a == b {

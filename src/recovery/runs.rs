@@ -110,7 +110,7 @@ pub(super) fn recover_beyond(
         true => misfit::faults_by_stated_errors(s, &readings, errors, alternatives),
         false => Vec::new(),
     };
-    findings.extend(unlike(verdict.findings, named));
+    findings.extend(merge_gauge_findings(verdict.findings, named));
     // A misfit is stated already, and has its own remedy.
     let is_stated = verdict.misfit && shown.noise.is_none();
     findings.extend(shown.finding.filter(|_| !is_stated));
@@ -182,7 +182,7 @@ fn recover_calibrated(
 
 /// Joins both lists without repeating a gauge. An identified cause replaces the finding that a gauge deviates; of two such findings, the one with the
 /// size of the deviation stays. Findings on gauges come first, because a reader can correct them.
-fn unlike(mut judged: Vec<Finding>, mut named: Vec<Finding>) -> Vec<Finding> {
+fn merge_gauge_findings(mut judged: Vec<Finding>, mut named: Vec<Finding>) -> Vec<Finding> {
     named.retain(|n| {
         n.code != GAUGE_SUSPECT
             || !judged

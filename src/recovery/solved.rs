@@ -67,7 +67,7 @@ pub(super) fn solve_beyond(
     let mut last: Estimates = at_typical(s, readings, errors, &patterns, &typical);
     if errors.model_rel > 0.0 {
         for _ in 0..ITERATIONS {
-            typical = root_mean_squares(k, told(&patterns, &last));
+            typical = root_mean_squares(k, determined_loads(&patterns, &last));
             last = at_typical(s, readings, errors, &patterns, &typical);
         }
     }
@@ -82,7 +82,7 @@ pub(super) fn solve_beyond(
                 Some(projection) => RunEstimate {
                     chi2: projection.chi2_of_run(
                         p,
-                        &projection.of(p, &readings[i].strain),
+                        &projection.project_strain(p, &readings[i].strain),
                         &loads[i],
                         own.as_ref(),
                     ),
@@ -123,7 +123,7 @@ fn at_typical(
 }
 
 /// Returns the loads of all runs that the readings determine, by number, with their values. The values of the other loads are arbitrary.
-fn told<'a>(
+fn determined_loads<'a>(
     patterns: &'a [Pattern],
     (gains, loads): &'a Estimates,
 ) -> impl Iterator<Item = (usize, f64)> + 'a {
@@ -183,7 +183,8 @@ fn estimate_of(
     for (&g, leverage) in pattern.used.iter().zip(&gain.leverage) {
         out.residual[g] = r.strain[g] - out.predicted[g];
         let noise = errors.noise_of(s, g, r.noise_factor);
-        out.sd[g] = (noise + errors.shared(s.values.row(g).iter().copied(), f, f)).sqrt();
+        out.sd[g] =
+            (noise + errors.model_error_covariance(s.values.row(g).iter().copied(), f, f)).sqrt();
         out.leverage[g] = *leverage;
     }
     out

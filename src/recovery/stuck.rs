@@ -229,9 +229,15 @@ impl<'a> Others<'a> {
         let model = self.used.iter().enumerate().map(|(i, h)| {
             let share: f64 = self.acts().map(|(l, s)| s * self.gain.gain[(l, i)]).sum();
             let row = self.s.values.row(*h);
-            share * share * self.errors.shared(row.iter().copied(), sizes, sizes)
+            share
+                * share
+                * self
+                    .errors
+                    .model_error_covariance(row.iter().copied(), sizes, sizes)
         });
-        let own = self.errors.shared(self.own.iter().copied(), sizes, sizes);
+        let own = self
+            .errors
+            .model_error_covariance(self.own.iter().copied(), sizes, sizes);
         self.noise + noise.sum::<f64>() + model.sum::<f64>() + own
     }
 }

@@ -39,7 +39,7 @@ impl Sums {
     }
 
     /// Samples in which load `l` is known.
-    pub fn known(&self, l: usize) -> u64 {
+    pub fn known_samples(&self, l: usize) -> u64 {
         let in_gaps = self.missing.known_in_gaps.get(l);
         self.missing.whole + in_gaps.copied().unwrap_or(0)
     }

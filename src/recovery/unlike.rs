@@ -51,7 +51,7 @@ pub fn check(gauges: &[String], runs: &[RunEstimate], known: &Uncertainty) -> Ve
                      largest at {}. The intervals of its loads include this residual, as scatter common to all gauges or as an error of \
                      each gauge, whichever fits better",
                     r.estimate.run,
-                    worst(gauges, r)
+                    list_worst_gauges(gauges, r)
                 ),
                 "check for a load at a place without a calibration run, a wrong zero, or a faulty gauge",
             )
@@ -73,7 +73,7 @@ fn above_stated(gauges: &[String], unlike: &[&RunEstimate], of: usize) -> Option
                 "in {} of {of} runs residuals are up to {most:.1} times the size from noise, model uncertainty and mesh error, largest in `{}` at {}. The intervals of these runs include this residual as an error of every gauge",
                 unlike.len(),
                 worst_run.estimate.run,
-                worst(gauges, worst_run)
+                list_worst_gauges(gauges, worst_run)
             ),
             "state the actual noise and `model_uncertainty_rel`, or refine the deck; if both are correct, a small load is missing or a \
              gauge is wrong",
@@ -105,11 +105,13 @@ pub fn estimate_loosely(
     known: &Uncertainty,
 ) -> RunEstimate {
     let with = |excess: Excess| estimate_with(s, readings, (errors, excess), known);
-    let (apart, likelihood_apart) = explained(&|each| with(Excess { each, all: 0.0 }));
+    let (apart, likelihood_apart) =
+        estimate_with_least_excess(&|each| with(Excess { each, all: 0.0 }));
     if !known.dof.is_finite() {
         return apart;
     }
-    let (mut together, likelihood) = explained(&|all| with(Excess { each: 0.0, all }));
+    let (mut together, likelihood) =
+        estimate_with_least_excess(&|all| with(Excess { each: 0.0, all }));
     if !(likelihood > likelihood_apart) {
         return apart;
     }
@@ -119,7 +121,7 @@ pub fn estimate_loosely(
 }
 
 /// With the least excess that explains the residual of a run.
-fn explained(with: &dyn Fn(f64) -> (RunEstimate, f64)) -> (RunEstimate, f64) {
+fn estimate_with_least_excess(with: &dyn Fn(f64) -> (RunEstimate, f64)) -> (RunEstimate, f64) {
     let is = |more: f64| {
         let run = with(more).0;
         run.chi2 <= run.dof as f64
@@ -139,7 +141,7 @@ fn explained(with: &dyn Fn(f64) -> (RunEstimate, f64)) -> (RunEstimate, f64) {
 }
 
 /// The three gauges with the largest residual over its sd, with reading less prediction.
-fn worst(gauges: &[String], run: &RunEstimate) -> String {
+fn list_worst_gauges(gauges: &[String], run: &RunEstimate) -> String {
     let mut order: Vec<(f64, usize)> = (0..gauges.len())
         .filter(|&g| run.residual[g].is_finite() && run.sd[g] > 0.0)
         .map(|g| (run.residual[g].abs() / run.sd[g], g))

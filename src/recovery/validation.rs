@@ -22,6 +22,6 @@ pub fn prediction_variance(
             of_loads += s_a * s_b * covariance[a * n + b];
         }
     }
-    let own = errors.shared(row.iter().copied(), f, f);
+    let own = errors.model_error_covariance(row.iter().copied(), f, f);
     errors.noise_variance(noise_factor) + own + of_loads.max(0.0)
 }

@@ -70,7 +70,7 @@ pub(super) fn check(
 ) -> Verdict {
     let runs = &solved.runs;
     let mut verdict = Verdict {
-        findings: unsolvable(s, solved),
+        findings: report_undetermined_loads(s, solved),
         misfit: false,
         widening: Widening::none(),
         by_run: vec![Widening::none(); runs.len()],
@@ -85,7 +85,7 @@ pub(super) fn check(
         ));
         return verdict;
     }
-    let judged = judged(s, readings, (solved, beyond, share), errors);
+    let judged = test_patterns(s, readings, (solved, beyond, share), errors);
     let joints: Vec<&Joint> = judged.iter().map(|j| &j.joint).collect();
     let mut evidence = weigh(s, runs, &joints);
     if !beyond.is_empty() {
@@ -94,7 +94,7 @@ pub(super) fn check(
     }
     verdict.misfit = evidence.high < SIGNIFICANT;
     if verdict.misfit && evidence.pooled > 1.0 {
-        verdict.widening = widened(evidence.pooled, evidence.effective);
+        verdict.widening = widening_from_birge(evidence.pooled, evidence.effective);
     }
     verdict.by_run = runs
         .iter()
@@ -102,12 +102,12 @@ pub(super) fn check(
             let own = r.chi2 / r.dof.max(1) as f64;
             let alone = chance(r.chi2, r.dof) < SIGNIFICANT / runs.len() as f64;
             match verdict.misfit && alone && own.sqrt() > evidence.pooled {
-                true => widened(own.sqrt(), r.dof as f64),
+                true => widening_from_birge(own.sqrt(), r.dof as f64),
                 false => verdict.widening.clone(),
             }
         })
         .collect();
-    let sizes = Sizes::of(s, readings, runs);
+    let sizes = Sizes::from_runs(s, readings, runs);
     verdict
         .findings
         .extend(size_finding(&evidence, &sizes, errors));
@@ -119,7 +119,7 @@ pub(super) fn check(
     verdict
 }
 
-fn widened(birge: f64, dof: f64) -> Widening {
+fn widening_from_birge(birge: f64, dof: f64) -> Widening {
     Widening {
         variance_factor: birge * birge,
         coverage_factor: student_95(dof).max(NORMAL_95),
@@ -128,7 +128,7 @@ fn widened(birge: f64, dof: f64) -> Widening {
 }
 
 /// Returns the findings on runs whose gauges do not determine some of the loads.
-fn unsolvable(s: &Sensitivity, solved: &Solved) -> Vec<Finding> {
+fn report_undetermined_loads(s: &Sensitivity, solved: &Solved) -> Vec<Finding> {
     let mut out = Vec::new();
     for (pattern, gain) in &solved.patterns {
         let unseen: Vec<&str> = s
@@ -164,7 +164,7 @@ fn unsolvable(s: &Sensitivity, solved: &Solved) -> Vec<Finding> {
 
 /// Returns the most frequent patterns of silent gauges, each with a joint test of its runs. The residual excludes all loads, those of a stated size
 /// too: whether a nuisance load is the same in all runs is not known.
-fn judged<'a>(
+fn test_patterns<'a>(
     s: &Sensitivity,
     readings: &'a [Readings],
     (solved, beyond, share): (&'a Solved, &[Beyond], f64),
@@ -177,8 +177,8 @@ fn judged<'a>(
         // A whole number of independent runs, so that squares and their degrees of freedom count the same.
         let runs = pattern.runs.len() as f64;
         let mut projection = projection.with_share((share * runs).round().max(1.0) / runs);
-        if let Some(of_readings) = together(pattern, beyond) {
-            projection = projection.beyond(pattern, &of_readings)?;
+        if let Some(of_readings) = bound_shared_covariance(pattern, beyond) {
+            projection = projection.with_reading_covariance(pattern, &of_readings)?;
         }
         let strain: Vec<&[f64]> = pattern
             .runs
@@ -205,7 +205,7 @@ fn judged<'a>(
 /// Returns a covariance that, if independent in every run, is no smaller than the covariance of errors that the runs of a pattern share. With `x`
 /// over the runs, `(sum_i x_i d_i)^2 <= sum_i x_i^2 sum_j d_j^2` (Cauchy), so the sum over the runs replaces each error. The test then finds only
 /// residuals that shared errors can't cause. `None` without such errors.
-fn together(pattern: &Pattern, beyond: &[Beyond]) -> Option<Matrix> {
+fn bound_shared_covariance(pattern: &Pattern, beyond: &[Beyond]) -> Option<Matrix> {
     let mut runs = pattern.runs.iter().filter_map(|&i| beyond.get(i));
     let first = runs.next()?;
     let own = &first.noise + &first.shared;
@@ -272,7 +272,7 @@ struct Sizes {
 }
 
 impl Sizes {
-    fn of(s: &Sensitivity, readings: &[Readings], runs: &[RunEstimate]) -> Self {
+    fn from_runs(s: &Sensitivity, readings: &[Readings], runs: &[RunEstimate]) -> Self {
         let pairs: Vec<(&Readings, &RunEstimate)> = readings.iter().zip(runs).collect();
         let each = runs.len() as f64;
         let bad = pairs

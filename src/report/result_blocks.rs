@@ -312,7 +312,7 @@ fn solids(model: &Model, case: &CaseResult, shape: SolidShape) -> Rows {
                 layer,
             });
             rows.values.extend(strain);
-            rows.values.extend(principal(strain));
+            rows.values.extend(principal_and_von_mises(strain));
         };
         push(0, centre);
         for (g, strain) in solid.grids[..shape.n_corners()].iter().zip(corners) {
@@ -323,7 +323,7 @@ fn solids(model: &Model, case: &CaseResult, shape: SolidShape) -> Rows {
 }
 
 /// Principal strains, largest first, and the von Mises strain.
-fn principal(e: &[f64; 6]) -> [f64; 4] {
+fn principal_and_von_mises(e: &[f64; 6]) -> [f64; 4] {
     let [a, b, c] = principal_strains(e);
     let apart = (a - b).powi(2) + (b - c).powi(2) + (c - a).powi(2);
     [a, b, c, (2.0 * apart).sqrt() / 3.0]

@@ -48,15 +48,15 @@ pub fn write_arrays_vtu(
     let mut a = begin(mesh.points.len() / 3, mesh.types.len());
     a.array("Points", "Float64", 3, reals(mesh.points));
     a.xml += "</Points>\n<Cells>\n";
-    a.array("connectivity", "Int64", 1, whole(mesh.connectivity));
-    a.array("offsets", "Int64", 1, whole(mesh.offsets));
+    a.array("connectivity", "Int64", 1, integer_bytes(mesh.connectivity));
+    a.array("offsets", "Int64", 1, integer_bytes(mesh.offsets));
     a.array("types", "UInt8", 1, mesh.types.to_vec());
     a.xml += "</Cells>\n<PointData>\n";
     let mut put = |arrays: &[NamedArray], end: &str| {
         for n in arrays {
             match n.values {
                 Numbers::Reals(v) => a.array(n.name, "Float64", n.columns, reals(v)),
-                Numbers::Whole(v) => a.array(n.name, "Int64", n.columns, whole(v)),
+                Numbers::Whole(v) => a.array(n.name, "Int64", n.columns, integer_bytes(v)),
             }
         }
         a.xml += end;
@@ -70,6 +70,6 @@ fn reals(values: &[f64]) -> Vec<u8> {
     values.iter().flat_map(|v| v.to_le_bytes()).collect()
 }
 
-fn whole(values: &[i64]) -> Vec<u8> {
+fn integer_bytes(values: &[i64]) -> Vec<u8> {
     values.iter().flat_map(|v| v.to_le_bytes()).collect()
 }

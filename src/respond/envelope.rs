@@ -27,7 +27,7 @@ pub enum Spread {
 
 impl Spread {
     /// Standard deviation of `g . loads`.
-    pub(super) fn along(&self, g: &[f64]) -> f64 {
+    pub(super) fn sd_of_combination(&self, g: &[f64]) -> f64 {
         let k = g.len();
         match self {
             Self::Covariance(c) => (0..k)
@@ -89,7 +89,7 @@ fn with_sigma(row: &ResponseRow, state: &LoadState) -> (f64, f64) {
             if value > 0.0 { along / value } else { 0.0 }
         })
         .collect();
-    (value, state.spread.along(&g))
+    (value, state.spread.sd_of_combination(&g))
 }
 
 /// The peak of every row over all states; states with loads that are not numbers are passed over. Rows in parallel.

@@ -61,7 +61,11 @@ pub fn fatigue(
 /// Counts `g . loads` over the states. The errors of both ends of a cycle add up, as errors of S do in a reversed one.
 fn damage_along(g: &[f64], states: &[LoadState], slope: f64) -> Damage {
     let mut damage = Damage::new(slope, 0.0);
-    let sigma = |p: Point| states.get(p.at).map_or(0.0, |s| s.spread.along(g));
+    let sigma = |p: Point| {
+        states
+            .get(p.at)
+            .map_or(0.0, |s| s.spread.sd_of_combination(g))
+    };
     let mut add = |cycle: Cycle| damage.add(&cycle, sigma(cycle.from) + sigma(cycle.to));
     let mut count = Rainflow::default();
     for (at, state) in states.iter().enumerate() {

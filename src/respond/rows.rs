@@ -117,7 +117,7 @@ fn shell_rows(
         .collect();
     let places = places.ok_or(Without::Strain)?;
     let (e, g, nu) = shell_material(model, ix)
-        .and_then(|m| isotropic(model, m))
+        .and_then(|m| isotropic_constants(model, m))
         .ok_or(Without::Isotropy)?;
     let side = |surface: Surface| {
         let strain: Vec<[f64; 3]> = loads
@@ -159,7 +159,7 @@ fn beam_rows(
     }
     let property = model.beam_properties.get(beam.property.us());
     let (e, _, _) = property
-        .and_then(|p| isotropic(model, p.material))
+        .and_then(|p| isotropic_constants(model, p.material))
         .ok_or(Without::Isotropy)?;
     let mut rows = Vec::new();
     for station in stations(&fields, ix) {
@@ -247,7 +247,7 @@ fn shell_material(model: &Model, ix: ShellIx) -> Option<MaterialIx> {
 }
 
 /// E, G, nu.
-fn isotropic(model: &Model, material: MaterialIx) -> Option<(f64, f64, f64)> {
+fn isotropic_constants(model: &Model, material: MaterialIx) -> Option<(f64, f64, f64)> {
     match model.materials.get(material.us())?.kind {
         MaterialKind::Isotropic { e, g, nu, .. } => Some((e, g, nu)),
         _ => None,

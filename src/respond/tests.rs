@@ -34,7 +34,7 @@ fn case(bottom: [f64; 3], top: [f64; 3]) -> CaseResult {
 
 fn load<'a>(name: &str, applied: f64, case: &'a CaseResult) -> LoadCaseOf<'a> {
     LoadCaseOf {
-        load: Load::named(name),
+        load: Load::from_name(name),
         applied,
         case,
     }

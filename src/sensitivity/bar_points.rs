@@ -34,7 +34,7 @@ pub fn bar_points(model: &Model, gauges: &[Gauge], loads: &[LoadCaseOf]) -> Vec<
             })?;
             let property = property_of(model, beam)?;
             let values = loads.iter().filter_map(|l| {
-                let values = both(property, l, (beam, point, station))?;
+                let values = stated_and_centroid_strain(property, l, (beam, point, station))?;
                 Some((values, l))
             });
             let apart = |v: &[f64; 2]| (v[0] - v[1]).abs();
@@ -89,7 +89,7 @@ fn property_of(model: &Model, beam: BeamIx) -> Option<&BeamProperty> {
 
 /// Strain at a point as the results state it and as measured from the centroid; `None` where the results measure from the centroid, or
 /// both are equal.
-fn both(
+fn stated_and_centroid_strain(
     property: &BeamProperty,
     load: &LoadCaseOf,
     (beam, point, station): (BeamIx, usize, f64),

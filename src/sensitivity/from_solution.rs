@@ -3,7 +3,7 @@
 use super::{Load, Sensitivity};
 use crate::fe::CaseResult;
 use crate::finding::{Finding, Severity};
-use crate::gauge::{Arm, Gauge, Spot, reading};
+use crate::gauge::{Arm, Gauge, Spot, gauge_reading};
 use crate::linalg::Matrix;
 use crate::model::ShellIx;
 use std::collections::BTreeSet;
@@ -21,7 +21,7 @@ pub struct LoadCaseOf<'a> {
 
 /// A gauge without strain in some case.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("gauge `{gauge}`: {}: {}", self.wrong(), self.remedy())]
+#[error("gauge `{gauge}`: {}: {}", self.describe_cause(), self.remedy())]
 pub struct NoStrain {
     /// Gauge.
     pub gauge: String,
@@ -46,7 +46,7 @@ pub enum NoStrainCause {
 
 impl NoStrain {
     /// Returns what is wrong.
-    pub fn wrong(&self) -> String {
+    pub fn describe_cause(&self) -> String {
         let Self {
             element,
             subcase,
@@ -132,7 +132,7 @@ pub fn from_cases(gauges: &[Gauge], loads: &[LoadCaseOf]) -> Result<Sensitivity,
     let mut values = Matrix::zeros(gauges.len(), loads.len());
     for (g, gauge) in gauges.iter().enumerate() {
         for (l, load) in loads.iter().enumerate() {
-            match reading(gauge, load.case) {
+            match gauge_reading(gauge, load.case) {
                 Some(v) => values[(g, l)] = v / load.applied,
                 None => missing.push(NoStrain {
                     gauge: gauge.name.clone(),

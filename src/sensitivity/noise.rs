@@ -42,7 +42,7 @@ impl GaugeNoise {
     }
 
     /// Returns the covariance of gauges `g` and `h`.
-    pub fn between(&self, g: usize, h: usize) -> f64 {
+    pub fn covariance_between(&self, g: usize, h: usize) -> f64 {
         self.covariance[(g, h)]
     }
 
@@ -54,7 +54,7 @@ impl GaugeNoise {
 
     /// Returns the correlation of gauges `g` and `h`.
     pub fn correlation(&self, g: usize, h: usize) -> f64 {
-        self.between(g, h) / (self.variance(g) * self.variance(h)).sqrt()
+        self.covariance_between(g, h) / (self.variance(g) * self.variance(h)).sqrt()
     }
 
     /// Whether any two gauges are correlated.

@@ -5,7 +5,7 @@ use crate::linalg::Matrix;
 fn s(rows: usize, values: &[f64], names: &[&str]) -> Sensitivity {
     Sensitivity {
         gauges: (0..rows).map(|i| format!("G{i}")).collect(),
-        loads: names.iter().map(|n| Load::named(*n)).collect(),
+        loads: names.iter().map(|n| Load::from_name(*n)).collect(),
         values: Matrix::from_row_slice(rows, names.len(), values),
         uncertainty: None,
         noise: None,
@@ -68,7 +68,7 @@ fn units_change_the_raw_condition_number_and_not_the_scaled_one() {
 }
 
 /// An uncertainty of two gauges and two loads with a center and a part at any load, by numbers without a pattern.
-fn uncertain() -> (Uncertainty, Matrix) {
+fn build_uncertainty() -> (Uncertainty, Matrix) {
     let root = Matrix::from_fn(4, 4, |i, j| 0.3 + (1.7 * (i * 4 + j) as f64).sin());
     let covariance = &root * root.transpose();
     let known = Uncertainty {
@@ -89,7 +89,7 @@ fn uncertain() -> (Uncertainty, Matrix) {
 /// `Cov(eps | f) = q^2 C + A + sum h_j h_k Cov(S_.j, S_.k)`, `h = f - center`, written out; a filter passes it on.
 #[test]
 fn the_covariance_of_strain_counts_errors_of_s_from_its_center() {
-    let (known, covariance) = uncertain();
+    let (known, covariance) = build_uncertainty();
     let f = [3.0, 1.5];
     let h = [1.0, 2.5];
     let q2 = 2.0 * 9.0 + 2.0 * 0.5 * 4.5 + 2.25;
@@ -122,7 +122,7 @@ fn the_covariance_of_strain_counts_errors_of_s_from_its_center() {
 #[test]
 fn a_common_scale_adds_its_share_of_the_strain() {
     let s = Matrix::from_row_slice(2, 2, &[1.0, 2.0, 3.0, -1.0]);
-    let (mut known, _) = uncertain();
+    let (mut known, _) = build_uncertainty();
     known.center = Vec::new();
     let before = known.strain_covariance(2, &[1.0, 2.0]);
     known.add_common_scale(&s, 0.03);
@@ -138,7 +138,7 @@ fn a_common_scale_adds_its_share_of_the_strain() {
 /// loads with a center are left out, or where the sum is not along the center.
 #[test]
 fn other_units_and_sums_of_loads_are_no_less_uncertain() {
-    let (known, _) = uncertain();
+    let (known, _) = build_uncertainty();
     let diagonal = |u: &Uncertainty, f: &[f64]| {
         let c = u.strain_covariance(2, f);
         [c[0], c[3]]
@@ -153,7 +153,7 @@ fn other_units_and_sums_of_loads_are_no_less_uncertain() {
             diagonal(&known, &f),
         );
         assert!((a[0] - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9);
-        let along = known.along(&[0.7, 1.3]);
+        let along = known.combine_loads(&[0.7, 1.3]);
         assert!(
             is_no_less(diagonal(&along, &[t]), diagonal(&known, &f)),
             "{t}"
@@ -163,7 +163,7 @@ fn other_units_and_sums_of_loads_are_no_less_uncertain() {
             is_no_less(diagonal(&one, &[t]), diagonal(&known, &[t, 0.0])),
             "{t}"
         );
-        let centered = known.along(&[2.0, -1.0]);
+        let centered = known.combine_loads(&[2.0, -1.0]);
         let (a, b) = (diagonal(&centered, &[t]), diagonal(&known, &[2.0 * t, -t]));
         assert!((a[0] - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9);
     }

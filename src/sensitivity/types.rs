@@ -20,7 +20,7 @@ pub struct Load {
 
 impl Load {
     /// Returns a wanted load without a stated size.
-    pub fn named(name: impl Into<String>) -> Self {
+    pub fn from_name(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),
             expected: None,
@@ -119,7 +119,7 @@ impl Sensitivity {
     }
 
     /// Returns S without the columns whose size is known beforehand ([`Load::prior`]): the loads that the gauges alone must separate.
-    pub fn unconditioned(&self) -> Self {
+    pub fn without_prior_loads(&self) -> Self {
         let free: Vec<usize> = (0..self.loads.len())
             .filter(|&l| self.loads[l].prior().is_none())
             .collect();
@@ -149,7 +149,7 @@ impl Sensitivity {
     }
 
     /// S with its columns times [`Self::scales`].
-    pub fn scaled(&self) -> Matrix {
+    pub fn scale_columns(&self) -> Matrix {
         let mut m = self.values.clone();
         for (mut c, s) in m.column_iter_mut().zip(self.scales()) {
             c *= s;
@@ -164,7 +164,7 @@ impl Sensitivity {
 
     /// Returns the condition number of S with scaled columns.
     pub fn condition_number_scaled(&self) -> f64 {
-        dense::condition(&self.scaled())
+        dense::condition(&self.scale_columns())
     }
 
     /// Returns the rank of S with columns of unit norm.

@@ -120,7 +120,7 @@ impl Uncertainty {
 
     /// Returns the uncertainty of loads with the center `kept`, where the part `rest` of the center stays as it is at all loads. The errors of S at
     /// both parts together are no larger than twice those at each: `(a + b)' C (a + b) <= 2 a' C a + 2 b' C b`.
-    fn around(&self, kept: Vec<f64>, rest: &[f64]) -> Self {
+    fn with_center(&self, kept: Vec<f64>, rest: &[f64]) -> Self {
         let is_exact = rest.iter().all(|v| *v == 0.0);
         let times = if is_exact { 1.0 } else { 2.0 };
         let n = (self.scatter.len() as f64).sqrt().round() as usize;
@@ -210,8 +210,8 @@ impl Uncertainty {
             .collect();
         let gauges: Vec<(usize, f64)> = gauges.iter().map(|g| (*g, 1.0)).collect();
         Self {
-            covariance: picked(&self.covariance, nk, &entries),
-            scatter: picked(&self.scatter, n, &gauges),
+            covariance: select_entries(&self.covariance, nk, &entries),
+            scatter: select_entries(&self.scatter, n, &gauges),
             mean_square: self.mean_square.clone(),
             scale: self.scale,
             dof: self.dof,
@@ -219,7 +219,7 @@ impl Uncertainty {
             one_by_one: self.one_by_one,
             additive: match self.additive.is_empty() {
                 true => Vec::new(),
-                false => picked(&self.additive, n, &gauges),
+                false => select_entries(&self.additive, n, &gauges),
             },
             center: self.center.clone(),
             is_tested: self.is_tested,
@@ -236,7 +236,7 @@ impl Uncertainty {
             let stays = |l: usize| loads.iter().any(|(m, unit)| *m == l && *unit != 0.0);
             let rest = self.center.iter().enumerate();
             let rest: Vec<f64> = rest.map(|(l, c)| if stays(l) { 0.0 } else { *c }).collect();
-            let around = self.around(Vec::new(), &rest);
+            let around = self.with_center(Vec::new(), &rest);
             return Self {
                 center: loads.iter().map(of_load).collect(),
                 ..around.of_loads(loads)
@@ -247,9 +247,9 @@ impl Uncertainty {
         let of_gauge = |g: usize| loads.iter().map(move |&(l, unit)| (g * k + l, unit));
         let entries: Vec<(usize, f64)> = (0..n).flat_map(of_gauge).collect();
         Self {
-            covariance: picked(&self.covariance, n * k, &entries),
+            covariance: select_entries(&self.covariance, n * k, &entries),
             scatter: self.scatter.clone(),
-            mean_square: picked(&self.mean_square, k, loads),
+            mean_square: select_entries(&self.mean_square, k, loads),
             scale: self.scale,
             dof: self.dof,
             dof_outside: self.dof_outside,
@@ -261,7 +261,7 @@ impl Uncertainty {
     }
 
     /// Returns the uncertainty of the combined column `S f` for the load combination `f`.
-    pub fn along(&self, f: &[f64]) -> Self {
+    pub fn combine_loads(&self, f: &[f64]) -> Self {
         if !self.center.is_empty() {
             // The part of the center along `f`, and the rest.
             let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -278,7 +278,7 @@ impl Uncertainty {
             };
             return Self {
                 center: vec![part],
-                ..self.around(Vec::new(), &rest).along(f)
+                ..self.with_center(Vec::new(), &rest).combine_loads(f)
             };
         }
         let n = (self.scatter.len() as f64).sqrt().round() as usize;
@@ -352,7 +352,7 @@ fn form(all: &[f64], l: usize, f: &[f64]) -> f64 {
 }
 
 /// Some rows and columns of a square matrix of `order`, each times its factor.
-fn picked(matrix: &[f64], order: usize, rows: &[(usize, f64)]) -> Vec<f64> {
+fn select_entries(matrix: &[f64], order: usize, rows: &[(usize, f64)]) -> Vec<f64> {
     let pairs = rows.iter().flat_map(|a| rows.iter().map(move |b| (a, b)));
     let value = |((i, p), (j, q)): (&(usize, f64), &(usize, f64))| {
         p * q * matrix.get(i * order + j).copied().unwrap_or(0.0)

@@ -19,7 +19,7 @@ impl DecimalMark {
     }
 
     /// Returns the decimal mark that is possible in a table whose fields `delimiter` divides.
-    pub fn beside(delimiter: u8) -> Self {
+    pub fn from_delimiter(delimiter: u8) -> Self {
         if delimiter == b',' {
             Self::Point
         } else {
@@ -176,13 +176,13 @@ pub fn push_seven_digits(out: &mut Vec<u8>, value: f64) {
         return;
     }
     let mut power = size.log10().floor() as i32;
-    let mut digits = scaled(size, 6 - power);
+    let mut digits = scale_by_power(size, 6 - power);
     if digits >= 10_000_000 {
         power += 1;
-        digits = scaled(size, 6 - power);
+        digits = scale_by_power(size, 6 - power);
     } else if digits < 1_000_000 {
         power -= 1;
-        digits = scaled(size, 6 - power);
+        digits = scale_by_power(size, 6 - power);
     }
     let mut text = [b'0'; 8];
     for place in text.iter_mut().rev() {
@@ -206,7 +206,7 @@ pub fn push_seven_digits(out: &mut Vec<u8>, value: f64) {
     out.push(b'0' + (power % 10) as u8);
 }
 
-fn scaled(size: f64, power: i32) -> u64 {
+fn scale_by_power(size: f64, power: i32) -> u64 {
     let exact = |p: u32| EXACT.get(p as usize).copied();
     let product = match (exact(power.unsigned_abs()), power < 0) {
         (Some(scale), true) => size / scale,

@@ -16,7 +16,7 @@ const GROUP: usize = 131_072;
 /// Beginning of the key of a note on the unit of a column, before its name.
 pub const UNIT_OF: &str = "unit of ";
 
-fn broken(e: ParquetError) -> SeriesError {
+fn parquet_write_error(e: ParquetError) -> SeriesError {
     SeriesError::Broken {
         wrong: format!("it cannot be written as Parquet ({e})"),
         remedy: "report this as an error of the program",
@@ -41,14 +41,14 @@ pub fn parquet_bytes(
             .build()
             .map(Arc::new)
     };
-    let mut fields = vec![column("time", Kind::DOUBLE).map_err(broken)?];
+    let mut fields = vec![column("time", Kind::DOUBLE).map_err(parquet_write_error)?];
     for name in names {
-        fields.push(column(name, Kind::FLOAT).map_err(broken)?);
+        fields.push(column(name, Kind::FLOAT).map_err(parquet_write_error)?);
     }
     let schema = Type::group_type_builder("loads")
         .with_fields(fields)
         .build()
-        .map_err(broken)?;
+        .map_err(parquet_write_error)?;
     let notes = notes
         .iter()
         .map(|(k, v)| KeyValue::new(k.clone(), v.clone()));
@@ -59,17 +59,17 @@ pub fn parquet_bytes(
         .build();
     let mut out = Vec::new();
     let mut file = SerializedFileWriter::new(&mut out, Arc::new(schema), Arc::new(properties))
-        .map_err(broken)?;
+        .map_err(parquet_write_error)?;
     let n = names.len();
     let mut rows = Vec::new();
     for from in (0..samples).step_by(GROUP) {
         let to = (from + GROUP).min(samples);
         rows.clear();
         read(from, to, &mut rows);
-        let mut group = file.next_row_group().map_err(broken)?;
+        let mut group = file.next_row_group().map_err(parquet_write_error)?;
         let times: Vec<f64> = (from..to).map(|i| t0 + dt * i as f64).collect();
         let mut next = 0;
-        while let Some(mut column) = group.next_column().map_err(broken)? {
+        while let Some(mut column) = group.next_column().map_err(parquet_write_error)? {
             let written = if next == 0 {
                 column.typed::<DoubleType>().write_batch(&times, None, None)
             } else {
@@ -77,13 +77,13 @@ pub fn parquet_bytes(
                 let values: Vec<f32> = values.map(|v| *v as f32).collect();
                 column.typed::<FloatType>().write_batch(&values, None, None)
             };
-            written.map_err(broken)?;
-            column.close().map_err(broken)?;
+            written.map_err(parquet_write_error)?;
+            column.close().map_err(parquet_write_error)?;
             next += 1;
         }
-        group.close().map_err(broken)?;
+        group.close().map_err(parquet_write_error)?;
     }
-    file.close().map_err(broken)?;
+    file.close().map_err(parquet_write_error)?;
     Ok(out)
 }
 

@@ -16,7 +16,7 @@ thread_local! {
     static PLANS: RefCell<Plans> = RefCell::new(Plans { planner: RealFftPlanner::new(), lengths: vec![] });
 }
 
-fn planned<T>(length: usize, plan: impl FnOnce(&mut RealFftPlanner<f64>) -> T) -> T {
+fn with_planner<T>(length: usize, plan: impl FnOnce(&mut RealFftPlanner<f64>) -> T) -> T {
     PLANS.with_borrow_mut(|p| {
         if !p.lengths.contains(&length) {
             if p.lengths.len() >= MOST {
@@ -33,10 +33,10 @@ fn planned<T>(length: usize, plan: impl FnOnce(&mut RealFftPlanner<f64>) -> T) -
 
 /// The plan of a transform of `length` real samples.
 pub fn forward(length: usize) -> Arc<dyn RealToComplex<f64>> {
-    planned(length, |p| p.plan_fft_forward(length))
+    with_planner(length, |p| p.plan_fft_forward(length))
 }
 
 /// The plan of a transform to `length` real samples.
 pub fn inverse(length: usize) -> Arc<dyn ComplexToReal<f64>> {
-    planned(length, |p| p.plan_fft_inverse(length))
+    with_planner(length, |p| p.plan_fft_inverse(length))
 }

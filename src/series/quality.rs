@@ -72,12 +72,12 @@ pub fn check_channels(
     findings
 }
 
-fn finite(x: &[f64]) -> Vec<f64> {
+fn finite_values(x: &[f64]) -> Vec<f64> {
     x.iter().copied().filter(|v| v.is_finite()).collect()
 }
 
 fn spread(x: &[f64]) -> f64 {
-    let x = finite(x);
+    let x = finite_values(x);
     let m = mean(&x);
     (x.iter().map(|v| (v - m) * (v - m)).sum::<f64>() / x.len().max(1) as f64).sqrt()
 }
@@ -108,7 +108,7 @@ fn check_missing(c: &Channel) -> Option<Finding> {
 /// No signal, a frozen value, or a small fraction of what its peers show.
 fn check_dead(c: &Channel, kind: Kind, own: f64, peers: &[f64]) -> Option<Finding> {
     let peer = median(peers.to_vec()).unwrap_or(0.0);
-    let scale = mean(&finite(&c.samples)).abs();
+    let scale = mean(&finite_values(&c.samples)).abs();
     if own <= 1e-9 * scale || own == 0.0 || own < DEAD_SHARE * peer {
         let message = "The channel has no signal. Results that need it are not reliable.";
         let remedy = "Check sensor, supply and cable, or remove the channel from the job.";
@@ -155,7 +155,7 @@ fn unrest(x: &[f64]) -> f64 {
 
 /// Flat peaks at the largest or smallest value. A wheel force that stops at zero is a tyre off the ground, no fault.
 fn check_clipped(c: &Channel, kind: Kind) -> Option<Finding> {
-    let x = finite(&c.samples);
+    let x = finite_values(&c.samples);
     let (lo, hi) = x
         .iter()
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| {
@@ -245,7 +245,7 @@ fn check_spikes(c: &Channel) -> Option<Finding> {
 /// A trend of the block means that their scatter does not explain.
 fn check_drift(c: &Channel, kind: Kind, gravity: f64) -> Option<Finding> {
     const BLOCKS: usize = 16;
-    let x = finite(&c.samples);
+    let x = finite_values(&c.samples);
     if x.len() < 10 * BLOCKS {
         return None;
     }
@@ -282,7 +282,7 @@ fn check_drift(c: &Channel, kind: Kind, gravity: f64) -> Option<Finding> {
 
 /// A DC-coupled accelerometer must read +g on the mean.
 fn check_gravity(c: &Channel, gravity: f64) -> Option<Finding> {
-    let m = mean(&finite(&c.samples));
+    let m = mean(&finite_values(&c.samples));
     let near = |target: f64| (m / target - 1.0).abs() < GRAVITY_TOLERANCE;
     if near(gravity) {
         let off = m - gravity;

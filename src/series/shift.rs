@@ -89,7 +89,7 @@ const ON_SAMPLE: f64 = 1e-6;
 
 impl Sampled<'_> {
     /// Returns signal `s` at a time; `None` outside the recording and next to a missing sample.
-    pub fn at(&self, s: usize, time_s: f64) -> Option<Between> {
+    pub fn value_at(&self, s: usize, time_s: f64) -> Option<Between> {
         let x = self.signals.get(s)?;
         let place = (time_s - self.start_s) * self.rate_hz;
         let near = place.round();
@@ -189,7 +189,7 @@ pub fn estimate_shift(
     rules: &ShiftRules,
 ) -> Result<Shift, NoShift> {
     let coarse = coarse_shift(fixed, moving, rules)?;
-    let fine = Fine::of(fixed, moving, coarse.width_s, rules);
+    let fine = Fine::new(fixed, moving, coarse.width_s, rules);
     let (seconds, half_width_s) = fine
         .search(coarse.seconds)
         .filter(|found| (found.0 - coarse.seconds).abs() <= 3.0 * coarse.width_s)
@@ -319,7 +319,7 @@ struct Sums {
 }
 
 impl<'a> Fine<'a> {
-    fn of(fixed: Sampled<'a>, moving: Sampled<'a>, width_s: f64, rules: &ShiftRules) -> Self {
+    fn new(fixed: Sampled<'a>, moving: Sampled<'a>, width_s: f64, rules: &ShiftRules) -> Self {
         let side = (0.5 * width_s * fixed.rate_hz).round().max(1.0) as usize;
         let n = fixed.n_samples();
         Self {
@@ -406,7 +406,7 @@ impl<'a> Fine<'a> {
                 let x = &self.fixed.signals[s];
                 let [before, here, after] = [i - side, i, i + side].map(|i| f64::from(x[i]));
                 let slope = (after - before) / (2.0 * span_s);
-                let moving = |t: f64| self.moving.at(s, t).map(|v| v.value);
+                let moving = |t: f64| self.moving.value_at(s, t).map(|v| v.value);
                 let (Some(m), Some(low), Some(high)) =
                     (moving(time), moving(time - span_s), moving(time + span_s))
                 else {

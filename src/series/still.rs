@@ -63,7 +63,7 @@ impl Still {
     ///
     /// # Errors
     /// A record that can't be decoded.
-    pub fn throughout(
+    pub fn columns_in_record(
         &self,
         record: &Record,
         columns: &[Option<usize>],
@@ -136,7 +136,7 @@ pub fn extent(
 }
 
 /// Takes readings out of rows of `n` columns, the first row being sample `first`: those of columns in their spans.
-pub fn blank(values: &mut [f64], n: usize, first: usize, spans: &[(usize, Range<usize>)]) {
+pub fn blank_readings(values: &mut [f64], n: usize, first: usize, spans: &[(usize, Range<usize>)]) {
     let rows = values.len() / n.max(1);
     for (column, span) in spans {
         let [from, to] = [span.start, span.end].map(|at| at.clamp(first, first + rows) - first);

@@ -47,7 +47,7 @@ fn codes(record: &Channels) -> Vec<(String, &'static str)> {
 }
 
 /// A live body acceleration: band-limited noise on gravity.
-fn live(seed: u64) -> Vec<f64> {
+fn live_acceleration(seed: u64) -> Vec<f64> {
     let x = integrate_in_band(
         &noise(16_000, seed),
         RATE,
@@ -164,9 +164,12 @@ fn white_noise_has_a_flat_density_and_no_coherence_with_another() {
 fn sound_channels_give_no_finding() {
     assert_eq!(
         codes(&record(&[
-            ("a_body", live(10)),
-            ("a_wheel", live(20)),
-            ("f_wheel", live(30).iter().map(|v| v * 3000.0).collect())
+            ("a_body", live_acceleration(10)),
+            ("a_wheel", live_acceleration(20)),
+            (
+                "f_wheel",
+                live_acceleration(30).iter().map(|v| v * 3000.0).collect()
+            )
         ])),
         vec![]
     );
@@ -177,7 +180,7 @@ fn a_steady_sine_and_a_wheel_off_the_ground_are_no_saturation() {
     let sine: Vec<f64> = (0..20_000)
         .map(|i| 9.81 + 3.0 * (2.0 * PI * 5.0 * i as f64 / 1000.0).sin())
         .collect();
-    let lifting: Vec<f64> = live(31)
+    let lifting: Vec<f64> = live_acceleration(31)
         .iter()
         .zip(noise(20_000, 8))
         .map(|(v, e)| (20_000.0 + 15_000.0 * (v - 9.81)).max(0.0) + 10.0 * e)
@@ -188,7 +191,7 @@ fn a_steady_sine_and_a_wheel_off_the_ground_are_no_saturation() {
 
 #[test]
 fn saturation_before_the_noise_is_seen_through_it() {
-    let clipped: Vec<f64> = live(10)
+    let clipped: Vec<f64> = live_acceleration(10)
         .iter()
         .zip(noise(16_000, 9))
         .map(|(v, e)| v.clamp(6.0, 13.0) + 0.02 * e)
@@ -201,9 +204,9 @@ fn saturation_before_the_noise_is_seen_through_it() {
 
 #[test]
 fn each_fault_of_a_channel_is_named() {
-    let sound = live(20);
+    let sound = live_acceleration(20);
     let faulty = |f: &dyn Fn(usize, f64) -> f64| {
-        live(10)
+        live_acceleration(10)
             .iter()
             .enumerate()
             .map(|(i, v)| f(i, *v))

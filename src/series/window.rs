@@ -21,9 +21,9 @@ impl Windowed {
     /// For signals of `n` samples at `rate_hz`; bins within the band.
     ///
     /// The last samples are left out where that makes the transform fast (factors 2, 3 and 5 alone).
-    pub fn of(n: usize, rate_hz: f64, band: Band) -> Self {
+    pub fn new(n: usize, rate_hz: f64, band: Band) -> Self {
         let mut length = n;
-        while length > 1 && !smooth(length) {
+        while length > 1 && !is_smooth(length) {
             length -= 1;
         }
         let ramp = (TAPER * length as f64 / 2.0) as usize;
@@ -62,7 +62,7 @@ impl Windowed {
     }
 
     /// Number of the first bin in the band.
-    pub fn first(&self) -> usize {
+    pub fn first_bin(&self) -> usize {
         self.first
     }
 
@@ -72,7 +72,7 @@ impl Windowed {
     }
 
     /// Transform at any frequency f, Hz, of a signal at `rate_hz`: sum of x w exp(-2 pi i f t).
-    pub fn at(&self, x: &[f64], rate_hz: f64, f_hz: f64) -> Complex64 {
+    pub fn transform_at(&self, x: &[f64], rate_hz: f64, f_hz: f64) -> Complex64 {
         let turn = Complex64::from_polar(1.0, -2.0 * PI * f_hz / rate_hz);
         let mut now = Complex64::new(1.0, 0.0);
         let mut sum = Complex64::default();
@@ -101,7 +101,7 @@ impl Windowed {
     }
 }
 
-fn smooth(mut n: usize) -> bool {
+fn is_smooth(mut n: usize) -> bool {
     for p in [2, 3, 5] {
         while n.is_multiple_of(p) {
             n /= p;

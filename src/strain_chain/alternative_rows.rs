@@ -39,7 +39,7 @@ pub fn alternatives_of(
     if has_covariance(job) {
         return Vec::new();
     }
-    let mut rows = |fault, change| changed(work, job, (gauges, rows_of), (fault, change));
+    let mut rows = |fault, change| change_gauges(work, job, (gauges, rows_of), (fault, change));
     let sides = rows(InputFault::OtherSide, other_surface);
     sides
         .into_iter()
@@ -63,7 +63,7 @@ fn radians(g: &mut JobGauge) -> bool {
 }
 
 /// Returns S with every gauge changed where that makes sense; `None` where it does for none.
-fn changed(
+fn change_gauges(
     work: &mut Work,
     job: &Job,
     (names, rows_of): (&[String], &dyn Fn(&mut Work, &Job) -> Option<NamedRows>),

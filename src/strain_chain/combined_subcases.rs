@@ -46,7 +46,7 @@ pub(crate) fn read_combination(
     let fault = |wrong: String, remedy: &str| {
         let field = format!("{word} {}", s.id);
         let path = read.deck.path(s.at);
-        Faults::from(Fault::at(path, s.at.line, field, wrong, remedy))
+        Faults::from(Fault::with_line(path, s.at.line, field, wrong, remedy))
     };
     let candidates: Vec<usize> = (0..above.len()).filter(|i| above[*i].kind == of).collect();
     let factors = match (s.kind, s.sequence.as_slice()) {
@@ -151,7 +151,7 @@ pub(crate) fn add_combinations(
 
 /// The fault of a combination whose subcases have results of bars at different stations.
 pub(crate) fn other_stations(read: &DeckModel, combination: &Subcase) -> Fault {
-    Fault::at(
+    Fault::with_line(
         read.deck.path(combination.at),
         combination.at.line,
         format!("subcase {}", combination.id),

@@ -27,11 +27,11 @@ struct Header {
     center: Vec<f64>,
     #[serde(default)]
     additive: bool,
-    #[serde(default = "yes")]
+    #[serde(default = "default_true")]
     is_tested: bool,
 }
 
-fn yes() -> bool {
+fn default_true() -> bool {
     true
 }
 
@@ -72,7 +72,7 @@ pub fn read_covariance(
     let fault = |field: &str, wrong: String| {
         let remedy =
             "run `calibrate` again, and keep its sensitivity.csv and calibration.bin together";
-        Faults::from(Fault::of(file, field, wrong, remedy))
+        Faults::from(Fault::new(file, field, wrong, remedy))
     };
     let broken = || {
         fault(

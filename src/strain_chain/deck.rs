@@ -60,7 +60,7 @@ pub(crate) fn no_deck(given: &str, bytes: &[u8]) -> Option<Fault> {
         }
         None => "name a Nastran deck (text) or an OP2 that contains the mesh",
     };
-    Some(Fault::of(
+    Some(Fault::new(
         given,
         "deck",
         format!("it is {kind}, not a Nastran deck"),
@@ -109,12 +109,13 @@ pub fn model_of_deck(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]
 /// The fault of a model whose mass, centre of gravity or moments of inertia exceed the range of numbers.
 fn mass_beyond(model: &Model, given: &str) -> Option<Fault> {
     let about_origin = model.rigid_body_mass(Vec3::zeros());
-    let centre = Weight::of(&about_origin, Vec3::zeros()).map_or_else(Vec3::zeros, |w| w.cg);
+    let centre =
+        Weight::from_mass_matrix(&about_origin, Vec3::zeros()).map_or_else(Vec3::zeros, |w| w.cg);
     let about_centre = mass_moved(&about_origin, -centre);
     let mut numbers = about_origin.iter().chain(about_centre.iter());
     // Inertia relief and its checks multiply two of them.
     (!numbers.all(|v| (v * v).is_finite())).then(|| {
-        Fault::of(
+        Fault::new(
             given,
             "mass",
             "the mass of the model, its centre of gravity or moments of inertia exceed the range of numbers",
@@ -129,10 +130,10 @@ fn mass_beyond(model: &Model, given: &str) -> Option<Fault> {
 /// A fault where the file is no OP2 or holds no geometry.
 pub fn model_of_op2(given: &str, bytes: &[u8]) -> Result<DeckModel, Fault> {
     let op2 = Op2::read(bytes)
-        .map_err(|e| Fault::of(given, "OP2", e.to_string(), "write the file again"))?;
+        .map_err(|e| Fault::new(given, "OP2", e.to_string(), "write the file again"))?;
     let (cards, notes) = op2.cards();
     if cards.grids.is_empty() {
-        return Err(Fault::of(
+        return Err(Fault::new(
             given,
             "mesh",
             "the OP2 contains no geometry",
@@ -202,7 +203,7 @@ fn fault_of(deck: &Deck, f: &nastran::bdf::Fault) -> Fault {
         }
         (card, Some(field)) => format!("{card} {}", field.name),
     };
-    Fault::at(
+    Fault::with_line(
         deck.path(f.at),
         f.at.line,
         field,
@@ -214,7 +215,7 @@ fn fault_of(deck: &Deck, f: &nastran::bdf::Fault) -> Fault {
 impl DeckModel {
     /// Returns the faults of parts of the deck that were not read: it is cut, or an INCLUDE is missing. Without ENDDATA the deck may be cut, and its
     /// other faults may come from that, so they are returned too.
-    pub fn incomplete(&self) -> FaultList {
+    pub fn unread_part_faults(&self) -> FaultList {
         let cut = self.deck.faults.iter().filter(|f| f.what.is_incomplete());
         let mut faults: FaultList = cut.map(|f| fault_of(&self.deck, f)).collect();
         if faults.is_empty() && self.ends_open() && !self.faults.is_empty() {
@@ -231,7 +232,7 @@ impl DeckModel {
     }
 
     fn open_end(&self, and: &str) -> Fault {
-        Fault::of(
+        Fault::new(
             &*self.given,
             "ENDDATA",
             format!("the deck ends without ENDDATA, and {and}: it may be cut"),
@@ -257,7 +258,7 @@ fn sort_out(
         .iter()
         .filter(|f| f.weight() != FaultWeight::Note)
     {
-        let fault = Fault::at(
+        let fault = Fault::with_line(
             file_of(f),
             f.at.line,
             format!("{} {}", f.card, f.field),

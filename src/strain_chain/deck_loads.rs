@@ -3,7 +3,7 @@
 use crate::fe::{CaseResult, UnitLoad};
 use crate::finding::list_few;
 use crate::host::fault::{Fault, FaultList, Faults};
-use crate::host::words::short;
+use crate::host::words::format_number;
 use crate::job::{Job, JobLoad, LoadActs};
 use crate::model::{Load, Model, Vec3};
 use crate::strain_chain::combined_subcases::read_combination;
@@ -115,24 +115,25 @@ impl Compared<'_> {
                     .or_else(|| self.other_force(stated, about))
             }
             UnitLoad::Set(set) => self.other_set(*set).or_else(|| {
-                let thermal = self.all(|deck, s| match s.temperature_load == Some(*set) {
-                    true => Vec::new(),
-                    false => thermal_loads(deck, s),
-                });
+                let thermal =
+                    self.collect_loads(|deck, s| match s.temperature_load == Some(*set) {
+                        true => Vec::new(),
+                        false => thermal_loads(deck, s),
+                    });
                 self.of_others(&thermal, None)
             }),
             UnitLoad::Temperature { set, .. } => self.other_temperature(*set),
         }
     }
 
-    fn all(&self, of: impl Fn(&DeckModel, &Subcase) -> Vec<OtherLoad>) -> Vec<OtherLoad> {
+    fn collect_loads(&self, of: impl Fn(&DeckModel, &Subcase) -> Vec<OtherLoad>) -> Vec<OtherLoad> {
         let terms = self.terms.iter().filter(|t| t.0 != 0.0);
         terms.flat_map(|(_, s)| of(self.deck, s)).collect()
     }
 
     fn other_than_a_force(&self) -> Option<Fault> {
-        let mut others = self.all(other_loads);
-        let beyond_load = self.all(|deck, s| {
+        let mut others = self.collect_loads(other_loads);
+        let beyond_load = self.collect_loads(|deck, s| {
             let mut all = thermal_loads(deck, s);
             all.extend(moved_supports(deck, s));
             all
@@ -171,7 +172,14 @@ impl Compared<'_> {
         if agree(&self.deck.model, stated, of_deck) {
             return None;
         }
-        let vector = |v: Vec3| format!("({}, {}, {})", short(v.x), short(v.y), short(v.z));
+        let vector = |v: Vec3| {
+            format!(
+                "({}, {}, {})",
+                format_number(v.x),
+                format_number(v.y),
+                format_number(v.z)
+            )
+        };
         let wrong = format!(
             "{} of the deck has force {} and moment {} about that grid",
             self.subcase_in_words(),
@@ -271,7 +279,7 @@ impl Compared<'_> {
                 let sid = s.load?;
                 Some(match *factor {
                     1.0 => format!("LOAD = {sid}"),
-                    factor => format!("{} of LOAD = {sid}", short(factor)),
+                    factor => format!("{} of LOAD = {sid}", format_number(factor)),
                 })
             })
             .collect();
@@ -289,12 +297,12 @@ impl Compared<'_> {
             } => format!(
                 "{} at grid {grid}, applied = {}",
                 component.name(),
-                short(load.applied)
+                format_number(load.applied)
             ),
             LoadActs::Set(set) => format!("load set {set}"),
             LoadActs::Named => "named alone".to_owned(),
         };
-        Fault::at(
+        Fault::with_line(
             &*self.job.file,
             load.line,
             "load.subcase",
@@ -355,9 +363,9 @@ mod tests {
             "units = \"m-kg-s\"\n[model]\ndeck = \"bar.bdf\"\nresults = [\"bar.op2\"]\n[[load]]\nname = \"F\"\n{keys}\nsubcase = {subcase}\n"
         );
         let files = InMemory::default()
-            .with("bar.bdf", DECK)
-            .with("job.toml", text);
-        let deck = read_model(&mut Inputs::of(&files), Path::new(""), "bar.bdf").unwrap();
+            .with_file("bar.bdf", DECK)
+            .with_file("job.toml", text);
+        let deck = read_model(&mut Inputs::new(&files), Path::new(""), "bar.bdf").unwrap();
         let job = Job::read("job.toml", &files).unwrap();
         let units = unit_loads(&job, &deck.model).unwrap();
         let case = CaseResult {

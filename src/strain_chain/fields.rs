@@ -142,7 +142,7 @@ pub fn read_fields_beside(
     beside: Option<Beside<'_>>,
 ) -> Result<Fields, Faults> {
     let Some(files) = &job.model else {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*job.file,
             "model",
             "the job has no [model]",
@@ -150,7 +150,7 @@ pub fn read_fields_beside(
         )));
     };
     if job.loads.is_empty() {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*job.file,
             "load",
             "the job has no [[load]]",

@@ -54,7 +54,7 @@ pub fn lay_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<Vec<Gau
 /// A gauge that can't be laid, as a fault at the line that states it.
 pub fn not_laid(g: &JobGauge, e: &GaugeError) -> Fault {
     let (wrong, remedy) = e.parts();
-    Fault::at(&*g.file, g.line, "gauge", wrong, remedy)
+    Fault::with_line(&*g.file, g.line, "gauge", wrong, remedy)
 }
 
 /// Faults of gauges without strain, at the line that states them.
@@ -66,12 +66,12 @@ pub fn without_strain(job: &Job, missing: &[NoStrain]) -> Faults {
             .iter()
             .find(|g| g.name == m.gauge || m.gauge.starts_with(&format!("{}.", g.name)));
         let (file, line) = stated.map_or((job.file.as_str(), 0), |g| (g.file.as_str(), g.line));
-        let wrong = format!("gauge `{}`: {}", m.gauge, m.wrong());
+        let wrong = format!("gauge `{}`: {}", m.gauge, m.describe_cause());
         let field = match m.why {
             NoStrainCause::Absent => "element",
             NoStrainCause::BetweenStations => "station",
         };
-        let fault = Fault::at(file, line, field, wrong, m.remedy());
+        let fault = Fault::with_line(file, line, field, wrong, m.remedy());
         if !out
             .iter()
             .any(|f| f.line == fault.line && f.file == fault.file)
@@ -79,7 +79,7 @@ pub fn without_strain(job: &Job, missing: &[NoStrain]) -> Faults {
             out.push(fault);
         }
     }
-    let unknown = Fault::of(
+    let unknown = Fault::new(
         &*job.file,
         "gauge",
         "a gauge has no strain in some subcase",

@@ -22,7 +22,7 @@ use std::collections::HashMap;
 /// Missing columns, rows for gauges that the job names and the table lacks, fields that are no numbers.
 pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
     let Some(given) = &job.sensitivity else {
-        return Err(Fault::of(
+        return Err(Fault::new(
             &*job.file,
             "sensitivity",
             "the job has no [sensitivity]",
@@ -37,7 +37,7 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
     let table = read_table(&given.file.given, &text)?;
     let mut faults = FaultList::new();
     let Some(key) = table.column(&["gauge", "name"]) else {
-        return Err(Faults::from(Fault::at(
+        return Err(Faults::from(Fault::with_line(
             &*table.file,
             1,
             "gauge",
@@ -54,7 +54,7 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
     for (name, column) in &columns {
         let Some(c) = table.column(&[column]) else {
             let wrong = format!("no column `{column}` in `{}`", table.file);
-            faults.push(Fault::at(
+            faults.push(Fault::with_line(
                 &*job.file,
                 given.line,
                 "sensitivity.columns",
@@ -79,7 +79,7 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
     check_wanted(job, given.line, &table, &loads, &mut faults);
     let is_load = |name: &&String| loads.iter().any(|l| l.name == **name);
     for name in given.range.keys().filter(|n| !is_load(n)) {
-        faults.push(Fault::at(
+        faults.push(Fault::with_line(
             &*job.file,
             given.line,
             "sensitivity.range",
@@ -98,7 +98,7 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
         .map(|r| r.1.get(key).cloned().unwrap_or_default())
         .collect();
     for name in given.strain_range.keys().filter(|n| !names.contains(n)) {
-        faults.push(Fault::at(
+        faults.push(Fault::with_line(
             &*job.file,
             given.line,
             "sensitivity.strain_range",
@@ -112,7 +112,7 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
         for (l, (c, f)) in at.iter().enumerate() {
             match table.number(*row, *c) {
                 Ok(Some(v)) => values[(r, l)] = v * f,
-                Ok(None) => faults.push(Fault::at(
+                Ok(None) => faults.push(Fault::with_line(
                     &*table.file,
                     table.rows.get(*row).map_or(0, |r| r.0),
                     &*loads[l].name,
@@ -145,7 +145,7 @@ fn check_wanted(job: &Job, line: u32, table: &Table, loads: &[Load], faults: &mu
     let wanted = job.loads.iter().filter(|l| l.role == LoadRole::Wanted);
     for load in wanted.filter(|l| loads.iter().all(|own| own.name != l.name)) {
         let remedy = suggest::remedy(&load.name, table.header.iter().map(String::as_str));
-        faults.push(Fault::at(
+        faults.push(Fault::with_line(
             &*job.file,
             line,
             "sensitivity.file",
@@ -181,7 +181,7 @@ fn rows_of(
                 Some(row) => out.push((reading, row)),
                 // A calibration does not learn the rows of validation gauges.
                 None if g.role == Role::Validation => {}
-                None => faults.push(Fault::at(
+                None => faults.push(Fault::with_line(
                     &*g.file,
                     g.line,
                     "gauge",

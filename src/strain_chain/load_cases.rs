@@ -1,6 +1,6 @@
 //! Search for the case of the results in which each load of a job acts.
 
-use crate::fe::from_results::{HOLD_ONCE, Repeated, complete, find_repeated_results};
+use crate::fe::from_results::{HOLD_ONCE, Repeated, complete_case, find_repeated_results};
 use crate::fe::{CaseResult, Solution};
 use crate::finding::list_few;
 use crate::host::fault::{Fault, FaultList, Faults};
@@ -23,7 +23,7 @@ struct Taker<'a> {
 impl Taker<'_> {
     fn fault(&self, job: &Job, wrong: &str, remedy: impl Into<String>) -> Fault {
         let wrong = format!("{}: {wrong}", self.what);
-        Fault::at(&*job.file, self.line, self.key, wrong, remedy)
+        Fault::with_line(&*job.file, self.line, self.key, wrong, remedy)
     }
 }
 
@@ -142,7 +142,7 @@ fn join(solutions: &mut [Solution], subcase: u32) {
         let other = solutions.get(s).and_then(|s| s.cases.get(c)).cloned();
         let own = solutions.get_mut(first).and_then(|s| s.cases.get_mut(case));
         if let (Some(own), Some(other)) = (own, other) {
-            complete(own, other);
+            complete_case(own, other);
         }
     }
 }
@@ -185,7 +185,7 @@ fn without_case(job: &Job, load: &JobLoad, solutions: &[Solution]) -> Fault {
         true => "ask for STRAIN(FIBER,CENTER) = ALL and PARAM,POST,-1 in the run (`cases` writes such a deck)".to_owned(),
         false => format!("state `subcase`; the results contain {}", list_few(&there)),
     };
-    Fault::at(&*job.file, load.line, "load.subcase", wrong, remedy)
+    Fault::with_line(&*job.file, load.line, "load.subcase", wrong, remedy)
 }
 
 /// Refuses loads that took their subcase by their number in the job, if labels of the results name another one.
@@ -252,7 +252,7 @@ fn other_label(
         ),
         None => format!("state `subcase` of the load; subcase = {subcase} if the label is wrong"),
     };
-    Fault::at(&*job.file, load.line, "load.subcase", wrong, remedy)
+    Fault::with_line(&*job.file, load.line, "load.subcase", wrong, remedy)
 }
 
 fn has_strain(c: &CaseResult) -> bool {

@@ -10,7 +10,7 @@
 use super::specs::corrected_spec_of;
 use crate::fe::{CaseResult, LoadCase, ShellField, Solution, UnitLoad};
 use crate::finding::{Finding, Severity, list_few};
-use crate::gauge::{CornerRows, Gauge, Spot, build, change_by_refining, reading};
+use crate::gauge::{CornerRows, Gauge, Spot, build, change_by_refining, gauge_reading};
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::job::{Job, Measured};
@@ -105,7 +105,7 @@ pub fn refined_mesh(model: &Model, gauges: Option<&[Gauge]>) -> Result<RefinedMo
             )
         })?
     };
-    model.refined_at(&divided).ok_or_else(|| {
+    model.refine_shells_at(&divided).ok_or_else(|| {
         "the mesh cannot be refined (shells with mid-side grids, bars or solids along shells in other displacement frames, or no shells)"
             .to_owned()
     })
@@ -167,7 +167,7 @@ pub(super) fn take_out(
         Some(false) => return None,
     }
     let own: Vec<&CaseResult> = solution.cases.iter().chain(&*reference).collect();
-    match finer(work, job, deck, (cases, &own), at) {
+    match compute_mesh_error(work, job, deck, (cases, &own), at) {
         Ok((mut errors, left)) => {
             let of_reference = errors.split_off(solution.cases.len());
             let all = solution.cases.iter_mut().zip(&errors);
@@ -237,11 +237,12 @@ pub fn take_out_beside(
     }
     let cases = support_of_job(job, &deck.model)?.unit_cases(&deck.model, loads);
     let own: Vec<&CaseResult> = solved.iter().collect();
-    let (errors, _) = finer(work, job, deck, (&cases, &own), WantedAt::Gauges).map_err(|why| {
-        let wrong = format!("the error of the mesh is not known for all loads: {why}");
-        let remedy = "write mesh_error = false in [model]";
-        Faults::from(Fault::of(&*job.file, "model.mesh_error", wrong, remedy))
-    })?;
+    let (errors, _) = compute_mesh_error(work, job, deck, (&cases, &own), WantedAt::Gauges)
+        .map_err(|why| {
+            let wrong = format!("the error of the mesh is not known for all loads: {why}");
+            let remedy = "write mesh_error = false in [model]";
+            Faults::from(Fault::new(&*job.file, "model.mesh_error", wrong, remedy))
+        })?;
     for (case, error) in solved.iter_mut().zip(&errors) {
         subtract(&mut case.shells, &error.shells);
     }
@@ -263,7 +264,7 @@ pub(super) fn not_checked(why: &str) -> Finding {
 ///
 /// # Errors
 /// Why no finer mesh was solved, in words.
-fn finer(
+fn compute_mesh_error(
     work: &mut Work,
     job: &Job,
     deck: &DeckModel,
@@ -350,7 +351,7 @@ pub fn left_in_reading(
     }
     let squares = |cases: &[LoadCaseOf]| -> f64 {
         let of = |(e, f): (&LoadCaseOf, &f64)| {
-            let strain = reading(gauge, e.case).unwrap_or(0.0);
+            let strain = gauge_reading(gauge, e.case).unwrap_or(0.0);
             (strain * f / e.applied).powi(2)
         };
         cases.iter().zip(scales).map(of).sum()
@@ -374,7 +375,7 @@ pub fn mesh_errors(
     let of_gauge = |(g, gauge): (usize, &Gauge)| {
         let (mut off, mut read, mut sign) = (0.0, 0.0, 0.0);
         let by_load = errors.iter().enumerate().map(|(l, e)| {
-            let error = reading(gauge, e.case).unwrap_or(f64::NAN) / e.applied;
+            let error = gauge_reading(gauge, e.case).unwrap_or(f64::NAN) / e.applied;
             let limit = s.values[(g, l)];
             let scale = scales.get(l).copied().unwrap_or(1.0);
             off += (error * scale).powi(2);
@@ -462,7 +463,7 @@ pub(super) fn uncertainty(
         return None;
     }
     let left = crate::linalg::Matrix::from_fn(n, k, |g, l| {
-        let error = reading(&gauges[g], errors[l].case).unwrap_or(0.0);
+        let error = gauge_reading(&gauges[g], errors[l].case).unwrap_or(0.0);
         left_share * error / errors[l].applied
     });
     Some(Uncertainty::of_model(

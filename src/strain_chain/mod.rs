@@ -42,7 +42,7 @@ pub use units::{LoadSigma, LoadUnits, load_units};
 use crate::finding::{Finding, Severity};
 use crate::gauge::Gauge;
 use crate::host::fault::{Fault, Faults};
-use crate::host::outcome::finite;
+use crate::host::outcome::finite_or_none;
 use crate::host::work::Work;
 use crate::job::correct::{check_channels, report_corrections};
 use crate::job::{Job, Measured};
@@ -150,7 +150,7 @@ pub fn prepare_beside(
 /// As [`read_given`]; gauges that the job turns.
 pub fn given_as_asked(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
     if let Some(c) = job.corrections.iter().find(|c| c.angle_deg.is_some()) {
-        return Err(Faults::from(Fault::at(
+        return Err(Faults::from(Fault::with_line(
             &*job.file,
             c.line,
             "correction.angle_deg",
@@ -198,11 +198,11 @@ pub struct Conditioning {
 
 impl Conditioning {
     /// Returns rank and condition numbers of S.
-    pub fn of(s: &Sensitivity) -> Self {
+    pub fn from_sensitivity(s: &Sensitivity) -> Self {
         Self {
             rank: s.rank(),
-            condition_number: finite(s.condition_number()),
-            condition_number_scaled: finite(s.condition_number_scaled()),
+            condition_number: finite_or_none(s.condition_number()),
+            condition_number_scaled: finite_or_none(s.condition_number_scaled()),
         }
     }
 }

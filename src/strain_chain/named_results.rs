@@ -44,7 +44,7 @@ pub const RESULTS_REMEDY: &str = "give an OP2, punch or HDF5 file of a static ru
 
 /// The fault of results that can't be read.
 pub fn results_fault(job: &Job, named: &NamedFile, e: &ResultsError) -> Fault {
-    Fault::at(
+    Fault::with_line(
         &*job.file,
         named.line,
         &*named.key,
@@ -55,7 +55,7 @@ pub fn results_fault(job: &Job, named: &NamedFile, e: &ResultsError) -> Fault {
 
 /// Returns the fault of results whose elements have another type than in the deck.
 pub fn other_deck(job: &Job, named: &NamedFile, finding: &Finding) -> Fault {
-    Fault::at(
+    Fault::with_line(
         &*job.file,
         named.line,
         &*named.key,

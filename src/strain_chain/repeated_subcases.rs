@@ -49,7 +49,7 @@ pub fn refuse_repeated_subcases(read: &DeckModel) -> Result<(), Faults> {
         };
         let first = format!("`{}`:{}", read.deck.path(*first), first.line);
         faults.extend(later.iter().map(|at| {
-            Fault::at(
+            Fault::with_line(
                 read.deck.path(*at),
                 at.line,
                 format!("SUBCASE {id}"),

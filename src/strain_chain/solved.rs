@@ -34,8 +34,9 @@ pub fn support_of_job(job: &Job, model: &Model) -> Result<Support, Faults> {
         .model
         .as_ref()
         .map_or((SupportChoice::Deck, 0), |m| (m.support, m.support_line));
-    let fault =
-        |wrong: String, remedy: &str| Fault::at(&*job.file, line, "model.support", wrong, remedy);
+    let fault = |wrong: String, remedy: &str| {
+        Fault::with_line(&*job.file, line, "model.support", wrong, remedy)
+    };
     let support = support_of(model, wanted).map_err(|e| {
         let remedy = "write support = \"free\", or the id of the SPC set that supports the structure during the measurement";
         Faults::from(fault(e.to_string(), remedy))
@@ -94,7 +95,7 @@ pub fn stands_on_wheels(job: &Job, model: &Model, what: &str) -> Result<(), Faul
         return Ok(());
     }
     let line = job.model.as_ref().map_or(0, |m| m.support_line);
-    Err(Faults::from(Fault::at(
+    Err(Faults::from(Fault::with_line(
         &*job.file,
         line,
         "model.support",
@@ -154,7 +155,7 @@ fn check_mpc_sets(read: &DeckModel) -> Result<(), Faults> {
         list_few(&words)
     );
     let remedy = "select the MPC set of the structure above the subcases only";
-    Err(Faults::from(Fault::of(&read.given, "MPC", wrong, remedy)))
+    Err(Faults::from(Fault::new(&read.given, "MPC", wrong, remedy)))
 }
 
 /// Returns the label of a subcase, or its subtitle.
@@ -306,7 +307,8 @@ pub fn modes_kept(
         })
     };
     let of = (model.grids.len(), count);
-    let mut solved = kept(work, &identity, of, "modes", solve).map_err(|e| faults_of(&e, read))?;
+    let mut solved =
+        load_or_solve(work, &identity, of, "modes", solve).map_err(|e| faults_of(&e, read))?;
     let unsettled = |f: &Finding| f.code == "modes-not-converged";
     work.findings
         .extend(solved.findings.drain(..).filter(unsettled));
@@ -333,20 +335,20 @@ fn displacements_kept(
         ..options.clone()
     };
     let of = (model.grids.len(), cases.len());
-    kept(work, identity, of, "solve", || {
+    load_or_solve(work, identity, of, "solve", || {
         solve_displacements(model, cases, &options)
     })
 }
 
 /// Returns a solution of so many grids and fields from the cache, or solves and stores it.
-fn kept(
+fn load_or_solve(
     work: &mut Work,
     identity: &str,
     (grids, fields): (usize, usize),
     stage: &str,
     solve: impl FnOnce() -> Result<Solved, FeError>,
 ) -> Result<Solved, FeError> {
-    let key = Key::of(identity);
+    let key = Key::from_identity(identity);
     let mut store = work.cx.store.clone();
     let read = store
         .as_deref()
@@ -449,9 +451,9 @@ pub fn faults_of(error: &FeError, read: &DeckModel) -> Faults {
                 0 => read.given.clone(),
                 _ => read.deck.path(at).to_owned(),
             };
-            Fault::at(file, at.line, f.card, f.reason, f.remedy)
+            Fault::with_line(file, at.line, f.card, f.reason, f.remedy)
         })
         .collect();
-    let unknown = Fault::of(&*read.given, "solve", error.to_string(), "correct the deck");
+    let unknown = Fault::new(&*read.given, "solve", error.to_string(), "correct the deck");
     Faults::or(list, unknown)
 }

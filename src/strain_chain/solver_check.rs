@@ -57,19 +57,19 @@ pub(super) fn check_against_solver(
         Err(faults) => return skip(work, &faults.first_reason()),
     };
     let pairs = results.iter().zip(&solved.cases);
-    let differences = pairs.map(|(result, solved)| StrainDifference::between(result, solved));
+    let differences = pairs.map(|(result, solved)| StrainDifference::compare(result, solved));
     let differences: Vec<(&str, StrainDifference)> = job
         .loads
         .iter()
         .zip(differences)
         .filter_map(|(load, difference)| Some((load.name.as_str(), difference?)))
         .collect();
-    let differences = strained(differences);
+    let differences = keep_straining_loads(differences);
     of_loads(deck, &differences).or_else(|| of_single_shells(deck, &differences))
 }
 
 /// Returns the loads that strain the structure: the difference of two fields of rounding errors is as large as the fields.
-fn strained(mut loads: Vec<(&str, StrainDifference)>) -> Vec<(&str, StrainDifference)> {
+fn keep_straining_loads(mut loads: Vec<(&str, StrainDifference)>) -> Vec<(&str, StrainDifference)> {
     let largest = loads.iter().map(|l| l.1.mean).fold(0.0, f64::max);
     loads.retain(|l| l.1.mean > RULES.strained * largest);
     loads
@@ -157,8 +157,8 @@ mod tests {
             cosine: 0.0,
             of_shells: Vec::new(),
         };
-        let left = strained(vec![("bends", of(1e-9)), ("rounding", of(1e-16))]);
+        let left = keep_straining_loads(vec![("bends", of(1e-9)), ("rounding", of(1e-16))]);
         assert_eq!(left, [("bends", of(1e-9))]);
-        assert_eq!(strained(vec![("alone", of(1e-16))]).len(), 1);
+        assert_eq!(keep_straining_loads(vec![("alone", of(1e-16))]).len(), 1);
     }
 }

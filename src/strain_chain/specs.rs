@@ -1,7 +1,7 @@
 //! The job's gauges with their ids resolved on the model.
 
 use super::stated_points::side_of;
-use crate::gauge::{GaugePlace, GaugeSpec, Pair, away_from, centre, nearest_skin, opposite};
+use crate::gauge::{GaugePlace, GaugeSpec, Pair, away_from, centre, nearest_skin, opposite_side};
 use crate::host::fault::Fault;
 use crate::job::correct::turned_by;
 use crate::job::readings::readings_of;
@@ -30,7 +30,7 @@ pub fn corrected_spec_of(model: &Model, job: &Job, g: &JobGauge) -> Result<Gauge
 /// Ids that the deck lacks.
 fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
     let fault = |field: &str, wrong: String, remedy: &str| {
-        Fault::at(&*g.file, g.line, field, wrong, remedy)
+        Fault::with_line(&*g.file, g.line, field, wrong, remedy)
     };
     let lacks = |field: &str, what: String| {
         fault(
@@ -112,7 +112,7 @@ fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
             let surface = match (surface2, seat) {
                 (Some(surface), _) => surface,
                 (None, Some(seat)) => away_from(model, seat, ix).ok_or_else(across)?,
-                (None, None) => opposite(g.surface),
+                (None, None) => opposite_side(g.surface),
             };
             if seat == Some((ix, surface)) {
                 return Err(fault(
@@ -123,7 +123,7 @@ fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
             }
             Some(Pair {
                 turn,
-                ..Pair::parallel(ix, surface)
+                ..Pair::with_parallel_axis(ix, surface)
             })
         }
         None => None,

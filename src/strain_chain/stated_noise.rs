@@ -24,7 +24,7 @@ pub fn stated_noise(job: &Job, gauges: &[String]) -> Result<Option<GaugeNoise>, 
     };
     let missing: FaultList = (gauges.iter().filter(|g| of(g).is_none()))
         .map(|g| {
-            Fault::at(
+            Fault::with_line(
                 &*job.file,
                 measured.line,
                 "measured.noise_microstrain",
@@ -41,7 +41,7 @@ pub fn stated_noise(job: &Job, gauges: &[String]) -> Result<Option<GaugeNoise>, 
     let unknown: FaultList = (measured.noise_by_gauge.iter().map(|n| &n.0))
         .filter(|name| !of_job(name))
         .map(|name| {
-            Fault::at(
+            Fault::with_line(
                 &*job.file,
                 measured.line,
                 "measured.noise_microstrain",

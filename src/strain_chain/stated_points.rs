@@ -4,7 +4,7 @@ use crate::estimate::NORMAL_95;
 use crate::fe::strain_tensor::Surface;
 use crate::finding::{Finding, Severity};
 use crate::gauge::{BetweenSkins, beside_beam, beside_shell, between_skins, nearest_skin};
-use crate::host::words::short;
+use crate::host::words::format_number;
 use crate::job::{Job, JobGauge, StatedPlace};
 use crate::model::{Model, ShellIx, Vec3};
 use crate::units::Quantity;
@@ -66,7 +66,7 @@ pub fn side_of(model: &Model, g: &JobGauge) -> Surface {
     if g.surface_stated {
         return g.surface;
     }
-    at_skins(model, g).map_or(g.surface, |(_, skins)| skins.nearer())
+    at_skins(model, g).map_or(g.surface, |(_, skins)| skins.nearer_side())
 }
 
 /// Returns the finding if the stated point does not determine the side of a gauge, or contradicts the stated side.
@@ -76,16 +76,16 @@ fn side_finding(model: &Model, job: &Job, g: &JobGauge) -> Option<Finding> {
     let unit = job.units.unit(Quantity::Length).name;
     if !g.surface_stated {
         let [bottom, top] = skins.distance;
-        let side = skins.nearer().word();
+        let side = skins.nearer_side().word();
         let why = match skins.is_within_bulge() {
             true => format!(
                 "is between the flat element {element} and the curved surface through its neighbours, {} {unit} away",
-                short(skins.bulge.abs())
+                format_number(skins.bulge.abs())
             ),
             false => format!(
                 "is about as far from the bottom ({} {unit}) as from the top ({} {unit}) of element {element}",
-                short(bottom),
-                short(top)
+                format_number(bottom),
+                format_number(top)
             ),
         };
         let undecided = || {
@@ -109,7 +109,7 @@ fn side_finding(model: &Model, job: &Job, g: &JobGauge) -> Option<Finding> {
             true => Severity::Error,
             false => Severity::Warning,
         };
-        let [here, other] = skins.of(g.surface);
+        let [here, other] = skins.skin_distances(g.surface);
         Finding::new(
             severity,
             "gauge-side-contradicted",
@@ -117,7 +117,7 @@ fn side_finding(model: &Model, job: &Job, g: &JobGauge) -> Option<Finding> {
             format!(
                 "{}:{}: the point stated for gauge `{}` is {} {unit} from the {} of element {element}, the stated surface, and {} {unit} \
                  from its other side. Strain is taken on the {}",
-                g.file, g.line, g.name, short(here), g.surface.word(), short(other), g.surface.word()
+                g.file, g.line, g.name, format_number(here), g.surface.word(), format_number(other), g.surface.word()
             ),
             "correct `surface` or the point, or state one of the two alone",
         )
@@ -173,7 +173,7 @@ fn off_their_elements(model: &Model, job: &Job) -> Vec<Finding> {
                 format!(
                     "{}:{}: the point stated for gauge `{}` is {} {unit} from its element {element}, which is {} {unit} large. Strain is \
                      taken at the element",
-                    g.file, g.line, g.name, short(found.distance), short(found.size)
+                    g.file, g.line, g.name, format_number(found.distance), format_number(found.size)
                 ),
                 "correct the point or the element, or state one of the two alone",
             )

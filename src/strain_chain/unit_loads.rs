@@ -27,7 +27,7 @@ pub fn unit_loads(job: &Job, model: &Model) -> Result<Vec<UnitLoad>, Faults> {
             }
             LoadActs::Set(sid) => Some(UnitLoad::Set(sid)),
             LoadActs::Named => {
-                faults.push(Fault::at(
+                faults.push(Fault::with_line(
                     &*job.file,
                     l.line,
                     "load.grid",
@@ -46,7 +46,7 @@ pub fn unit_loads(job: &Job, model: &Model) -> Result<Vec<UnitLoad>, Faults> {
                     faults.push(no_grid(job, l, grid));
                 }
                 if frame.is_none() {
-                    faults.push(Fault::at(
+                    faults.push(Fault::with_line(
                         &*job.file,
                         l.line,
                         "load.cid",
@@ -57,7 +57,7 @@ pub fn unit_loads(job: &Job, model: &Model) -> Result<Vec<UnitLoad>, Faults> {
                 let (ix, frame) = (ix?, frame?);
                 let point = model.grids.get(ix.us())?;
                 if point.is_scalar() && (component != Component::FX || cid != 0) {
-                    faults.push(Fault::at(
+                    faults.push(Fault::with_line(
                         &*job.file,
                         l.line,
                         "load.component",
@@ -101,7 +101,7 @@ pub(super) fn refuse_missing_sets(
     for (load, unit) in job.loads.iter().zip(loads) {
         let UnitLoad::Set(sid) = unit else { continue };
         if model.load_sets.iter().all(|s| s.sid != *sid) {
-            faults.push(Fault::at(
+            faults.push(Fault::with_line(
                 &*job.file,
                 load.line,
                 "load.load_set",
@@ -115,7 +115,7 @@ pub(super) fn refuse_missing_sets(
 
 /// The fault of a load at a grid that the deck lacks.
 fn no_grid(job: &Job, load: &JobLoad, grid: u32) -> Fault {
-    Fault::at(
+    Fault::with_line(
         &*job.file,
         load.line,
         "load.grid",

@@ -31,7 +31,7 @@ fn spec(trials: usize) -> StudySpec {
     }
 }
 
-fn all() -> Vec<Vec<usize>> {
+fn all_gauges_layout() -> Vec<Vec<usize>> {
     vec![(0..8).collect()]
 }
 
@@ -50,7 +50,7 @@ fn inverse() -> Matrix {
 fn normal_noise_scatters_the_loads_as_the_covariance_says_and_intervals_cover() {
     let row = study_layout(
         &pool(),
-        &all(),
+        &all_gauges_layout(),
         error(ErrorKind::AbsoluteNormal, 3.0),
         &spec(20_000),
     );
@@ -69,7 +69,7 @@ fn normal_noise_scatters_the_loads_as_the_covariance_says_and_intervals_cover() 
 fn uniform_errors_scatter_as_a_third_of_their_square() {
     let row = study_layout(
         &pool(),
-        &all(),
+        &all_gauges_layout(),
         error(ErrorKind::RelativeUniform, 0.1),
         &spec(20_000),
     );
@@ -93,7 +93,12 @@ fn uniform_errors_scatter_as_a_third_of_their_square() {
 fn a_wrong_angle_shortens_the_reading_and_leaves_a_bias() {
     // To second order: e(a) = e0 + 2 a (e45 - m) - 2 a^2 (e0 - e90) / 2, so the mean is off by -sd^2 (e0 - e90).
     let sd = 1.0_f64;
-    let row = study_layout(&pool(), &all(), error(ErrorKind::Angle, sd), &spec(40_000));
+    let row = study_layout(
+        &pool(),
+        &all_gauges_layout(),
+        error(ErrorKind::Angle, sd),
+        &spec(40_000),
+    );
     let (a, p) = (inverse(), pool());
     let of = |r: &[f64]| r[0] * 100.0 + r[1] * 40.0;
     for l in 0..2 {
@@ -120,7 +125,7 @@ fn a_wrong_angle_shortens_the_reading_and_leaves_a_bias() {
 fn places_scatter_by_the_slope_of_the_strain() {
     let row = study_layout(
         &pool(),
-        &all(),
+        &all_gauges_layout(),
         error(ErrorKind::Position, 2.0),
         &spec(20_000),
     );
@@ -176,13 +181,23 @@ fn nuisance_loads_are_drawn_and_their_prior_is_used() {
         prior: vec![None, None, Some(20.0)],
         ..spec(4000)
     };
-    let known = study_layout(&p, &all(), error(ErrorKind::AbsoluteNormal, 1.0), &with);
+    let known = study_layout(
+        &p,
+        &all_gauges_layout(),
+        error(ErrorKind::AbsoluteNormal, 1.0),
+        &with,
+    );
     let without = StudySpec {
         noise: 1.0,
         ..with.clone()
     };
     // A noise far above the readings' makes the prior strong: as if the load were left out.
-    let left_out = study_layout(&p, &all(), error(ErrorKind::AbsoluteNormal, 1.0), &without);
+    let left_out = study_layout(
+        &p,
+        &all_gauges_layout(),
+        error(ErrorKind::AbsoluteNormal, 1.0),
+        &without,
+    );
     assert!(
         known.sigma[0] < 0.5 * left_out.sigma[0],
         "{known:?} {left_out:?}"
@@ -195,7 +210,13 @@ fn nuisance_loads_are_drawn_and_their_prior_is_used() {
 fn the_condition_number_is_that_of_scaled_columns() {
     let of = |p: &[PoolGauge], sizes: Option<Vec<f64>>| {
         let with = StudySpec { sizes, ..spec(2) };
-        study_layout(p, &all(), error(ErrorKind::AbsoluteNormal, 1.0), &with).condition_number
+        study_layout(
+            p,
+            &all_gauges_layout(),
+            error(ErrorKind::AbsoluteNormal, 1.0),
+            &with,
+        )
+        .condition_number
     };
     let mut other = pool();
     for g in &mut other {
@@ -216,7 +237,12 @@ fn loads_are_drawn_with_their_standard_deviation() {
         truth: vec![TrueLoad::Drawn(100.0), TrueLoad::Drawn(40.0)],
         ..spec(20_000)
     };
-    let row = study_layout(&pool(), &all(), error(ErrorKind::Factor, 0.02), &drawn);
+    let row = study_layout(
+        &pool(),
+        &all_gauges_layout(),
+        error(ErrorKind::Factor, 0.02),
+        &drawn,
+    );
     let (a, p) = (inverse(), pool());
     for l in 0..2 {
         let variance: f64 = (0..8)
@@ -247,8 +273,8 @@ fn the_sign_convention_of_a_load_changes_the_sign_of_its_bias_and_nothing_else()
         g.slope.iter_mut().flatten().for_each(turn);
     }
     for kind in ErrorKind::ALL {
-        let [one, other] =
-            [pool(), negated.clone()].map(|p| study_layout(&p, &all(), error(kind, 0.5), &drawn));
+        let [one, other] = [pool(), negated.clone()]
+            .map(|p| study_layout(&p, &all_gauges_layout(), error(kind, 0.5), &drawn));
         // Rounding of sums of 200 errors.
         let close = |a: f64, b: f64, of: f64| (a - b).abs() <= 1e-9 * of;
         for (l, sign) in [(0, 1.0), (1, -1.0)] {

@@ -73,7 +73,7 @@ pub struct StudyRow {
 }
 
 /// Columns times `sizes`, else of unit norm.
-fn scaled(mut s: Matrix, sizes: Option<&[f64]>) -> Matrix {
+fn scale_columns(mut s: Matrix, sizes: Option<&[f64]>) -> Matrix {
     for (c, mut column) in s.column_iter_mut().enumerate() {
         let norm = column.norm();
         let unit = if norm > 0.0 { 1.0 / norm } else { 1.0 };
@@ -97,7 +97,7 @@ pub fn study_layout(
         .iter()
         .map(|l| {
             let s = Matrix::from_fn(l.len(), k, |g, c| pool[l[g]].row[c]);
-            dense::condition(&scaled(s, spec.sizes.as_deref()))
+            dense::condition(&scale_columns(s, spec.sizes.as_deref()))
         })
         .collect();
     conditions.sort_by(f64::total_cmp);
@@ -223,7 +223,7 @@ fn trial(
                     let turn = (error.size * normal(&mut random)).to_radians();
                     match &gauge.turned {
                         None => own,
-                        Some([half, full]) => turned(own, read(half), read(full), turn),
+                        Some([half, full]) => rotate_reading(own, read(half), read(full), turn),
                     }
                 }
                 ErrorKind::Position => {
@@ -270,7 +270,7 @@ fn trial(
 
 /// Reading of a gauge turned by `angle`, from its readings at 0, 45 and 90 degrees: strain turns as
 /// `(e0 + e90)/2 + (e0 - e90)/2 cos 2a + (e45 - (e0 + e90)/2) sin 2a`.
-fn turned(e0: f64, e45: f64, e90: f64, angle: f64) -> f64 {
+fn rotate_reading(e0: f64, e45: f64, e90: f64, angle: f64) -> f64 {
     let (mean, half) = ((e0 + e90) / 2.0, (e0 - e90) / 2.0);
     mean + half * (2.0 * angle).cos() + (e45 - mean) * (2.0 * angle).sin()
 }

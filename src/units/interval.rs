@@ -33,13 +33,17 @@ pub fn plus_minus(value: f64, half: f64) -> String {
         true => of_half,
         false => of_half.min(3 - exponent(value)),
     };
-    format!("{} ± {}", rounded(value, of_value), rounded(half, of_half))
+    format!(
+        "{} ± {}",
+        format_rounded(value, of_value),
+        format_rounded(half, of_half)
+    )
 }
 
 /// Returns the half width of a 95 % interval, `± 0.36`, with two significant digits; a dash for an unknown one.
 pub fn half_width(half: f64) -> String {
     match half.is_finite() && PLAIN.contains(&half) {
-        true => format!("± {}", rounded(half, 1 - exponent(half))),
+        true => format!("± {}", format_rounded(half, 1 - exponent(half))),
         false if half.is_finite() => format!("± {half:.1e}"),
         false => "-".into(),
     }
@@ -53,7 +57,7 @@ fn exponent(x: f64) -> i32 {
 }
 
 /// A number that ends at a decimal place; negative places are those before the point.
-fn rounded(x: f64, places: i32) -> String {
+fn format_rounded(x: f64, places: i32) -> String {
     let unit = 10f64.powi(-places);
     // Zero without a sign.
     let x = (x / unit).round() * unit + 0.0;

@@ -55,7 +55,7 @@ pub fn check_units(
         ));
     }
     let gpa = system.si(Quantity::Stress) / 1e9;
-    out.extend(implausible(
+    out.extend(find_implausible_value(
         "Young's modulus",
         "GPa",
         "units-modulus",
@@ -68,7 +68,7 @@ pub fn check_units(
     // Where the deck says which system it is in, its densities are wrong, not its units.
     let is_said = unitsys.and_then(UnitSystem::from_unitsys) == Some(system);
     let meant = metal_elsewhere(system, moduli, densities).filter(|_| !is_said);
-    let density = implausible(
+    let density = find_implausible_value(
         "density",
         "kg/m3",
         "units-density",
@@ -100,7 +100,7 @@ fn from_metal(e: f64, rho: Option<f64>) -> f64 {
 }
 
 /// The middle of the positive values.
-fn typical(values: &[(u32, f64)]) -> Option<f64> {
+fn median_positive(values: &[(u32, f64)]) -> Option<f64> {
     let mut v: Vec<f64> = values.iter().map(|v| v.1).filter(|x| *x > 0.0).collect();
     v.sort_by(f64::total_cmp);
     v.get(v.len() / 2).copied()
@@ -115,7 +115,7 @@ fn metal_elsewhere(
     /// Magnesium (45 GPa, 1,800 kg/m^3) is 1.8 from it, tungsten (400 GPa, 19,300 kg/m^3) 2.7; a metal in the units of another system is 5.8 and
     /// more from it.
     const METALS: f64 = 3.0;
-    let (e, rho) = (typical(moduli)?, typical(densities)?);
+    let (e, rho) = (median_positive(moduli)?, median_positive(densities)?);
     let distance =
         |s: UnitSystem| from_metal(e * s.si(Quantity::Stress), Some(rho * density_si(s)));
     if distance(system) <= METALS {
@@ -142,7 +142,7 @@ fn named_elsewhere(f: Finding, other: UnitSystem) -> Finding {
 }
 
 #[allow(clippy::too_many_arguments)]
-fn implausible(
+fn find_implausible_value(
     what: &str,
     unit: &str,
     code: &'static str,
@@ -222,8 +222,8 @@ pub fn likely_system(
     if let Some(system) = unitsys.and_then(UnitSystem::from_unitsys) {
         return Some(system);
     }
-    let e = typical(moduli)?;
-    let rho = typical(densities);
+    let e = median_positive(moduli)?;
+    let rho = median_positive(densities);
     let distance = |s: &UnitSystem| {
         let rho = rho.map(|r| r * density_si(*s));
         from_metal(e * s.si(Quantity::Stress), rho)

@@ -16,7 +16,7 @@ pub struct ReportUnits {
 
 impl ReportUnits {
     /// The system's own units.
-    pub fn of(system: UnitSystem) -> Self {
+    pub fn from_system(system: UnitSystem) -> Self {
         Self {
             force: system.unit(Quantity::Force),
             moment: system.unit(Quantity::Moment),

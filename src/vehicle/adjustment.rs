@@ -44,7 +44,7 @@ pub struct Lag {
 
 impl Lag {
     /// Returns truth over reading at an angular frequency.
-    pub fn undone(&self, w: f64) -> Complex64 {
+    pub fn inverse_response(&self, w: f64) -> Complex64 {
         let x = w * self.time_s;
         match self.order {
             1 => Complex64::new(1.0, x),
@@ -91,7 +91,7 @@ impl Adjustment {
     }
 
     /// Corrections for another record: slips happened in the fitted one.
-    pub fn elsewhere(list: &[Self]) -> Vec<Self> {
+    pub fn without_slips(list: &[Self]) -> Vec<Self> {
         let kept = |a: &Self| Self {
             slips: vec![],
             ..a.clone()
@@ -112,17 +112,17 @@ impl Adjustment {
     }
 
     /// Truth over reading at an angular frequency, but for what changes with time.
-    pub fn undone(&self, w: f64) -> Complex64 {
+    pub fn inverse_response(&self, w: f64) -> Complex64 {
         let delayed = Complex64::from_polar(1.0 / self.gain.abs(), w * self.delay_s);
         delayed * self.gain.signum() * self.lags_undone(w)
     }
 
     fn lags_undone(&self, w: f64) -> Complex64 {
-        self.lags.iter().map(|l| l.undone(w)).product()
+        self.lags.iter().map(|l| l.inverse_response(w)).product()
     }
 
     /// Samples with the clock's drift and slips taken out; those given where there are none.
-    pub fn retimed(&self, x: &[f64], start_s: f64, rate_hz: f64) -> Option<Vec<f64>> {
+    pub fn correct_clock(&self, x: &[f64], start_s: f64, rate_hz: f64) -> Option<Vec<f64>> {
         if self.clock == 0.0 && self.slips.is_empty() {
             return None;
         }
@@ -131,9 +131,9 @@ impl Adjustment {
     }
 
     /// Returns the corrected samples; their mean is kept as read, over the gain.
-    pub fn applied(&self, x: &[f64], start_s: f64, rate_hz: f64) -> Vec<f64> {
+    pub fn correct_samples(&self, x: &[f64], start_s: f64, rate_hz: f64) -> Vec<f64> {
         let mut out = self
-            .retimed(x, start_s, rate_hz)
+            .correct_clock(x, start_s, rate_hz)
             .unwrap_or_else(|| x.to_vec());
         if self.delay_s != 0.0 {
             out = delay(&out, rate_hz, -self.delay_s);

@@ -24,7 +24,7 @@ pub(super) struct ChannelSpectra {
 impl ChannelSpectra {
     /// # Errors
     /// A sensor without a channel.
-    pub fn of(
+    pub fn from_record(
         vehicle: &Vehicle,
         record: &Channels,
         treatment: &Treatment,
@@ -34,7 +34,7 @@ impl ChannelSpectra {
             let mut x = without_mean(record.samples(name)?);
             let adjust = Adjustment::of_channel(&treatment.adjust, name);
             if let Some(right) =
-                (adjust.as_ref()).and_then(|a| a.retimed(&x, record.start_s, record.rate_hz))
+                (adjust.as_ref()).and_then(|a| a.correct_clock(&x, record.start_s, record.rate_hz))
             {
                 x = right;
             }
@@ -49,7 +49,7 @@ impl ChannelSpectra {
                 } else {
                     1.0
                 };
-                let undone = adjust.as_ref().map(|a| a.undone(w));
+                let undone = adjust.as_ref().map(|a| a.inverse_response(w));
                 undone.unwrap_or(Complex64::new(1.0, 0.0)) * twice
             }))
         };
@@ -89,7 +89,10 @@ pub(super) fn body_motions(
         .map(
             |(b, motions)| match (motions.as_slice(), own(b).as_slice()) {
                 ([_], [s]) => vec![sensors[*s].clone()],
-                _ => motions.iter().map(|s| limit.limited(s, 0)).collect(),
+                _ => motions
+                    .iter()
+                    .map(|s| limit.samples_in_band(s, 0))
+                    .collect(),
             },
         )
         .collect()

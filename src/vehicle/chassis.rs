@@ -136,7 +136,7 @@ fn half_widths_by_mass(
         let of_gains = own.iter().zip(&shares);
         let gains =
             of_gains.map(|(s, c)| (c * task.gain_tolerance * motion.sensors[*s][t]).powi(2));
-        noise + gains.sum::<f64>() + quadratic(found, &inertias, |k| motion.bodies[body][k][t])
+        noise + gains.sum::<f64>() + quadratic_form(found, &inertias, |k| motion.bodies[body][k][t])
     };
     (0..motion.n_samples())
         .map(|t| found.coverage_factor * variance(t).max(0.0).sqrt())
@@ -150,14 +150,14 @@ fn half_widths_of_link(found: &Identification, motion: &Motion, l: usize, w: f64
         .collect();
     (0..motion.n_samples())
         .map(|t| {
-            let variance = quadratic(found, &terms, |k| w * columns[k][t]);
+            let variance = quadratic_form(found, &terms, |k| w * columns[k][t]);
             found.coverage_factor * variance.max(0.0).sqrt()
         })
         .collect()
 }
 
 /// Returns `x' C x` with the covariance of parameters.
-fn quadratic(found: &Identification, parameters: &[usize], x: impl Fn(usize) -> f64) -> f64 {
+fn quadratic_form(found: &Identification, parameters: &[usize], x: impl Fn(usize) -> f64) -> f64 {
     let mut sum = 0.0;
     for (a, i) in parameters.iter().enumerate() {
         for (b, j) in parameters.iter().enumerate() {

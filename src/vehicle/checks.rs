@@ -75,7 +75,8 @@ pub(super) fn is_static(weighed: f64, identified: f64) -> bool {
 pub fn check_sides(parameters: &[Parameter], values: &[f64], sigmas: &[f64]) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (i, p) in parameters.iter().enumerate() {
-        let Some(j) = mirrored(&p.name).and_then(|m| parameters.iter().position(|q| q.name == m))
+        let Some(j) =
+            mirror_name(&p.name).and_then(|m| parameters.iter().position(|q| q.name == m))
         else {
             continue;
         };
@@ -99,7 +100,7 @@ pub fn check_sides(parameters: &[Parameter], values: &[f64], sigmas: &[f64]) -> 
     findings
 }
 
-fn mirrored(name: &str) -> Option<String> {
+fn mirror_name(name: &str) -> Option<String> {
     if !name.ends_with("_other") && !name.contains("_sl") {
         return Some(format!("{name}_other"));
     }

@@ -84,7 +84,7 @@ pub fn fit(equations: &[Equation], allowed: &[Allowed]) -> Fit {
             weights.fill(1.0);
         }
     }
-    let mut result = bounded(&triangles, &weights, allowed);
+    let mut result = solve_bounded(&triangles, &weights, allowed);
     let mut residual_rms = vec![0.0; equations.len()];
     for round in 0..ROUNDS {
         for ((r, w), t) in residual_rms.iter_mut().zip(&mut weights).zip(&triangles) {
@@ -102,7 +102,7 @@ pub fn fit(equations: &[Equation], allowed: &[Allowed]) -> Fit {
             *w = 1.0 / r.max(RESIDUAL_FLOOR * term).max(f64::MIN_POSITIVE);
         }
         if round + 1 < ROUNDS {
-            result = bounded(&triangles, &weights, allowed);
+            result = solve_bounded(&triangles, &weights, allowed);
         }
     }
     let (values, free, active, solution) = result;
@@ -197,7 +197,7 @@ fn solve_free(triangles: &[Triangle], weights: &[f64], free: &[usize], fixed: &[
 }
 
 /// Active-set solution: values, free and active parameters, and the problem in the free ones.
-fn bounded(
+fn solve_bounded(
     triangles: &[Triangle],
     weights: &[f64],
     allowed: &[Allowed],

@@ -12,7 +12,7 @@ use super::layout::Vehicle;
 use super::loads::best_blend;
 use super::motion::motion;
 use super::part_answer::{PartAnswer, collect};
-use super::part_problem::{PartProblem, begun};
+use super::part_problem::{PartProblem, prepare_identification};
 use super::stretch::slow_stretches;
 use super::treatment::{Treatment, VehicleError};
 use super::wrong_inputs::wrong_input;
@@ -36,7 +36,7 @@ pub fn identify(
     if let Some(vehicle) = bodies_of_known_inertia(task, record) {
         return Ok(identify_known(task, vehicle, record));
     }
-    let (treatment, vehicle) = begun(task, record)?;
+    let (treatment, vehicle) = prepare_identification(task, record)?;
     let all = vehicle.parameters();
     let mut answer = Identification {
         values: vec![f64::NAN; all.len()],
@@ -63,7 +63,7 @@ pub fn identify(
             let adjust = if std::ptr::eq(record, all_of) {
                 treatment.adjust.clone()
             } else {
-                Adjustment::elsewhere(&treatment.adjust)
+                Adjustment::without_slips(&treatment.adjust)
             };
             Treatment {
                 slow: slow_stretches(&part.part, &part.values, record, &adjust),
@@ -86,7 +86,7 @@ pub fn identify(
                 blend,
                 judged,
                 &treatment,
-                &declared(task),
+                &declared_tolerances(task),
             )?
         } else {
             vec![]
@@ -116,7 +116,7 @@ fn report_wrong_inputs(task: &IdentifyTask, answer: &mut Identification, record:
     answer.findings.insert(0, wrong);
 }
 
-fn declared(task: &IdentifyTask) -> Declared {
+fn declared_tolerances(task: &IdentifyTask) -> Declared {
     Declared {
         noise_acc: task.noise_acc,
         noise_force: task.noise_force,
@@ -137,13 +137,13 @@ pub fn check_records(
     if let Some(vehicle) = bodies_of_known_inertia(task, record) {
         let treatment = Treatment {
             adjust: task.corrections.clone(),
-            ..Treatment::of(task.band)
+            ..Treatment::from_band(task.band)
         };
         return motion(&vehicle, record, &treatment).map(|_| ());
     }
-    let (treatment, vehicle) = begun(task, record)?;
+    let (treatment, vehicle) = prepare_identification(task, record)?;
     let elsewhere = Treatment {
-        adjust: Adjustment::elsewhere(&treatment.adjust),
+        adjust: Adjustment::without_slips(&treatment.adjust),
         ..treatment.clone()
     };
     for bodies in vehicle.components() {
@@ -162,7 +162,7 @@ fn fit_part(
     record: &Channels,
     treatment: &Treatment,
 ) -> Result<PartAnswer, VehicleError> {
-    let problem = PartProblem::of(task, part, record, treatment)?;
+    let problem = PartProblem::from_part(task, part, record, treatment)?;
     let is_solvable = problem.is_solvable();
     let PartProblem {
         names,

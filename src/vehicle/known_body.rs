@@ -55,7 +55,7 @@ pub(super) fn identify_known(
             name: p.name.clone(),
             value,
             sigma: value.map(|_| 0.0),
-            unit: task.units.of(p.quantity),
+            unit: task.units.unit_name(p.quantity),
             identifiable: value.is_some(),
             interval: value.map(|v| [v, v]),
             known: value.is_some(),

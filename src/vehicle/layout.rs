@@ -150,7 +150,7 @@ pub struct MassStep {
 
 impl MassStep {
     /// Share of the change that is done at a time.
-    pub fn done(&self, t_s: f64) -> f64 {
+    pub fn share_at(&self, t_s: f64) -> f64 {
         share_done(self.at_s, self.over_s, t_s)
     }
 }

@@ -21,7 +21,7 @@ pub(super) struct Limiter {
 impl Limiter {
     /// # Errors
     /// A band that the rate can't hold, a record that is shorter than the band needs.
-    pub fn of(
+    pub fn new(
         vehicle: &Vehicle,
         record: &Channels,
         treatment: &Treatment,
@@ -71,7 +71,7 @@ impl Limiter {
     }
 
     /// Samples of a spectrum in the band, so many times integrated.
-    pub fn limited(&mut self, s: &Spectrum, times: i32) -> Vec<f64> {
+    pub fn samples_in_band(&mut self, s: &Spectrum, times: i32) -> Vec<f64> {
         /// Width of the omitted band about a line, one sd of its bell: mains wander by less, and its echo dies within a second.
         const WIDTH_HZ: f64 = 0.15;
         let mut in_band = s.band_integrated_for(self.band, times, self.keep);
@@ -89,6 +89,6 @@ impl Limiter {
     /// A signal at the record's rate, its mean taken off, in the band.
     pub fn limited_samples(&mut self, x: &[f64]) -> Vec<f64> {
         let s = self.fourier.spectrum(&without_mean(x), self.rate_hz);
-        self.limited(&s, 0)
+        self.samples_in_band(&s, 0)
     }
 }

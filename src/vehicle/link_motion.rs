@@ -38,7 +38,10 @@ pub(super) fn link_motion(
         }
     }
     let relative = Spectrum::sum(&parts)?;
-    let (stretch, rate) = (limit.limited(&relative, 2), limit.limited(&relative, 1));
+    let (stretch, rate) = (
+        limit.samples_in_band(&relative, 2),
+        limit.samples_in_band(&relative, 1),
+    );
     let nonlinear = link.terms.iter().any(|t| !t.is_linear());
     let slow = treatment.slow.iter().find(|s| s.link == l);
     let slow = slow.filter(|s| s.stretch.len() == record.n_samples());
@@ -49,7 +52,7 @@ pub(super) fn link_motion(
         .map(|term| match (term, &wide) {
             (Term::Stiffness, _) => stretch.clone(),
             (Term::Damping, _) => rate.clone(),
-            (Term::Inertance, _) => limit.limited(&relative, 0),
+            (Term::Inertance, _) => limit.samples_in_band(&relative, 0),
             (term, Some((d, v))) => {
                 let force: Vec<f64> = (d.iter().zip(v).enumerate())
                     .map(|(i, (d, v))| {
@@ -117,7 +120,9 @@ pub(super) fn step_columns(
         let product: Vec<f64> = a
             .iter()
             .enumerate()
-            .map(|(i, a)| step.done(record.start_s + i as f64 / limit.rate_hz) * (a + step.gravity))
+            .map(|(i, a)| {
+                step.share_at(record.start_s + i as f64 / limit.rate_hz) * (a + step.gravity)
+            })
             .collect();
         out.push(limit.limited_samples(&product));
     }

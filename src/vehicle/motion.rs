@@ -171,21 +171,21 @@ pub fn motion(
     record: &Channels,
     treatment: &Treatment,
 ) -> Result<Motion, VehicleError> {
-    let mut limit = Limiter::of(vehicle, record, treatment)?;
-    let (record, mut findings) = bridged(record);
-    let spectra = ChannelSpectra::of(vehicle, &record, treatment, &mut limit.fourier)?;
+    let mut limit = Limiter::new(vehicle, record, treatment)?;
+    let (record, mut findings) = bridge_gaps(record);
+    let spectra = ChannelSpectra::from_record(vehicle, &record, treatment, &mut limit.fourier)?;
     let body_spectra = body_spectra(vehicle, &spectra.sensors)?;
     let sensors: Vec<Vec<f64>> = spectra
         .sensors
         .iter()
-        .map(|s| limit.limited(s, 0))
+        .map(|s| limit.samples_in_band(s, 0))
         .collect();
     let bodies = body_motions(vehicle, &body_spectra, &sensors, &mut limit);
     findings.extend(check_rigid(vehicle, &sensors, &bodies));
     let forces = spectra
         .forces
         .iter()
-        .map(|s| s.as_ref().map(|s| limit.limited(s, 0)))
+        .map(|s| s.as_ref().map(|s| limit.samples_in_band(s, 0)))
         .collect();
     let (mut stretch, mut rate, mut terms) = (vec![], vec![], vec![]);
     for l in 0..vehicle.links.len() {
@@ -216,7 +216,7 @@ pub fn motion(
 }
 
 /// Returns the record with missing samples bridged, and the findings on them.
-fn bridged(record: &Channels) -> (Channels, Vec<Finding>) {
+fn bridge_gaps(record: &Channels) -> (Channels, Vec<Finding>) {
     let (record, gaps) = record.with_gaps_filled();
     let findings = record
         .list

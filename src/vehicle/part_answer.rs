@@ -89,7 +89,7 @@ fn put_parameters(
             name: p.name.clone(),
             value: shown,
             sigma: shown.map(|_| if known { 0.0 } else { sigma }),
-            unit: task.units.of(p.quantity),
+            unit: task.units.unit_name(p.quantity),
             identifiable,
             interval: shown.map(|v| if known { [v, v] } else { [v - half, v + half] }),
             known,
@@ -111,7 +111,11 @@ fn put_ratios(task: &IdentifyTask, answer: &mut Identification, part: &PartAnswe
             name: format!("{}/{reference}", p.name),
             value: Some(value),
             sigma: Some(sigma),
-            unit: format!("({})/({})", units.of(p.quantity), units.of(Quantity::Mass)),
+            unit: format!(
+                "({})/({})",
+                units.unit_name(p.quantity),
+                units.unit_name(Quantity::Mass)
+            ),
             identifiable: !part.unknown.contains(&i),
             interval: Some([value - half, value + half]),
             known: false,

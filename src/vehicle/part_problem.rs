@@ -27,7 +27,7 @@ impl PartProblem {
     ///
     /// # Errors
     /// As [`motion`].
-    pub fn of(
+    pub fn from_part(
         task: &IdentifyTask,
         part: &Vehicle,
         record: &Channels,
@@ -36,7 +36,7 @@ impl PartProblem {
         let names = part.parameters();
         let motion = motion(part, record, treatment)?;
         let equations = equations(part, &motion);
-        let mut allowed = allowed(task, &names);
+        let mut allowed = allowed_ranges(task, &names);
         let reference = reference(part, &equations, &allowed);
         if let Some(r) = reference {
             allowed[r] = Allowed::Known(1.0);
@@ -66,13 +66,13 @@ impl PartProblem {
 ///
 /// # Errors
 /// As [`super::identify::identify`].
-pub(super) fn begun(
+pub(super) fn prepare_identification(
     task: &IdentifyTask,
     record: &Channels,
 ) -> Result<(Treatment, Vehicle), VehicleError> {
     let treatment = Treatment {
         adjust: task.corrections.clone(),
-        ..Treatment::of(task.band)
+        ..Treatment::from_band(task.band)
     };
     let measured = with_measured_sensors(&task.vehicle, record);
     let vehicle = resolve_constants(&measured, record, &treatment)?;
@@ -113,7 +113,7 @@ fn with_measured_sensors(vehicle: &Vehicle, record: &Channels) -> Vehicle {
     out
 }
 
-fn allowed(task: &IdentifyTask, parameters: &[Parameter]) -> Vec<Allowed> {
+fn allowed_ranges(task: &IdentifyTask, parameters: &[Parameter]) -> Vec<Allowed> {
     parameters
         .iter()
         .map(

@@ -135,8 +135,8 @@ pub fn vehicle(request: &PresetRequest) -> Result<Vehicle, PresetError> {
             one
         }
         "half" => half(request),
-        "full2" => full(request, &["f", "r"])?,
-        "full3" => full(request, &["f", "m", "r"])?,
+        "full2" => full_vehicle(request, &["f", "r"])?,
+        "full3" => full_vehicle(request, &["f", "m", "r"])?,
         "rig" => rig(),
         "oscillator" => oscillator(),
         other => {
@@ -278,7 +278,7 @@ fn half(request: &PresetRequest) -> Vehicle {
 }
 
 /// Heave, pitch and roll over beam axles.
-fn full(request: &PresetRequest, axles: &[&str]) -> Result<Vehicle, PresetError> {
+fn full_vehicle(request: &PresetRequest, axles: &[&str]) -> Result<Vehicle, PresetError> {
     let mut v = Vehicle {
         name: request.model.clone(),
         bodies: vec![body("b", Shape::HeavePitchRoll, 0.0, 0.0, true)],

@@ -21,7 +21,7 @@ pub fn slow_stretches(
         .filter(|&l| vehicle.links[l].terms.iter().any(|t| !t.is_linear()))
         .filter_map(|l| {
             let force = link_force(vehicle, values, record, adjust, l)?;
-            let stretch = solved(vehicle, values, l, &force, record)?;
+            let stretch = solve_stretch(vehicle, values, l, &force, record)?;
             Some(SlowStretch { link: l, stretch })
         })
         .collect()
@@ -69,12 +69,12 @@ fn link_force(
         .collect();
     let mut force = vec![0.0; record.n_samples()];
     for name in &own {
-        let a = adjusted(record, name, adjust)?;
+        let a = correct_channel(record, name, adjust)?;
         let share = -mass / own.len() as f64 / weight;
         force.iter_mut().zip(a).for_each(|(f, a)| *f += share * a);
     }
     for wheel in vehicle.wheels.iter().filter(|w| w.at.body == body) {
-        let f = adjusted(record, &wheel.channel, adjust)?;
+        let f = correct_channel(record, &wheel.channel, adjust)?;
         force
             .iter_mut()
             .zip(f)
@@ -84,7 +84,7 @@ fn link_force(
 }
 
 /// A channel without its mean, corrected; shifted to the nearest sample, which is enough for slow motion.
-fn adjusted(record: &Channels, name: &str, adjust: &[Adjustment]) -> Option<Vec<f64>> {
+fn correct_channel(record: &Channels, name: &str, adjust: &[Adjustment]) -> Option<Vec<f64>> {
     let x = record.samples(name).ok()?;
     let m = mean(x);
     let own = Adjustment::of_channel(adjust, name).unwrap_or_else(|| Adjustment::none(name));
@@ -101,7 +101,7 @@ fn adjusted(record: &Channels, name: &str, adjust: &[Adjustment]) -> Option<Vec<
 }
 
 /// d(t) with sum of c . term(d, d') = force(t), from rest.
-fn solved(
+fn solve_stretch(
     vehicle: &Vehicle,
     values: &[f64],
     link: usize,

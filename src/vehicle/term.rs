@@ -53,7 +53,7 @@ impl UnitNames {
     }
 
     /// The unit of a quantity, in words.
-    pub fn of(&self, quantity: Quantity) -> String {
+    pub fn unit_name(&self, quantity: Quantity) -> String {
         let Self {
             mass: m,
             length: l,

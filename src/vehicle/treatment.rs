@@ -115,7 +115,7 @@ pub struct Treatment {
 
 impl Treatment {
     /// Returns the plain treatment: one band, samples thinned as far as it allows.
-    pub fn of(band: Band) -> Self {
+    pub fn from_band(band: Band) -> Self {
         Self {
             band,
             keep_every: 0,

@@ -4,7 +4,7 @@ use super::checks::is_static;
 use super::fit::{Fit, fit};
 use super::identification::{Identification, IdentifyTask};
 use super::layout::{Measures, Vehicle};
-use super::part_problem::{PartProblem, begun};
+use super::part_problem::{PartProblem, prepare_identification};
 use super::treatment::VehicleError;
 use crate::finding::Finding;
 use crate::input_faults::{
@@ -113,10 +113,10 @@ pub(super) fn wrong_input(
 /// # Errors
 /// As [`super::identify::identify`].
 fn unexplained_share(task: &IdentifyTask, record: &Channels) -> Result<Option<f64>, VehicleError> {
-    let (treatment, vehicle) = begun(task, record)?;
+    let (treatment, vehicle) = prepare_identification(task, record)?;
     let mut shares = Vec::new();
     for bodies in vehicle.components() {
-        let problem = PartProblem::of(task, &vehicle.part(&bodies), record, &treatment)?;
+        let problem = PartProblem::from_part(task, &vehicle.part(&bodies), record, &treatment)?;
         if !problem.is_solvable() {
             continue;
         }

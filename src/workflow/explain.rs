@@ -40,13 +40,13 @@ pub fn explain_all() -> &'static [Code] {
 pub fn explain(code: &str) -> Result<&'static Code, Faults> {
     explain::code(code).ok_or_else(|| {
         let wrong = format!("no finding has the code `{code}`");
-        let closest = closest(code);
-        Fault::of("explain", "code", wrong, closest).into()
+        let closest = suggest_code(code);
+        Fault::new("explain", "code", wrong, closest).into()
     })
 }
 
 /// The closest code, else those that share a word, else where all are listed.
-fn closest(code: &str) -> String {
+fn suggest_code(code: &str) -> String {
     let names = explain::codes().iter().map(|c| c.code);
     let meant = remedy(code, names.clone());
     if meant.starts_with("did you mean") {

@@ -2,7 +2,7 @@
 
 use crate::host::context::Context;
 use crate::host::fault::Faults;
-use crate::host::outcome::{Answer, Outcome, StatedUnits, finite};
+use crate::host::outcome::{Answer, Outcome, StatedUnits, finite_or_none};
 use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::job::Job;
@@ -182,7 +182,7 @@ pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> 
             keep_every: 1,
             adjust: adjust.to_vec(),
             slow: slow_stretches(&found.vehicle, &found.values, record, adjust),
-            ..Treatment::of(task.band)
+            ..Treatment::from_band(task.band)
         };
         let motion = motion(&found.vehicle, record, &treatment);
         let motion = motion.map_err(|e| vehicle_fault(job, name, &e))?;
@@ -201,7 +201,7 @@ pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> 
             let driven = drive(
                 record,
                 &named.given,
-                &Adjustment::elsewhere(&task.corrections),
+                &Adjustment::without_slips(&task.corrections),
             )?;
             loads.extend(rows(&named.given, &driven));
             Some(driven)
@@ -217,7 +217,7 @@ pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> 
         fit: found.fit.clone(),
         mass_closure: found.mass_closure.map(|m| m.ratio),
         mass_closure_detail: found.mass_closure,
-        conditioning: finite(found.conditioning),
+        conditioning: finite_or_none(found.conditioning),
         loads,
         chassis_forces: forces.iter().map(|f| force_row(f, unit)).collect(),
         fitted,

@@ -3,10 +3,10 @@
 use crate::fe::{
     LoadCase, ModalSolution, SolveOptions, Support, SupportChoice, solve_modes, support_of,
 };
-use crate::gauge::{CornerRows, build, reading};
+use crate::gauge::{CornerRows, build, gauge_reading};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
-use crate::host::outcome::{Answer, Outcome, StatedUnits, finite};
+use crate::host::outcome::{Answer, Outcome, StatedUnits, finite_or_none};
 use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::job::Job;
@@ -43,7 +43,7 @@ pub struct ModeRow {
 }
 
 fn or_null<S: Serializer>(x: &f64, s: S) -> Result<S::Ok, S::Error> {
-    finite(*x).serialize(s)
+    finite_or_none(*x).serialize(s)
 }
 
 /// Elastic modes of a structure.
@@ -122,7 +122,7 @@ impl Answer for Modes {
 pub fn modes(job: &Job, count: usize, cx: &Context) -> Result<Outcome<Modes>, Faults> {
     let mut work = Work::of_job(cx, job);
     let Some(files) = &job.model else {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*job.file,
             "model",
             "the job has no [model]",
@@ -132,8 +132,8 @@ pub fn modes(job: &Job, count: usize, cx: &Context) -> Result<Outcome<Modes>, Fa
     check_named(&work, job, Absent::Refused)?;
     let read = work.stage("read model", |w| read_deck(w, job, files))?;
     let support = support_of_job(job, &read.model)?;
-    let units = StatedUnits::of(job.units, &job.report_units);
-    let answer = solved(&mut work, read, support, (count, Some(job)))?;
+    let units = StatedUnits::from_units(job.units, &job.report_units);
+    let answer = compute_modes(&mut work, read, support, (count, Some(job)))?;
     Ok(work.finish(units, answer))
 }
 
@@ -170,18 +170,18 @@ pub fn modes_of_deck(path: &Path, count: usize, cx: &Context) -> Result<Outcome<
     work.findings.extend(read.findings.iter().cloned());
     Faults::check(read.faults.clone())?;
     let support = support_of(&read.model, SupportChoice::Deck).map_err(|e| {
-        Faults::from(Fault::of(
+        Faults::from(Fault::new(
             &*given,
             "SPC",
             e.to_string(),
             "give a job with [model] support = the SPC set meant",
         ))
     })?;
-    let answer = solved(&mut work, read, support, (count, None))?;
+    let answer = compute_modes(&mut work, read, support, (count, None))?;
     Ok(work.finish(StatedUnits::default(), answer))
 }
 
-fn solved(
+fn compute_modes(
     work: &mut Work,
     read: DeckModel,
     support: Support,
@@ -219,7 +219,7 @@ fn solved(
             effective_mass: m.effective_mass,
             gauge_microstrain: gauges
                 .iter()
-                .map(|g| reading(g, case).map(|e| e / MICROSTRAIN))
+                .map(|g| gauge_reading(g, case).map(|e| e / MICROSTRAIN))
                 .collect(),
         })
         .collect();

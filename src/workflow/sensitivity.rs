@@ -93,7 +93,7 @@ pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<Sensed>, Faults> {
     let loads: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
     let units = load_units(job, &loads).into_iter().map(|u| u.name);
     let answer = Sensed {
-        conditioning: Conditioning::of(s),
+        conditioning: Conditioning::from_sensitivity(s),
         gauges: s.gauges.len(),
         report_units_of_loads: units.collect(),
         loads,
@@ -101,7 +101,10 @@ pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<Sensed>, Faults> {
         prepared,
         job: job.clone(),
     };
-    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+    Ok(work.finish(
+        StatedUnits::from_units(job.units, &job.report_units),
+        answer,
+    ))
 }
 
 /// Returns S of a job's gauges, or of its candidates if it has neither gauges nor a given S. Adds findings on the separability of the loads to the
@@ -118,8 +121,9 @@ pub(crate) fn prepare_sensitivity(work: &mut Work, job: &Job) -> Result<Prepared
     } else {
         prepare(work, job)?
     };
-    work.findings
-        .extend(check_separability(&prepared.sensitivity.unconditioned()));
+    work.findings.extend(check_separability(
+        &prepared.sensitivity.without_prior_loads(),
+    ));
     Ok(prepared)
 }
 
@@ -145,7 +149,7 @@ fn of_candidates(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
                 surface: Some(surface),
                 angle_rad: angle.to_radians(),
                 grid_length: job.candidates.grid_length,
-                ..GaugeSpec::on(format!("{id}.{}.{angle}", surface.word()), shell)
+                ..GaugeSpec::place_on_shell(format!("{id}.{}.{angle}", surface.word()), shell)
             };
             match build(fields.model(), &spec, corners) {
                 Ok((g, _)) => gauges.extend(g),

@@ -153,8 +153,11 @@ pub fn solve(
     let mut work = Work::of_job(cx, job);
     let task = work.stage("read", |w| of_job(w, job))?;
     let title = title_of(Path::new(&job.file));
-    let answer = solved(&mut work, task, options, title, Some(job.units))?;
-    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+    let answer = solve_cases(&mut work, task, options, title, Some(job.units))?;
+    Ok(work.finish(
+        StatedUnits::from_units(job.units, &job.report_units),
+        answer,
+    ))
 }
 
 /// Solves the static subcases of a deck with the built-in solver. Support and loads are the ones that each subcase selects.
@@ -185,7 +188,7 @@ pub fn solve_deck(
 ) -> Result<Outcome<SolvedCases>, Faults> {
     let mut work = Work::new(cx);
     let task = work.stage("read", |w| of_deck(w, path))?;
-    let answer = solved(&mut work, task, options, title_of(path), None)?;
+    let answer = solve_cases(&mut work, task, options, title_of(path), None)?;
     Ok(work.finish(StatedUnits::default(), answer))
 }
 
@@ -194,7 +197,7 @@ fn title_of(path: &Path) -> String {
     stem.map_or_else(String::new, |s| s.to_string_lossy().into_owned())
 }
 
-fn solved(
+fn solve_cases(
     work: &mut Work,
     task: Task,
     options: SolveOptions,
@@ -250,7 +253,7 @@ fn solved(
 
 fn of_job(work: &mut Work, job: &Job) -> Result<Task, Faults> {
     let Some(files) = &job.model else {
-        return Err(Fault::of(
+        return Err(Fault::new(
             &*job.file,
             "model",
             "the job has no [model]",
@@ -317,14 +320,14 @@ fn of_deck(work: &mut Work, path: &Path) -> Result<Task, Faults> {
     work.findings.extend(relieved.and_then(|c| {
         let support = match c.relief {
             Relief::None => return None,
-            _ => Support::free(&read.model),
+            _ => Support::without_spc(&read.model),
         };
         // SUPORT without PARAM,INREL is already reported, with what is assumed.
         let new = |f: &Finding| !explained || f.code != "inertia-relief-assumed";
         relief_finding(&read.model, support, SupportChoice::Deck).filter(new)
     }));
     if cases.is_empty() {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             given,
             "case control",
             "no static subcase with a LOAD",

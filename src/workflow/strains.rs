@@ -89,7 +89,7 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
     let mut work = Work::new(cx);
     let given = deck.display().to_string();
     let deck = work.stage("deck", |s| read_model(&mut s.inputs, Path::new(""), &given))?;
-    Faults::check(deck.incomplete())?;
+    Faults::check(deck.unread_part_faults())?;
     work.findings.extend(deck.findings.iter().cloned());
     work.findings.extend(find_repeated_subcases(&deck));
     // Without elements nothing can be placed. Else the run was possible, and a fault elsewhere (an unused set, say) is worth a warning.
@@ -111,7 +111,7 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
     for (name, bytes) in &files {
         match ResultsFile::read(bytes, name) {
             Ok(file) => opened.push((name.as_str(), file)),
-            Err(e) => faults.push(Fault::of(
+            Err(e) => faults.push(Fault::new(
                 name,
                 "results",
                 e.to_string(),
@@ -185,7 +185,7 @@ fn result_bytes(
     for name in names {
         match work.inputs.read(Path::new(""), &name) {
             Ok(bytes) if from_deck && !looks_like_op2(&bytes) => {
-                faults.push(Fault::of(
+                faults.push(Fault::new(
                     &name,
                     "results",
                     "no result file given",

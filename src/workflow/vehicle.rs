@@ -2,10 +2,10 @@
 
 use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, FaultList, Faults};
-use crate::host::words::short;
+use crate::host::words::format_number;
 use crate::host::work::Work;
 use crate::input_faults::{ChannelKind, channels_by_gravity, findings_by_gravity};
-use crate::job::suggest::closest;
+use crate::job::suggest::find_closest_name;
 use crate::job::{ChannelCorrection, Job, NamedFile, Vehicle as VehicleJob};
 use crate::measured::faults::record_fault;
 use crate::recovery::clock;
@@ -54,7 +54,7 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
             .iter()
             .map(|l| format!("`{}`", l.name))
             .collect();
-        return Err(Faults::from(Fault::at(
+        return Err(Faults::from(Fault::with_line(
             &*job.file,
             section.line,
             format!("vehicle.leaf.{link}"),
@@ -65,7 +65,7 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
     let gravity = job.units.standard_gravity();
     if let Some(change) = &section.mass_change {
         let Some(body) = model.bodies.iter().position(|b| b.name == change.body) else {
-            return Err(Faults::from(Fault::at(
+            return Err(Faults::from(Fault::with_line(
                 &*job.file,
                 section.line,
                 "vehicle.mass_change.body",
@@ -112,7 +112,7 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
                 None if name.starts_with("a_") => Kind::Acceleration,
                 None => Kind::Other,
             };
-            possible(&named.given, record, |name| used(name) != Kind::Other)?;
+            check_samples(&named.given, record, |name| used(name) != Kind::Other)?;
             work.findings.extend(misspelt(&named.given, record, &model));
             let unit_of = |kind| match kind {
                 ChannelKind::Acceleration => job.units.unit(Quantity::Acceleration).name.to_owned(),
@@ -168,7 +168,7 @@ fn misspelt(file: &str, record: &Channels, model: &Vehicle) -> Option<Finding> {
         .filter_map(|c| {
             let first = |name: &str| name.chars().next().map(|f| f.to_ascii_lowercase());
             let alike = others.iter().filter(|o| first(o) == first(c));
-            closest(c, alike.copied()).map(|o| format!("`{o}` for `{c}`"))
+            find_closest_name(c, alike.copied()).map(|o| format!("`{o}` for `{c}`"))
         })
         .collect();
     (!pairs.is_empty()).then(|| {
@@ -189,7 +189,7 @@ const LARGEST_SAMPLE: f64 = 1e15;
 ///
 /// # Errors
 /// One fault a channel with samples that can't.
-fn possible(file: &str, record: &Channels, used: impl Fn(&str) -> bool) -> Result<(), Faults> {
+fn check_samples(file: &str, record: &Channels, used: impl Fn(&str) -> bool) -> Result<(), Faults> {
     let huge = |v: &f64| v.abs() > LARGEST_SAMPLE;
     let channels = record.list.iter().filter(|c| used(&c.name));
     let faults: FaultList = channels
@@ -198,10 +198,10 @@ fn possible(file: &str, record: &Channels, used: impl Fn(&str) -> bool) -> Resul
             let wrong = format!(
                 "sample {} reads {}: no acceleration and no force is so large",
                 at + 1,
-                short(c.samples[at])
+                format_number(c.samples[at])
             );
             let remedy = "leave the field blank if the logger recorded nothing";
-            Some(Fault::of(file, c.name.clone(), wrong, remedy))
+            Some(Fault::new(file, c.name.clone(), wrong, remedy))
         })
         .collect();
     Faults::check(faults)
@@ -227,7 +227,7 @@ fn corrections_of(section: &VehicleJob) -> Vec<Adjustment> {
 /// A job that has none.
 pub fn section_of(job: &Job) -> Result<&VehicleJob, Faults> {
     job.vehicle.as_ref().ok_or_else(|| {
-        Faults::from(Fault::of(
+        Faults::from(Fault::new(
             &*job.file,
             "vehicle",
             "the job has no [vehicle] section",
@@ -255,12 +255,12 @@ pub fn vehicle_fault(job: &Job, file: &str, e: &VehicleError) -> Fault {
             let hold_out = job.vehicle.as_ref().and_then(|v| v.hold_out.as_ref());
             vehicle_fault(job, hold_out.map_or(file, |h| &h.given), inner)
         }
-        VehicleError::Series(_) => Fault::of(file, "record", wrong, remedy),
+        VehicleError::Series(_) => Fault::new(file, "record", wrong, remedy),
         VehicleError::Bounds { name, .. } => {
             let key = format!("vehicle.bounds.{name}");
-            Fault::at(&*job.file, line, key, wrong, remedy)
+            Fault::with_line(&*job.file, line, key, wrong, remedy)
         }
-        _ => Fault::at(&*job.file, line, "vehicle", wrong, remedy),
+        _ => Fault::with_line(&*job.file, line, "vehicle", wrong, remedy),
     }
 }
 
@@ -271,7 +271,7 @@ fn preset_fault(job: &Job, section: &VehicleJob, e: &PresetError) -> Fault {
         PresetError::Place { .. } => "vehicle.places",
     };
     let (wrong, remedy) = e.parts();
-    Fault::at(&*job.file, section.line, key, wrong, remedy)
+    Fault::with_line(&*job.file, section.line, key, wrong, remedy)
 }
 
 /// Reads a record of any format that a record of strain may have, in the job's units.
@@ -297,7 +297,7 @@ fn read_record(
         let is_open = !record.is_time_unit_stated() && section.sample_rate.is_none();
         let rate_hz = record.clock.rate_hz;
         let doubtful = is_open.then(|| clock::check_rate(rate_hz)).flatten();
-        let of_clock = clock::irregular(&named.given, &record.clock);
+        let of_clock = clock::check_time_steps(&named.given, &record.clock);
         work.findings.extend(of_clock.into_iter().chain(doubtful));
         read_channels(&record)
     });
@@ -308,7 +308,7 @@ fn read_record(
         match factor(job, kind, &channel.unit) {
             Some(f) => channel.samples.iter_mut().for_each(|v| *v *= f),
             None => faults.extend(kind.map(|kind| {
-                Fault::at(
+                Fault::with_line(
                     &*named.given,
                     1,
                     channel.name.clone(),

@@ -73,7 +73,7 @@ pub fn read_made(folder: &Path) -> Result<Made, Fault> {
     let file = folder.join("result.json");
     let name = file.display().to_string();
     let fault = |wrong: String| {
-        Fault::of(
+        Fault::new(
             &*name,
             "result.json",
             wrong,
@@ -173,7 +173,7 @@ pub fn main_input(folder: &Path, made: &Made) -> Result<PathBuf, Fault> {
     let beside = given.as_ref().and_then(beside);
     let mut places = [given, beside].into_iter().flatten();
     places.find(|p| p.is_file()).ok_or_else(|| {
-        Fault::of(
+        Fault::new(
             folder.display().to_string(),
             "inputs",
             "the job or deck of this folder is not found",
@@ -219,7 +219,7 @@ fn compare(folder: &Path, again: &Path) -> Result<Verified, Faults> {
 /// Names of the files of a folder, without hidden ones.
 fn names(folder: &Path) -> Result<BTreeSet<String>, Fault> {
     let unreadable = |e: std::io::Error| {
-        Fault::of(
+        Fault::new(
             folder.display().to_string(),
             "folder",
             format!("can't be read ({e})"),

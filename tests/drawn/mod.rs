@@ -5,7 +5,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 /// Of mean 0 and standard deviation 1 (Box and Muller).
-pub fn normal(random: &mut ChaCha8Rng) -> f64 {
+pub fn draw_normal(random: &mut ChaCha8Rng) -> f64 {
     let (u, v): (f64, f64) = (
         random.random_range(1e-300..1.0),
         random.random_range(0.0..1.0),
@@ -27,7 +27,7 @@ impl Numbers {
     }
 
     /// Of mean 0 and standard deviation 1: the sum of twelve, halved, but for the far tails.
-    pub fn normal(&mut self) -> f64 {
+    pub fn draw_normal(&mut self) -> f64 {
         (0..12).map(|_| 0.5 * self.next()).sum()
     }
 }

@@ -79,15 +79,15 @@ fn is_close(a: f64, b: f64) {
     assert!((a / b - 1.0).abs() < 1e-3, "{a} {b}");
 }
 
-fn right(_: usize, _: &mut [f64; GAUGES]) {}
+fn keep_readings(_: usize, _: &mut [f64; GAUGES]) {}
 
 #[test]
 fn a_factor_on_every_load_is_that_factor_to_the_slope_and_the_error_of_s_leaves_the_ratio() {
     let job = "reference = { vehicle = \"T1\", day = \"1\" }\ntarget = { \"A.FZ\" = 1e6 }\n";
     let records = [
-        ("T1_1.csv", record(4.0, PERIODS, right)),
-        ("T2_1.csv", record(6.0, PERIODS, right)),
-        ("T3_1.csv", record(4.01, PERIODS, right)),
+        ("T1_1.csv", record(4.0, PERIODS, keep_readings)),
+        ("T2_1.csv", record(6.0, PERIODS, keep_readings)),
+        ("T3_1.csv", record(4.01, PERIODS, keep_readings)),
         ("T3_2.csv", record(6.0, PERIODS, |_, y| y[4] = 7.0)),
     ];
     let dir = folder("factor", job, &records);
@@ -133,7 +133,11 @@ fn a_factor_on_every_load_is_that_factor_to_the_slope_and_the_error_of_s_leaves_
 fn sums_of_loads_are_counted_like_loads() {
     let job = "target = { total = 1e6 }\n[[combination]]\nname = \"total\"\nterms = { \"A.FZ\" = 1.0, \"B.FZ\" = 1.0 }\n\
                [[combination]]\nname = \"twice\"\nterms = { \"A.FZ\" = 2.0 }\n";
-    let dir = folder("sums", job, &[("T1_1.csv", record(4.0, PERIODS, right))]);
+    let dir = folder(
+        "sums",
+        job,
+        &[("T1_1.csv", record(4.0, PERIODS, keep_readings))],
+    );
     let (code, result) = fleet(&dir, &["T1_1.csv"], &[]);
     assert_eq!(code, 0, "{result}");
     let load = |l: usize| &result["vehicles"][0]["loads"][l];
@@ -159,7 +163,11 @@ fn sums_of_loads_are_counted_like_loads() {
     assert!(table.contains("\nT1,1,") && table.contains(",total,"));
     // A sum of what S lacks is a fault of the job.
     let job = "[[combination]]\nname = \"total\"\nterms = { \"C.FZ\" = 1.0 }\n";
-    let dir = folder("no_sum", job, &[("T1_1.csv", record(4.0, 1, right))]);
+    let dir = folder(
+        "no_sum",
+        job,
+        &[("T1_1.csv", record(4.0, 1, keep_readings))],
+    );
     let (code, said) = fleet(&dir, &["T1_1.csv"], &[]);
     assert_eq!(code, 2, "{said}");
 }
@@ -170,11 +178,11 @@ fn a_mission_is_the_damage_an_hour_of_its_kinds_by_their_shares() {
                [[fleet.mission]]\nname = \"road\"\nshare = 0.75\ndays = [\"road*\"]\n\
                [[fleet.mission]]\nname = \"yard\"\nshare = 0.25\ndays = [\"yard1\"]\nvehicles = [\"T*\"]\n";
     let records = [
-        ("T1_road1.csv", record(2.0, 20, right)),
-        ("T1_road2.csv", record(2.0, 40, right)),
-        ("T2_road1.csv", record(3.0, 30, right)),
-        ("T2_yard1.csv", record(5.0, 25, right)),
-        ("T2_other.csv", record(9.0, 20, right)),
+        ("T1_road1.csv", record(2.0, 20, keep_readings)),
+        ("T1_road2.csv", record(2.0, 40, keep_readings)),
+        ("T2_road1.csv", record(3.0, 30, keep_readings)),
+        ("T2_yard1.csv", record(5.0, 25, keep_readings)),
+        ("T2_other.csv", record(9.0, 20, keep_readings)),
     ];
     let dir = folder("mission", job, &records);
     let files = records.each_ref().map(|r| r.0);
@@ -218,7 +226,7 @@ fn a_mission_is_the_damage_an_hour_of_its_kinds_by_their_shares() {
 
 #[test]
 fn days_that_are_not_there_and_shares_that_are_not_one_are_faults() {
-    let records = [("T1_1.csv", record(4.0, 20, right))];
+    let records = [("T1_1.csv", record(4.0, 20, keep_readings))];
     let kind = |name: &str, share: f64, days: &str| {
         format!("[[fleet.mission]]\nname = \"{name}\"\nshare = {share}\ndays = [\"{days}\"]\n")
     };
@@ -323,12 +331,12 @@ fn extremes_have_their_time_and_every_day_its_record() {
 const SAMPLES: usize = PERIODS * PERIOD + 1;
 
 /// The `i`th of even numbers between -1 and 1.
-fn between(i: usize) -> f64 {
+fn uniform_number(i: usize) -> f64 {
     Splitmix((i as u64).wrapping_mul(Splitmix::STEP)).next()
 }
 
 /// Findings with this code: subject and message.
-fn found(result: &Value, code: &str) -> Vec<[String; 2]> {
+fn findings_by_code(result: &Value, code: &str) -> Vec<[String; 2]> {
     let list = result["findings"].as_array().unwrap();
     let of = list.iter().filter(|f| f["code"] == code);
     of.map(|f| ["subject", "message"].map(|k| f[k].as_str().unwrap().into()))
@@ -343,7 +351,7 @@ fn a_zero_that_moves_over_the_days_and_exchanged_channels_are_named_with_their_d
             // A right gauge reads noise too, the same in every run of the test.
             let text = record(4.0 + f64::from(d % 3), PERIODS, |i, y| {
                 for (g, y) in y.iter_mut().enumerate() {
-                    *y += 1.7 * between(((v * 100 + d) as usize * SAMPLES + i) * GAUGES + g);
+                    *y += 1.7 * uniform_number(((v * 100 + d) as usize * SAMPLES + i) * GAUGES + g);
                 }
                 match (v, d) {
                     (1, _) => y[2] += 1.5 * f64::from(d),
@@ -361,7 +369,7 @@ fn a_zero_that_moves_over_the_days_and_exchanged_channels_are_named_with_their_d
     std::fs::write(dir.join("job.toml"), job).unwrap();
     let files: Vec<&str> = records.iter().map(|r| r.0).collect();
     let (_, result) = fleet(&dir, &files, &[]);
-    let drifts = found(&result, "zero_drift");
+    let drifts = findings_by_code(&result, "zero_drift");
     let [[subject, message]] = drifts.as_slice() else {
         panic!("{drifts:?}");
     };
@@ -371,7 +379,7 @@ fn a_zero_that_moves_over_the_days_and_exchanged_channels_are_named_with_their_d
     let moved: f64 = moved.split(' ').next().unwrap().parse().unwrap();
     assert!((moved - 16.5).abs() < 1.0, "{message}");
     assert!(message.contains("from 1 to 12"), "{message}");
-    let swaps = found(&result, "inputs-exchanged");
+    let swaps = findings_by_code(&result, "inputs-exchanged");
     let [[subject, message]] = swaps.as_slice() else {
         panic!("{swaps:?}");
     };
@@ -403,10 +411,10 @@ fn a_gain_that_changed_is_told_and_exchanged_gauges_have_one_name() {
     let dir = folder("one_name", "", &records);
     let files: Vec<&str> = records.iter().map(|r| r.0).collect();
     let (_, result) = fleet(&dir, &files, &[]);
-    let swaps = found(&result, "inputs-exchanged");
+    let swaps = findings_by_code(&result, "inputs-exchanged");
     assert_eq!(swaps.len(), 1, "{swaps:?}");
     assert_eq!(swaps[0][0], "T1 G0, G3");
-    let gains = found(&result, "gauge_gain");
+    let gains = findings_by_code(&result, "gauge_gain");
     assert!(gains.iter().all(|f| f[0].starts_with("T2")), "{gains:?}");
     let own = gains.iter().find(|f| f[0] == "T2 G1");
     let [_, message] = own.unwrap_or_else(|| panic!("{gains:?}"));
@@ -425,7 +433,7 @@ fn what_closes_between_the_days_of_a_mission_is_bounded() {
         .map(|d| {
             // No two records alike: a copy would not count. The largest is the last.
             let size = 4.0 - 1e-4 * f64::from(12 - d);
-            (format!("T1_{d}.csv"), record(size, 1, right))
+            (format!("T1_{d}.csv"), record(size, 1, keep_readings))
         })
         .collect();
     let records: Vec<(&str, String)> = records.iter().map(|r| (&*r.0, r.1.clone())).collect();
@@ -468,9 +476,9 @@ fn list_digests(dir: &Path, result: &Value) {
 #[test]
 fn what_damage_is_held_against_is_changed_without_a_record() {
     let records = [
-        ("T1_1.csv", record(4.0, PERIODS, right)),
-        ("T1_2.csv", record(5.0, PERIODS, right)),
-        ("T2_1.csv", record(6.0, PERIODS, right)),
+        ("T1_1.csv", record(4.0, PERIODS, keep_readings)),
+        ("T1_2.csv", record(5.0, PERIODS, keep_readings)),
+        ("T2_1.csv", record(6.0, PERIODS, keep_readings)),
     ];
     let dir = folder("changed", "", &records);
     let files = records.each_ref().map(|r| r.0);
@@ -531,7 +539,7 @@ fn a_record_that_was_replaced_counts_as_it_is_now() {
     for amplitude in [4.0, 6.0] {
         // A copy of another vehicle's bytes would not count.
         for (i, file) in (1..).zip(&files) {
-            let text = record(amplitude + 0.01 * f64::from(i), PERIODS, right);
+            let text = record(amplitude + 0.01 * f64::from(i), PERIODS, keep_readings);
             std::fs::write(dir.join(file), text).unwrap();
         }
         for files in [&files[..], &[]] {
@@ -539,7 +547,7 @@ fn a_record_that_was_replaced_counts_as_it_is_now() {
             assert_eq!(code, 0, "{result}");
             assert_eq!(result["files"].as_array().unwrap().len(), 8, "{result}");
             let is_new = amplitude > 5.0 && !files.is_empty();
-            let told = found(&result, "fleet-record-replaced");
+            let told = findings_by_code(&result, "fleet-record-replaced");
             assert_eq!(told.len(), usize::from(is_new), "{result}");
             for (i, v) in (1..).zip(result["vehicles"].as_array().unwrap()) {
                 let expected = damage(amplitude + 0.01 * f64::from(i), PERIODS);
@@ -551,13 +559,13 @@ fn a_record_that_was_replaced_counts_as_it_is_now() {
 
 #[test]
 fn a_digest_of_another_state_of_the_record_is_not_taken() {
-    let dir = folder("stale", "", &[("T1_1.csv", record(4.0, 30, right))]);
+    let dir = folder("stale", "", &[("T1_1.csv", record(4.0, 30, keep_readings))]);
     let path = dir.join("T1_1.csv");
     let more = ["--digests", "digests.txt"];
     let (_, first) = fleet(&dir, &["T1_1.csv"], &[]);
     list_digests(&dir, &first);
     // Longer.
-    std::fs::write(&path, record(4.0, 40, right)).unwrap();
+    std::fs::write(&path, record(4.0, 40, keep_readings)).unwrap();
     let (code, second) = fleet(&dir, &["T1_1.csv"], &more);
     assert_eq!(code, 0, "{second}");
     assert_ne!(second["files"][0]["sha256"], first["files"][0]["sha256"]);
@@ -567,7 +575,7 @@ fn a_digest_of_another_state_of_the_record_is_not_taken() {
     );
     list_digests(&dir, &second);
     // As long, and later: two gauges exchanged.
-    let text = record(4.0, 40, right);
+    let text = record(4.0, 40, keep_readings);
     let other = text.replacen("G0 [um/m],G1 [um/m]", "G1 [um/m],G0 [um/m]", 1);
     assert!(other != text && other.len() == text.len());
     std::fs::write(&path, other).unwrap();
@@ -580,7 +588,11 @@ fn a_digest_of_another_state_of_the_record_is_not_taken() {
 
 #[test]
 fn shares_may_be_rounded_to_three_digits_and_no_further() {
-    let dir = folder("shares", "", &[("T1_1.csv", record(4.0, 20, right))]);
+    let dir = folder(
+        "shares",
+        "",
+        &[("T1_1.csv", record(4.0, 20, keep_readings))],
+    );
     for (share, n, is_refused) in [
         ("0.333", 3, false),
         ("0.167", 6, false),
@@ -644,14 +656,14 @@ fn what_failed_is_tried_again() {
 #[test]
 fn a_copy_under_the_name_of_another_vehicle_is_an_error() {
     let records = [
-        ("A_3.csv", record(4.0, PERIODS, right)),
-        ("Z_2.csv", record(5.0, PERIODS, right)),
-        ("Z_3.csv", record(4.0, PERIODS, right)),
+        ("A_3.csv", record(4.0, PERIODS, keep_readings)),
+        ("Z_2.csv", record(5.0, PERIODS, keep_readings)),
+        ("Z_3.csv", record(4.0, PERIODS, keep_readings)),
     ];
     let dir = folder("foreign", "", &records);
     let (code, result) = fleet(&dir, &records.each_ref().map(|r| r.0), &[]);
     assert_eq!(code, 1, "{result}");
-    let of_another = found(&result, "fleet-copy-of-another");
+    let of_another = findings_by_code(&result, "fleet-copy-of-another");
     let [[subject, message]] = of_another.as_slice() else {
         panic!("{of_another:?}");
     };
@@ -665,10 +677,10 @@ fn a_copy_under_the_name_of_another_vehicle_is_an_error() {
 #[test]
 fn two_records_of_one_day_are_an_error_and_a_copy_is_not() {
     let records = [
-        ("T1_1_am.csv", record(4.0, PERIODS, right)),
-        ("T1_1_pm.csv", record(6.0, PERIODS, right)),
-        ("T1_2_am.csv", record(5.0, PERIODS, right)),
-        ("T1_2_pm.csv", record(5.0, PERIODS, right)),
+        ("T1_1_am.csv", record(4.0, PERIODS, keep_readings)),
+        ("T1_1_pm.csv", record(6.0, PERIODS, keep_readings)),
+        ("T1_2_am.csv", record(5.0, PERIODS, keep_readings)),
+        ("T1_2_pm.csv", record(5.0, PERIODS, keep_readings)),
     ];
     let dir = folder("twice", "", &records);
     let job = JOB.replace("{vehicle}_{day}", "{vehicle}_{day}_{any}");
@@ -676,7 +688,11 @@ fn two_records_of_one_day_are_an_error_and_a_copy_is_not() {
     let files = records.each_ref().map(|r| r.0);
     let (code, result) = fleet(&dir, &files, &[]);
     assert_eq!(code, 1, "{result}");
-    let subjects = |code| found(&result, code).into_iter().map(|f| f[0].clone());
+    let subjects = |code| {
+        findings_by_code(&result, code)
+            .into_iter()
+            .map(|f| f[0].clone())
+    };
     assert!(subjects("fleet-day-twice").eq(["T1_1_pm.csv"]), "{result}");
     assert!(
         subjects("fleet-second-copy").eq(["T1_2_pm.csv"]),

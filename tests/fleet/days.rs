@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// The job of these tests, with the noise that its records have.
-fn noisy(name: &str) -> PathBuf {
+fn write_noisy_job(name: &str) -> PathBuf {
     let (dir, _) = folder(name);
     let job = JOB.replace("noise_microstrain = 0.001", "noise_microstrain = 1.0");
     std::fs::write(dir.join("job.toml"), job).unwrap();
@@ -16,7 +16,7 @@ fn noisy(name: &str) -> PathBuf {
 }
 
 /// Of mean 0 and standard deviation 1: the sum of twelve even numbers, halved.
-fn normal(numbers: &mut Splitmix) -> f64 {
+fn draw_normal(numbers: &mut Splitmix) -> f64 {
     (0..12).map(|_| 0.5 * numbers.next()).sum()
 }
 
@@ -25,7 +25,7 @@ fn table(day: usize, mut change: impl FnMut(usize, &mut [f64; GAUGES])) -> Strin
     let mut numbers = Splitmix(900 + day as u64);
     table_of(1, day, None, |i, y| {
         for v in y.iter_mut() {
-            *v += normal(&mut numbers);
+            *v += draw_normal(&mut numbers);
         }
         change(i, y);
     })
@@ -47,7 +47,7 @@ fn damages(result: &Value) -> Vec<f64> {
 
 #[test]
 fn days_named_by_day_month_and_year_are_counted_in_the_order_of_the_calendar() {
-    let dir = noisy("calendar");
+    let dir = write_noisy_job("calendar");
     let days = [
         "2025-11-30",
         "2025-12-01",
@@ -93,7 +93,7 @@ fn days_named_by_day_month_and_year_are_counted_in_the_order_of_the_calendar() {
 
 #[test]
 fn a_day_in_another_unit_is_read_in_it_where_it_says_so_and_is_an_error_where_not() {
-    let dir = noisy("unit");
+    let dir = write_noisy_job("unit");
     let mut files = Vec::new();
     for day in 1..=4 {
         files.push(write(&dir, &format!("A_{day}.csv"), &table(day, |_, _| ())));
@@ -133,14 +133,14 @@ fn a_day_in_another_unit_is_read_in_it_where_it_says_so_and_is_an_error_where_no
 }
 
 /// A day of slow loads of this size, forty seconds, with noise of 1 microstrain in each reading, wronged by `change`.
-fn slow(day: usize, size: f64, mut change: impl FnMut(&mut [f64; GAUGES])) -> String {
+fn slow_day_text(day: usize, size: f64, mut change: impl FnMut(&mut [f64; GAUGES])) -> String {
     let mut numbers = Splitmix(300 + day as u64);
     let mut text = String::from("time");
     (0..GAUGES).for_each(|g| write!(text, ",G{g} [um/m]").unwrap());
     for i in 0..4_000 {
         let t = f64::from(i) * 0.01;
         let f = [(0.2 * t + day as f64).sin(), (0.31 * t).cos()].map(|f| size * f);
-        let mut y = S.map(|row| row[0] * f[0] + row[1] * f[1] + normal(&mut numbers));
+        let mut y = S.map(|row| row[0] * f[0] + row[1] * f[1] + draw_normal(&mut numbers));
         change(&mut y);
         write!(text, "\n{t:.2}").unwrap();
         y.iter().for_each(|v| write!(text, ",{v:.6}").unwrap());
@@ -150,10 +150,16 @@ fn slow(day: usize, size: f64, mut change: impl FnMut(&mut [f64; GAUGES])) -> St
 
 #[test]
 fn a_day_whose_readings_are_all_half_or_twice_as_large_is_told_and_a_rougher_day_is_not() {
-    let dir = noisy("scale");
+    let dir = write_noisy_job("scale");
     let as_it_is = |_: &mut [f64; GAUGES]| ();
     let files: Vec<String> = (1..=5)
-        .map(|day| write(&dir, &format!("A_{day}.csv"), &slow(day, 50.0, as_it_is)))
+        .map(|day| {
+            write(
+                &dir,
+                &format!("A_{day}.csv"),
+                &slow_day_text(day, 50.0, as_it_is),
+            )
+        })
         .collect();
     let told = |third: &str| -> Vec<String> {
         write(&dir, "A_3.csv", third);
@@ -162,9 +168,11 @@ fn a_day_whose_readings_are_all_half_or_twice_as_large_is_told_and_a_rougher_day
         let found = found.filter(|f| f[0] == "fleet-day-scale");
         found.map(|f| f[2].clone()).collect()
     };
-    assert!(told(&slow(3, 50.0, as_it_is)).is_empty());
+    assert!(told(&slow_day_text(3, 50.0, as_it_is)).is_empty());
     for factor in [0.5, 1.3, 2.0] {
-        let found = told(&slow(3, 50.0, |y| y.iter_mut().for_each(|v| *v *= factor)));
+        let found = told(&slow_day_text(3, 50.0, |y| {
+            y.iter_mut().for_each(|v| *v *= factor)
+        }));
         let [message] = found.as_slice() else {
             panic!("{factor}: {found:?}");
         };
@@ -174,16 +182,16 @@ fn a_day_whose_readings_are_all_half_or_twice_as_large_is_told_and_a_rougher_day
         assert!((said / factor - 1.0).abs() < 0.03, "{message}");
     }
     // A thousandth is another unit, which is told as such; twice the loads with the noise of every day; half of the gauges twice as noisy.
-    let unit = slow(3, 50.0, |y| y.iter_mut().for_each(|v| *v *= 1e-3));
+    let unit = slow_day_text(3, 50.0, |y| y.iter_mut().for_each(|v| *v *= 1e-3));
     assert!(told(&unit).is_empty());
-    assert!(told(&slow(3, 100.0, as_it_is)).is_empty());
-    let half = slow(3, 50.0, |y| y.iter_mut().step_by(2).for_each(|v| *v *= 2.0));
+    assert!(told(&slow_day_text(3, 100.0, as_it_is)).is_empty());
+    let half = slow_day_text(3, 50.0, |y| y.iter_mut().step_by(2).for_each(|v| *v *= 2.0));
     assert!(told(&half).is_empty());
 }
 
 #[test]
 fn a_day_that_the_vehicle_stands_names_no_gauge() {
-    let dir = noisy("standing");
+    let dir = write_noisy_job("standing");
     let mut files = Vec::new();
     for day in 1..=5 {
         let mut numbers = Splitmix(day);
@@ -191,7 +199,7 @@ fn a_day_that_the_vehicle_stands_names_no_gauge() {
         let text = match day {
             3 => table(3, |_, y| {
                 for v in y.iter_mut() {
-                    *v = 0.3 * normal(&mut numbers);
+                    *v = 0.3 * draw_normal(&mut numbers);
                 }
                 y[2] = 0.0;
             }),
@@ -210,7 +218,7 @@ fn a_day_that_the_vehicle_stands_names_no_gauge() {
     let mut numbers = Splitmix(3);
     let contradicted = table(3, |_, y| {
         for v in y.iter_mut() {
-            *v = 0.3 * normal(&mut numbers);
+            *v = 0.3 * draw_normal(&mut numbers);
         }
         y[2] = 40.0;
     });
@@ -239,7 +247,7 @@ fn a_day_that_the_vehicle_stands_names_no_gauge() {
 /// Two days of other sizes, and the same samples as one record.
 #[test]
 fn days_and_the_undivided_record_give_the_same_damage_with_model_uncertainty() {
-    let dir = noisy("undivided");
+    let dir = write_noisy_job("undivided");
     // Loads, and with them the model's error, are three times as large on the second day.
     let day = |day: usize, size: f64| table(day, |_, y| y.iter_mut().for_each(|v| *v *= size));
     let days = [day(1, 1.0), day(2, 3.0)];
@@ -272,7 +280,7 @@ fn days_and_the_undivided_record_give_the_same_damage_with_model_uncertainty() {
 /// Of two days neither is the typical one: the other gauges show which of them is wrong.
 #[test]
 fn of_two_days_the_spiked_one_is_named() {
-    let dir = noisy("two_days");
+    let dir = write_noisy_job("two_days");
     for spiked in [1, 2] {
         let files: Vec<String> = (1..=2)
             .map(|day| {
@@ -296,7 +304,7 @@ fn of_two_days_the_spiked_one_is_named() {
 
 #[test]
 fn days_of_other_rates_and_with_a_renamed_gauge_are_counted_alike() {
-    let dir = noisy("rates");
+    let dir = write_noisy_job("rates");
     let mut files = Vec::new();
     for day in 1..=4 {
         files.push(write(&dir, &format!("A_{day}.csv"), &table(day, |_, _| ())));

@@ -18,7 +18,7 @@ use strainbridge::{Context, Faults, Job, Outcome, Severity};
 pub struct Answers(pub BTreeMap<String, BTreeMap<String, f64>>);
 
 impl Answers {
-    fn put(&mut self, group: impl Into<String>, item: impl Into<String>, value: f64) {
+    fn insert_value(&mut self, group: impl Into<String>, item: impl Into<String>, value: f64) {
         let of_group = self.0.entry(group.into()).or_default();
         let item = item.into();
         let before = of_group.insert(item.clone(), value);
@@ -27,7 +27,7 @@ impl Answers {
 
     /// The command's answer; the codes of its errors are numbers of it.
     fn hear<A>(&mut self, command: &str, answer: Result<Outcome<A>, Faults>) -> Outcome<A> {
-        let answer = answered(command, answer);
+        let answer = expect_answer(command, answer);
         let of_command = self.0.entry(format!("{command}: errors")).or_default();
         for f in answer
             .findings
@@ -41,7 +41,7 @@ impl Answers {
 
     fn put_vector(&mut self, group: &str, item: &str, v: V) {
         for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
-            self.put(group, format!("{item} {axis}"), v[k]);
+            self.insert_value(group, format!("{item} {axis}"), v[k]);
         }
     }
 }
@@ -56,13 +56,13 @@ pub struct Measured {
 
 impl Measured {
     /// Made of the sensitivity of the base model.
-    pub fn of(base: &Frame, form: Form) -> Self {
+    pub fn from_base(base: &Frame, form: Form) -> Self {
         let files = deck(&base.control(), base.cards(), form)
-            .with("job.toml", job(base, ""))
-            .with("strain.csv", "run\n");
+            .with_file("job.toml", job(base, ""))
+            .with_file("strain.csv", "run\n");
         let cx = Context::new(&files);
         let job = read(&files, "job.toml");
-        let sensed = answered("sensitivity", strainbridge::sensitivity(&job, &cx));
+        let sensed = expect_answer("sensitivity", strainbridge::sensitivity(&job, &cx));
         let values = &sensed.prepared.sensitivity.values;
         let s: Vec<Vec<f64>> = values
             .row_iter()
@@ -104,22 +104,22 @@ pub enum Source {
 pub fn answers(frame: &Frame, form: Form, measured: &Measured, ask: (Asked, Source)) -> Answers {
     let mut out = Answers::default();
     let mut files = deck(&frame.control(), frame.cards(), form)
-        .with("strain.csv", strain_csv(frame, &measured.readings))
-        .with(
+        .with_file("strain.csv", strain_csv(frame, &measured.readings))
+        .with_file(
             "payload_strain.csv",
             strain_csv(frame, &measured.payload_readings),
         )
-        .with("runs.csv", runs_csv(frame, &measured.wheel_forces));
+        .with_file("runs.csv", runs_csv(frame, &measured.wheel_forces));
     put_deck(&mut out, frame, &solve_deck(&files));
     let mut results = "";
     if ask.1 == Source::Results {
-        files = crate::given::with_results(files.with("unit.toml", job(frame, "")));
+        files = crate::given::with_results(files.with_file("unit.toml", job(frame, "")));
         results = "results = [\"unit.op2\"]\n";
     }
-    let mut files = files.with("job.toml", job(frame, results));
+    let mut files = files.with_file("job.toml", job(frame, results));
     let pays = ask.0 == Asked::All && !measured.wheel_forces.is_empty();
     if pays {
-        files = files.with("payload.toml", payload_job(frame, ""));
+        files = files.with_file("payload.toml", payload_job(frame, ""));
     }
     let kept = Memory::default();
     let cx = Context::new(&files).store(&kept);
@@ -139,14 +139,14 @@ pub fn read(files: &InMemory, name: &str) -> Job {
     Job::read(name, files).unwrap_or_else(|e| panic!("{e}"))
 }
 
-pub fn answered<A>(command: &str, answer: Result<Outcome<A>, Faults>) -> Outcome<A> {
+pub fn expect_answer<A>(command: &str, answer: Result<Outcome<A>, Faults>) -> Outcome<A> {
     answer.unwrap_or_else(|e| panic!("{command}: {e}"))
 }
 
 fn solve_deck(files: &InMemory) -> Outcome<SolvedCases> {
     let options = SolveOptions::default();
     let solved = strainbridge::solve_deck(Path::new("frame.bdf"), options, &Context::new(files));
-    answered("solve", solved)
+    expect_answer("solve", solved)
 }
 
 /// The side of the base model's shell.
@@ -183,7 +183,7 @@ fn put_deck(out: &mut Answers, frame: &Frame, solved: &SolvedCases) {
         }
     }
     let mass = solved.mass.expect("a mass");
-    out.put("solve: mass", "kg", mass.mass / u.mass);
+    out.insert_value("solve: mass", "kg", mass.mass / u.mass);
     out.put_vector("solve: centre", "mm", back * V::from(mass.cg) / u.length);
 }
 
@@ -201,16 +201,16 @@ fn put_strain(
             let (mean, radius) = ((x + y) / 2.0, ((x - y) / 2.0).hypot(xy / 2.0));
             let side = base_side(frame, tag, side == 1);
             let group = format!("solve: strain of shells, subcase {n}");
-            out.put(&group, format!("{tag} {side} largest"), mean + radius);
-            out.put(&group, format!("{tag} {side} least"), mean - radius);
+            out.insert_value(&group, format!("{tag} {side} largest"), mean + radius);
+            out.insert_value(&group, format!("{tag} {side} least"), mean - radius);
         }
     }
     for (beam, stations) in case.beams.elements.iter().zip(&case.beams.stations) {
         let tag = frame.tag(model.beams[beam.us()].id);
         for (at, points) in stations {
             let group = format!("solve: strain of bars, subcase {n}");
-            out.put(&group, format!("{tag} {at} C"), points[0]);
-            out.put(&group, format!("{tag} {at} D"), points[1]);
+            out.insert_value(&group, format!("{tag} {at} C"), points[0]);
+            out.insert_value(&group, format!("{tag} {at} D"), points[1]);
         }
     }
 }
@@ -240,11 +240,11 @@ fn put_sensitivity(out: &mut Answers, frame: &Frame, job: &Job, cx: &Context) {
         let (sign, unit) = load_of(frame, &load.name);
         for (g, gauge) in named.iter().enumerate() {
             let value = s.values[(g, l)] * sign * unit;
-            out.put(format!("sensitivity: {}", load.name), gauge, value);
+            out.insert_value(format!("sensitivity: {}", load.name), gauge, value);
         }
     }
     let condition = sensed.conditioning.condition_number_scaled;
-    out.put("sensitivity: condition", "", condition.expect("a rank"));
+    out.insert_value("sensitivity: condition", "", condition.expect("a rank"));
 }
 
 fn put_layout(out: &mut Answers, frame: &Frame, job: &Job, cx: &Context) {
@@ -261,18 +261,18 @@ fn put_layout(out: &mut Answers, frame: &Frame, job: &Job, cx: &Context) {
         let signs: Vec<f64> = frame.loads.iter().map(|l| frame.component(l).1).collect();
         // A sum over the loads is the base model's where all of them point as they did.
         if signs.iter().all(|s| *s > 0.0) {
-            out.put("place: expected strain", format!("{tag} {side}"), strain);
+            out.insert_value("place: expected strain", format!("{tag} {side}"), strain);
         }
-        out.put("place: sd", format!("{tag} {side}"), g.sd_microstrain);
+        out.insert_value("place: sd", format!("{tag} {side}"), g.sd_microstrain);
     }
     for s in &placed.load_sigma {
-        out.put(format!("place: sigma of {}", s.name), "", s.sigma);
+        out.insert_value(format!("place: sigma of {}", s.name), "", s.sigma);
     }
     let installed = placed.installed.as_ref().and_then(|i| i.quality.as_ref());
     for s in &installed.expect("installed gauges").load_sigma {
-        out.put(format!("place: installed sigma of {}", s.name), "", s.sigma);
+        out.insert_value(format!("place: installed sigma of {}", s.name), "", s.sigma);
     }
-    out.put("place: bound", "", placed.efficiency_bound);
+    out.insert_value("place: bound", "", placed.efficiency_bound);
 }
 
 fn put_loads(out: &mut Answers, frame: &Frame, measured: &Measured, job: &Job, cx: &Context) {
@@ -292,19 +292,19 @@ fn put_loads(out: &mut Answers, frame: &Frame, measured: &Measured, job: &Job, c
             ("low", ends[0]),
             ("high", ends[1]),
         ] {
-            out.put(&group, format!("{} {word}", l.run), value);
+            out.insert_value(&group, format!("{} {word}", l.run), value);
         }
     }
     for g in &runs.gauges {
         let name = base_channel(frame, &g.name);
-        out.put("recover: residual", &name, g.residual_rms_microstrain);
-        out.put("recover: leverage", &name, g.leverage);
+        out.insert_value("recover: residual", &name, g.residual_rms_microstrain);
+        out.insert_value("recover: leverage", &name, g.leverage);
     }
-    out.put("recover: residual", "all", runs.residual_rms_microstrain);
+    out.insert_value("recover: residual", "all", runs.residual_rms_microstrain);
     // Residuals are differences of readings: their rounding is a share of those.
     let readings = measured.readings.iter().flatten();
     let largest = readings.fold(0.0_f64, |m, v| m.max(v.abs()));
-    out.put("recover: residual", "largest reading", largest);
+    out.insert_value("recover: residual", "largest reading", largest);
 }
 
 fn put_stress(out: &mut Answers, frame: &Frame, job: &Job, cx: &Context) {
@@ -316,12 +316,12 @@ fn put_stress(out: &mut Answers, frame: &Frame, job: &Job, cx: &Context) {
             point => point,
         };
         let at = e.at.as_deref().unwrap_or_default();
-        out.put(
+        out.insert_value(
             "respond: stress",
             format!("{tag} {surface} in {at}"),
             e.max_von_mises,
         );
-        out.put("respond: sd", format!("{tag} {surface}"), e.sigma);
+        out.insert_value("respond: sd", format!("{tag} {surface}"), e.sigma);
     }
 }
 
@@ -331,10 +331,10 @@ fn put_study(out: &mut Answers, frame: &Frame, job: &Job, cx: &Context) {
         for l in &row.loads {
             let (sign, _) = load_of(frame, &l.name);
             let group = format!("study: {}, {}", l.name, row.error);
-            out.put(&group, "bias", sign * l.bias.expect("a bias"));
-            out.put(&group, "sd", l.sigma.expect("a deviation"));
+            out.insert_value(&group, "bias", sign * l.bias.expect("a bias"));
+            out.insert_value(&group, "sd", l.sigma.expect("a deviation"));
             let share = format!("study: coverage of {}, {}", l.name, row.error);
-            out.put(share, "", l.coverage.expect("a coverage"));
+            out.insert_value(share, "", l.coverage.expect("a coverage"));
         }
     }
 }
@@ -350,18 +350,18 @@ fn put_payload(out: &mut Answers, frame: &Frame, job: &Job, cx: &Context) {
             ("low", p.force_low),
             ("high", p.force_high),
         ] {
-            out.put(
+            out.insert_value(
                 "payload: force",
                 format!("{run} {what}"),
                 value.expect("a number"),
             );
         }
-        out.put(
+        out.insert_value(
             "payload: force",
             format!("{run} sd"),
             p.force_sigma.expect("a deviation"),
         );
-        out.put("payload: mass", run, p.mass.expect("a mass"));
+        out.insert_value("payload: mass", run, p.mass.expect("a mass"));
         let [x, y] = p.position.map(|c| c.expect("a place"));
         out.put_vector("payload: place", run, back * V::new(x, y, 0.0));
     }

@@ -87,9 +87,9 @@ pub fn deck(control: &str, mut cards: Vec<Card>, form: Form) -> InMemory {
         let mut lines = Vec::new();
         for card in cards {
             let mut own = match form.width {
-                Width::Free => free(card),
-                Width::Large => large(card),
-                Width::Small => small(card, form.named.then_some(continuations.len())),
+                Width::Free => format_free_field(card),
+                Width::Large => format_large_field(card),
+                Width::Small => format_small_field(card, form.named.then_some(continuations.len())),
             };
             if form.named {
                 continuations.extend(own.drain(1..));
@@ -104,7 +104,7 @@ pub fn deck(control: &str, mut cards: Vec<Card>, form: Form) -> InMemory {
             let bulk = text(&cards);
             continuations.reverse();
             let ends = continuations.join("\n");
-            InMemory::default().with("frame.bdf", format!("{head}{bulk}{ends}\nENDDATA\n"))
+            InMemory::default().with_file("frame.bdf", format!("{head}{bulk}{ends}\nENDDATA\n"))
         }
         Files::Included => {
             let third = cards.len() / 3;
@@ -115,15 +115,15 @@ pub fn deck(control: &str, mut cards: Vec<Card>, form: Form) -> InMemory {
             ]
             .map(text);
             InMemory::default()
-                .with(
+                .with_file(
                     "frame.bdf",
                     format!("{head}{}INCLUDE 'bulk/mesh.bdf'\nENDDATA\n", parts[0]),
                 )
-                .with(
+                .with_file(
                     "bulk/mesh.bdf",
                     format!("{}INCLUDE 'cards.bdf'\n", parts[1]),
                 )
-                .with("bulk/cards.bdf", parts[2].clone())
+                .with_file("bulk/cards.bdf", parts[2].clone())
         }
     }
 }
@@ -139,7 +139,7 @@ pub fn permute<T>(list: &mut [T]) {
     }
 }
 
-fn free(card: &Card) -> Vec<String> {
+fn format_free_field(card: &Card) -> Vec<String> {
     let text = |f: &Field| word(f, 25);
     let mut lines: Vec<String> = card
         .1
@@ -154,7 +154,7 @@ fn free(card: &Card) -> Vec<String> {
     lines
 }
 
-fn large(card: &Card) -> Vec<String> {
+fn format_large_field(card: &Card) -> Vec<String> {
     let text = |f: &Field| format!("{:>16}", word(f, 16));
     let line = |(i, fields): (usize, &[Field])| {
         let name = if i == 0 {
@@ -168,7 +168,7 @@ fn large(card: &Card) -> Vec<String> {
 }
 
 /// `first`: number of the first named continuation; without it, continuations have no name.
-fn small(card: &Card, first: Option<usize>) -> Vec<String> {
+fn format_small_field(card: &Card, first: Option<usize>) -> Vec<String> {
     let text = |f: &Field| format!("{:>8}", word(f, 8));
     let n = card.1.chunks(8).len();
     let line = |(i, fields): (usize, &[Field])| {
@@ -194,12 +194,12 @@ fn word(field: &Field, width: usize) -> String {
     match field {
         Field::Blank => String::new(),
         Field::Word(w) => w.clone(),
-        Field::Real(v) => real(*v, width),
+        Field::Real(v) => format_real(*v, width),
     }
 }
 
 /// A real number of at most `width` characters; fails where small field would round it.
-fn real(v: f64, width: usize) -> String {
+fn format_real(v: f64, width: usize) -> String {
     // Fifteen digits: products of short numbers are short.
     let digits: f64 = format!("{v:.14e}").parse().expect("a number");
     let shortest = nastran_form(&format!("{digits:?}"));

@@ -203,7 +203,7 @@ impl Frame {
     }
 
     /// Unit normal of a shell as it is numbered.
-    pub fn normal(&self, tag: u32) -> V {
+    pub fn shell_normal(&self, tag: u32) -> V {
         let c: Vec<V> = self.shell(tag).corners.iter().map(|c| self.x(*c)).collect();
         (c[2] - c[0]).cross(&(c[c.len() - 1] - c[1])).normalize()
     }
@@ -238,7 +238,7 @@ impl Frame {
 
     /// The model after a rotation or mirroring about the origin, its coordinate systems included.
     #[must_use]
-    pub fn turned(mut self, turn: Matrix3<f64>) -> Self {
+    pub fn transform(mut self, turn: Matrix3<f64>) -> Self {
         let axial = turn * turn.determinant();
         self.grids.iter_mut().for_each(|g| g.x = turn * g.x);
         self.bars.iter_mut().for_each(|b| b.2 = turn * b.2);

@@ -1,6 +1,6 @@
 //! Result files: the solver's solution of a job's unit loads as an OP2.
 
-use crate::answers::{answered, read};
+use crate::answers::{expect_answer, read};
 use nastran::op2::{EncodedBlock, Op2Writer};
 use strainbridge::Context;
 use strainbridge::fe::SolveOptions;
@@ -11,7 +11,7 @@ use strainbridge::report::{planned_blocks, rows_of_block};
 pub fn with_results(files: InMemory) -> InMemory {
     let job = read(&files, "unit.toml");
     let solved = strainbridge::solve(&job, SolveOptions::default(), &Context::new(&files));
-    let solved = answered("solve", solved);
+    let solved = expect_answer("solve", solved);
     let (model, solution) = (&solved.deck.model, &solved.solution);
     let mut op2 = Op2Writer::new(Vec::new(), [1, 1, 2000]).expect("a header");
     for plan in planned_blocks(model, solution) {
@@ -19,5 +19,5 @@ pub fn with_results(files: InMemory) -> InMemory {
         let block = EncodedBlock::new(&block, &rows).expect("a block");
         op2.write_encoded(&block).expect("a block written");
     }
-    files.with("unit.op2", op2.finish().expect("a file"))
+    files.with_file("unit.op2", op2.finish().expect("a file"))
 }

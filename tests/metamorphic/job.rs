@@ -75,7 +75,7 @@ fn gauge_section(frame: &Frame, g: &Gauge) -> String {
                 0 => None,
                 s => Some(frame.systems[s as usize - 1].kind),
             };
-            let _ = writeln!(text, "position = {}", vector(scaled(c, kind, l)));
+            let _ = writeln!(text, "position = {}", vector(scale_lengths(c, kind, l)));
         }
     }
     let direction = frame.components(g.system, g.at, g.direction);
@@ -102,7 +102,7 @@ fn gauge_section(frame: &Frame, g: &Gauge) -> String {
 }
 
 /// Coordinates in job units: the lengths among them times `l`.
-fn scaled(c: V, kind: Option<Kind>, l: f64) -> V {
+fn scale_lengths(c: V, kind: Option<Kind>, l: f64) -> V {
     match kind {
         None | Some(Kind::Rectangular) => c * l,
         Some(Kind::Cylindrical) => V::new(c.x * l, c.y, c.z * l),

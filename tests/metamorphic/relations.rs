@@ -3,7 +3,7 @@
 use crate::answers::{Answers, Asked, Measured, Source, answers};
 use crate::cards::{FREE, Files, Form, Width};
 use crate::frame::{Frame, Kind, Seat, System, Units, V};
-use crate::structures::{ladder, oblique, plate};
+use crate::structures::{ladder, oblique_rotation, plate};
 use nalgebra::Matrix3;
 use std::sync::OnceLock;
 
@@ -14,7 +14,7 @@ fn base() -> &'static (Frame, Measured, Answers) {
     static BASE: OnceLock<(Frame, Measured, Answers)> = OnceLock::new();
     BASE.get_or_init(|| {
         let frame = ladder();
-        let measured = Measured::of(&frame, FREE);
+        let measured = Measured::from_base(&frame, FREE);
         let answers = answers(&frame, FREE, &measured, ALL);
         (frame, measured, answers)
     })
@@ -50,7 +50,7 @@ fn compare(base: &Answers, got: &Answers, tolerance: f64, kept: impl Fn(&str) ->
     assert!(wrong.is_empty(), "{wrong}");
 }
 
-fn everything(_: &str) -> bool {
+fn is_any_group(_: &str) -> bool {
     true
 }
 
@@ -60,13 +60,13 @@ fn holds(tolerance: f64, change: impl Fn(&mut Frame)) {
     let mut changed = frame.clone();
     change(&mut changed);
     let got = answers(&changed, FREE, measured, ALL);
-    compare(base, &got, tolerance, everything);
+    compare(base, &got, tolerance, is_any_group);
 }
 
 fn holds_in_form(form: Form) {
     let (frame, measured, base) = base();
     let got = answers(frame, form, measured, ALL);
-    compare(base, &got, EQUAL, everything);
+    compare(base, &got, EQUAL, is_any_group);
 }
 
 /// The model is made of cards in the order of their ids, so that the arithmetic is the same (measured: 0).
@@ -117,12 +117,12 @@ fn the_order_of_gauges_columns_and_rows_changes_nothing() {
     changed.reversed_tables = true;
     let got = answers(&changed, FREE, measured, ALL);
     // Errors are drawn by gauge, in their order. Sums over the gauges are added up in another order (measured: 9.0e-14).
-    compare(base, &got, 1.7e-13, |group| !drawn(group));
+    compare(base, &got, 1.7e-13, |group| !is_random_draw(group));
     compare_study(base, &got);
 }
 
 /// Whether a group is of random draws.
-fn drawn(group: &str) -> bool {
+fn is_random_draw(group: &str) -> bool {
     group.starts_with("study")
 }
 
@@ -158,7 +158,7 @@ fn compare_study(base: &Answers, got: &Answers) {
 #[test]
 fn a_rotated_structure_gives_equal_answers() {
     let (frame, measured, base) = base();
-    let mut changed = frame.clone().turned(oblique());
+    let mut changed = frame.clone().transform(oblique_rotation());
     changed.loads.iter_mut().for_each(|l| l.system = 1);
     let got = answers(
         &changed,
@@ -176,7 +176,7 @@ fn a_rotated_structure_gives_equal_answers() {
 fn a_structure_rotated_about_the_vertical_gives_the_same_payload() {
     let turn = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
     let (frame, measured, base) = base();
-    let mut changed = frame.clone().turned(turn);
+    let mut changed = frame.clone().transform(turn);
     for load in changed
         .loads
         .iter_mut()
@@ -186,17 +186,17 @@ fn a_structure_rotated_about_the_vertical_gives_the_same_payload() {
     }
     let got = answers(&changed, FREE, measured, ALL);
     // Stiffness is summed in another frame, of the same digits (measured: 2.7e-9).
-    compare(base, &got, 5.3e-9, everything);
+    compare(base, &got, 5.3e-9, is_any_group);
 }
 
 #[test]
 fn a_mirrored_structure_gives_equal_answers() {
     let mirror = Matrix3::from_diagonal(&V::new(1.0, -1.0, 1.0));
     let (frame, measured, base) = base();
-    let got = answers(&frame.clone().turned(mirror), FREE, measured, ALL);
+    let got = answers(&frame.clone().transform(mirror), FREE, measured, ALL);
     // Signs change, and with them the frames of the elements (measured: 9.4e-12).
     compare(base, &got, 1.8e-11, |group| {
-        !drawn(group) && !group.starts_with("place: expected")
+        !is_random_draw(group) && !group.starts_with("place: expected")
     });
     compare_study(base, &got);
 }
@@ -212,7 +212,7 @@ fn holds_flipped(tolerance: f64, which: impl Fn(usize) -> bool) {
         }
     }
     let got = answers(&changed, FREE, measured, ALL);
-    compare(base, &got, tolerance, |group| !drawn(group));
+    compare(base, &got, tolerance, |group| !is_random_draw(group));
     compare_study(base, &got);
 }
 
@@ -349,14 +349,14 @@ fn results_of_a_file_are_those_of_the_solver() {
     let (frame, measured, base) = base();
     let got = answers(frame, FREE, measured, (Asked::All, Source::Results));
     // Strain in single precision, times the condition of the loads (measured: 8.5e-7).
-    compare(base, &got, 1.6e-6, |group| !drawn(group));
+    compare(base, &got, 1.6e-6, |group| !is_random_draw(group));
     compare_study(base, &got);
 }
 
 #[test]
 fn an_offset_plate_is_where_its_grids_and_offset_put_it() {
     let frame = plate(0.0);
-    let measured = Measured::of(&frame, FREE);
+    let measured = Measured::from_base(&frame, FREE);
     let base = answers(&frame, FREE, &measured, ALL);
     for offset in [3.0, -3.0, 14.0] {
         eprintln!("offset {offset}");

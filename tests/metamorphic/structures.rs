@@ -57,7 +57,7 @@ fn at_point(frame: &Frame, name: &str, tag: u32, top: bool, share: f64) -> Gauge
     let property = frame.shell(tag).property;
     let (_, t) = frame.properties.iter().find(|p| p.0 == property).unwrap();
     let side = if top { 0.5 } else { -0.5 };
-    let x = foot + frame.normal(tag) * (t * side + frame.offset);
+    let x = foot + frame.shell_normal(tag) * (t * side + frame.offset);
     Gauge {
         seat: Seat::Point(x),
         at: x,
@@ -65,7 +65,7 @@ fn at_point(frame: &Frame, name: &str, tag: u32, top: bool, share: f64) -> Gauge
     }
 }
 
-fn empty() -> Frame {
+fn empty_frame() -> Frame {
     Frame {
         units: MM_T_S,
         grids: Vec::new(),
@@ -83,8 +83,8 @@ fn empty() -> Frame {
                 [10.0, -5.0, 0.0],
                 Matrix3::from_diagonal(&V::new(-1.0, 1.0, -1.0)),
             ),
-            system(Kind::Cylindrical, [-120.0, 40.0, -70.0], oblique()),
-            system(Kind::Spherical, [-90.0, -700.0, 310.0], oblique()),
+            system(Kind::Cylindrical, [-120.0, 40.0, -70.0], oblique_rotation()),
+            system(Kind::Spherical, [-90.0, -700.0, 310.0], oblique_rotation()),
         ],
         held: Vec::new(),
         forces: Vec::new(),
@@ -106,7 +106,7 @@ fn system(kind: Kind, origin: [f64; 3], axes: Matrix3<f64>) -> System {
 }
 
 /// A rotation about no axis of the frame.
-pub fn oblique() -> Matrix3<f64> {
+pub fn oblique_rotation() -> Matrix3<f64> {
     let axis = nalgebra::Unit::new_normalize(V::new(1.0, -2.0, 0.5));
     *nalgebra::Rotation3::from_axis_angle(&axis, 0.83).matrix()
 }
@@ -117,7 +117,7 @@ const STATIONS: u32 = 12;
 /// Two rails along x, each a web with an upper flange, of other thickness and taper; bars and a plate across; a point above them on an RBE3,
 /// and a mass on it through a bush. Distances have few digits, so that small field holds them.
 pub fn ladder() -> Frame {
-    let mut f = empty();
+    let mut f = empty_frame();
     f.properties = vec![(1, 4.0), (2, 5.0), (3, 3.0)];
     for rail in 0..2_u32 {
         let (first, out) = (200 * rail, if rail == 0 { -1.0 } else { 1.0 });
@@ -142,7 +142,7 @@ pub fn ladder() -> Frame {
             }
         }
     }
-    across(&mut f);
+    add_cross_plate(&mut f);
     upon(&mut f);
     f.held = vec![1, 121, 321];
     f.forces = vec![
@@ -171,7 +171,7 @@ pub fn ladder() -> Frame {
 }
 
 /// The plate between the rails at stations 6 and 7, in part of triangles, and two bars.
-fn across(f: &mut Frame) {
+fn add_cross_plate(f: &mut Frame) {
     let rows: Vec<[u32; 5]> = (6..=7)
         .map(|i| {
             let [a, b] = [10 * i + 1, 200 + 10 * i + 1];
@@ -270,7 +270,7 @@ fn gauges(f: &mut Frame) {
 
 /// A flat plate in the plane z = 0 whose mid-surface is at height 0 with grids at `-offset` and ZOFFS `offset`; loads across it alone.
 pub fn plate(offset: f64) -> Frame {
-    let mut f = empty();
+    let mut f = empty_frame();
     f.offset = offset;
     f.properties = vec![(1, 6.0), (2, 4.0)];
     for i in 0..=8_u32 {

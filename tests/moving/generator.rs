@@ -48,13 +48,13 @@ pub struct Case {
 pub struct Dice(ChaCha8Rng);
 
 impl Dice {
-    pub fn of(seed: u64) -> Self {
+    pub fn from_seed(seed: u64) -> Self {
         Self(ChaCha8Rng::seed_from_u64(seed))
     }
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub fn draw_between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.0.random::<f64>()
     }
-    pub fn normal(&mut self) -> f64 {
+    pub fn draw_normal(&mut self) -> f64 {
         (0..12).map(|_| self.0.random::<f64>()).sum::<f64>() - 6.0
     }
     pub fn pick(&mut self, n: usize) -> usize {
@@ -206,7 +206,7 @@ fn drive(
         let half = h / 2.0;
         let mut out: Vec<[f64; 2]> = Vec::with_capacity(2 * (steps + lead) + 4);
         for _ in 0..2 * (steps + lead) + 4 {
-            z += -0.6 * z * half + roughness * half.sqrt() * dice.normal();
+            z += -0.6 * z * half + roughness * half.sqrt() * dice.draw_normal();
             z1 += (z - z1) * half / 0.006;
             let rate = (z1 - z2) / 0.006;
             z2 += rate * half;
@@ -267,7 +267,7 @@ fn drive(
 }
 
 /// x late by `delay` samples (Catmull-Rom between them).
-fn late(x: &[f64], delay: f64) -> Vec<f64> {
+fn delay_samples(x: &[f64], delay: f64) -> Vec<f64> {
     let n = x.len() as isize;
     let at = |i: isize| x[i.clamp(0, n - 1) as usize];
     (0..n)
@@ -356,7 +356,7 @@ fn hide_exactly(
     seed: u64,
     exact: &Exact,
 ) -> Case {
-    let mut dice = Dice::of(seed);
+    let mut dice = Dice::from_seed(seed);
     let rate_hz = exact.rate_hz.unwrap_or(RATE_HZ);
     let n_wheels = 2;
     let n_sprung = if layout == Layout::Rear { 1 } else { 2 };
@@ -378,16 +378,22 @@ fn hide_exactly(
         mass_step: None,
     };
     let heavy = if n_sprung == 1 { 1.6 } else { 1.0 };
-    let first = heavy * dice.between(2600.0, 3400.0);
+    let first = heavy * dice.draw_between(2600.0, 3400.0);
     for i in 0..n_sprung {
-        m.sprung
-            .push(first * if i == 0 { 1.0 } else { dice.between(0.9, 1.1) });
+        m.sprung.push(
+            first
+                * if i == 0 {
+                    1.0
+                } else {
+                    dice.draw_between(0.9, 1.1)
+                },
+        );
     }
     for w in 0..n_wheels {
-        m.unsprung.push(dice.between(900.0, 1300.0));
+        m.unsprung.push(dice.draw_between(900.0, 1300.0));
         m.laws.push(Law {
-            k: dice.between(400e3, 530e3),
-            c: dice.between(6e3, 10e3),
+            k: dice.draw_between(400e3, 530e3),
+            c: dice.draw_between(6e3, 10e3),
             k3: 0.0,
             k2: 0.0,
             kp: 0.0,
@@ -406,8 +412,8 @@ fn hide_exactly(
             drift: 0.0,
             drift_s: 64.0,
         });
-        m.tyre_k.push(dice.between(1.3e6, 1.5e6));
-        m.tyre_c.push(dice.between(2e3, 3e3));
+        m.tyre_k.push(dice.draw_between(1.3e6, 1.5e6));
+        m.tyre_c.push(dice.draw_between(2e3, 3e3));
         let carried = if n_sprung == 1 {
             m.sprung[0] / 2.0
         } else {
@@ -415,7 +421,7 @@ fn hide_exactly(
         };
         m.statics.push((carried + m.unsprung[w]) * G);
     }
-    let roughness = dice.between(0.022, 0.034);
+    let roughness = dice.draw_between(0.022, 0.034);
     let mut gain: Vec<(String, f64)> = vec![];
     let mut delay: Vec<(String, f64)> = vec![];
     let names: Vec<&str> = match layout {
@@ -467,18 +473,18 @@ fn hide_exactly(
                 law.fade = [0.003, 0.006, 0.01][dice.pick(3)];
             }
             "bump_stop" => {
-                law.gap = dice.between(0.018, 0.028);
+                law.gap = dice.draw_between(0.018, 0.028);
                 law.stop = of([0.3, 0.8, 2.0]) * k;
                 law.stop_side = [0, 1, 1][dice.pick(3)];
             }
             "asymmetric_damper" => law.ca = of([0.12, 0.25, 0.45]) * c,
             "modulated_stiffness" => {
                 law.modulation = of([0.06, 0.12, 0.25]);
-                law.modulation_hz = dice.between(0.1, 1.0);
+                law.modulation_hz = dice.draw_between(0.1, 1.0);
             }
             "memory" => {
                 law.memory_k = of([0.15, 0.3, 0.6]) * k;
-                law.memory_s = dice.between(0.03, 0.2);
+                law.memory_s = dice.draw_between(0.03, 0.2);
             }
             "dead_zone" => law.play = of([0.001, 0.002, 0.004]),
             "stiffness_drift" => law.drift = of([0.05, -0.1, 0.25]),
@@ -494,7 +500,7 @@ fn hide_exactly(
         "axle_coupling" => m.axle = of([0.06, 0.12, 0.25]) * k,
         "mass_change" => {
             m.mass_step = Some((
-                dice.between(15.0, 50.0),
+                dice.draw_between(15.0, 50.0),
                 exact.mass.unwrap_or(of([0.06, -0.12, 0.25])) * m.sprung[0],
             ))
         }
@@ -520,17 +526,17 @@ fn hide_exactly(
     if background == Background::Messy {
         // A record that holds the other side measures its roll coupling.
         if n_sprung == 2 && layout != Layout::Pair {
-            m.roll = dice.between(0.01, 0.03) * k;
+            m.roll = dice.draw_between(0.01, 0.03) * k;
         }
         for name in &names {
-            let (g, d) = (0.01 * dice.normal(), 0.0004 * dice.normal());
+            let (g, d) = (0.01 * dice.draw_normal(), 0.0004 * dice.draw_normal());
             gain.push(((*name).to_owned(), 1.0 + g.clamp(-0.02, 0.02)));
             delay.push(((*name).to_owned(), d.clamp(-0.0008, 0.0008)));
         }
     }
     let noise = [[0.02, 60.0], [0.04, 100.0]][dice.pick(2)];
-    let offsets: Vec<f64> = names.iter().map(|_| 0.05 * dice.normal()).collect();
-    let axle_delay = dice.between(0.08, 0.15);
+    let offsets: Vec<f64> = names.iter().map(|_| 0.05 * dice.draw_normal()).collect();
+    let axle_delay = dice.draw_between(0.08, 0.15);
     let record = |seconds: f64, roughness: f64, dice: &mut Dice, changed: bool| {
         let mut machine = Machine {
             mass_step: if changed { m.mass_step } else { None },
@@ -571,7 +577,7 @@ fn hide_exactly(
                 }
                 let tau: f64 = delay.iter().filter(|d| d.0 == name).map(|d| d.1).sum();
                 if tau != 0.0 {
-                    x = late(&x, tau * rate_hz);
+                    x = delay_samples(&x, tau * rate_hz);
                 }
                 let g: f64 = gain.iter().filter(|g| g.0 == name).map(|g| g.1).product();
                 let at = names.iter().position(|n| *n == name);
@@ -579,7 +585,7 @@ fn hide_exactly(
                 let sd = noise[usize::from(force)];
                 let samples = x
                     .iter()
-                    .map(|v| ((g * v + offset + sd * dice.normal()) * 1e4).round() / 1e4)
+                    .map(|v| ((g * v + offset + sd * dice.draw_normal()) * 1e4).round() / 1e4)
                     .collect();
                 (name, samples)
             })

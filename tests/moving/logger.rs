@@ -40,7 +40,7 @@ impl Fault {
 
     fn spoil(self, x: &mut Vec<f64>, fitted: bool) {
         match self {
-            Self::Clock(share) => *x = stretched(x, share),
+            Self::Clock(share) => *x = stretch_time(x, share),
             Self::Lost(n, at) if fitted => {
                 let from = (at * x.len() as f64) as usize;
                 let last = x[x.len() - 1];
@@ -50,7 +50,7 @@ impl Fault {
             Self::Lost(..) => {}
             Self::LowPass(hz) => {
                 let k = (PI * hz / RATE_HZ).tan();
-                filtered(
+                apply_filter(
                     x,
                     [k / (1.0 + k), k / (1.0 + k), 0.0],
                     [(k - 1.0) / (k + 1.0), 0.0],
@@ -61,7 +61,7 @@ impl Fault {
                 let n = 1.0 / (1.0 + 2f64.sqrt() * k + k * k);
                 let b = k * k * n;
                 let a = [2.0 * (k * k - 1.0) * n, (1.0 - 2f64.sqrt() * k + k * k) * n];
-                filtered(x, [b, 2.0 * b, b], a);
+                apply_filter(x, [b, 2.0 * b, b], a);
             }
             Self::Hum(hz, amplitude) => {
                 for (i, v) in x.iter_mut().enumerate() {
@@ -73,7 +73,7 @@ impl Fault {
 }
 
 /// A difference equation from rest at the first sample's level.
-fn filtered(x: &mut [f64], b: [f64; 3], a: [f64; 2]) {
+fn apply_filter(x: &mut [f64], b: [f64; 3], a: [f64; 2]) {
     let level = x[0];
     let (mut xs, mut ys) = ([0.0; 2], [0.0; 2]);
     for v in x.iter_mut() {
@@ -85,7 +85,7 @@ fn filtered(x: &mut [f64], b: [f64; 3], a: [f64; 2]) {
 }
 
 /// x(t - share t), cubic between samples.
-fn stretched(x: &[f64], share: f64) -> Vec<f64> {
+fn stretch_time(x: &[f64], share: f64) -> Vec<f64> {
     let last = x.len() as isize - 1;
     let at = |i: isize| x[i.clamp(0, last) as usize];
     (0..x.len())
@@ -103,7 +103,7 @@ fn stretched(x: &[f64], share: f64) -> Vec<f64> {
 }
 
 /// A healthy truck, one of its channels spoilt in both records.
-pub fn spoilt(
+pub fn generate_faulty_case(
     layout: Layout,
     fault: Fault,
     channel: &str,

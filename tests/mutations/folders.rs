@@ -26,7 +26,7 @@ type Ask = fn(&Path, &Context) -> Result<(), Faults>;
 type Command = (&'static str, Ask);
 
 /// Turns any answer into nothing; its serialisation must not fail either.
-fn told<A: host::outcome::Answer>(outcome: Outcome<A>) -> Result<(), Faults> {
+fn check_serialisation<A: host::outcome::Answer>(outcome: Outcome<A>) -> Result<(), Faults> {
     outcome.to_json(&host::outcome::Tables::new()).unwrap();
     Ok(())
 }
@@ -34,7 +34,7 @@ fn told<A: host::outcome::Answer>(outcome: Outcome<A>) -> Result<(), Faults> {
 macro_rules! command {
     ($name:ident) => {
         (stringify!($name), |job, cx| {
-            told(strainbridge::$name(&Job::read(job, cx.files)?, cx)?)
+            check_serialisation(strainbridge::$name(&Job::read(job, cx.files)?, cx)?)
         })
     };
 }
@@ -43,7 +43,7 @@ macro_rules! command {
 /// `sensitivity`, `place` and `modes` go through; `strains` and `init`, which have no job.
 const COMMANDS: [Command; 11] = [
     ("check", |job, cx| {
-        told(strainbridge::check(&[job.to_owned()], cx)?)
+        check_serialisation(strainbridge::check(&[job.to_owned()], cx)?)
     }),
     command!(cases),
     command!(sensitivity),
@@ -55,7 +55,7 @@ const COMMANDS: [Command; 11] = [
     command!(reconcile),
     command!(calibrate),
     ("modes", |job, cx| {
-        told(strainbridge::modes(&Job::read(job, cx.files)?, 4, cx)?)
+        check_serialisation(strainbridge::modes(&Job::read(job, cx.files)?, 4, cx)?)
     }),
 ];
 
@@ -88,8 +88,8 @@ pub fn folders() -> Vec<Folder> {
 
 impl Folder {
     /// The folder with one file changed, a job of it and a command.
-    pub fn damaged(&self, random: &mut Random) -> Damaged {
-        let job = &self.jobs[random.below(self.jobs.len())];
+    pub fn damage_file(&self, random: &mut Random) -> Damaged {
+        let job = &self.jobs[random.draw_below(self.jobs.len())];
         // The job itself half the time, else any other file.
         let tables: Vec<&PathBuf> = self
             .files
@@ -97,25 +97,25 @@ impl Folder {
             .map(|f| &f.0)
             .filter(|p| !self.jobs.contains(p))
             .collect();
-        let damaged = match random.below(2) {
+        let damaged = match random.draw_below(2) {
             0 => job.clone(),
-            _ => tables[random.below(tables.len())].clone(),
+            _ => tables[random.draw_below(tables.len())].clone(),
         };
         let (mut files, mut changed) = (InMemory::default(), Vec::new());
         for (path, original) in &self.files {
             let mut bytes = original.clone();
             if *path == damaged {
-                (0..=random.below(3)).for_each(|_| mutate(&mut bytes, random));
+                (0..=random.draw_below(3)).for_each(|_| mutate(&mut bytes, random));
                 changed.clone_from(&bytes);
             }
-            files = files.with(path, bytes);
+            files = files.with_file(path, bytes);
         }
         // What the job is made for, or any.
         let stem = job.file_stem().map_or("", |s| s.to_str().unwrap());
         let own = COMMANDS.iter().find(|c| stem.starts_with(c.0));
-        let command = match (own, random.below(4)) {
+        let command = match (own, random.draw_below(4)) {
             (Some(own), 1..) => *own,
-            _ => COMMANDS[random.below(COMMANDS.len())],
+            _ => COMMANDS[random.draw_below(COMMANDS.len())],
         };
         Damaged {
             files,

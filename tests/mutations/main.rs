@@ -43,7 +43,7 @@ impl Random {
     }
 
     /// A number below `n`.
-    pub fn below(&mut self, n: usize) -> usize {
+    pub fn draw_below(&mut self, n: usize) -> usize {
         (self.next() % n.max(1) as u64) as usize
     }
 }
@@ -78,23 +78,23 @@ pub fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
         return;
     }
     let n = bytes.len();
-    let at = match random.below(4) {
-        0 if n > NEAR => random.below(NEAR),
-        1 if n > NEAR => n - NEAR + random.below(NEAR),
-        _ => random.below(n),
+    let at = match random.draw_below(4) {
+        0 if n > NEAR => random.draw_below(NEAR),
+        1 if n > NEAR => n - NEAR + random.draw_below(NEAR),
+        _ => random.draw_below(n),
     };
-    let len = random.below(64.min(n - at));
-    match random.below(7) {
-        0 | 1 => bytes[at] ^= 1 << random.below(8),
+    let len = random.draw_below(64.min(n - at));
+    match random.draw_below(7) {
+        0 | 1 => bytes[at] ^= 1 << random.draw_below(8),
         2 => {
-            let word = WORDS[random.below(WORDS.len())];
+            let word = WORDS[random.draw_below(WORDS.len())];
             let end = (at + word.len()).min(n);
             bytes.splice(at..end, word.iter().copied());
         }
         3 => drop(bytes.drain(at..at + len)),
         4 => {
             let piece = bytes[at..at + len].to_vec();
-            let to = random.below(n);
+            let to = random.draw_below(n);
             bytes.splice(to..to, piece);
         }
         5 => number(bytes, at, random),
@@ -126,7 +126,7 @@ fn number(bytes: &mut Vec<u8>, at: usize, random: &mut Random) {
         return;
     };
     let len = bytes[from..].iter().take_while(|b| is_digit(b)).count();
-    let new = NUMBERS[random.below(NUMBERS.len())];
+    let new = NUMBERS[random.draw_below(NUMBERS.len())];
     bytes.splice(from..from + len, new.bytes());
 }
 
@@ -149,7 +149,7 @@ fn deck(bytes: &[u8]) -> bool {
 }
 
 fn job(bytes: &[u8]) -> bool {
-    let files = InMemory::default().with("job.toml", bytes);
+    let files = InMemory::default().with_file("job.toml", bytes);
     Job::read("job.toml", &files).is_ok()
 }
 
@@ -181,12 +181,12 @@ fn record(bytes: &[u8]) -> bool {
 fn runs(bytes: &[u8]) -> bool {
     let job = samples::JOB.replace("s.csv", "s.xlsx");
     let files = InMemory::default()
-        .with("job.toml", job)
-        .with("s.xlsx", bytes);
+        .with_file("job.toml", job)
+        .with_file("s.xlsx", bytes);
     let Ok(job) = Job::read("job.toml", &files) else {
         return false;
     };
-    let mut inputs = strainbridge::host::files::Inputs::of(&files);
+    let mut inputs = strainbridge::host::files::Inputs::new(&files);
     let named = &job.measured.as_ref().unwrap().strain;
     let wanted = wanted_columns(&mut inputs, &job);
     read_strain(&mut inputs, &job, named, &wanted).is_ok()
@@ -263,7 +263,7 @@ fn peak() -> Option<usize> {
 
 /// Processor time of this process so far, or what a clock says where the system doesn't tell it: a machine that is busy with other things
 /// makes no reader slow.
-fn spent() -> Duration {
+fn read_processor_time() -> Duration {
     static START: std::sync::LazyLock<Instant> = std::sync::LazyLock::new(Instant::now);
     /// Ticks of the system in a second, on every Linux there is.
     const TICKS: u64 = 100;
@@ -303,16 +303,16 @@ fn try_one(
     let mut random = Random(seed);
     forget_peak();
     let before = peak();
-    let start = spent();
-    let (of, size, is_reader, ended) = if random.below(COMMANDS) == 0 && !folders.is_empty() {
-        let damaged = folders[random.below(folders.len())].damaged(&mut random);
+    let start = read_processor_time();
+    let (of, size, is_reader, ended) = if random.draw_below(COMMANDS) == 0 && !folders.is_empty() {
+        let damaged = folders[random.draw_below(folders.len())].damage_file(&mut random);
         keep(damaged.bytes());
         let ended = std::panic::catch_unwind(|| damaged.run());
         (damaged.to_string(), 0, false, ended)
     } else {
-        let (name, original, read) = &samples[random.below(samples.len())];
+        let (name, original, read) = &samples[random.draw_below(samples.len())];
         let mut bytes = original.clone();
-        for _ in 0..=random.below(5) {
+        for _ in 0..=random.draw_below(5) {
             mutate(&mut bytes, &mut random);
         }
         keep(&bytes);
@@ -321,7 +321,7 @@ fn try_one(
         });
         ((*name).to_owned(), bytes.len(), true, ended)
     };
-    let took = spent().saturating_sub(start);
+    let took = read_processor_time().saturating_sub(start);
     let grown = before
         .zip(peak())
         .map_or(0, |(before, after)| after.saturating_sub(before));

@@ -1,6 +1,6 @@
 //! A gauge dragged over a part that is drawn coarser than the model: it lands on the model.
 
-use crate::pointing::{folder, planned};
+use crate::pointing::{folder, run_page_steps};
 use nastran::bdf::{MemoryLoader, read_deck};
 use serde_json::json;
 use std::f64::consts::TAU;
@@ -79,7 +79,7 @@ fn a_gauge_that_is_dragged_over_a_coarser_picture_lands_on_the_elements() {
         steps.push(json!(["lines"]));
         from = *to;
     }
-    let Some(said) = planned(&report, 1280, &json!(steps)) else {
+    let Some(said) = run_page_steps(&report, 1280, &json!(steps)) else {
         return;
     };
     for k in 0..places.len() {

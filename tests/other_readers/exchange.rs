@@ -121,7 +121,7 @@ fn numbers(v: &Value) -> Vec<f64> {
         .map_or(Vec::new(), |l| l.iter().map(number).collect())
 }
 
-fn near(what: &str, got: f64, expected: f64, allowed: f64) {
+fn assert_near(what: &str, got: f64, expected: f64, allowed: f64) {
     assert!(
         (got - expected).abs() <= allowed,
         "{what}: {got} for {expected}"
@@ -144,7 +144,7 @@ fn our_reader_gets_back_the_loads_of_every_run_from_force_moment_and_load() {
     for (load, i) in c.loads.iter().zip([10, 200]) {
         assert_eq!(load.card.terms.len(), truth(i).len());
         for (part, expected) in load.card.terms.iter().zip(truth(i)) {
-            near("run", load.card.scale * part.0, expected, 1e-6 * 300.0);
+            assert_near("run", load.card.scale * part.0, expected, 1e-6 * 300.0);
         }
     }
     assert_eq!(
@@ -171,9 +171,9 @@ fn pseudo_damage_of_sines_is_their_cycles_times_range_to_the_slope() {
     // 2 (1/2)^5 / 2 of a cycle or less. 20 periods of 1.5 s and range 100, from peak to a sample before the last peak.
     let [a, b, c] = [0, 1, 2].map(|l| &damage[l]);
     let cycles = |d: &Value, range: f64| number(&d["damage"]) / range.powi(5);
-    near("A", cycles(a, 200.0), 9.5, 0.04);
-    near("B", cycles(b, 100.0), 20.0, 0.01);
-    near(
+    assert_near("A", cycles(a, 200.0), 9.5, 0.04);
+    assert_near("B", cycles(b, 100.0), 20.0, 0.01);
+    assert_near(
         "largest range of A",
         number(&a["largest_range"]),
         200.0,
@@ -191,7 +191,7 @@ fn pseudo_damage_of_sines_is_their_cycles_times_range_to_the_slope() {
         .filter(|l| l.starts_with("A.FZ"))
         .map(|l| l.split(',').nth(4).unwrap().parse::<f64>().unwrap())
         .sum();
-    near("rows of A", counted, number(&a["cycles"]), 1e-9);
+    assert_near("rows of A", counted, number(&a["cycles"]), 1e-9);
 }
 
 #[test]
@@ -209,13 +209,13 @@ fn rpc3_file_and_pynastran_read_the_history_that_recover_writes() {
     for (l, name) in LOADS.iter().enumerate() {
         let channel = &rsp["channels"][l];
         assert_eq!(channel["name"], *name);
-        near("dt", number(&channel["dt"]), DT, 1e-9);
+        assert_near("dt", number(&channel["dt"]), DT, 1e-9);
         let step = number(&channel["step"]);
         let data = numbers(&channel["data"]);
         assert_eq!(data.len(), N, "{name}");
         for (i, v) in data.iter().enumerate() {
             // Half a step, and 32-bit reals on the way.
-            near(name, *v, truth(i)[l], 0.5 * step + 1e-6 * 300.0);
+            assert_near(name, *v, truth(i)[l], 0.5 * step + 1e-6 * 300.0);
         }
     }
     let bdf = &read["loads.bdf"];
@@ -230,13 +230,13 @@ fn rpc3_file_and_pynastran_read_the_history_that_recover_writes() {
         let [times, values] = [0, 1].map(|i| numbers(&bdf["tables"][&table][i]));
         assert_eq!((times.len(), values.len()), (N, N));
         for (i, (t, v)) in times.iter().zip(&values).enumerate() {
-            near("time", *t, i as f64 * DT, 1e-8);
-            near("table", *v, truth(i)[l], 1e-6 * 300.0);
+            assert_near("time", *t, i as f64 * DT, 1e-8);
+            assert_near("table", *v, truth(i)[l], 1e-6 * 300.0);
         }
     }
     let sheet = &read["loads.xlsx"]["Loads"];
     assert_eq!(sheet[1][0], "A.FZ");
-    near(
+    assert_near(
         "mean",
         number(&sheet[1][3]),
         number(&result["loads"][0]["value"]),
@@ -276,19 +276,19 @@ fn openpyxl_and_meshio_read_the_gauge_plan_and_the_loads_of_runs() {
             (&g["name"], &g["element"], &g["surface"])
         );
         for axis in 0..3 {
-            near(
+            assert_near(
                 "x",
                 number(&row[3 + axis]),
                 number(&g["position"][axis]),
                 1e-9,
             );
             let point = number(&vtu["points"][i][axis]);
-            near("point", point, number(&g["position"][axis]), 1e-9);
+            assert_near("point", point, number(&g["position"][axis]), 1e-9);
             let arrow = number(&vtu["point_data"]["axis"][i][axis]);
             // 32-bit reals.
-            near("axis", arrow, number(&g["direction"][axis]), 1e-6);
+            assert_near("axis", arrow, number(&g["direction"][axis]), 1e-6);
         }
-        near(
+        assert_near(
             "angle",
             number(&row[10]),
             number(&g["angle_seen_deg"]),
@@ -303,7 +303,7 @@ fn openpyxl_and_meshio_read_the_gauge_plan_and_the_loads_of_runs() {
         let row = &read["loads.xlsx"]["Loads"][r + 1];
         assert_eq!(row[0], format!("R{i}"));
         for l in 0..3 {
-            near(
+            assert_near(
                 "sheet",
                 number(&row[1 + 3 * l]),
                 number(&loads[3 * r + l]["value"]),
@@ -312,10 +312,10 @@ fn openpyxl_and_meshio_read_the_gauge_plan_and_the_loads_of_runs() {
         }
         let arrows = &read["loads.vtu"]["point_data"];
         let force = &arrows[format!("force R{i}")];
-        near("arrow", number(&force[0][2]), truth(i)[0], 1e-6 * 300.0);
-        near("arrow", number(&force[1][0]), truth(i)[1], 1e-6 * 300.0);
+        assert_near("arrow", number(&force[0][2]), truth(i)[0], 1e-6 * 300.0);
+        assert_near("arrow", number(&force[1][0]), truth(i)[1], 1e-6 * 300.0);
         let moment = &arrows[format!("moment R{i}")];
-        near("arrow", number(&moment[2][0]), truth(i)[2], 1e-6 * 300.0);
+        assert_near("arrow", number(&moment[2][0]), truth(i)[2], 1e-6 * 300.0);
     }
 }
 
@@ -334,7 +334,7 @@ fn records_that_rpc3_file_writes_give_the_same_loads_as_the_table_they_come_from
         for l in 0..3 {
             for key in ["value", "min", "max"] {
                 let [a, b] = [&got, &expected].map(|r| number(&r["loads"][l][key]));
-                near(key, a, b, allowed * 300.0);
+                assert_near(key, a, b, allowed * 300.0);
             }
         }
     }
@@ -361,7 +361,7 @@ fn records_that_pyarrow_and_asammdf_write_give_the_same_loads_as_the_table_they_
         for l in 0..3 {
             for key in ["value", "min", "max"] {
                 let [a, b] = [&got, &expected].map(|r| number(&r["loads"][l][key]));
-                near(key, a, b, allowed * 300.0);
+                assert_near(key, a, b, allowed * 300.0);
             }
         }
     }
@@ -375,11 +375,11 @@ fn records_that_pyarrow_and_asammdf_write_give_the_same_loads_as_the_table_they_
         assert_eq!(values.len(), N);
         for (i, v) in values.iter().enumerate() {
             // Reals of 32 bits.
-            near(name, *v, truth(i)[l], 1e-6 * 300.0);
+            assert_near(name, *v, truth(i)[l], 1e-6 * 300.0);
         }
     }
     let times = numbers(&columns["time"]);
-    near("time", times[N - 1], (N - 1) as f64 * DT, 1e-9);
+    assert_near("time", times[N - 1], (N - 1) as f64 * DT, 1e-9);
     assert_eq!(read["loads.parquet"]["notes"]["unit of A.FZ"], "N");
 }
 

@@ -12,7 +12,7 @@ const TITLE: &str = "Plate #panic(1) *b* $x$ _u_ <a> `c` @ref [r] {s} // & µε 
 const SHOWN: &str = "Plate #panic(1) *b* $x$ _u_ <a> `c` @ref [r] {s} // & µε [U+4E2D] [U+202E]";
 
 /// The job of `plate` as `name` under the nasty title.
-fn titled(dir: &Path, name: &str) -> PathBuf {
+fn write_titled_job(dir: &Path, name: &str) -> PathBuf {
     let path = PathBuf::from(job(dir, name, "strain.csv"));
     let text = std::fs::read_to_string(&path).unwrap();
     std::fs::write(&path, text.replace("Folded plate", TITLE)).unwrap();
@@ -47,7 +47,7 @@ fn read(jobs: &[&Path]) -> Option<Vec<Value>> {
 }
 
 /// Text without spaces and breaks of lines: where a line ends is of no interest.
-fn bare(text: &str) -> String {
+fn remove_whitespace(text: &str) -> String {
     let kept = |c: &char| !c.is_whitespace() && *c != '\u{200b}';
     text.chars().filter(kept).collect()
 }
@@ -56,7 +56,7 @@ fn bare(text: &str) -> String {
 fn text_of(paper: &Value) -> String {
     let pages = paper["pages"].as_array().unwrap();
     let all: Vec<&str> = pages.iter().filter_map(|p| p["text"].as_str()).collect();
-    bare(&all.join(" "))
+    remove_whitespace(&all.join(" "))
 }
 
 /// What holds of every report: A4, nothing blank, numbered pages, program, units, hashes and findings as in `result.json`.
@@ -73,7 +73,7 @@ fn is_sound(paper: &Value, result: &Value, words: &[&str]) {
         assert!(page["inked"].as_f64().unwrap() > 0.01, "page {i}");
         let number = format!("page {} of {}", i + 1, pages.len());
         assert!(
-            bare(page["text"].as_str().unwrap()).contains(&bare(&number)),
+            remove_whitespace(page["text"].as_str().unwrap()).contains(&remove_whitespace(&number)),
             "{number}"
         );
     }
@@ -103,19 +103,22 @@ fn is_sound(paper: &Value, result: &Value, words: &[&str]) {
         .chain(messages)
         .chain(words)
     {
-        assert!(text.contains(&bare(&word)), "`{word}` is not in:\n{text}");
+        assert!(
+            text.contains(&remove_whitespace(&word)),
+            "`{word}` is not in:\n{text}"
+        );
     }
 }
 
 /// A value of `result.json` with one digit after the point, as the plan shows places and angles.
-fn tenth(v: &Value) -> String {
+fn format_tenths(v: &Value) -> String {
     format!("{:.1}", v.as_f64().unwrap())
 }
 
 #[test]
 fn plan_and_payload_on_paper_state_inputs_units_and_the_numbers_of_result_json_and_can_be_signed() {
     let dir = plate("paper");
-    let plan = titled(&dir, "plan.toml");
+    let plan = write_titled_job(&dir, "plan.toml");
     let placed = strainbridge(&["place", plan.to_str().unwrap()]);
     let weighed = dir.join("payload.toml");
     std::fs::write(&weighed, on_four_wheels(&dir)).unwrap();
@@ -141,7 +144,7 @@ fn plan_and_payload_on_paper_state_inputs_units_and_the_numbers_of_result_json_a
     let mut rows = vec!["Gluing sheet".to_owned(), SHOWN.to_owned()];
     assert!(!placed["gauges"].as_array().unwrap().is_empty());
     for g in placed["gauges"].as_array().unwrap() {
-        let [x, y, z] = [0, 1, 2].map(|k| tenth(&g["position"][k]));
+        let [x, y, z] = [0, 1, 2].map(|k| format_tenths(&g["position"][k]));
         let (name, side) = (g["name"].as_str().unwrap(), g["surface"].as_str().unwrap());
         rows.push(format!("{name} {} {side} {x} {y} {z}", g["element"]));
     }
@@ -162,7 +165,7 @@ fn plan_and_payload_on_paper_state_inputs_units_and_the_numbers_of_result_json_a
 
 #[test]
 fn a_reconciliation_on_paper_holds_the_verdict_its_effects_and_what_else_would_explain_them() {
-    let Some(shared) = support::shared("hidden_effects") else {
+    let Some(shared) = support::find_shared_path("hidden_effects") else {
         return;
     };
     let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("paper_gap");

@@ -23,7 +23,7 @@ pub fn folder(name: &str) -> PathBuf {
 }
 
 /// A flat plate: element `1 + 20 j + i` is the square from (10 i, 10 j); property 1 left of x = 100, property 2 right of it.
-fn flat() -> String {
+fn flat_plate_deck() -> String {
     let mut deck = String::from(
         "SOL 101\nCEND\nBEGIN BULK\nPARAM,INREL,-2\nMAT1,1,210000.,,.3,7.85-9\nPSHELL,1,1,2.0,1,,1\nPSHELL,2,1,2.0,1,,1\n",
     );
@@ -107,7 +107,7 @@ expected = 100.0
 const PLACEMENT: &str = "[placement]\ngauges = 6\nspacing = 8.0\n";
 
 /// What the page says after these steps; `None` without Chromium.
-pub fn planned(report: &Path, width: u32, steps: &Value) -> Option<Value> {
+pub fn run_page_steps(report: &Path, width: u32, steps: &Value) -> Option<Value> {
     let plan = report.with_file_name(format!("steps-{width}.json"));
     let text = json!({ "width": width, "touch": width < 600, "steps": steps }).to_string();
     std::fs::write(&plan, text).unwrap();
@@ -188,7 +188,7 @@ fn layout(dir: &Path, name: &str, more: &str) -> Vec<(u32, [f64; 3])> {
 fn lines_written_by_pointing_with_mouse_and_finger_give_the_layout_that_was_pointed_at() {
     let dir = folder("plate");
     let deck = dir.join("plate.bdf");
-    std::fs::write(&deck, flat()).unwrap();
+    std::fs::write(&deck, flat_plate_deck()).unwrap();
     let free = layout(&dir, "free", "");
     let checked = dir.join("check.out");
     strainbridge(&[
@@ -208,7 +208,7 @@ fn lines_written_by_pointing_with_mouse_and_finger_give_the_layout_that_was_poin
         (dir.join("free.out/report.html"), 390),
         (checked.join("report.html"), 1280),
     ] {
-        let Some(said) = planned(&report, width, &steps()) else {
+        let Some(said) = run_page_steps(&report, width, &steps()) else {
             return;
         };
         assert_eq!(lines(&said, 0), "[candidates]\nproperties = [1]\n");
@@ -259,7 +259,7 @@ fn sensitivity(dir: &Path, gauges: &str) -> Vec<f64> {
 #[test]
 fn a_gauge_that_is_dragged_is_written_with_the_place_on_the_surface_where_it_was_let_go() {
     let dir = folder("gauges");
-    std::fs::write(dir.join("plate.bdf"), flat()).unwrap();
+    std::fs::write(dir.join("plate.bdf"), flat_plate_deck()).unwrap();
     let before = layout(&dir, "free", "");
     let report = dir.join("free.out/report.html");
     let [x, y] = [143.0, 64.0];
@@ -273,7 +273,7 @@ fn a_gauge_that_is_dragged_is_written_with_the_place_on_the_surface_where_it_was
             ["gauges"],
             ["lines"],
         ]);
-        let Some(said) = planned(&report, width, &steps) else {
+        let Some(said) = run_page_steps(&report, width, &steps) else {
             return;
         };
         let written = said["lines"][0][1].as_str().unwrap();
@@ -368,7 +368,7 @@ fn picked_on_a_tube(rings: u32, bytes: u64) {
         ["lines"],
     ]);
     for width in [1280, 390] {
-        let Some(said) = planned(&report, width, &steps) else {
+        let Some(said) = run_page_steps(&report, width, &steps) else {
             return;
         };
         let brushed = ids(lines(&said, 0), "exclude_elements");

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Opens reports and gives what was seen by file and width; `None` without Chromium.
-fn opened(reports: &[&Path]) -> Option<Vec<Value>> {
+fn open_reports(reports: &[&Path]) -> Option<Vec<Value>> {
     let paths: Vec<&str> = reports.iter().map(|p| p.to_str().unwrap()).collect();
     let seen = read_by("open_report.py", &paths)?;
     let by_width = |p: &&str| ["1280", "390"].map(|w| seen[*p][w].clone());
@@ -188,7 +188,7 @@ fn every_kind_of_page_opens_wide_and_on_a_phone_without_errors_requests_or_texts
     ];
     let reports: Vec<PathBuf> = pages.iter().map(|(c, d, f)| page_of(c, d, f)).collect();
     let paths: Vec<&Path> = reports.iter().map(PathBuf::as_path).collect();
-    let Some(seen) = opened(&paths) else {
+    let Some(seen) = open_reports(&paths) else {
         return;
     };
     for (i, page) in seen.iter().enumerate() {
@@ -225,7 +225,7 @@ fn the_page_of_the_demo_has_a_picture_in_each_card_and_the_truth_beside_the_inte
         .unwrap();
     let error = String::from_utf8_lossy(&told.stderr);
     assert_eq!(told.status.code(), Some(0), "{error}");
-    let Some(seen) = opened(&[&folder.join("report.html")]) else {
+    let Some(seen) = open_reports(&[&folder.join("report.html")]) else {
         return;
     };
     for page in &seen {
@@ -268,7 +268,7 @@ fn a_finding_shows_the_gauge_that_it_names() {
         .output()
         .unwrap();
     assert_eq!(found.status.code(), Some(1), "an error is found");
-    let Some(pages) = opened(&[&dir.join("reversed.out/report.html")]) else {
+    let Some(pages) = open_reports(&[&dir.join("reversed.out/report.html")]) else {
         return;
     };
     for page in &pages {
@@ -298,7 +298,7 @@ fn reports_open_without_errors_or_requests_show_their_figures_and_name_the_gauge
     strainbridge(&["solve", &job(&dir, "solve.toml", "strain.csv")]);
     let reports =
         ["plan", "runs", "record", "solve"].map(|n| dir.join(format!("{n}.out/report.html")));
-    let Some(pages) = opened(&reports.each_ref().map(|p| p.as_path())) else {
+    let Some(pages) = open_reports(&reports.each_ref().map(|p| p.as_path())) else {
         return;
     };
     let kinds: [(&[&str], &[&str]); 4] = [

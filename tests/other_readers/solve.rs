@@ -9,7 +9,7 @@ use std::process::Command;
 use strainbridge::fe::{CaseResult, SolveOptions, UnitLoad, solve_unit_loads};
 use strainbridge::model::{Model, Vec3};
 
-fn near(what: &str, got: f64, expected: f64, largest: f64) {
+fn assert_near(what: &str, got: f64, expected: f64, largest: f64) {
     assert!(
         (got - expected).abs() <= 2e-7 * largest,
         "{what}: {got:e} for {expected:e}"
@@ -43,9 +43,9 @@ fn compare_strain(model: &Model, case: &CaseResult, rows: &[Value]) -> usize {
                 .unwrap();
             case.shells.corners[shell][corner][surface]
         };
-        near("fibre", row[2], [-1.0, 1.0][surface], 1.0);
+        assert_near("fibre", row[2], [-1.0, 1.0][surface], 1.0);
         for c in 0..3 {
-            near("strain", row[3 + c], ours[c], 4.0 * largest);
+            assert_near("strain", row[3 + c], ours[c], 4.0 * largest);
         }
     }
     rows.len()
@@ -99,7 +99,7 @@ fn pynastran_and_meshio_read_what_solve_writes() {
         for row in moved {
             let row: Vec<f64> = list(row).iter().filter_map(Value::as_f64).collect();
             let u = case.displacement[model.grid_ix(row[0] as u32).unwrap().us()];
-            (0..6).for_each(|c| near("displacement", row[1 + c], u[c], largest));
+            (0..6).for_each(|c| assert_near("displacement", row[1 + c], u[c], largest));
         }
         let vtu = &read["vtu"];
         let name = format!("strain top {}", case.subcase);
@@ -123,7 +123,7 @@ fn pynastran_and_meshio_read_what_solve_writes() {
                 .position(|s| Some(u64::from(s.id)) == id.as_u64());
             for (c, v) in list(row).iter().enumerate() {
                 let expected = case.shells.centre[at.unwrap()][1][c];
-                near("strain", v.as_f64().unwrap(), expected, largest);
+                assert_near("strain", v.as_f64().unwrap(), expected, largest);
             }
         }
     }

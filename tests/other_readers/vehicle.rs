@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Parameters that `identify` finds with the record in `data` and the held-out one in `holdout`.
-fn identified(dir: &Path, text: &str, ending: &str) -> Vec<Value> {
+fn identify_parameters(dir: &Path, text: &str, ending: &str) -> Vec<Value> {
     let job = dir.join(format!("job_{ending}.toml"));
     let text = text
         .replace("data.csv", &format!("data_real.{ending}"))
@@ -25,7 +25,7 @@ fn identified(dir: &Path, text: &str, ending: &str) -> Vec<Value> {
 
 #[test]
 fn accelerations_in_rpc_iii_parquet_and_mdf4_give_the_parameters_of_the_table() {
-    let Some(case) = support::shared("hidden_effects/dynamics/dev-d1/job.toml") else {
+    let Some(case) = support::find_shared_path("hidden_effects/dynamics/dev-d1/job.toml") else {
         return;
     };
     let text = std::fs::read_to_string(&case).unwrap();
@@ -43,7 +43,7 @@ fn accelerations_in_rpc_iii_parquet_and_mdf4_give_the_parameters_of_the_table() 
     {
         return;
     }
-    let expected = identified(&dir, &text, "csv");
+    let expected = identify_parameters(&dir, &text, "csv");
     let mut endings = vec!["rsp"];
     if cfg!(feature = "parquet") {
         endings.push("parquet");
@@ -52,7 +52,7 @@ fn accelerations_in_rpc_iii_parquet_and_mdf4_give_the_parameters_of_the_table() 
         endings.push("mf4");
     }
     for ending in endings {
-        let read = identified(&dir, &text, ending);
+        let read = identify_parameters(&dir, &text, ending);
         assert!(!expected.is_empty() && read.len() == expected.len());
         for (got, e) in read.iter().zip(&expected) {
             assert_eq!(got["name"], e["name"]);

@@ -1,6 +1,6 @@
 //! The unit-load decks of three real decks, read back by our reader and, where Python has it, by pyNastran.
 
-use super::command::{Outcome, run, scratch, shared};
+use super::command::{Outcome, find_shared_path, run, scratch};
 use crate::support::skip;
 use nastran::bdf::{Deck, IncludeRequest, Loaded, Loader, read_deck};
 use serde_json::Value;
@@ -71,7 +71,7 @@ fn deck_of(folder: &Path) -> String {
 }
 
 fn write_cases(case: &str, units: &str, grids: [u32; 2]) -> Option<(Deck, Outcome, PathBuf, Deck)> {
-    let source = shared(&format!("nastran/{case}"))?;
+    let source = find_shared_path(&format!("nastran/{case}"))?;
     let folder = scratch(&format!("cases_{case}"));
     let deck = source.join(deck_of(&source));
     let path = deck.display().to_string().replace('\\', "/");

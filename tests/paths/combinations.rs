@@ -20,8 +20,8 @@ fn deck(case_control: &str, bulk: &str) -> String {
     )
 }
 
-fn solved(case_control: &str, bulk: &str) -> Result<Outcome<SolvedCases>, Faults> {
-    let files = InMemory::default().with("bars.bdf", deck(case_control, bulk));
+fn solve_bars(case_control: &str, bulk: &str) -> Result<Outcome<SolvedCases>, Faults> {
+    let files = InMemory::default().with_file("bars.bdf", deck(case_control, bulk));
     let options = SolveOptions {
         corners: Corners::Compute,
         ..SolveOptions::default()
@@ -45,7 +45,7 @@ const BAR: &str = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\nSP
 fn subcom_adds_the_subcases_above_it() {
     let cases = "SPC = 1\nSUBCASE 1\nLOAD = 1\nSUBCASE 2\nLOAD = 2\nSUBCOM 3\nLABEL = both\nSUBSEQ = 1., -2.\n\
          REPCASE 4\nSUBCASE 11\nLOAD = 2\nSUBCOM 12\nSUBSEQ = 0., 1., 1.\n";
-    let o = solved(cases, BAR).unwrap();
+    let o = solve_bars(cases, BAR).unwrap();
     // R_n belongs to the SUBCASE directly above; SUBCOMs are not counted.
     let forces = [
         (1, 1000.0),
@@ -78,7 +78,7 @@ fn symcom_adds_symmetric_and_antisymmetric_halves() {
          SPC1,1,123456,1,3\nSPC1,2,23456,1\nSPC1,2,123456,3\nFORCE,1,2,,500.,1.,0.,0.\n";
     let cases = "LOAD = 1\nSYM 1\nSPC = 1\nSYM 2\nSPC = 2\nSYMCOM 3\nSYMCOM 4\nSYMSEQ = 1., -1.\n";
     // Both SYMCOMs inherit LOAD from above the subcases, as in Nastran.
-    let o = solved(cases, half).unwrap();
+    let o = solve_bars(cases, half).unwrap();
     let unit = 1000.0 / EA;
     let at = |grid: usize| displacements(&o, grid);
     for (grid, values) in [(0, [0.0, 0.5, 0.5, -0.5]), (1, [0.25, 0.5, 0.75, -0.25])] {
@@ -111,7 +111,7 @@ fn combinations_that_state_no_sum_are_refused_by_line() {
             "subcase 2 has no static solution",
         ),
     ] {
-        let refused = solved(&cases, BAR).err().unwrap().to_string();
+        let refused = solve_bars(&cases, BAR).err().unwrap().to_string();
         assert!(
             refused.contains(&format!("bars.bdf:{line}: SUBCOM 3: ")),
             "{refused}"
@@ -124,14 +124,14 @@ fn combinations_that_state_no_sum_are_refused_by_line() {
 fn a_repeated_subcase_number_is_refused_at_its_line() {
     for second in ["SUBCASE 1", "SUBCOM 1\nSUBSEQ = 2."] {
         let cases = format!("SPC = 1\nSUBCASE 1\nLOAD = 1\n{second}\nLOAD = 2\n");
-        let refused = solved(&cases, BAR).err().map(|f| f.to_string());
+        let refused = solve_bars(&cases, BAR).err().map(|f| f.to_string());
         let place = "bars.bdf:6: SUBCASE 1";
         assert!(
             refused.as_ref().is_some_and(|f| f.contains(place)),
             "{refused:?}"
         );
     }
-    assert!(solved("SPC = 1\nSUBCASE 1\nLOAD = 1\nSUBCASE 2\nLOAD = 2\n", BAR).is_ok());
+    assert!(solve_bars("SPC = 1\nSUBCASE 1\nLOAD = 1\nSUBCASE 2\nLOAD = 2\n", BAR).is_ok());
 }
 
 #[test]
@@ -142,8 +142,8 @@ fn check_and_strains_warn_of_a_repeated_subcase_number() {
     for (second, times) in [("SUBCASE 2", None), ("SUBCASE 1", Some(2.0))] {
         let cases = format!("SPC = 1\nSUBCASE 1\nLOAD = 1\n{second}\nLOAD = 2\n");
         let files = InMemory::default()
-            .with("bars.bdf", deck(&cases, BAR))
-            .with("bars.pch", results);
+            .with_file("bars.bdf", deck(&cases, BAR))
+            .with_file("bars.pch", results);
         let cx = Context::new(&files);
         let checked = check(&["bars.bdf".into()], &cx).unwrap();
         let read = strains(Path::new("bars.bdf"), &["bars.pch".into()], &cx).unwrap();

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-pub use crate::support::shared;
+pub use crate::support::find_shared_path;
 
 /// An empty folder for one test.
 pub fn scratch(name: &str) -> PathBuf {

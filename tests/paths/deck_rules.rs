@@ -29,8 +29,8 @@ fn a_gauge_between_stations_reads_the_points_of_end_a_where_a_station_asks_for_n
     let gauges: String = shares.map(gauge).concat();
     for so in ["NO", "YESA"] {
         let files = InMemory::default()
-            .with("beam.bdf", cantilever(&station(so)))
-            .with("job.toml", format!("units = \"mm-t-s\"\n[model]\ndeck = \"beam.bdf\"\n[[load]]\nname = \"P\"\nload_set = 11\n{gauges}"));
+            .with_file("beam.bdf", cantilever(&station(so)))
+            .with_file("job.toml", format!("units = \"mm-t-s\"\n[model]\ndeck = \"beam.bdf\"\n[[load]]\nname = \"P\"\nload_set = 11\n{gauges}"));
         let job = Job::read("job.toml", &files).unwrap();
         let s = sensitivity(&job, &Context::new(&files)).unwrap();
         for (share, got) in shares
@@ -53,7 +53,7 @@ fn unit_loads_of_a_deck_with_one_subcase_number_twice_are_refused() {
         "LOAD = 11\n",
         "SUBCASE 1\nLOAD = 11\nSUBCASE 1\nLOAD = 11\n",
     );
-    let files = InMemory::default().with("beam.bdf", deck).with(
+    let files = InMemory::default().with_file("beam.bdf", deck).with_file(
         "job.toml",
         "units = \"mm-t-s\"\n[model]\ndeck = \"beam.bdf\"\n[[load]]\nname = \"P\"\nload_set = 11\n",
     );

@@ -2,7 +2,7 @@
 //!
 //! The readings are made from other solutions than the unit loads: of decks that apply all loads of a run together, by the tensors of `strains`.
 
-use crate::command::{csv, run, scratch, shared};
+use crate::command::{csv, find_shared_path, run, scratch};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -317,7 +317,7 @@ fn a_free_trailer_frame_gives_its_loads_within_their_intervals() {
 
 #[test]
 fn an_export_with_eight_unit_loads_gives_its_loads_within_their_intervals() {
-    let Some(case) = shared("cases/first_hour") else {
+    let Some(case) = find_shared_path("cases/first_hour") else {
         return;
     };
     let deck = std::fs::read_to_string(case.join("frame.bdf")).unwrap();

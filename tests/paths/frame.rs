@@ -1,13 +1,13 @@
 //! The ladder frame of MYSTRAN: 20 gauges, 12 runs with known loads.
 
-use super::command::{csv, run, scratch, shared};
+use super::command::{csv, find_shared_path, run, scratch};
 use std::path::PathBuf;
 
 const CASE: &str = "nastran/mystran_frame_units";
 
 /// The job, changed by `edit`, in a folder of its own; paths in it lead to the case.
 fn job(name: &str, edit: impl Fn(String) -> String) -> Option<(PathBuf, PathBuf)> {
-    let case = shared(CASE)?;
+    let case = find_shared_path(CASE)?;
     let folder = scratch(name);
     let text = std::fs::read_to_string(case.join("job.toml")).unwrap();
     let base = case.display().to_string().replace('\\', "/");
@@ -28,7 +28,9 @@ fn job(name: &str, edit: impl Fn(String) -> String) -> Option<(PathBuf, PathBuf)
 
 /// The truth in kN and kN m, payload force along the basic z axis.
 fn truth() -> (Vec<String>, Vec<Vec<f64>>) {
-    let (header, rows) = csv(&shared(CASE).unwrap().join("measured/loads_truth.csv"));
+    let (header, rows) = csv(&find_shared_path(CASE)
+        .unwrap()
+        .join("measured/loads_truth.csv"));
     let names: Vec<String> = header[2..]
         .iter()
         .map(|h| h.rsplit_once('_').unwrap().0.to_owned())
@@ -126,7 +128,7 @@ fn with_gravity_as_reference_gauges_at_zero_mean_the_wheels_carry_the_models_wei
     }) else {
         return;
     };
-    let (header, _) = csv(&shared(CASE).unwrap().join("measured/strain.csv"));
+    let (header, _) = csv(&find_shared_path(CASE).unwrap().join("measured/strain.csv"));
     let zeros = vec!["0"; header.len() - 1].join(",");
     std::fs::write(
         folder.join("zeros.csv"),
@@ -134,7 +136,7 @@ fn with_gravity_as_reference_gauges_at_zero_mean_the_wheels_carry_the_models_wei
     )
     .unwrap();
     let got = run(&["recover", job.to_str().unwrap()], &folder.join("out"));
-    let deck = shared(CASE).unwrap().join("frame.bdf");
+    let deck = find_shared_path(CASE).unwrap().join("frame.bdf");
     let checked = run(&["check", deck.to_str().unwrap()], &folder.join("check"));
     let about = &checked.result["decks"][0];
     let weight = about["mass"].as_f64().unwrap() * 9806.65 / 1000.0;
@@ -200,7 +202,9 @@ fn sensitivities_at_the_gauges_are_those_of_the_op2() {
     assert_eq!(got.code, 0, "{}", got.stderr);
     assert_eq!(got.result["rank"], 9);
     let (_, ours) = csv(&folder.join("out/sensitivity.csv"));
-    let (header, theirs) = csv(&shared(CASE).unwrap().join("measured/sensitivity_truth.csv"));
+    let (header, theirs) = csv(&find_shared_path(CASE)
+        .unwrap()
+        .join("measured/sensitivity_truth.csv"));
     assert!(!theirs.is_empty() && ours.len() == theirs.len());
     for (a, b) in ours.iter().zip(&theirs) {
         assert_eq!(a[0], b[0]);
@@ -260,7 +264,7 @@ fn a_layout_is_placed_beside_the_installed_one_and_its_file_serves_as_a_jobs_gau
         .display()
         .to_string()
         .replace('\\', "/");
-    let installed = shared(CASE)
+    let installed = find_shared_path(CASE)
         .unwrap()
         .join("measured/gauges.csv")
         .display()
@@ -336,7 +340,9 @@ fn the_unit_load_deck_reads_back_with_its_loads_and_requests() {
 
 #[test]
 fn a_new_user_gets_a_layout_from_a_deck_and_an_op2_in_two_commands() {
-    let Some(case) = shared(CASE) else { return };
+    let Some(case) = find_shared_path(CASE) else {
+        return;
+    };
     let folder = scratch("frame_init");
     let (deck, op2) = (case.join("frame.bdf"), case.join("frame.op2"));
     let first = run(

@@ -48,8 +48,8 @@ const EY: f64 = -0.25 * EX;
 
 fn files(job: &str) -> InMemory {
     InMemory::default()
-        .with("plate.bdf", plate())
-        .with("job.toml", format!("{HEAD}{job}"))
+        .with_file("plate.bdf", plate())
+        .with_file("job.toml", format!("{HEAD}{job}"))
 }
 
 /// Names and readings under the load, strain.
@@ -65,7 +65,7 @@ fn readings(files: &InMemory) -> Vec<(String, f64)> {
 }
 
 /// Faults of reading or laying the job, as text.
-fn refused(files: &InMemory) -> String {
+fn collect_job_faults(files: &InMemory) -> String {
     let faults: strainbridge::Faults = match Job::read("job.toml", files) {
         Ok(job) => sensitivity(&job, &Context::new(files)).err().unwrap(),
         Err(faults) => faults,
@@ -128,9 +128,9 @@ fn the_second_pair_and_the_legs_of_a_rosette_have_the_direction_of_their_place()
     let centred =
         files("[[gauge]]\nname = \"r\"\nposition = [0, 0, 1]\ncid = 7\ndirection = [1, 0, 0]\n");
     assert!(
-        refused(&centred).contains("job.toml:8: direction: gauge `r`"),
+        collect_job_faults(&centred).contains("job.toml:8: direction: gauge `r`"),
         "{}",
-        refused(&centred)
+        collect_job_faults(&centred)
     );
 }
 
@@ -157,11 +157,11 @@ fn the_second_side_left_out_is_the_opposite_one() {
         assert_eq!(arms(&format!("{surface}element2 = 6\n")), plain);
         let other = if side == "top" { "bottom" } else { "top" };
         assert_eq!(arms(&format!("{surface}surface2 = \"{other}\"\n")), plain);
-        let same = refused(&files(&gauge(&format!("{surface}surface2 = \"{side}\"\n"))));
+        let same = collect_job_faults(&files(&gauge(&format!("{surface}surface2 = \"{side}\"\n"))));
         assert!(same.contains("job.toml:8: surface2: gauge `g`"), "{same}");
     }
     let table = |rows: &str| {
-        files("[gauges]\nfile = \"g.csv\"\n").with(
+        files("[gauges]\nfile = \"g.csv\"\n").with_file(
             "g.csv",
             format!("name,element,surface,bridge,element2,surface2\n{rows}"),
         )
@@ -172,7 +172,7 @@ fn the_second_side_left_out_is_the_opposite_one() {
     assert_eq!(pair("g,6,bottom,half,7,\n"), (7, None));
     assert_eq!(pair("g,6,,half,7,bottom\n"), (7, Some(Bottom)));
     assert_eq!(pair("g,6,bottom,half,,top\n"), (6, Some(Top)));
-    assert!(refused(&table("g,6,bottom,,,top\n")).contains("g.csv:2: element2"));
+    assert!(collect_job_faults(&table("g,6,bottom,,,top\n")).contains("g.csv:2: element2"));
 }
 
 #[test]
@@ -187,7 +187,7 @@ fn two_channels_of_one_name_are_refused_with_both_lines() {
         (gauge("G6", ""), gauge("g6", "")),
         (gauge("G 6", ""), gauge("G6 ", "")),
     ] {
-        let text = refused(&files(&format!("{first}{second}")));
+        let text = collect_job_faults(&files(&format!("{first}{second}")));
         assert!(
             text.contains(": name: ") && text.contains("`job.toml:8`"),
             "{text}"
@@ -197,8 +197,8 @@ fn two_channels_of_one_name_are_refused_with_both_lines() {
         "[gauges]\nfile = \"g.csv\"\n{}",
         gauge("G6", rosette)
     ))
-    .with("g.csv", "name,element\nG5,2\nG6.b,2\n");
-    let text = refused(&both);
+    .with_file("g.csv", "name,element\nG5,2\nG6.b,2\n");
+    let text = collect_job_faults(&both);
     assert!(
         text.contains("g.csv:3: name: channel `G6.b`") && text.contains("`job.toml:10`"),
         "{text}"
@@ -210,7 +210,7 @@ fn two_channels_of_one_name_are_refused_with_both_lines() {
 }
 
 /// A rosette and two gauges, and what they read under 3 times the load, microstrain.
-fn measured(corrections: &str, change: impl Fn(&str, f64) -> f64) -> InMemory {
+fn build_measured_job(corrections: &str, change: impl Fn(&str, f64) -> f64) -> InMemory {
     let mut gauges = String::from(
         "[[gauge]]\nname = \"R\"\nelement = 6\ndirection = [1, 0, 0]\nrosette = \"rectangular\"\n",
     );
@@ -231,13 +231,13 @@ fn measured(corrections: &str, change: impl Fn(&str, f64) -> f64) -> InMemory {
     files(&format!(
         "{gauges}[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 1.0\n{corrections}"
     ))
-    .with(
+    .with_file(
         "strain.csv",
         format!("run,{}\nR1,{}\n", names.join(","), row.join(",")),
     )
 }
 
-fn recovered(files: &InMemory) -> f64 {
+fn recover_first_load(files: &InMemory) -> f64 {
     let job = Job::read("job.toml", files).unwrap();
     let answer = recover(&job, &Context::new(files)).unwrap();
     answer.runs().unwrap().loads[0].value
@@ -284,10 +284,10 @@ fn corrections_of_a_rosette_and_of_its_legs_act() {
             },
         ),
     ] {
-        let value = recovered(&measured(&correct(keys), change));
+        let value = recover_first_load(&build_measured_job(&correct(keys), change));
         // Rounding of readings that were written with all digits.
         assert!((value - 3.0).abs() < 1e-8, "{keys}: {value}");
-        let plain = recovered(&measured("", change));
+        let plain = recover_first_load(&build_measured_job("", change));
         assert!((plain - 3.0).abs() > 1e-3, "{keys} has no effect: {plain}");
     }
     for (keys, expected) in [
@@ -295,7 +295,7 @@ fn corrections_of_a_rosette_and_of_its_legs_act() {
         ("gauge = \"R.d\"\nsign = -1", "no gauge `R.d`"),
         ("gauge = \"A.a\"\nsign = -1", "no gauge `A.a`"),
     ] {
-        let text = refused(&measured(&correct(keys), |_, e| e));
+        let text = collect_job_faults(&build_measured_job(&correct(keys), |_, e| e));
         assert!(
             text.contains("job.toml:") && text.contains(expected),
             "{text}"
@@ -308,10 +308,10 @@ fn a_reference_subcase_is_that_of_the_deck_where_the_solver_is_built_in() {
     // Subcase 3 is 7 times the load, and subcase 7 is twice subcase 3; the readings are 3 times the load.
     let with = |n: u32| {
         let reference = format!("reference = {n}\n");
-        measured(&reference, |_, e| e)
+        build_measured_job(&reference, |_, e| e)
     };
     for (n, total) in [(3, 10.0), (7, 17.0)] {
-        let value = recovered(&with(n));
+        let value = recover_first_load(&with(n));
         assert!((value - total).abs() < 1e-8, "{n}: {value}");
     }
     // Subcase 6 is a combination with a LOAD of its own, and subcase 8 is not statics.
@@ -339,7 +339,7 @@ fn a_placed_grid_reads_the_same_from_the_table_of_gauges() {
     let placed = place(&job, &Context::new(&plan)).unwrap();
     let mut table = Vec::new();
     strainbridge::report::strain::gauges_csv(&mut table, &placed.gauges, 6.0).unwrap();
-    let again = files("[gauges]\nfile = \"gauges.csv\"\n").with("gauges.csv", table);
+    let again = files("[gauges]\nfile = \"gauges.csv\"\n").with_file("gauges.csv", table);
     assert!(
         Job::read("job.toml", &again)
             .unwrap()
@@ -412,9 +412,9 @@ fn tables_that_a_job_names_and_that_are_missing_are_faults_of_every_command_on_g
     ] {
         let text = format!("{}{gauge}{rest}", head.replace("TABLE", table));
         let files = InMemory::default()
-            .with("plate.bdf", plate())
-            .with("s.csv", "run,a\nR1,1\nR2,2\n")
-            .with("job.toml", text);
+            .with_file("plate.bdf", plate())
+            .with_file("s.csv", "run,a\nR1,1\nR2,2\n")
+            .with_file("job.toml", text);
         let cx = Context::new(&files);
         let job = Job::read("job.toml", &files).unwrap();
         for (command, faults) in [
@@ -438,8 +438,8 @@ fn a_direction_of_a_gauge_on_a_bar_is_taken_at_its_station() {
         let job = format!(
             "[[gauge]]\nname = \"b\"\nelement = 99\npoint = \"C\"\nstation = {station}\ncid = 7\ndirection = [0, 1, 0]\n"
         );
-        files(&job).with("plate.bdf", plate().replace("ENDDATA\n", bar))
+        files(&job).with_file("plate.bdf", plate().replace("ENDDATA\n", bar))
     };
     assert_eq!(readings(&with(0.5)).len(), 1);
-    assert!(refused(&with(0.25)).contains("a direction across the axis"));
+    assert!(collect_job_faults(&with(0.25)).contains("a direction across the axis"));
 }

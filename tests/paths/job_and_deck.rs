@@ -44,14 +44,14 @@ fn punch(subcases: &[(u32, &str)], element: &str) -> String {
 const QUAD: &str = "  33  QUAD4";
 
 /// Warnings of `sensitivity`, or its faults.
-fn asked(deck: &str, results: &str, job: &str) -> Result<Vec<String>, String> {
+fn collect_warnings(deck: &str, results: &str, job: &str) -> Result<Vec<String>, String> {
     let text = format!(
         "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\nresults = [\"plate.pch\"]\n{job}[[gauge]]\nname = \"T\"\nelement = 5\n"
     );
     let files = InMemory::default()
-        .with("plate.bdf", deck)
-        .with("plate.pch", results)
-        .with("job.toml", text);
+        .with_file("plate.bdf", deck)
+        .with_file("plate.pch", results)
+        .with_file("job.toml", text);
     let words = |faults: Faults| {
         let faults: Vec<String> = faults.into_iter().map(|f| f.to_string()).collect();
         faults.join("\n")
@@ -65,7 +65,7 @@ fn asked(deck: &str, results: &str, job: &str) -> Result<Vec<String>, String> {
         .collect())
 }
 
-fn both() -> String {
+fn punch_both_cases() -> String {
     punch(&[(1, "FX"), (2, "FZ")], QUAD)
 }
 
@@ -76,9 +76,14 @@ fn has_support_warning(warnings: &[String]) -> bool {
 #[test]
 fn the_unit_loads_of_a_cases_export_are_read() {
     let loads = format!("{FX}{FZ}");
-    let warnings = asked(&deck(CASES, ""), &both(), &loads).unwrap();
+    let warnings = collect_warnings(&deck(CASES, ""), &punch_both_cases(), &loads).unwrap();
     assert!(!has_support_warning(&warnings), "{warnings:?}");
-    let stated = asked(&deck(CASES, ""), &both(), &format!("support = 1\n{loads}")).unwrap();
+    let stated = collect_warnings(
+        &deck(CASES, ""),
+        &punch_both_cases(),
+        &format!("support = 1\n{loads}"),
+    )
+    .unwrap();
     assert!(!has_support_warning(&stated), "{stated:?}");
 }
 
@@ -91,7 +96,7 @@ fn a_pressure_or_gravity_in_addition_to_the_unit_load_is_refused_with_its_line()
         ("ACCEL1,78,,9810.,0.,0.,-1.\n+,2,3\n", "ACCEL1 78"),
     ] {
         let deck = deck(&cases, &format!("LOAD,77,1.,1.,1002,1.,78\n{card}"));
-        let fault = asked(&deck, &both(), &format!("{FX}{FZ}")).unwrap_err();
+        let fault = collect_warnings(&deck, &punch_both_cases(), &format!("{FX}{FZ}")).unwrap_err();
         let line = deck
             .lines()
             .position(|l| l.starts_with(&card[..7]))
@@ -104,7 +109,7 @@ fn a_pressure_or_gravity_in_addition_to_the_unit_load_is_refused_with_its_line()
         );
         // The whole set may be meant.
         let set = format!("{FX}[[load]]\nname = \"P\"\nload_set = 77\n");
-        asked(&deck, &both(), &set).unwrap();
+        collect_warnings(&deck, &punch_both_cases(), &set).unwrap();
     }
 }
 
@@ -118,7 +123,7 @@ fn supports_that_differ_from_the_job_or_between_loads_are_reported() {
         (CASES, "support = 2\n"),
     ] {
         let job = format!("{support}{loads}");
-        let warnings = asked(&deck(cases, ""), &both(), &job).unwrap();
+        let warnings = collect_warnings(&deck(cases, ""), &punch_both_cases(), &job).unwrap();
         assert!(has_support_warning(&warnings), "{support} {warnings:?}");
     }
 }
@@ -127,23 +132,23 @@ fn supports_that_differ_from_the_job_or_between_loads_are_reported() {
 fn a_load_that_takes_the_subcase_of_another_load_by_its_number_is_refused() {
     // The deck has no subcases: labels alone connect loads and results.
     let deck = deck("SPC = 1\n", "");
-    let swapped = asked(&deck, &both(), &format!("{FZ}{FX}")).unwrap_err();
+    let swapped = collect_warnings(&deck, &punch_both_cases(), &format!("{FZ}{FX}")).unwrap_err();
     assert!(swapped.contains("job-contradicts-deck"), "{swapped}");
     assert!(swapped.contains("state subcase = 2"), "{swapped}");
-    let dropped = asked(&deck, &both(), FZ).unwrap_err();
+    let dropped = collect_warnings(&deck, &punch_both_cases(), FZ).unwrap_err();
     assert!(
         dropped.contains("whose label in the results is `FX`"),
         "{dropped}"
     );
-    asked(
+    collect_warnings(
         &deck,
-        &both(),
+        &punch_both_cases(),
         &format!("{FZ}subcase = 2\n{FX}subcase = 1\n"),
     )
     .unwrap();
     // Labels that are no load names are free text, and so is a label of every subcase.
     for labels in [[(1, "tip along x"), (2, "tip up")], [(1, "FX"), (2, "FX")]] {
-        asked(&deck, &punch(&labels, QUAD), &format!("{FZ}{FX}")).unwrap();
+        collect_warnings(&deck, &punch(&labels, QUAD), &format!("{FZ}{FX}")).unwrap();
     }
 }
 
@@ -151,14 +156,14 @@ fn a_load_that_takes_the_subcase_of_another_load_by_its_number_is_refused() {
 fn results_of_another_element_type_are_refused() {
     let triangle = punch(&[(1, "FX"), (2, "FZ")], "  74  TRIA3");
     let deck = deck(CASES, "");
-    let fault = asked(&deck, &triangle, &format!("{FX}{FZ}")).unwrap_err();
+    let fault = collect_warnings(&deck, &triangle, &format!("{FX}{FZ}")).unwrap_err();
     assert!(
         fault.contains("another element type") && fault.contains("elements (1): 5"),
         "{fault}"
     );
     let files = InMemory::default()
-        .with("plate.bdf", deck)
-        .with("plate.pch", triangle);
+        .with_file("plate.bdf", deck)
+        .with_file("plate.pch", triangle);
     let made = strains(
         "plate.bdf".as_ref(),
         &["plate.pch".into()],
@@ -171,8 +176,8 @@ fn results_of_another_element_type_are_refused() {
 fn a_load_set_that_the_deck_lacks_is_a_fault_of_the_job() {
     let job = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"P\"\nload_set = 44\n[[gauge]]\nname = \"T\"\nelement = 5\n";
     let files = InMemory::default()
-        .with("plate.bdf", deck("SPC = 1\n", ""))
-        .with("job.toml", job);
+        .with_file("plate.bdf", deck("SPC = 1\n", ""))
+        .with_file("job.toml", job);
     let job = Job::read("job.toml", &files).unwrap();
     let faults = strainbridge::sensitivity(&job, &Context::new(&files))
         .err()

@@ -1,6 +1,6 @@
 //! Decks, results and jobs that are easily misread: each gives the right number, or a refusal that names what is not carried.
 
-use crate::support::shared;
+use crate::support::find_shared_path;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use strainbridge::fe::SolveOptions;
@@ -72,7 +72,7 @@ const DECKS: [(&str, Moves, Option<&str>); 16] = [
 const DIGITS: f64 = 2e-6;
 
 fn cases(of: &str) -> Option<PathBuf> {
-    shared(&format!("cases/{of}"))
+    find_shared_path(&format!("cases/{of}"))
 }
 
 fn words(faults: &Faults) -> String {
@@ -91,7 +91,7 @@ fn codes<A>(outcome: &Outcome<A>, severity: Severity) -> Vec<String> {
     findings.map(|f| f.code.to_string()).collect()
 }
 
-fn within(got: f64, right: f64, tolerance: f64) -> bool {
+fn is_within_tolerance(got: f64, right: f64, tolerance: f64) -> bool {
     (got - right).abs() <= tolerance * right.abs()
 }
 
@@ -117,7 +117,7 @@ fn misread(path: &Path, moves: Moves, refusal: Option<&str>) -> Option<String> {
     moves.iter().find_map(|(grid, component, right)| {
         let grid = solved.deck.model.grid_ix(*grid)?;
         let got = solved.solution.cases[0].displacement[grid.us()][*component];
-        (!within(got, *right, DIGITS)).then(|| format!("{got:e} for {right:e}"))
+        (!is_within_tolerance(got, *right, DIGITS)).then(|| format!("{got:e} for {right:e}"))
     })
 }
 
@@ -154,7 +154,7 @@ fn a_nonlinear_deck_is_not_solved_as_a_linear_one_in_silence() {
     assert!(named.count() >= enough, "{text}");
 }
 
-fn checked(files: &[PathBuf]) -> (serde_json::Value, Vec<String>) {
+fn check_files(files: &[PathBuf]) -> (serde_json::Value, Vec<String>) {
     let outcome = strainbridge::check(files, &Context::new(&Disk));
     let outcome = outcome.unwrap_or_else(|e| panic!("{e}"));
     let warnings = codes(&outcome, Severity::Warning);
@@ -165,7 +165,7 @@ fn checked(files: &[PathBuf]) -> (serde_json::Value, Vec<String>) {
 fn check_counts_mass_of_elements_and_reads_names_of_properties() {
     let Some(folder) = cases("decks") else { return };
     let deck = |name: &str| {
-        let (found, _) = checked(&[folder.join(name)]);
+        let (found, _) = check_files(&[folder.join(name)]);
         found["decks"][0].clone()
     };
     // 20 of each element and 3 on each of 2.
@@ -173,7 +173,10 @@ fn check_counts_mass_of_elements_and_reads_names_of_properties() {
     let names =
         ["n.bdf", "p.bdf"].map(|f| deck(&format!("property_names/{f}"))["property_names"].clone());
     let mut wrong = Vec::new();
-    if !mass.as_f64().is_some_and(|m| within(m, 46.0, DIGITS)) {
+    if !mass
+        .as_f64()
+        .is_some_and(|m| is_within_tolerance(m, 46.0, DIGITS))
+    {
         wrong.push(format!("mass {mass}"));
     }
     let rails = serde_json::json!({ "1": "RailLeft", "2": "RailRight" });
@@ -195,7 +198,7 @@ fn a_subcase_that_is_twice_in_results_is_named_and_refused_where_s_comes_from_it
     let at = |name: &str| folder.join(name);
     let cx = Context::new(&Disk);
     let mut wrong = Vec::new();
-    let (_, warnings) = checked(&[at("deck.bdf"), at("twice.op2")]);
+    let (_, warnings) = check_files(&[at("deck.bdf"), at("twice.op2")]);
     if !warnings.iter().any(|c| c == "subcase-ambiguous") {
         wrong.push(format!("check: {warnings:?}"));
     }
@@ -395,7 +398,7 @@ fn rows_do_not_depend_on_the_numbering_of_shells_or_the_form_of_a_table() {
     all_right(&wrong);
 }
 
-fn recovered(job: &str) -> Result<Outcome<strainbridge::workflow::recover::Recovered>, String> {
+fn recover_job(job: &str) -> Result<Outcome<strainbridge::workflow::recover::Recovered>, String> {
     let path = cases("jobs").unwrap_or_default().join(job);
     let job = Job::read(path.display().to_string(), &Disk).map_err(|e| words(&e))?;
     strainbridge::recover(&job, &Context::new(&Disk)).map_err(|e| words(&e))
@@ -414,7 +417,7 @@ fn loads_of_runs_count_corrections_references_units_and_roles() {
         return;
     }
     let mut wrong = Vec::new();
-    match recovered("correction_rosette/k_ign.toml") {
+    match recover_job("correction_rosette/k_ign.toml") {
         Err(text) => wrong.extend((!text.contains("G6")).then_some(text)),
         Ok(got) => {
             let gauges = &got.runs().unwrap().gauges;
@@ -424,31 +427,33 @@ fn loads_of_runs_count_corrections_references_units_and_roles() {
             wrong.extend(used.then(|| "G6 is ignored, and its legs are used".to_owned()));
         }
     }
-    match recovered("reference_subcase/rfdeck.toml") {
+    match recover_job("reference_subcase/rfdeck.toml") {
         Err(text) => wrong.extend((!text.contains("reference")).then_some(text)),
         Ok(got) => {
             // 10,000 N of the deck's subcase and the change.
             let a = load_of(&got, "a");
-            wrong.extend((!within(a, 10_628.651, 1e-5)).then(|| format!("reference: a {a}")));
+            wrong.extend(
+                (!is_within_tolerance(a, 10_628.651, 1e-5)).then(|| format!("reference: a {a}")),
+            );
         }
     }
-    match recovered("per_default/case.toml") {
+    match recover_job("per_default/case.toml") {
         Err(text) => wrong.push(text),
         Ok(got) => {
             // S counts by the job's units where `per` is left out: 3 N and 2 N.
             let loads = [("A", 3e-3), ("B", 2e-3)];
             let off = loads
                 .iter()
-                .find(|(l, right)| !within(load_of(&got, l), *right, 1e-6));
+                .find(|(l, right)| !is_within_tolerance(load_of(&got, l), *right, 1e-6));
             wrong.extend(off.map(|l| format!("per: {l:?}")));
         }
     }
-    match recovered("reserve_role/gr.toml") {
+    match recover_job("reserve_role/gr.toml") {
         Err(text) => wrong.push(text),
         Ok(got) => {
             // P08 is for validation: what it reads moves no load.
             let n = load_of(&got, "N.FZ");
-            wrong.extend((!within(n, 1.0, 1e-3)).then(|| format!("role: N.FZ {n}")));
+            wrong.extend((!is_within_tolerance(n, 1.0, 1e-3)).then(|| format!("role: N.FZ {n}")));
         }
     }
     all_right(&wrong);
@@ -470,7 +475,7 @@ fn columns_of_runs_that_are_not_read_are_named() {
             // Its place is known: 1.9 m, in the column `payload_X`.
             let r04 = got.payload.iter().find(|p| p.run == "R04");
             let place = r04.and_then(|p| p.position[0]);
-            let read = place.is_some_and(|x| within(x, 1.9, 1e-9));
+            let read = place.is_some_and(|x| is_within_tolerance(x, 1.9, 1e-9));
             assert!(named || read, "R04 {place:?}");
         }
     }
@@ -484,7 +489,7 @@ fn records_have_the_times_that_their_files_state() {
         ("parquet_ms/case.toml", 100.0),
         ("excel_serial_time/case.toml", 100.0),
     ] {
-        match recovered(job) {
+        match recover_job(job) {
             Err(text) => wrong.push(text),
             Ok(got) => {
                 // Times 0, 10, 20 have no unit of their own.
@@ -493,7 +498,7 @@ fn records_have_the_times_that_their_files_state() {
                 }
                 let found = got.record().and_then(|r| r.sample_rate_hz);
                 // Serial days of ten digits are off by 5 microseconds.
-                if !found.is_some_and(|f| within(f, rate, 1e-3)) {
+                if !found.is_some_and(|f| is_within_tolerance(f, rate, 1e-3)) {
                     wrong.push(format!("{job}: {found:?} Hz"));
                 }
             }
@@ -513,7 +518,7 @@ fn records_have_the_times_that_their_files_state() {
         ),
     ];
     for (job, channel, all, common) in tdms {
-        match recovered(&job) {
+        match recover_job(&job) {
             Err(text) => wrong.extend((!text.contains(channel)).then_some(text)),
             Ok(got) => {
                 let n = got.record().map_or(0, |r| r.samples);

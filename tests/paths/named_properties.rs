@@ -45,14 +45,14 @@ fn files(names: [&str; 3], candidates: &str) -> InMemory {
                 [[load]]\nname = \"X\"\nload_set = 2\nexpected = 1.0\n[[load]]\nname = \"Y\"\nload_set = 3\nexpected = 1.0\n\
                 [placement]\ngauges = 3\n[candidates]\n";
     InMemory::default()
-        .with("plate.bdf", deck(names))
-        .with("job.toml", format!("{head}{candidates}\n"))
+        .with_file("plate.bdf", deck(names))
+        .with_file("job.toml", format!("{head}{candidates}\n"))
 }
 
 const NAMES: [&str; 3] = ["RailLeft", "RailRight", "Web"];
 
 /// Elements on which gauges are placed, or the faults.
-fn placed(files: &InMemory) -> Result<Vec<u32>, String> {
+fn place_gauges(files: &InMemory) -> Result<Vec<u32>, String> {
     let text = |faults: strainbridge::Faults| faults.to_string();
     let job = Job::read("job.toml", files).map_err(text)?;
     let answer = place(&job, &Context::new(files)).map_err(text)?;
@@ -74,17 +74,21 @@ fn names_of_the_deck_stand_for_the_ids() {
             "properties = [\"RailLeft\", \"RailRight\"]",
         ),
     ] {
-        let found = placed(&files(NAMES, by_name)).unwrap();
-        assert_eq!(found, placed(&files(NAMES, by_id)).unwrap(), "{by_name}");
+        let found = place_gauges(&files(NAMES, by_name)).unwrap();
+        assert_eq!(
+            found,
+            place_gauges(&files(NAMES, by_id)).unwrap(),
+            "{by_name}"
+        );
     }
     let of_left = |e: &u32| (e - 1) % 6 < 3;
-    let left = placed(&files(NAMES, "properties = \"RailLeft\"")).unwrap();
+    let left = place_gauges(&files(NAMES, "properties = \"RailLeft\"")).unwrap();
     assert!(left.len() == 3 && left.iter().all(of_left), "{left:?}");
 }
 
 #[test]
 fn unknown_and_ambiguous_names_are_refused() {
-    let refused = |names, list: &str| placed(&files(names, list)).unwrap_err();
+    let refused = |names, list: &str| place_gauges(&files(names, list)).unwrap_err();
     let text = refused(NAMES, "properties = [\"RailLeftt\"]");
     assert!(
         text.contains("candidates.properties") && text.contains("did you mean `RailLeft`"),

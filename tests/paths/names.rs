@@ -22,8 +22,8 @@ struct Tried {
     solved: Result<Vec<Finding>, String>,
 }
 
-fn tried(deck: &str) -> Tried {
-    let files = InMemory::default().with("rod.bdf", deck);
+fn check_and_solve(deck: &str) -> Tried {
+    let files = InMemory::default().with_file("rod.bdf", deck);
     let cx = Context::new(&files);
     let looked = check(&[PathBuf::from("rod.bdf")], &cx).unwrap();
     let solved = solve_deck(Path::new("rod.bdf"), SolveOptions::default(), &cx);
@@ -74,12 +74,12 @@ fn no_name_of_bulk_data_is_silent() {
         };
         let line = CARD_LINE + usize::from(!heat.is_empty());
         let set = if heat.is_empty() { 1 } else { 3 };
-        let t = tried(&rod(heat, &format!("{name},{set}\n")));
+        let t = check_and_solve(&rod(heat, &format!("{name},{set}\n")));
         let is_reported = match effect {
             Effect::None(reason) => t.idle.contains(&format!("{reason} ")) && t.solved.is_ok(),
             Effect::Acts => warns_of(&t, name) && refuses(&t, name, line),
             Effect::Load => {
-                let elsewhere = tried(&rod(heat, &format!("{name},77\n")));
+                let elsewhere = check_and_solve(&rod(heat, &format!("{name},77\n")));
                 warns_of(&t, name) && refuses(&t, name, line) && elsewhere.solved.is_ok()
             }
             Effect::ActsWith(_) => t.idle.contains(UNUSED) && t.solved.is_ok(),
@@ -96,9 +96,9 @@ fn no_name_of_bulk_data_is_silent() {
 
 #[test]
 fn model_parameters_are_counted_unless_they_act() {
-    let idle = tried(&rod("", "MDLPRM,HDF5,1\nMDLPRM,QRSHEAR,1,SHRTOQ4,1\n"));
+    let idle = check_and_solve(&rod("", "MDLPRM,HDF5,1\nMDLPRM,QRSHEAR,1,SHRTOQ4,1\n"));
     assert!(idle.idle.contains(UNUSED), "{}", idle.idle);
-    let acting = tried(&rod("", "MDLPRM,QRSHEAR,1,SHRTOQ4,1\n"));
+    let acting = check_and_solve(&rod("", "MDLPRM,QRSHEAR,1,SHRTOQ4,1\n"));
     assert!(!acting.idle.contains("nothing"), "{}", acting.idle);
     assert!(
         refuses(&acting, "MDLPRM QRSHEAR", CARD_LINE),
@@ -115,7 +115,7 @@ fn no_word_of_case_control_is_silent() {
         if ["BEGIN", "INCLUDE", "CEND", "ENDDATA", "MODEL_CHECK"].contains(&written) {
             continue;
         }
-        let t = tried(&rod(&format!("{written} = 7\n"), ""));
+        let t = check_and_solve(&rod(&format!("{written} = 7\n"), ""));
         let is_reported = match effect {
             Effect::None(_) => t.faults.is_empty() && t.solved.is_ok(),
             Effect::Acts => warns_of(&t, name) && refuses(&t, name, STATEMENT_LINE),
@@ -168,7 +168,7 @@ fn misspelt_names_of_bulk_data_are_refused_by_name_and_line() {
     let known: Vec<&str> = all_cards().map(|c| c.0).collect();
     for word in misspelt(&known, 8, 300) {
         assert_eq!(effect_of_card(&word), None);
-        let t = tried(&rod("", &format!("{word},1\n")));
+        let t = check_and_solve(&rod("", &format!("{word},1\n")));
         let place = format!("rod.bdf:{CARD_LINE}: {word}: ");
         assert!(
             t.faults.iter().any(|f| f.starts_with(&place)),
@@ -188,7 +188,7 @@ fn misspelt_words_of_case_control_are_refused() {
     let known: Vec<&str> = all_words().map(|w| w.0).collect();
     let mut refused = 0;
     for word in misspelt(&known, 20, 300) {
-        let t = tried(&rod(&format!("{word} = 7\n"), ""));
+        let t = check_and_solve(&rod(&format!("{word} = 7\n"), ""));
         // Some are the beginning of another word, an abbreviation, or the plural of an output request.
         if case_word(&word).is_none() {
             let place = format!("rod.bdf:{STATEMENT_LINE}: {word}: ");
@@ -212,7 +212,7 @@ fn a_misspelt_name_comes_with_the_name_that_is_meant() {
         ("SUPPORT", "SUPORT"),
         ("PSHLEL", "PSHELL"),
     ] {
-        let t = tried(&rod("", &format!("{card},1,2,,3000.\n")));
+        let t = check_and_solve(&rod("", &format!("{card},1,2,,3000.\n")));
         let [fault] = &t.faults[..] else {
             panic!("{card}: {:?}", t.faults)
         };
@@ -221,10 +221,10 @@ fn a_misspelt_name_comes_with_the_name_that_is_meant() {
             "{fault}"
         );
     }
-    let t = tried(&rod("", "FOOBAR,1\n"));
+    let t = check_and_solve(&rod("", "FOOBAR,1\n"));
     assert!(t.faults[0].contains("FOOBAR") && !t.faults[0].contains("did you mean"));
     for (statement, meant) in [("SPCC = 1", "SPC"), ("LAOD = 1", "LOAD")] {
-        let t = tried(&rod(&format!("{statement}\n"), ""));
+        let t = check_and_solve(&rod(&format!("{statement}\n"), ""));
         assert!(
             t.faults[0].contains(&format!("did you mean `{meant}`?")),
             "{:?}",
@@ -240,7 +240,7 @@ fn sections_that_are_not_bulk_data_have_words_of_their_own() {
         "NASTRAN SYSTEM(1)=2\nINIT MASTER(S)\nID A,B\nASSIGN OUTPUT2='a.op2'\nDOMAINSOLVER ACMS\nDIAG 8\nTIME 5\nGEOMCHECK NONE\n\
          SOL 101\nCEND\nECHO = NONE\nSPC = 1\nLOAD = 1\n{plots}BEGIN BULK\nPARAM,MYPARAM,3\n{ROD}ENDDATA\nwords behind it\n"
     );
-    let t = tried(&deck);
+    let t = check_and_solve(&deck);
     assert_eq!(t.faults, Vec::<String>::new());
     assert!(t.solved.is_ok(), "{:?}", t.solved.err());
 }
@@ -255,7 +255,7 @@ fn changes_of_the_solution_sequence_are_refused_by_line() {
         ("ID A,B\nAPP DMAP\nSOL 101\n", "APP DMAP", 2),
     ] {
         let deck = rod("", "").replacen("SOL 101\n", statements, 1);
-        let t = tried(&deck);
+        let t = check_and_solve(&deck);
         assert_eq!(t.faults, Vec::<String>::new(), "{statements}");
         assert!(warns_of(&t, named), "{statements}: {:?}", t.findings);
         assert!(
@@ -269,7 +269,7 @@ fn changes_of_the_solution_sequence_are_refused_by_line() {
 #[test]
 fn a_misspelt_parameter_is_noted() {
     let noted = |case_control: &str, bulk: &str| {
-        let t = tried(&rod(case_control, bulk));
+        let t = check_and_solve(&rod(case_control, bulk));
         assert!(t.faults.is_empty() && t.solved.is_ok(), "{:?}", t.faults);
         let note = t.findings.into_iter().find(|f| f.code == "deck-note");
         note.map_or(String::new(), |n| n.message)
@@ -294,7 +294,7 @@ fn a_misspelt_parameter_is_noted() {
 
 #[test]
 fn a_suport1_set_that_the_deck_lacks_is_refused() {
-    let of = |case_control: &str, bulk: &str| tried(&rod(case_control, bulk)).solved;
+    let of = |case_control: &str, bulk: &str| check_and_solve(&rod(case_control, bulk)).solved;
     for inrel in ["", "PARAM,INREL,-1\n", "PARAM,INREL,-2\n"] {
         let refused = of("SUPORT1 = 5\n", &format!("SUPORT1,6,1,1\n{inrel}"));
         let why = refused.expect_err(inrel);
@@ -310,9 +310,9 @@ fn a_suport1_set_that_the_deck_lacks_is_refused() {
 #[test]
 fn what_is_not_selected_does_not_act() {
     let matrices = "DMIG,PX,0,9,1,0,,,1\nDMIG,PX,2,0,,2,1,3000.\nBCTSET,5,1,2\nMATT2,1,7\n";
-    assert!(tried(&rod("", matrices)).solved.is_ok());
+    assert!(check_and_solve(&rod("", matrices)).solved.is_ok());
     assert!(
-        tried(&rod("NLPARM = 0\nK2GG = NONE\n", matrices))
+        check_and_solve(&rod("NLPARM = 0\nK2GG = NONE\n", matrices))
             .solved
             .is_ok()
     );
@@ -322,7 +322,7 @@ fn what_is_not_selected_does_not_act() {
         ("TEMPERATURE(MATERIAL) = 3\n", "MATT2"),
         ("ANALYSIS = HEAT\n", "ANALYSIS = HEAT"),
     ] {
-        let t = tried(&rod(statement, matrices));
+        let t = check_and_solve(&rod(statement, matrices));
         assert!(warns_of(&t, named), "{statement}: {:?}", t.findings);
         assert!(t.solved.is_err_and(|e| e.contains(named)), "{statement}");
     }
@@ -330,7 +330,7 @@ fn what_is_not_selected_does_not_act() {
 
 #[test]
 fn sequences_that_are_not_linear_are_refused() {
-    let with = |sol: &str, more: &str| tried(&rod("", more).replacen("SOL 101", sol, 1));
+    let with = |sol: &str, more: &str| check_and_solve(&rod("", more).replacen("SOL 101", sol, 1));
     for sol in [
         "SOL 106",
         "SOL 400",
@@ -381,10 +381,10 @@ fn sequences_that_are_not_linear_are_refused() {
 
 #[test]
 fn superelements_that_are_not_read_are_refused() {
-    let t = tried(&rod("", "BEGIN SUPER=1\nGRID,7\n"));
+    let t = check_and_solve(&rod("", "BEGIN SUPER=1\nGRID,7\n"));
     assert!(t.solved.is_err_and(|e| e.contains("BEGIN SUPER=1")));
     assert!(
-        tried(&rod("", "BEGIN BULK AUXMODEL=1\nGRID,7\n"))
+        check_and_solve(&rod("", "BEGIN BULK AUXMODEL=1\nGRID,7\n"))
             .solved
             .is_ok()
     );
@@ -393,7 +393,7 @@ fn superelements_that_are_not_read_are_refused() {
 #[test]
 fn suport_without_inrel_is_reported() {
     let said = |deck: String| {
-        let findings = tried(&deck).solved.unwrap();
+        let findings = check_and_solve(&deck).solved.unwrap();
         findings.iter().any(|f| f.code == "suport-without-inrel")
     };
     assert!(said(rod("", "SUPORT,1,1\n")));

@@ -58,27 +58,38 @@ impl Bytes {
     }
 }
 
-fn real(v: f32) -> i32 {
+fn encode_real(v: f32) -> i32 {
     v.to_bits() as i32
 }
 
 /// A rod from grid 1 to 2 with a force in set 1, and further records of tables.
 fn rod(more: &[(&str, Vec<i32>)]) -> Vec<u8> {
-    let zero = real(0.0);
-    let grid = |id: i32, x: f32| [id, 0, real(x), zero, zero, 0, 0, 0];
+    let zero = encode_real(0.0);
+    let grid = |id: i32, x: f32| [id, 0, encode_real(x), zero, zero, 0, 0, 0];
     let grids = [[4501, 45, 1].as_slice(), &grid(1, 0.0), &grid(2, 2.0)].concat();
     let rods = vec![3001, 30, 48, 1, 7, 1, 2];
-    let force = vec![4201, 42, 18, 1, 2, 0, real(1000.0), real(1.0), zero, zero];
-    let prod = vec![902, 9, 29, 7, 3, real(0.01), zero, zero, zero];
+    let force = vec![
+        4201,
+        42,
+        18,
+        1,
+        2,
+        0,
+        encode_real(1000.0),
+        encode_real(1.0),
+        zero,
+        zero,
+    ];
+    let prod = vec![902, 9, 29, 7, 3, encode_real(0.01), zero, zero, zero];
     let mut mat1 = vec![
         103,
         1,
         77,
         3,
-        real(1e10),
-        real(4e9),
-        real(0.25),
-        real(100.0),
+        encode_real(1e10),
+        encode_real(4e9),
+        encode_real(0.25),
+        encode_real(100.0),
     ];
     mat1.extend([zero; 6]);
     mat1.push(0);
@@ -106,8 +117,8 @@ fn rod(more: &[(&str, Vec<i32>)]) -> Vec<u8> {
 }
 
 /// Findings of `check` and what `solve` refuses.
-fn tried(bytes: &[u8]) -> (Vec<Finding>, String) {
-    let files = InMemory::default().with("rod.op2", bytes.to_vec());
+fn check_and_solve(bytes: &[u8]) -> (Vec<Finding>, String) {
+    let files = InMemory::default().with_file("rod.op2", bytes.to_vec());
     let cx = Context::new(&files);
     let looked = check(&[PathBuf::from("rod.op2")], &cx).unwrap();
     assert!(looked.faults.is_empty(), "{:?}", looked.faults);
@@ -116,7 +127,7 @@ fn tried(bytes: &[u8]) -> (Vec<Finding>, String) {
     (looked.findings.0.clone(), refused)
 }
 
-fn warned(findings: &[Finding]) -> Option<(&str, f64)> {
+fn find_unsolved_card(findings: &[Finding]) -> Option<(&str, f64)> {
     let found = findings.iter().find(|f| f.code == "card-not-solved")?;
     Some((found.message.as_str(), found.measured?))
 }
@@ -138,8 +149,9 @@ fn unread_elements_are_named_with_their_count_and_refused() {
         ),
         ("GEOM4", vec![6901, 69, 295, 0], "RBE2", 1.0),
     ] {
-        let (findings, refused) = tried(&rod(&[(table, record)]));
-        let (message, measured) = warned(&findings).unwrap_or_else(|| panic!("{named}"));
+        let (findings, refused) = check_and_solve(&rod(&[(table, record)]));
+        let (message, measured) =
+            find_unsolved_card(&findings).unwrap_or_else(|| panic!("{named}"));
         assert!(
             message.contains(&format!("`rod.op2`: `{named}` affects the solution")),
             "{message}"
@@ -158,8 +170,8 @@ fn records_without_influence_are_silent() {
         vec![],
         vec![("GEOM2", plotel), ("GEOM2", damper), ("MPT", heat)],
     ] {
-        let (findings, refused) = tried(&rod(&more));
-        assert_eq!(warned(&findings), None);
+        let (findings, refused) = check_and_solve(&rod(&more));
+        assert_eq!(find_unsolved_card(&findings), None);
         let notes = findings.iter().filter(|f| f.code == "geometry-note");
         assert_eq!(notes.count(), 0);
         assert!(!refused.contains("does not support"), "{refused}");
@@ -169,11 +181,14 @@ fn records_without_influence_are_silent() {
 #[test]
 fn unread_loads_act_where_their_set_is_selected() {
     // FORCE2 of set 5; MATT1, which acts where case control selects temperatures.
-    let force2 = vec![4101, 41, 22, 5, 2, real(1.0), 1, 2, 1, 2];
+    let force2 = vec![4101, 41, 22, 5, 2, encode_real(1.0), 1, 2, 1, 2];
     let matt1 = [vec![703, 7, 91], vec![3; 12]].concat();
     let bytes = rod(&[("GEOM3", force2), ("MPT", matt1)]);
-    let (findings, refused) = tried(&bytes);
-    assert!(warned(&findings).is_some_and(|w| w.0.contains("`FORCE2 5` affects the solution")));
+    let (findings, refused) = check_and_solve(&bytes);
+    assert!(
+        find_unsolved_card(&findings)
+            .is_some_and(|w| w.0.contains("`FORCE2 5` affects the solution"))
+    );
     assert!(!refused.contains("does not support"), "{refused}");
     let noted = |f: &&Finding| f.code == "geometry-note" && f.message.contains("MATT1");
     assert!(findings.iter().any(|f| noted(&f)));
@@ -203,21 +218,32 @@ fn springs_between_scalar_points_are_read_as_from_a_deck() {
         7,
         74,
         50,
-        real(k[0]),
+        encode_real(k[0]),
         2,
         90,
         1,
         0,
-        real(0.0),
-        real(0.0),
+        encode_real(0.0),
+        encode_real(0.0),
     ];
     let held = vec![5481, 58, 12, 1, 23456, 0, 1, 2, -1];
     let op2 = rod(&[
         ("GEOM2", first),
-        ("GEOM2", vec![901, 9, 76, 51, real(k[1]), 90, 91]),
+        ("GEOM2", vec![901, 9, 76, 51, encode_real(k[1]), 90, 91]),
         ("GEOM2", vec![801, 8, 75, 52, 9, 91, 0]),
         ("GEOM2", vec![5551, 49, 105, 90, 91, 92]),
-        ("EPT", vec![302, 3, 46, 9, real(k[2]), real(0.0), real(0.0)]),
+        (
+            "EPT",
+            vec![
+                302,
+                3,
+                46,
+                9,
+                encode_real(k[2]),
+                encode_real(0.0),
+                encode_real(0.0),
+            ],
+        ),
         ("GEOM4", held),
     ]);
     let deck = "SOL 101\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCROD,1,7,1,2\nPROD,7,3,.01\n\

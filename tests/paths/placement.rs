@@ -1,13 +1,13 @@
 //! `place` on the ladder frame of MYSTRAN's unit loads: criteria, places, kept gauges, bridges, pairs, sheets.
 
-use crate::command::{Outcome, csv, run, scratch, shared};
+use crate::command::{Outcome, csv, find_shared_path, run, scratch};
 use std::path::PathBuf;
 
 const CASE: &str = "nastran/mystran_frame_units";
 
 /// The case's job with `[candidates]` and `[placement]` replaced.
 fn job(name: &str, candidates: &str, placement: &str) -> Option<(PathBuf, PathBuf)> {
-    let case = shared(CASE)?;
+    let case = find_shared_path(CASE)?;
     let folder = scratch(name);
     let text = std::fs::read_to_string(case.join("job.toml")).unwrap();
     let base = case.display().to_string().replace('\\', "/");
@@ -30,13 +30,17 @@ fn job(name: &str, candidates: &str, placement: &str) -> Option<(PathBuf, PathBu
 }
 
 /// A layout with nothing wrong.
-fn placed(name: &str, candidates: &str, placement: &str) -> Option<(Outcome, PathBuf)> {
-    let (got, folder) = planned(name, candidates, placement)?;
+fn place_without_fault(
+    name: &str,
+    candidates: &str,
+    placement: &str,
+) -> Option<(Outcome, PathBuf)> {
+    let (got, folder) = run_place(name, candidates, placement)?;
     assert_eq!(got.code, 0, "{}", got.stderr);
     Some((got, folder))
 }
 
-fn planned(name: &str, candidates: &str, placement: &str) -> Option<(Outcome, PathBuf)> {
+fn run_place(name: &str, candidates: &str, placement: &str) -> Option<(Outcome, PathBuf)> {
     let (job, folder) = job(name, candidates, placement)?;
     let got = run(&["place", job.to_str().unwrap()], &folder.join("out"));
     Some((got, folder))
@@ -60,10 +64,11 @@ const WIDE: &str = "angle_step_deg = 30";
 
 #[test]
 fn criterion_a_gives_smaller_variances_and_d_a_larger_determinant() {
-    let Some((d, _)) = placed("place_d", WIDE, "gauges = 14\ncriterion = \"D\"") else {
+    let Some((d, _)) = place_without_fault("place_d", WIDE, "gauges = 14\ncriterion = \"D\"")
+    else {
         return;
     };
-    let (a, _) = placed("place_a", WIDE, "gauges = 14\ncriterion = \"A\"").unwrap();
+    let (a, _) = place_without_fault("place_a", WIDE, "gauges = 14\ncriterion = \"A\"").unwrap();
     let expected = [10.0, 10.0, 10.0, 10.0, 10.0, 10.0, 30.0, 10.0, 10.0];
     let spread = |o: &Outcome| -> f64 {
         let s = sigmas(&o.result["load_sigma"]);
@@ -82,11 +87,12 @@ fn criterion_a_gives_smaller_variances_and_d_a_larger_determinant() {
 
 #[test]
 fn a_layout_for_the_condition_number_has_a_smaller_one_than_d_and_states_the_least_found() {
-    let Some((d, _)) = placed("place_d12", WIDE, "gauges = 12\ncriterion = \"D\"") else {
+    let Some((d, _)) = place_without_fault("place_d12", WIDE, "gauges = 12\ncriterion = \"D\"")
+    else {
         return;
     };
     let words = "gauges = 12\ncriterion = \"condition\"";
-    let (got, _) = placed("place_condition", WIDE, words).unwrap();
+    let (got, _) = place_without_fault("place_condition", WIDE, words).unwrap();
     let own = got.number("condition_number_scaled");
     let least = got.number("least_condition_number_scaled");
     assert!(own < d.number("condition_number_scaled"), "{own}");
@@ -105,7 +111,7 @@ fn a_layout_for_the_condition_number_has_a_smaller_one_than_d_and_states_the_lea
 
 #[test]
 fn with_five_gauges_for_nine_loads_of_known_size_every_sigma_is_below_that_size() {
-    let Some((got, _)) = planned(
+    let Some((got, _)) = run_place(
         "place_bayes",
         WIDE,
         "gauges = 5\ncriterion = \"Bayesian-D\"",
@@ -128,10 +134,11 @@ fn with_five_gauges_for_nine_loads_of_known_size_every_sigma_is_below_that_size(
 
 #[test]
 fn kept_gauges_count_and_new_ones_keep_away_from_them() {
-    let Some((got, _)) = placed("place_keep", WIDE, "gauges = 4\nkeep = \"all\"") else {
+    let Some((got, _)) = place_without_fault("place_keep", WIDE, "gauges = 4\nkeep = \"all\"")
+    else {
         return;
     };
-    let (header, rows) = csv(&shared(CASE).unwrap().join("measured/gauges.csv"));
+    let (header, rows) = csv(&find_shared_path(CASE).unwrap().join("measured/gauges.csv"));
     assert_eq!(got.result["kept"].as_array().unwrap().len(), rows.len());
     assert!(got.number("log_det") > got.result["installed"]["log_det"].as_f64().unwrap());
     let s = sigmas(&got.result["load_sigma"]);
@@ -157,12 +164,12 @@ fn kept_gauges_count_and_new_ones_keep_away_from_them() {
 fn gauges_stay_inside_boxes_and_clear_of_edges_joints_loads_and_attachments() {
     let rule = "angle_step_deg = 30\nboxes = [[[1500, 6500], [-500, 500]]]\nexclude_boxes = [[[3000, 4000], [0, 500]]]\n\
                 clear_of = { edges = 30, joints = 30, loads = 300, attachments = 60 }";
-    let Some((got, _)) = placed("place_clear", rule, "gauges = 14") else {
+    let Some((got, _)) = place_without_fault("place_clear", rule, "gauges = 14") else {
         return;
     };
     let read = nastran::bdf::read_deck(
         "frame.bdf",
-        std::fs::read(shared(CASE).unwrap().join("frame.bdf")).unwrap(),
+        std::fs::read(find_shared_path(CASE).unwrap().join("frame.bdf")).unwrap(),
         &mut nastran::bdf::MemoryLoader::default(),
     );
     let (model, _) = strainbridge::model::Model::from_deck(&read);
@@ -196,7 +203,7 @@ fn gauges_stay_inside_boxes_and_clear_of_edges_joints_loads_and_attachments() {
 #[test]
 fn bridges_are_chosen_within_a_budget_and_their_file_serves_as_gauges() {
     let rule = "angle_step_deg = 45\nbridge = [\"quarter\", \"full-bending\", \"shear\"]";
-    let Some((got, folder)) = placed(
+    let Some((got, folder)) = place_without_fault(
         "place_bridges",
         rule,
         "gauges = 18\nbudget = 24\ncosts = { \"full-bending\" = 2, \"shear\" = 1.5 }",
@@ -233,7 +240,7 @@ fn bridges_are_chosen_within_a_budget_and_their_file_serves_as_gauges() {
 
 #[test]
 fn pairs_mirror_each_other_and_rosettes_have_three_legs() {
-    let Some((got, _)) = placed(
+    let Some((got, _)) = place_without_fault(
         "place_pairs",
         "angle_step_deg = 45",
         "gauges = 16\nsymmetric = \"y\"",
@@ -254,7 +261,7 @@ fn pairs_mirror_each_other_and_rosettes_have_three_legs() {
         let dot = u[0] * v[0] - u[1] * v[1] + u[2] * v[2];
         assert!(dot.abs() > 1.0 - 1e-6, "{u:?} {v:?}");
     }
-    let (got, _) = placed(
+    let (got, _) = place_without_fault(
         "place_rosettes",
         "angle_step_deg = 45\nrosette = \"rectangular\"",
         "gauges = 18\ncosts = { rosette = 1.5 }",
@@ -271,7 +278,7 @@ fn pairs_mirror_each_other_and_rosettes_have_three_legs() {
 
 #[test]
 fn a_layout_for_the_worst_loss_keeps_more_after_it_and_the_curve_falls() {
-    let Some((plain, folder)) = placed(
+    let Some((plain, folder)) = place_without_fault(
         "place_curve",
         WIDE,
         "gauges = 12\ncurve = [9, 10, 12, 15]\nreserve = 2\nreferences = { front = 9001, payload = 9101 }\n\
@@ -279,7 +286,7 @@ fn a_layout_for_the_worst_loss_keeps_more_after_it_and_the_curve_falls() {
     ) else {
         return;
     };
-    let (robust, _) = placed(
+    let (robust, _) = place_without_fault(
         "place_robust",
         WIDE,
         "gauges = 12\nloss = \"optimise\"\nangle_tolerance_deg = 2.0\nposition_tolerance = 3.0\ngauge_factor_rel = 0.01",

@@ -21,7 +21,7 @@ struct Plate {
 }
 
 impl Plate {
-    fn plain() -> Self {
+    fn new() -> Self {
         Self {
             zoffs: 0.0,
             flipped: Vec::new(),
@@ -61,8 +61,8 @@ impl Plate {
     fn files(&self, job: &str) -> InMemory {
         let head = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\nsupport = \"free\"\n[[load]]\nname = \"M\"\nload_set = 2\n";
         InMemory::default()
-            .with("plate.bdf", self.deck())
-            .with("job.toml", format!("{head}{job}"))
+            .with_file("plate.bdf", self.deck())
+            .with_file("job.toml", format!("{head}{job}"))
     }
 }
 
@@ -74,7 +74,7 @@ fn read(files: &InMemory) -> (Vec<f64>, Vec<Finding>) {
     (values.iter().copied().collect(), s.findings.to_vec())
 }
 
-fn refused(files: &InMemory) -> String {
+fn collect_job_faults(files: &InMemory) -> String {
     let faults: strainbridge::Faults = match Job::read("job.toml", files) {
         Ok(job) => sensitivity(&job, &Context::new(files)).err().unwrap(),
         Err(faults) => faults,
@@ -104,13 +104,13 @@ fn a_point_next_to_an_element_decides_the_side() {
         let plate = Plate {
             zoffs,
             flipped,
-            ..Plate::plain()
+            ..Plate::new()
         };
         {
             for side in [1.0, -1.0] {
                 let z = zoffs + side;
                 let key = gauge(&format!("element = 7\nposition = [25.0, 15.0, {z:?}]\n"));
-                let table = plate.files("[gauges]\nfile = \"g.csv\"\n").with(
+                let table = plate.files("[gauges]\nfile = \"g.csv\"\n").with_file(
                     "g.csv",
                     format!("name,element,x,y,z,dir_x,dir_y,dir_z\ng,7,25,15,{z},1,0,0\n"),
                 );
@@ -126,7 +126,7 @@ fn a_point_next_to_an_element_decides_the_side() {
         }
     }
     // Without a point the top is taken.
-    let (got, _) = read(&Plate::plain().files(&gauge("element = 7\n")));
+    let (got, _) = read(&Plate::new().files(&gauge("element = 7\n")));
     assert!((got[0] - BENT).abs() < ROUNDING);
 }
 
@@ -136,7 +136,7 @@ fn a_surface_that_contradicts_the_point_is_an_error() {
     for place in ["element = 7\n", ""] {
         let with = |surface: &str, z: f64| {
             let keys = format!("{place}surface = \"{surface}\"\nposition = [25.0, 15.0, {z:?}]\n");
-            read(&Plate::plain().files(&gauge(&keys)))
+            read(&Plate::new().files(&gauge(&keys)))
         };
         for (surface, sign) in [("top", 1.0), ("bottom", -1.0)] {
             let (got, findings) = with(surface, -sign);
@@ -156,7 +156,7 @@ fn a_surface_that_contradicts_the_point_is_an_error() {
     }
     // The distance is that of the stated side.
     let keys = gauge("surface = \"top\"\nposition = [25.0, 15.0, -1.0]\n");
-    let (_, findings) = read(&Plate::plain().files(&keys));
+    let (_, findings) = read(&Plate::new().files(&keys));
     let found = findings
         .iter()
         .find(|f| f.code == "gauge-at-nearest-surface");
@@ -164,7 +164,7 @@ fn a_surface_that_contradicts_the_point_is_an_error() {
     // A table may state the middle of the element, which is on its grids.
     let offset = Plate {
         zoffs: 1.0,
-        ..Plate::plain()
+        ..Plate::new()
     };
     let keys = gauge("element = 7\nsurface = \"top\"\nposition = [25.0, 15.0, 0.0]\n");
     let (_, findings) = read(&offset.files(&keys));
@@ -176,7 +176,7 @@ fn a_point_on_the_middle_surface_needs_a_surface() {
     for place in ["element = 7\n", ""] {
         for z in [0.0, 0.05, -0.05] {
             let at = format!("{place}position = [25.0, 15.0, {z:?}]\n");
-            let of = |keys: &str| read(&Plate::plain().files(&gauge(&format!("{at}{keys}")))).1;
+            let of = |keys: &str| read(&Plate::new().files(&gauge(&format!("{at}{keys}")))).1;
             let code = "gauge-side-assumed";
             assert_eq!(severity(&of(""), code), Some(Severity::Warning), "{at}");
             assert_eq!(severity(&of("surface = \"bottom\"\n"), code), None);
@@ -188,7 +188,7 @@ fn a_point_on_the_middle_surface_needs_a_surface() {
 fn fibres_off_the_skin_are_named_and_do_not_move_the_skin() {
     let plate = Plate {
         fibres: ",0.,2.\n",
-        ..Plate::plain()
+        ..Plate::new()
     };
     let at = |z: f64| {
         let keys = gauge(&format!("position = [25.0, 15.0, {z:?}]\n"));
@@ -213,7 +213,7 @@ fn fibres_off_the_skin_are_named_and_do_not_move_the_skin() {
     // Fibres at the skins need no word.
     let stated = Plate {
         fibres: ",-1.,1.\n",
-        ..Plate::plain()
+        ..Plate::new()
     };
     let (_, findings) = read(&stated.files(&gauge("element = 7\n")));
     assert_eq!(severity(&findings, "fibre-off-skin"), None);
@@ -226,7 +226,7 @@ fn the_second_side_left_out_is_the_opposite_one_in_space() {
         let own = if flipped.contains(&7) { -1.0 } else { 1.0 };
         let plate = Plate {
             flipped,
-            ..Plate::plain()
+            ..Plate::new()
         };
         for (keys, sign) in [
             ("element = 7\n", own),
@@ -242,41 +242,43 @@ fn the_second_side_left_out_is_the_opposite_one_in_space() {
         }
     }
     let same = half("element = 7\nsurface = \"top\"\nsurface2 = \"top\"\n");
-    let (got, _) = read(&Plate::plain().files(&same));
+    let (got, _) = read(&Plate::new().files(&same));
     assert!(got[0].abs() < 2.0 * ROUNDING);
     // A stated point may put the first pair onto the stated side of the second one.
     let keys =
         "bridge = \"half-bending\"\nelement = 7\nposition = [25, 15, -1]\nsurface2 = \"bottom\"\n";
-    let text = refused(&Plate::plain().files(&gauge(keys)));
+    let text = collect_job_faults(&Plate::new().files(&gauge(keys)));
     assert!(text.contains("surface2: gauge `g`: both pairs"), "{text}");
 }
 
 #[test]
 fn a_recovery_point_at_a_position_is_refused() {
     let keys = gauge("position = [25, 15, 1]\npoint = \"C\"\n");
-    let text = refused(&Plate::plain().files(&keys));
+    let text = collect_job_faults(&Plate::new().files(&keys));
     assert!(text.contains("job.toml:12: gauge.point"), "{text}");
-    let table = Plate::plain()
+    let table = Plate::new()
         .files("[gauges]\nfile = \"g.csv\"\n")
-        .with("g.csv", "name,x,y,z,point\ng,25,15,1,C\n");
-    let text = refused(&table);
+        .with_file("g.csv", "name,x,y,z,point\ng,25,15,1,C\n");
+    let text = collect_job_faults(&table);
     assert!(text.contains("g.csv:2: point"), "{text}");
 }
 
 #[test]
 fn a_column_of_sides_has_sides_of_the_shell_or_of_the_vehicle() {
     let table = |column: &str, word: &str| {
-        Plate::plain().files("[gauges]\nfile = \"g.csv\"\n").with(
-            "g.csv",
-            format!("name,element,{column},dir_x,dir_y,dir_z\ng,7,{word},1,0,0\n"),
-        )
+        Plate::new()
+            .files("[gauges]\nfile = \"g.csv\"\n")
+            .with_file(
+                "g.csv",
+                format!("name,element,{column},dir_x,dir_y,dir_z\ng,7,{word},1,0,0\n"),
+            )
     };
     for (word, sign) in [("top", 1.0), ("Bottom", -1.0), ("", 1.0)] {
         let (got, _) = read(&table("side", word));
         assert!((got[0] - sign * BENT).abs() < ROUNDING, "{word}: {got:?}");
     }
     for word in ["upper", "lower", "Z1", "outside"] {
-        let text = refused(&table("side", word));
+        let text = collect_job_faults(&table("side", word));
         assert!(text.contains("g.csv:2: surface"), "{word}: {text}");
     }
     // Sides of the vehicle are named as not read, and no remedy makes something else of them.
@@ -316,8 +318,8 @@ fn a_bar_gauge_at_a_point_without_coordinates_is_named() {
         );
         read(
             &InMemory::default()
-                .with("bar.bdf", deck)
-                .with("job.toml", job),
+                .with_file("bar.bdf", deck)
+                .with_file("job.toml", job),
         )
     };
     for (point, expected) in [("C", None), ("D", Some(Severity::Warning))] {

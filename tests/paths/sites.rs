@@ -1,10 +1,12 @@
 //! Candidates against gauges built at the same places.
 
-use crate::command::shared;
+use crate::command::find_shared_path;
 use strainbridge::fe::CaseResult;
 use strainbridge::fe::from_results::{ReadOptions, solution_from_file};
 use strainbridge::fe::strain_tensor::Surface;
-use strainbridge::gauge::{Bridge, CornerRows, GaugeSpec, build, reading, strain_gradient_gauge};
+use strainbridge::gauge::{
+    Bridge, CornerRows, GaugeSpec, build, gauge_reading, strain_gradient_gauge,
+};
 use strainbridge::model::{Model, ShellIx};
 use strainbridge::placement::angle_variance;
 use strainbridge::placement::candidates::{Angles, Choice, Scatter};
@@ -13,7 +15,7 @@ use strainbridge::placement::sites::{Site, axis_of, bridges};
 use strainbridge::sensitivity::{Load, LoadCaseOf};
 
 fn frame() -> Option<(Model, Vec<CaseResult>)> {
-    let case = shared("nastran/mystran_frame_units")?;
+    let case = find_shared_path("nastran/mystran_frame_units")?;
     let read = nastran::bdf::read_deck(
         "frame.bdf",
         std::fs::read(case.join("frame.bdf")).unwrap(),
@@ -31,7 +33,7 @@ fn loads(cases: &[CaseResult]) -> Vec<LoadCaseOf<'_>> {
         .iter()
         .enumerate()
         .map(|(i, case)| LoadCaseOf {
-            load: Load::named(format!("F{i}")),
+            load: Load::from_name(format!("F{i}")),
             applied: 1000.0,
             case,
         })
@@ -60,7 +62,7 @@ fn rows_of_candidates_are_what_gauges_of_the_same_wiring_read() {
     let (loads, sites) = (loads(&cases), some_sites(&model));
     let scales = [10_000.0, 5_000.0, 2_000.0];
     for bridge in WIRINGS {
-        let scatter = Scatter::uniform(1.0);
+        let scatter = Scatter::with_uniform_noise(1.0);
         let c = bridges(
             &model,
             &sites,
@@ -76,7 +78,7 @@ fn rows_of_candidates_are_what_gauges_of_the_same_wiring_read() {
                 surface: Some(surface),
                 bridge,
                 angle_rad: axis_of(bridge, angle),
-                ..GaugeSpec::on("g", shell)
+                ..GaugeSpec::place_on_shell("g", shell)
             };
             let gauge = build(&model, &spec, CornerRows::Absent)
                 .unwrap()
@@ -88,7 +90,7 @@ fn rows_of_candidates_are_what_gauges_of_the_same_wiring_read() {
                 angle,
             });
             for (l, load) in loads.iter().enumerate() {
-                let read = reading(&gauge, load.case).unwrap() * scales[l] / 1000.0 * 1e6;
+                let read = gauge_reading(&gauge, load.case).unwrap() * scales[l] / 1000.0 * 1e6;
                 assert!(
                     (row[l] - read).abs() < 1e-9 * (1.0 + read.abs()),
                     "{bridge:?} {place}: {} {read}",
@@ -114,7 +116,7 @@ fn forms_of_misplacement_are_the_changes_of_gauges_moved_along_both_directions()
                 surface: Some(surface),
                 bridge,
                 angle_rad,
-                ..GaugeSpec::on("g", shell)
+                ..GaugeSpec::place_on_shell("g", shell)
             };
             for angle in [0.0, 0.6, 1.5] {
                 let one = |t: f64| {
@@ -135,7 +137,8 @@ fn forms_of_misplacement_are_the_changes_of_gauges_moved_along_both_directions()
                         let g = strain_gradient_gauge(&gauge, &model, w)?;
                         let mut sum = 0.0;
                         for (l, load) in loads.iter().enumerate() {
-                            sum += (reading(&g, load.case)? * scales[l] / 1000.0 * 1e6).powi(2);
+                            sum +=
+                                (gauge_reading(&g, load.case)? * scales[l] / 1000.0 * 1e6).powi(2);
                         }
                         Some(sum)
                     })

@@ -71,16 +71,16 @@ fn table(has_costs: bool) -> String {
 
 fn files(job: &str, spots: &str) -> InMemory {
     InMemory::default()
-        .with("strip.bdf", strip())
-        .with("spots.csv", spots)
-        .with("job.toml", format!("{HEAD}{job}"))
+        .with_file("strip.bdf", strip())
+        .with_file("spots.csv", spots)
+        .with_file("job.toml", format!("{HEAD}{job}"))
 }
 
 fn job(files: &InMemory) -> Job {
     Job::read("job.toml", files).unwrap()
 }
 
-fn refused(files: &InMemory) -> String {
+fn collect_placement_faults(files: &InMemory) -> String {
     let faults: Faults = match Job::read("job.toml", files) {
         Ok(job) => place(&job, &Context::new(files)).err().unwrap(),
         Err(faults) => faults,
@@ -152,7 +152,11 @@ fn value(rows: &[Vec<f64>], subset: u32, known: f64) -> f64 {
 }
 
 /// The best of all subsets that `is_allowed` admits: its value and its names.
-fn best(rows: &[Vec<f64>], known: f64, is_allowed: impl Fn(u32) -> bool) -> (f64, Vec<String>) {
+fn find_best_subset(
+    rows: &[Vec<f64>],
+    known: f64,
+    is_allowed: impl Fn(u32) -> bool,
+) -> (f64, Vec<String>) {
     let all = (1_u32..1 << rows.len()).filter(|s| is_allowed(*s));
     let (value, subset) = all
         .map(|s| (value(rows, s, known), s))
@@ -170,7 +174,7 @@ fn spots_are_the_best_subset_of_all_and_keep_their_names() {
     for count in [3_u32, 5, 8] {
         let files = files(&format!("{SIDE}{SPOTS}gauges = {count}\n"), &table(false));
         let placed = place(&job(&files), &Context::new(&files)).unwrap();
-        let (value, names) = best(&rows(&files), 0.0, |s| s.count_ones() == count);
+        let (value, names) = find_best_subset(&rows(&files), 0.0, |s| s.count_ones() == count);
         let chosen: Vec<&str> = placed.gauges.iter().map(|g| g.name.as_str()).collect();
         assert!(
             (placed.log_det - value).abs() < 1e-8,
@@ -189,7 +193,7 @@ fn a_nuisance_load_counts_as_known_to_its_expected_size() {
     let files = files(&format!("{nuisance}{SPOTS}gauges = 4\n"), &table(false));
     let placed = place(&job(&files), &Context::new(&files)).unwrap();
     // Columns are in expected sizes: a load that is known to its size adds 1.
-    let (value, names) = best(&rows(&files), 1.0, |s| s.count_ones() == 4);
+    let (value, names) = find_best_subset(&rows(&files), 1.0, |s| s.count_ones() == 4);
     let chosen: Vec<&str> = placed.gauges.iter().map(|g| g.name.as_str()).collect();
     assert!(
         (placed.log_det - value).abs() < 1e-8,
@@ -210,7 +214,7 @@ fn a_nuisance_load_counts_as_known_to_its_expected_size() {
             text += &format!("{line}\n");
         }
     }
-    let two = self::files(&of_two, "").with("two.csv", text);
+    let two = self::files(&of_two, "").with_file("two.csv", text);
     let s = sensitivity(&job(&two), &Context::new(&two)).unwrap();
     assert_eq!(s.prepared.sensitivity.gauges.len(), 2);
     assert!(
@@ -229,7 +233,7 @@ fn the_budget_limits_the_total_cost_of_the_best_subset() {
     for budget in [5.0, 8.5, 14.0] {
         let files = files(&format!("{SIDE}{SPOTS}budget = {budget}\n"), &table(true));
         let placed = place(&job(&files), &Context::new(&files)).unwrap();
-        let (value, names) = best(&rows(&files), 0.0, |s| cost(s) <= budget);
+        let (value, names) = find_best_subset(&rows(&files), 0.0, |s| cost(s) <= budget);
         let chosen: Vec<&str> = placed.gauges.iter().map(|g| g.name.as_str()).collect();
         assert!(
             (placed.log_det - value).abs() < 1e-8,
@@ -263,7 +267,7 @@ fn chosen_spots_read_the_same_from_the_table_of_gauges() {
     assert_eq!(placed.cost, Some(6.0), "a rosette takes three channels");
     let mut table = Vec::new();
     strainbridge::report::strain::gauges_csv(&mut table, &placed.gauges, 0.0).unwrap();
-    let again = self::files("[gauges]\nfile = \"gauges.csv\"\n", "").with("gauges.csv", table);
+    let again = self::files("[gauges]\nfile = \"gauges.csv\"\n", "").with_file("gauges.csv", table);
     let read = job(&again);
     assert_eq!(read.gauges[0].member, "rail, left");
     let s = sensitivity(&read, &Context::new(&again)).unwrap();
@@ -327,7 +331,7 @@ fn faults_of_spots_have_file_line_field_and_remedy() {
         ),
     ];
     for (table, expected) in tables {
-        let said = refused(&files(&three, table));
+        let said = collect_placement_faults(&files(&three, table));
         assert!(said.contains(expected), "{expected}\n{said}");
     }
     let of_candidates =
@@ -364,20 +368,20 @@ fn faults_of_spots_have_file_line_field_and_remedy() {
         jobs.push((format!("{SPOTS}{key}\n"), expected.to_owned()));
     }
     for (job, expected) in jobs {
-        let said = refused(&files(&job, plain));
+        let said = collect_placement_faults(&files(&job, plain));
         assert!(
             said.contains(&format!(": {expected}")),
             "{expected}\n{said}"
         );
         assert!(said.contains("job.toml:"), "{said}");
     }
-    let said = refused(&files(&three, &table(true)));
+    let said = collect_placement_faults(&files(&three, &table(true)));
     assert!(
         said.contains("placement.budget: `spots.csv` states costs"),
         "{said}"
     );
     let keep = "[[gauge]]\nname = \"A\"\nelement = 3\n[candidates]\nfile = \"spots.csv\"\n[placement]\ngauges = 1\nkeep = \"all\"\n";
-    let said = refused(&files(keep, plain));
+    let said = collect_placement_faults(&files(keep, plain));
     assert!(
         said.contains("spots.csv:2: name: spot `A`: [placement] `keep` names"),
         "{said}"
@@ -415,7 +419,7 @@ fn a_study_names_the_gauges_of_each_layout() {
         };
         assert_eq!(
             of("D").unwrap().names,
-            best(&rows, 0.0, |s| s.count_ones() == count).1
+            find_best_subset(&rows, 0.0, |s| s.count_ones() == count).1
         );
         assert!(of("random").unwrap().names.is_empty());
         let given = of("given").map(|r| r.names.join(" "));
@@ -440,7 +444,7 @@ fn a_study_names_the_gauges_of_each_layout() {
         .filter(|l| l.starts_with("layout,") || l.starts_with("D,5,"));
     let of_five: String = of_five.map(|l| format!("{l}\n")).collect();
     let again = self::files(&format!("{SIDE}[gauges]\nfile = \"five.csv\"\n"), "")
-        .with("five.csv", of_five);
+        .with_file("five.csv", of_five);
     let s = sensitivity(&job(&again), &Context::new(&again)).unwrap();
     let s = &s.prepared.sensitivity;
     for (g, name) in s.gauges.iter().enumerate() {
@@ -464,12 +468,12 @@ fn a_study_of_a_given_s_chooses_among_named_spots() {
                     [study]\nlayouts = [\"D\"]\ngauges = [2]\ntrials = 20\n";
     // Without G1, the largest determinant is that of G2 and G4: 3 x 2.
     let files = InMemory::default()
-        .with("job.toml", job_text)
-        .with("s.csv", "gauge,a,b\nG1,9,0\nG2,3,0\nG3,1,1\nG4,0,2\n")
-        .with("spots.csv", "name\nG2\nG3\nG4\n");
+        .with_file("job.toml", job_text)
+        .with_file("s.csv", "gauge,a,b\nG1,9,0\nG2,3,0\nG3,1,1\nG4,0,2\n")
+        .with_file("spots.csv", "name\nG2\nG3\nG4\n");
     let found = study(&job(&files), &Context::new(&files)).unwrap();
     assert_eq!(found.study[0].names, ["G2", "G4"]);
-    let files = files.with("spots.csv", "name\nG2\nG7\n");
+    let files = files.with_file("spots.csv", "name\nG2\nG7\n");
     let faults = study(&job(&files), &Context::new(&files))
         .err()
         .unwrap()
@@ -523,7 +527,7 @@ fn spots_have_the_uncertainty_of_the_same_gauges_found_by_a_search() {
     let searched = place(&job(&searched), &Context::new(&searched)).unwrap();
     let mut table = Vec::new();
     strainbridge::report::strain::gauges_csv(&mut table, &searched.gauges, 0.0).unwrap();
-    let listed = files(&format!("{SIDE}{SPOTS}{errors}"), "").with("spots.csv", table);
+    let listed = files(&format!("{SIDE}{SPOTS}{errors}"), "").with_file("spots.csv", table);
     let listed = place(&job(&listed), &Context::new(&listed)).unwrap();
     assert!((listed.log_det - searched.log_det).abs() < 1e-9);
     for (a, b) in listed.load_sigma.iter().zip(&searched.load_sigma) {

@@ -52,8 +52,8 @@ const TWO_SIDES: &str = "[[gauge]]\nname = \"t\"\nelement = 6\nsurface = \"top\"
 
 fn files(deck: String, job: &str) -> InMemory {
     InMemory::default()
-        .with("plate.bdf", deck)
-        .with("job.toml", format!("{HEAD}{job}"))
+        .with_file("plate.bdf", deck)
+        .with_file("job.toml", format!("{HEAD}{job}"))
 }
 
 /// Strain along x at height `z` of a plate of thickness `t` under the force and the moment: `N / (E t)` and `12 m z / (E t^3)`.
@@ -158,8 +158,8 @@ fn placed_gauges_and_stress_are_at_the_skin_of_the_stated_thickness() {
             "{TWO_SIDES}[measured]\nstrain = \"s.csv\"\nnoise_microstrain = 0.1\n[respond]\nelements = \"6\"\nloads = \"l.csv\"\n"
         ),
     )
-    .with("s.csv", "run,t,b\nR,1,1\n")
-    .with("l.csv", "run,P,M\nR,0,1\n");
+    .with_file("s.csv", "run,t,b\nR,1,1\n")
+    .with_file("l.csv", "run,P,M\nR,0,1\n");
     let job = Job::read("job.toml", &asked).unwrap();
     let answer = respond(&job, &Context::new(&asked)).unwrap();
     let stress = 6.0 * MOMENT / 16.0;

@@ -1,6 +1,6 @@
 //! Two load cases of a wing box solved by MSC, 64-bit OP2, skewed shells.
 
-use super::command::{csv, run, scratch, shared};
+use super::command::{csv, find_shared_path, run, scratch};
 
 const JOB: &str = r#"
 units = "mm-t-s"
@@ -26,7 +26,7 @@ gauges = 6
 
 #[test]
 fn two_load_cases_with_the_same_strain_everywhere_are_refused_as_inseparable() {
-    let Some(case) = shared("nastran/msc64_two_cases") else {
+    let Some(case) = find_shared_path("nastran/msc64_two_cases") else {
         return;
     };
     let folder = scratch("wing");
@@ -74,7 +74,7 @@ fn two_load_cases_with_the_same_strain_everywhere_are_refused_as_inseparable() {
 
 #[test]
 fn a_known_multiple_of_a_load_comes_back_from_the_files_own_strain() {
-    let Some(case) = shared("nastran/msc64_two_cases") else {
+    let Some(case) = find_shared_path("nastran/msc64_two_cases") else {
         return;
     };
     let folder = scratch("wing_one");

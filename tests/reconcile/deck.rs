@@ -25,11 +25,11 @@ fn result(out: &Path) -> Value {
 
 /// Folder of a case of ../shared.
 fn case(name: &str) -> Option<PathBuf> {
-    Some(hidden::shared()?.join("deck").join(name))
+    Some(hidden::find_shared_folder()?.join("deck").join(name))
 }
 
 /// Reconciles a case of ../shared: its result, the folder it was written to, the truth.
-fn reconciled(name: &str) -> Option<(Value, PathBuf, Value)> {
+fn reconcile_case(name: &str) -> Option<(Value, PathBuf, Value)> {
     let dir = case(name)?;
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("reconcile_{name}"));
     let _ = std::fs::remove_dir_all(&out);
@@ -71,7 +71,7 @@ fn thicknesses(deck: &str) -> BTreeMap<u32, f64> {
 }
 
 /// (before^2 - after^2) / (before^2 - left^2), with `left` what remains when the effect is known, by the case's author.
-fn closed(result: &Value, truth: &Value) -> f64 {
+fn closed_gap_share(result: &Value, truth: &Value) -> f64 {
     let square = |v: &Value| v.as_f64().unwrap_or(f64::NAN).powi(2);
     let before = square(&truth["gap_before"]);
     assert!((square(&result["gap"]["before"]) - before).abs() < 1e-3 * before);
@@ -80,7 +80,7 @@ fn closed(result: &Value, truth: &Value) -> f64 {
 
 #[test]
 fn a_zone_15_percent_thicker_is_found_through_the_solver_and_its_deck_solves_and_recovers() {
-    let Some((found, out, truth)) = reconciled("dev-f1") else {
+    let Some((found, out, truth)) = reconcile_case("dev-f1") else {
         return;
     };
     assert_eq!(found["named"], serde_json::json!(["rail_stiffness:L4"]));
@@ -92,7 +92,7 @@ fn a_zone_15_percent_thicker_is_found_through_the_solver_and_its_deck_solves_and
         (size - 15.0).abs() < 3.0 * sigma && sigma < 3.0,
         "{size} +- {sigma}"
     );
-    assert!(closed(&found, &truth) > 0.7, "{}", found["gap"]);
+    assert!(closed_gap_share(&found, &truth) > 0.7, "{}", found["gap"]);
     assert!(found["gap"]["explained_share"].as_f64().expect("a share") > 0.7);
     let job = out.join("job_extended.toml");
     let deck = std::fs::read_to_string(out.join("deck_extended.bdf")).expect("the extended deck");
@@ -117,11 +117,11 @@ fn a_zone_15_percent_thicker_is_found_through_the_solver_and_its_deck_solves_and
 
 #[test]
 fn a_turned_sign_is_found_on_a_deck_whose_mesh_makes_two_percent_and_nothing_else_is_named() {
-    let Some((found, out, truth)) = reconciled("dev-f2") else {
+    let Some((found, out, truth)) = reconcile_case("dev-f2") else {
         return;
     };
     assert_eq!(found["named"], serde_json::json!(["sign_flip:G09"]));
-    assert!(closed(&found, &truth) > 0.7, "{}", found["gap"]);
+    assert!(closed_gap_share(&found, &truth) > 0.7, "{}", found["gap"]);
     // The mesh alone causes 2.2 % by another program's finer mesh; ours is half as wide, not infinitely fine.
     let mesh = found["gap"]["mesh"].as_f64().expect("a number");
     let known = truth["model_error_gap"].as_f64().expect("a number");

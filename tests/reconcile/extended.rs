@@ -29,7 +29,7 @@ fn run(command: &str, job: &Path, out: &Path) -> (Option<i32>, Value) {
 }
 
 /// The frame with as many runs again.
-fn doubled(base: &StrainFrame) -> StrainFrame {
+fn double_runs(base: &StrainFrame) -> StrainFrame {
     let mut out = base.clone();
     let o = &mut out.observations;
     let n = o.runs.len();
@@ -147,7 +147,7 @@ impl Found {
 }
 
 /// A case in which `effect` is hidden, reconciled on the first half of its runs.
-fn found(effect: &str, size: f64, seed: u64) -> Option<Found> {
+fn reconcile_hidden_effect(effect: &str, size: f64, seed: u64) -> Option<Found> {
     // Tests run beside each other, and some hide the same.
     let test = std::thread::current()
         .name()
@@ -162,12 +162,12 @@ fn found_in(
     (effect, size, seed): (&str, f64, u64),
     besides: impl FnOnce(&mut StrainFrame, &Path) -> String,
 ) -> Option<Found> {
-    let shared = hidden::shared()?.join("static/dev-s1");
+    let shared = hidden::find_shared_folder()?.join("static/dev-s1");
     let once = hidden::frame_of(&shared);
     let n = once.n_runs();
     // What is wrong with the note of one run is nothing to prove on others.
     let of_runs = effect.starts_with("run_");
-    let base = if of_runs { once } else { doubled(&once) };
+    let base = if of_runs { once } else { double_runs(&once) };
     let mut case = hide(&base, effect, size, Background::Clean, seed);
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = std::fs::remove_dir_all(&folder);
@@ -188,7 +188,7 @@ fn found_in(
 }
 
 /// The extended job; the effect is named.
-fn extended(found: &Found, effect: &str) -> PathBuf {
+fn extended_job_path(found: &Found, effect: &str) -> PathBuf {
     let r = &found.result;
     assert_eq!(
         r["verdict"], "named",
@@ -255,11 +255,11 @@ fn the_extended_model_holds_every_kind_of_effect_on_runs_never_seen_too() {
         ("payload_gravity_missing", 1.0, 25),
         ("uneven_ground", 4.0, 51),
     ] {
-        let Some(found) = found(effect, size, seed) else {
+        let Some(found) = reconcile_hidden_effect(effect, size, seed) else {
             return;
         };
         found.assert_named(effect);
-        let extended = extended(&found, effect);
+        let extended = extended_job_path(&found, effect);
         let again = run("reconcile", &extended, &found.folder.join("again"));
         assert_nothing_left(effect, &again.1);
         let (code, loads) = run("recover", &extended, &found.folder.join("recover"));
@@ -294,11 +294,11 @@ fn a_fault_of_a_channel_is_a_correction_of_the_extended_job() {
         ("gauge_swap", 1.0, "exchanged_with", Is::Other),
         ("dead_channel", 1.0, "ignore", Is::True),
     ] {
-        let Some(found) = found(effect, size, 31) else {
+        let Some(found) = reconcile_hidden_effect(effect, size, 31) else {
             return;
         };
         found.assert_named(effect);
-        let extended = extended(&found, effect);
+        let extended = extended_job_path(&found, effect);
         let text = std::fs::read_to_string(extended).expect("the extended job");
         let job: toml::Table = text.parse().expect("valid toml");
         let list = job["correction"].as_array().expect("corrections");
@@ -338,12 +338,12 @@ fn a_fault_of_a_channel_is_a_correction_of_the_extended_job() {
 #[test]
 fn the_note_that_was_wrong_is_the_one_that_is_put_right() {
     for seed in [41, 42, 43, 44] {
-        let Some(found) = found("run_record", 0.8, seed) else {
+        let Some(found) = reconcile_hidden_effect("run_record", 0.8, seed) else {
             return;
         };
         // A mass that is 80 % too large in one loaded run of ten is many times the noise of any seed.
         found.assert_named("run_record");
-        let extended = extended(&found, "run_record");
+        let extended = extended_job_path(&found, "run_record");
         let again = run("reconcile", &extended, &found.folder.join("again"));
         assert_nothing_left("run_record", &again.1);
         // What was noted of the run, and what stands there now.
@@ -372,7 +372,7 @@ fn the_extended_model_holds_channels_that_come_and_go_and_notes_that_are_wrong()
         ("wheel_scale", 25.0, 65),
         ("run_exchange", 1.0, 66),
     ] {
-        let Some(found) = found(effect, size, seed) else {
+        let Some(found) = reconcile_hidden_effect(effect, size, seed) else {
             return;
         };
         if effect == "cross_sensitivity" {
@@ -387,7 +387,7 @@ fn the_extended_model_holds_channels_that_come_and_go_and_notes_that_are_wrong()
         } else {
             found.assert_named(effect);
         }
-        let job = extended(&found, effect);
+        let job = extended_job_path(&found, effect);
         let again = run("reconcile", &job, &found.folder.join("again"));
         assert_nothing_left(effect, &again.1);
         if matches!(effect, "wheel_scale" | "run_exchange") {
@@ -473,7 +473,7 @@ fn a_table_of_ones_own_goes_into_s_and_leaves_the_job_the_others_stay() {
             (number("size") - 0.8).abs() < 4.0 * number("sigma"),
             "{effect}"
         );
-        let job = extended(&found, spelling);
+        let job = extended_job_path(&found, spelling);
         let text = std::fs::read_to_string(&job).expect("the extended job");
         let table: toml::Table = text.parse().expect("valid toml");
         let left = table["reconcile"]["effect"].as_array().expect("effects");
@@ -495,10 +495,10 @@ fn a_table_of_ones_own_goes_into_s_and_leaves_the_job_the_others_stay() {
 /// An effect is accepted; in the runs after it the gauge that reads most is found with its sign turned, and that is accepted too.
 #[test]
 fn two_effects_are_accepted_one_after_the_other() {
-    let Some(mut found) = found("rail_stiffness", 20.0, 18) else {
+    let Some(mut found) = reconcile_hidden_effect("rail_stiffness", 20.0, 18) else {
         return;
     };
-    let first = extended(&found, "rail_stiffness");
+    let first = extended_job_path(&found, "rail_stiffness");
     let frame = &mut found.frame;
     let (n_g, n) = (frame.n_gauges(), frame.n_runs());
     let values = &mut frame.observations.values;
@@ -525,7 +525,7 @@ fn two_effects_are_accepted_one_after_the_other() {
 /// The word is for runs that were never used: where none are, neither the page nor the result says it. The page tells its story in order.
 #[test]
 fn without_hold_out_nothing_is_called_held_out_and_the_page_goes_from_verdict_to_notes() {
-    let Some(found) = found("sign_flip", 1.0, 81) else {
+    let Some(found) = reconcile_hidden_effect("sign_flip", 1.0, 81) else {
         return;
     };
     let text = std::fs::read_to_string(found.folder.join("job.toml")).expect("the job");
@@ -568,13 +568,13 @@ fn without_hold_out_nothing_is_called_held_out_and_the_page_goes_from_verdict_to
 /// Ground that is not flat is a load of the extended job, in the unit of its runs; beside measured wheel forces, which hold it, it is refused.
 #[test]
 fn uneven_ground_is_a_load_of_the_extended_job() {
-    let Some(found) = found("uneven_ground", 4.0, 51) else {
+    let Some(found) = reconcile_hidden_effect("uneven_ground", 4.0, 51) else {
         return;
     };
     let r = &found.result;
     assert_eq!(r["named"], serde_json::json!(["uneven_ground"]));
     let size = r["effects"][0]["size"].as_f64().expect("a size");
-    let extended = extended(&found, "uneven_ground");
+    let extended = extended_job_path(&found, "uneven_ground");
     let text = std::fs::read_to_string(&extended).expect("the extended job");
     let mut job: toml::Table = text.parse().expect("valid toml");
     let ground = job["runs"]["ground"].as_float().expect("a number");

@@ -8,14 +8,14 @@ use strainbridge::reconcile::strain::{FoundAnew, StrainFrame, examine, predict, 
 use strainbridge::reconcile::{GapBasis, Outcome, Verdict};
 
 fn case(name: &str) -> Option<(StrainFrame, serde_json::Value)> {
-    let dir = hidden::shared()?;
+    let dir = hidden::find_shared_folder()?;
     let truth = std::fs::read_to_string(dir.join("truth").join(format!("{name}.json"))).ok()?;
     let frame = hidden::frame_of(&dir.join("static").join(name));
     Some((frame, serde_json::from_str(&truth).ok()?))
 }
 
 /// Ids with places, as the truth of a case has them.
-fn expected(truth: &serde_json::Value) -> Vec<String> {
+fn list_expected_effects(truth: &serde_json::Value) -> Vec<String> {
     let ids = truth["truth"].as_array().cloned().unwrap_or_default();
     let with_place = |id: &str| match truth["location"][id].as_str() {
         Some(place) => format!("{id}:{place}"),
@@ -27,7 +27,7 @@ fn expected(truth: &serde_json::Value) -> Vec<String> {
         .collect()
 }
 
-fn named(outcome: &Outcome) -> Vec<String> {
+fn list_named_effects(outcome: &Outcome) -> Vec<String> {
     match outcome.verdict {
         Verdict::Named => outcome.effects.iter().map(|e| e.id.clone()).collect(),
         Verdict::Unknown => vec!["unknown".into()],
@@ -49,7 +49,11 @@ fn hidden_effects_of_the_shared_static_cases_are_named_and_the_held_out_gap_clos
             ids
         };
         // In any order: the set is one explanation.
-        assert_eq!(sorted(named(&outcome)), sorted(expected(&truth)), "{name}");
+        assert_eq!(
+            sorted(list_named_effects(&outcome)),
+            sorted(list_expected_effects(&truth)),
+            "{name}"
+        );
         // Readings that four digits of the tables round: the gap of the analyst's model is that of the case's author.
         if let Some(before) = truth["gap_before"].as_f64() {
             assert!(
@@ -81,7 +85,7 @@ fn seeded_controls_with_and_without_background_get_no_name() {
         for seed in [1000, 1002, 1004] {
             let hidden = hide(&base, "none", 0.0, background, seed);
             assert_eq!(
-                named(&examine(&hidden.frame, &[])),
+                list_named_effects(&examine(&hidden.frame, &[])),
                 ["none"],
                 "{background:?} {seed}"
             );
@@ -96,11 +100,11 @@ fn a_drifted_zero_is_found_to_a_few_microstrain_and_a_swap_by_its_two_gauges() {
     };
     let drift = hide(&base, "zero_drift", 40.0, Background::Clean, 300);
     let outcome = examine(&drift.frame, &[]);
-    assert_eq!(named(&outcome), drift.truth);
+    assert_eq!(list_named_effects(&outcome), drift.truth);
     // Noise of 2 microstrain at most over ten runs leaves 0.6; three sigma.
     assert!((outcome.effects[0].size[0].abs() - 40.0).abs() < 2.0);
     let swap = hide(&base, "gauge_swap", 1.0, Background::Clean, 100);
-    assert_eq!(named(&examine(&swap.frame, &[])), swap.truth);
+    assert_eq!(list_named_effects(&examine(&swap.frame, &[])), swap.truth);
 }
 
 #[test]
@@ -117,7 +121,7 @@ fn every_effect_of_the_library_at_its_fourth_size_is_named_on_an_exact_model() {
         assert!(
             matches!(answer, Answer::Hit | Answer::Alias),
             "{effect}: {answer:?} {:?} for {:?}",
-            named(&outcome),
+            list_named_effects(&outcome),
             hidden.truth
         );
     }
@@ -131,7 +135,7 @@ fn what_no_effect_of_the_library_makes_is_called_unknown_and_described() {
     for form in UNMODELLED {
         let hidden = hide(&base, form, 1.0, Background::Messy, 5200);
         let outcome = examine(&hidden.frame, &[]);
-        assert_eq!(named(&outcome), ["unknown"], "{form}");
+        assert_eq!(list_named_effects(&outcome), ["unknown"], "{form}");
         assert!(!outcome.remains.is_empty(), "{form}");
     }
 }
@@ -181,7 +185,7 @@ fn without_held_out_runs_the_gap_is_cross_validated_and_called_that() {
     };
     frame.observations.held_out.fill(false);
     let outcome = examine(&frame, &[]);
-    assert_eq!(named(&outcome), ["sign_flip:G08"]);
+    assert_eq!(list_named_effects(&outcome), ["sign_flip:G08"]);
     assert_eq!(outcome.gap.basis, GapBasis::CrossValidated);
     assert!(outcome.gap.after < outcome.gap.before, "{:?}", outcome.gap);
 }
@@ -194,7 +198,7 @@ fn noise_half_above_what_is_stated_brings_no_name_and_no_unknown() {
     for seed in 1000..1006 {
         let hidden = hide(&base, "none", 0.0, Background::Noisy, seed);
         let outcome = examine(&hidden.frame, &[]);
-        assert_eq!(named(&outcome), ["none"], "{seed}");
+        assert_eq!(list_named_effects(&outcome), ["none"], "{seed}");
         assert!(
             (outcome.noise_factor - 1.5).abs() < 0.2,
             "{seed}: {}",
@@ -271,7 +275,12 @@ fn a_gauge_that_sits_elsewhere_is_named_where_the_gradient_along_it_is_known() {
         .zip(moved.iter().zip(&clean))
         .for_each(|(v, (a, b))| *v += a - b);
     let outcome = examine(&frame, &[]);
-    assert_eq!(named(&outcome), [name], "{:?}", outcome.best_attempt);
+    assert_eq!(
+        list_named_effects(&outcome),
+        [name],
+        "{:?}",
+        outcome.best_attempt
+    );
     let (size, sigma) = (outcome.effects[0].size[0], outcome.effects[0].sigma[0]);
     assert!((size - 20.0).abs() < 4.0 * sigma, "{size} +- {sigma}");
 }

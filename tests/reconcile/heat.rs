@@ -1,7 +1,9 @@
 //! The sun on half of a structure of our own: the pattern is a temperature set of the analyst's deck, how warm it was in a run nobody wrote
 //! down. The readings come from a mesh three times as fine.
 
-use super::strips::{GAUGES, MEASURED, Mesh, measured, result, run, sensitivity, workplace};
+use super::strips::{
+    GAUGES, MEASURED, Mesh, result, run, sensitivity, simulate_measured_tables, workplace,
+};
 
 /// The first strip is a degree warmer than the second, and warmer on its top (0.2 degrees a millimetre): it bows, and the bushes hold it.
 const WARM: [f64; 3] = [0.0, 1.0, 0.2];
@@ -21,7 +23,7 @@ fn a_warm_part_by_the_decks_temperature_set_is_named_and_its_strain_comes_from_t
     assert!(hottest > 0.1, "microstrain a degree: {per_degree:?}");
     // Between 4 and 20 degrees, run by run.
     let degrees = |r: usize| 12.0 + 8.0 * (2.4 * r as f64).sin();
-    let [strain, runs] = measured(&forces, |r| {
+    let [strain, runs] = simulate_measured_tables(&forces, |r| {
         per_degree.iter().map(|s| s * degrees(r)).collect()
     });
     write("model/strain.csv", &strain);
@@ -57,7 +59,7 @@ fn a_warm_part_by_the_decks_temperature_set_is_named_and_its_strain_comes_from_t
 #[test]
 fn a_temperature_set_that_is_missing_or_even_is_refused_with_line_and_remedy() {
     let (folder, write) = workplace("reconcile_heat_faults");
-    let [strain, runs] = measured(&vec![vec![0.0; 6]; GAUGES.len()], |_| {
+    let [strain, runs] = simulate_measured_tables(&vec![vec![0.0; 6]; GAUGES.len()], |_| {
         vec![0.0; GAUGES.len()]
     });
     write("strain.csv", &strain);

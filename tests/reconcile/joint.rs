@@ -1,7 +1,9 @@
 //! A joint half as stiff as modelled, hidden in a structure of our own, found through the solver and put into the deck. The readings
 //! come from a mesh three times as fine, in which the middle bush has half its stiffness.
 
-use super::strips::{GAUGES, MEASURED, Mesh, ends, measured, result, run, sensitivity, workplace};
+use super::strips::{
+    GAUGES, MEASURED, Mesh, ends, result, run, sensitivity, simulate_measured_tables, workplace,
+};
 
 #[test]
 fn a_joint_of_half_its_stiffness_is_named_and_the_extended_deck_strains_as_the_true_structure() {
@@ -9,7 +11,7 @@ fn a_joint_of_half_its_stiffness_is_named_and_the_extended_deck_strains_as_the_t
     write("true/deck.bdf", &Mesh(3).deck(0.5, None));
     write("true/job.toml", &Mesh(3).job(""));
     let truth = sensitivity(&run("sensitivity", &folder.join("true/job.toml")));
-    let [strain, runs] = measured(&truth, |_| vec![0.0; GAUGES.len()]);
+    let [strain, runs] = simulate_measured_tables(&truth, |_| vec![0.0; GAUGES.len()]);
     write("model/strain.csv", &strain);
     write("model/runs.csv", &runs);
     write("model/deck.bdf", &Mesh(1).deck(1.0, None));
@@ -64,7 +66,7 @@ fn an_edit_of_ones_own_goes_into_the_deck_through_its_includes_and_leaves_the_jo
     write("true/deck.bdf", &Mesh(3).deck(0.5, None));
     write("true/job.toml", &Mesh(3).job(""));
     let truth = sensitivity(&run("sensitivity", &folder.join("true/job.toml")));
-    let [strain, runs] = measured(&truth, |_| vec![0.0; GAUGES.len()]);
+    let [strain, runs] = simulate_measured_tables(&truth, |_| vec![0.0; GAUGES.len()]);
     write("model/strain.csv", &strain);
     write("model/runs.csv", &runs);
     let deck = Mesh(1).deck(1.0, None);

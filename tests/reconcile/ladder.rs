@@ -4,7 +4,7 @@
 //! a point force, so a payload that sits elsewhere and a rail of other thickness act by their own formulas, not by the linear signatures that
 //! the frame holds.
 
-use super::hidden::drawn::normal;
+use super::hidden::drawn::draw_normal;
 use super::hidden::plain_frame;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -41,7 +41,7 @@ struct Site {
 
 impl Site {
     /// Strain of an upward force of 1 kN at station `a`, `y` to the left: the rails share it by the lever; bending moment `x (L - a) / L` up to it.
-    fn vertical(&self, a: f64, y: f64) -> f64 {
+    fn strain_of_vertical_force(&self, a: f64, y: f64) -> f64 {
         let share = 0.5 * (1.0 + self.side * y / HALF);
         let (low, high) = (self.x.min(a), self.x.max(a));
         PER_MOMENT * self.z * share * low * (LENGTH - high) / LENGTH
@@ -54,7 +54,7 @@ impl Site {
     }
 
     /// Strain of a force along the rail of 1 kN at the tyre, 0.5 m below it: its moment jumps at station `a`.
-    fn along(&self, a: f64, y: f64) -> f64 {
+    fn strain_of_longitudinal_force(&self, a: f64, y: f64) -> f64 {
         let share = 0.5 * (1.0 + self.side * y / HALF);
         let moment = if self.x < a {
             -self.x / LENGTH
@@ -138,8 +138,12 @@ fn case(seed: u64, effects: &[&str], scale: f64, noise: Noise, errors: Errors) -
     let mut influence = Vec::new();
     let step = 0.05;
     for s in &sites {
-        influence.extend(wheels.iter().map(|w| s.vertical(w[0], w[1])));
-        let payload = |dx: f64, dy: f64| -G * s.vertical(PAYLOAD + dx, dy);
+        influence.extend(
+            wheels
+                .iter()
+                .map(|w| s.strain_of_vertical_force(w[0], w[1])),
+        );
+        let payload = |dx: f64, dy: f64| -G * s.strain_of_vertical_force(PAYLOAD + dx, dy);
         let at = payload(0.0, 0.0);
         let by_x = (payload(step, 0.0) - payload(-step, 0.0)) / (2.0 * step);
         let by_y = payload(0.0, 1.0) - at;
@@ -168,16 +172,17 @@ fn case(seed: u64, effects: &[&str], scale: f64, noise: Noise, errors: Errors) -
         let extra_rear = lever(2.0);
         for (w, _) in wheels.iter().enumerate() {
             let of = |rear: f64| if w < 2 { 1.0 - rear } else { rear };
-            let f = 0.5 * G * (kg * of(rear) + extra * of(extra_rear)) + 0.4 * normal(&mut rng);
+            let f =
+                0.5 * G * (kg * of(rear) + extra * of(extra_rear)) + 0.4 * draw_normal(&mut rng);
             true_loads.push(f);
-            loads.push(f + 0.05 * normal(&mut rng));
+            loads.push(f + 0.05 * draw_normal(&mut rng));
         }
     }
     let stated = 1.5;
     let rel = if errors == Errors::Nothing { 0.0 } else { 0.02 };
     // Errors of coefficients along a rail: three waves of random height.
     let waves: Vec<[f64; 7]> = (0..2 * n_c)
-        .map(|_| std::array::from_fn(|_| normal(&mut rng)))
+        .map(|_| std::array::from_fn(|_| draw_normal(&mut rng)))
         .collect();
     let error = |g: usize, c: usize, own: f64| match errors {
         Errors::Nothing => 0.0,
@@ -188,10 +193,12 @@ fn case(seed: u64, effects: &[&str], scale: f64, noise: Noise, errors: Errors) -
             rel * (w[0] + (1..4).map(|k| w[k] * at(k)).sum::<f64>()) / 2.0f64.sqrt() / 1.1
         }
     };
-    let gains: Vec<f64> = (0..n_g).map(|_| normal(&mut rng)).collect();
-    let warm: Vec<f64> = (0..RUNS).map(|_| 9.0 + 5.0 * normal(&mut rng)).collect();
+    let gains: Vec<f64> = (0..n_g).map(|_| draw_normal(&mut rng)).collect();
+    let warm: Vec<f64> = (0..RUNS)
+        .map(|_| 9.0 + 5.0 * draw_normal(&mut rng))
+        .collect();
     let scrub: Vec<[f64; 8]> = (0..RUNS)
-        .map(|_| std::array::from_fn(|_| normal(&mut rng)))
+        .map(|_| std::array::from_fn(|_| draw_normal(&mut rng)))
         .collect();
     let thin = if effects.contains(&"rail_stiffness") {
         1.0 - 0.15 * scale
@@ -204,16 +211,18 @@ fn case(seed: u64, effects: &[&str], scale: f64, noise: Noise, errors: Errors) -
         for (g, s) in sites.iter().enumerate() {
             let mut v = 0.0;
             for (c, w) in wheels.iter().enumerate() {
-                v += true_loads[r * 4 + c] * s.vertical(w[0], w[1]) * (1.0 + error(g, c, gains[g]));
+                v += true_loads[r * 4 + c]
+                    * s.strain_of_vertical_force(w[0], w[1])
+                    * (1.0 + error(g, c, gains[g]));
             }
             let place = PAYLOAD + dx + offset;
-            v -= G * kg * s.vertical(place, 0.0) * (1.0 + error(g, 4, gains[g]));
-            v -= G * extra * s.vertical(2.0, 0.0);
+            v -= G * kg * s.strain_of_vertical_force(place, 0.0) * (1.0 + error(g, 4, gains[g]));
+            v -= G * extra * s.strain_of_vertical_force(2.0, 0.0);
             if effects.contains(&"lateral_wheel_loads") {
                 for (k, a) in AXLES.iter().enumerate() {
                     v += scale * scrub[r][k] * 1.6 * s.side(*a);
-                    v += scale * scrub[r][2 + k] * 0.7 * s.along(*a, HALF);
-                    v += scale * scrub[r][4 + k] * 0.7 * s.along(*a, -HALF);
+                    v += scale * scrub[r][2 + k] * 0.7 * s.strain_of_longitudinal_force(*a, HALF);
+                    v += scale * scrub[r][4 + k] * 0.7 * s.strain_of_longitudinal_force(*a, -HALF);
                 }
             }
             // Bending stiffness goes with thickness: strain in the zone of a statically determinate rail with its inverse.
@@ -269,14 +278,14 @@ fn case(seed: u64, effects: &[&str], scale: f64, noise: Noise, errors: Errors) -
         }
     }
     for g in 0..n_g {
-        let mut last = normal(&mut rng);
+        let mut last = draw_normal(&mut rng);
         for r in 0..RUNS {
-            let white = normal(&mut rng);
+            let white = draw_normal(&mut rng);
             let unit = match noise {
                 Noise::White => white,
                 Noise::Larger => 1.5 * white,
                 Noise::Heavy => {
-                    let chi: f64 = (0..4).map(|_| normal(&mut rng).powi(2)).sum();
+                    let chi: f64 = (0..4).map(|_| draw_normal(&mut rng).powi(2)).sum();
                     white / (chi / 4.0).sqrt() / 2.0f64.sqrt()
                 }
                 Noise::Wandering => {
@@ -322,11 +331,14 @@ fn case(seed: u64, effects: &[&str], scale: f64, noise: Noise, errors: Errors) -
     // An extra mass presses on the frame; its wheels are measured.
     let masses = [("front", 2.0), ("rear", 7.1)].map(|(place, a)| MassSignature {
         place: place.into(),
-        per_kg: column(&|s| -G * s.vertical(a, 0.0)),
+        per_kg: column(&|s| -G * s.strain_of_vertical_force(a, 0.0)),
     });
     let mut other_loads = Vec::new();
     for (name, [a, y]) in names.iter().zip(&wheels) {
-        other_loads.push((format!("FX_{name}"), column(&|s| s.along(*a, *y))));
+        other_loads.push((
+            format!("FX_{name}"),
+            column(&|s| s.strain_of_longitudinal_force(*a, *y)),
+        ));
         other_loads.push((format!("FY_{name}"), column(&|s| 0.5 * s.side(*a))));
     }
     let thermal = column(&|s| 1.3 * (1.0 + 0.2 * s.z));

@@ -1,6 +1,8 @@
 //! A small region of a plate that lost stiffness (a crack), hidden in a mesh three times as fine; no zone is given to the analyst.
 
-use super::strips::{ALONG, GAUGES, MEASURED, Mesh, measured, result, run, sensitivity, workplace};
+use super::strips::{
+    ALONG, GAUGES, MEASURED, Mesh, result, run, sensitivity, simulate_measured_tables, workplace,
+};
 use std::path::Path;
 
 /// Strip, rows and stations of the analyst's mesh that a region holds, as far as they go.
@@ -62,12 +64,12 @@ fn middle_of(element: &str) -> [f64; 2] {
 }
 
 /// What `reconcile` says of a structure with a crack; of one without where the factor is one.
-fn found(name: &str, crack: &Crack, factor: f64) -> serde_json::Value {
+fn reconcile_crack(name: &str, crack: &Crack, factor: f64) -> serde_json::Value {
     let (folder, write) = workplace(name);
     write("true/deck.bdf", &crack.in_deck(&Mesh(3), factor));
     write("true/job.toml", &Mesh(3).job(""));
     let truth = sensitivity(&run("sensitivity", &folder.join("true/job.toml")));
-    let [strain, runs] = measured(&truth, |_| vec![0.0; GAUGES.len()]);
+    let [strain, runs] = simulate_measured_tables(&truth, |_| vec![0.0; GAUGES.len()]);
     write("model/strain.csv", &strain);
     write("model/runs.csv", &runs);
     write("model/deck.bdf", &Mesh(1).deck(1.0, None));
@@ -75,7 +77,7 @@ fn found(name: &str, crack: &Crack, factor: f64) -> serde_json::Value {
     result(&run("reconcile", &folder.join("model/job.toml")))
 }
 
-fn named(result: &serde_json::Value) -> Vec<&str> {
+fn list_named_effects(result: &serde_json::Value) -> Vec<&str> {
     let list = result["named"].as_array().expect("a list");
     list.iter().filter_map(|n| n.as_str()).collect()
 }
@@ -96,8 +98,8 @@ fn a_region_that_lost_stiffness_is_named_where_it_is_and_not_as_several_bad_gaug
             rows,
             stations,
         };
-        let r = found(&format!("reconcile_local_{k}"), &crack, 0.45);
-        let named = named(&r);
+        let r = reconcile_crack(&format!("reconcile_local_{k}"), &crack, 0.45);
+        let named = list_named_effects(&r);
         let said = format!(
             "{k}: {} {named:?} {} {}",
             r["verdict"], r["best_attempt"], r["rivals"]
@@ -142,13 +144,13 @@ fn two_gauges_far_apart_with_gains_of_their_own_are_no_crack() {
     for (gauge, gain) in [(1, 1.3), (10, 0.6)] {
         truth[gauge].iter_mut().for_each(|v| *v *= gain);
     }
-    let [strain, runs] = measured(&truth, |_| vec![0.0; GAUGES.len()]);
+    let [strain, runs] = simulate_measured_tables(&truth, |_| vec![0.0; GAUGES.len()]);
     write("model/strain.csv", &strain);
     write("model/runs.csv", &runs);
     write("model/deck.bdf", &Mesh(1).deck(1.0, None));
     write("model/job.toml", &Mesh(1).job(MEASURED));
     let r = result(&run("reconcile", &folder.join("model/job.toml")));
-    let named = named(&r);
+    let named = list_named_effects(&r);
     assert!(
         named.iter().all(|n| !n.starts_with("local_stiffness")),
         "{named:?}"
@@ -166,7 +168,7 @@ fn a_plate_without_a_crack_has_none() {
         rows: [0.0, 2.0],
         stations: [8.0, 12.0],
     };
-    let r = found("reconcile_local_none", &nowhere, 1.0);
+    let r = reconcile_crack("reconcile_local_none", &nowhere, 1.0);
     assert_ne!(r["verdict"], "unknown");
-    assert!(named(&r).is_empty(), "{}", r["named"]);
+    assert!(list_named_effects(&r).is_empty(), "{}", r["named"]);
 }

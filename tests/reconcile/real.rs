@@ -80,7 +80,9 @@ const NOISE: [f64; 3] = [3.0; 3];
 #[test]
 fn on_stage_means_of_the_bridge_settlement_and_temperature_are_rivals_and_the_lowering_record_is_asked_for()
  {
-    let Some(dir) = hidden::shared() else { return };
+    let Some(dir) = hidden::find_shared_folder() else {
+        return;
+    };
     let stages = [
         Window(BEFORE, 0.0, 1e9, false),
         Window(AFTER, 0.0, 1e9, true),
@@ -103,7 +105,9 @@ fn on_stage_means_of_the_bridge_settlement_and_temperature_are_rivals_and_the_lo
 
 #[test]
 fn with_the_lowering_record_the_settlement_is_named_and_the_temperature_is_not() {
-    let Some(dir) = hidden::shared() else { return };
+    let Some(dir) = hidden::find_shared_folder() else {
+        return;
+    };
     // Air warms by 0.4 degrees while the support still stands, and stays while it has been lowered.
     let mut windows = vec![
         Window(BEFORE, 0.0, 1e9, false),

@@ -1,6 +1,6 @@
 //! A beam of our own under point loads: a model that is off by a smooth factor gets no name, effects of the library keep theirs.
 
-use super::hidden::drawn::normal;
+use super::hidden::drawn::draw_normal;
 use super::hidden::plain_frame;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -79,7 +79,7 @@ fn beam(seed: u64, dumb: &[usize]) -> StrainFrame {
     };
     frame.observations.values = predict(&frame, &[]);
     for v in &mut frame.observations.values {
-        *v += 1.5 * normal(&mut rng);
+        *v += 1.5 * draw_normal(&mut rng);
     }
     frame
 }
@@ -93,7 +93,7 @@ fn smooth_factor(rng: &mut ChaCha8Rng, sd: f64) -> Vec<f64> {
     const WAVES: usize = 200;
     let waves: Vec<[f64; 2]> = (0..WAVES)
         .map(|_| {
-            let number = normal(rng) / (SPAN / 3.0);
+            let number = draw_normal(rng) / (SPAN / 3.0);
             [number, rng.random_range(0.0..std::f64::consts::TAU)]
         })
         .collect();

@@ -168,7 +168,10 @@ pub fn sensitivity(out: &Path) -> Vec<Vec<f64>> {
 
 /// `strain.csv` and `runs.csv` of 14 runs under forces up to 50 N, noise of half a microstrain (uniform: 0.87 peak); `truth` is S of the
 /// true structure, microstrain per N, and `besides` what else each gauge reads in a run.
-pub fn measured(truth: &[Vec<f64>], mut besides: impl FnMut(usize) -> Vec<f64>) -> [String; 2] {
+pub fn simulate_measured_tables(
+    truth: &[Vec<f64>],
+    mut besides: impl FnMut(usize) -> Vec<f64>,
+) -> [String; 2] {
     let mut numbers = Numbers(7);
     let mut runs = String::from("run,A,B,C,D,E,F\n");
     let mut strain = String::from("run");

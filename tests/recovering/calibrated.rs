@@ -29,7 +29,7 @@ fn run(command: &str, job: &Path) -> (i32, Value, String) {
 
 /// Calibrates the plate of which every gauge reads a few per cent more or less than its model: each load alone six times with 2 % of scatter.
 /// The last two runs, all loads together, are not taught.
-fn calibrated(name: &str, more: &str) -> std::path::PathBuf {
+fn calibrate_plate(name: &str, more: &str) -> std::path::PathBuf {
     let dir = folder(name);
     let write = |name: &str, text: &str| std::fs::write(dir.join(name), text).unwrap();
     write("plate.bdf", &deck());
@@ -42,7 +42,7 @@ fn calibrated(name: &str, more: &str) -> std::path::PathBuf {
         .lines()
         .skip(1)
         .map(|line| {
-            let gain = 1.0 + 0.05 * numbers.normal();
+            let gain = 1.0 + 0.05 * numbers.draw_normal();
             let row = line.split(',').skip(1);
             row.map(|v| gain * v.parse::<f64>().unwrap()).collect()
         })
@@ -64,8 +64,12 @@ fn calibrated(name: &str, more: &str) -> std::path::PathBuf {
         strain += &run;
         for row in &s {
             let own: f64 = row.iter().zip(f).map(|(s, f)| s * f).sum();
-            let scatter = 1.0 + 0.02 * numbers.normal();
-            let _ = write!(strain, ",{:.4}", own * scatter + 0.5 * numbers.normal());
+            let scatter = 1.0 + 0.02 * numbers.draw_normal();
+            let _ = write!(
+                strain,
+                ",{:.4}",
+                own * scatter + 0.5 * numbers.draw_normal()
+            );
         }
         strain.push('\n');
     }
@@ -83,7 +87,7 @@ fn calibrated(name: &str, more: &str) -> std::path::PathBuf {
 
 #[test]
 fn place_plans_with_the_sigma_that_recover_states_by_the_calibrated_s() {
-    let job = calibrated(
+    let job = calibrate_plate(
         "calibrated-place",
         "[placement]\ngauges = 6\nnoise_microstrain = 0.5\nspacing = 5\n",
     );
@@ -108,7 +112,7 @@ fn place_plans_with_the_sigma_that_recover_states_by_the_calibrated_s() {
 #[test]
 fn a_payload_is_weighed_by_the_calibrated_s_with_its_uncertainty() {
     let payload = "[payload]\ngrid = 50\nposition = \"known\"\nuse = [\"strain\"]\n";
-    let job = calibrated("calibrated-payload", payload);
+    let job = calibrate_plate("calibrated-payload", payload);
     // The grid of the payload is that of load `tip`, whose column was calibrated; it pulls down.
     let s = std::fs::read_to_string(job.with_file_name("sensitivity.csv")).unwrap();
     let mut lines = s.lines();
@@ -142,7 +146,7 @@ fn a_payload_is_weighed_by_the_calibrated_s_with_its_uncertainty() {
 #[test]
 fn a_gauge_that_was_turned_is_in_the_calibrated_s_and_not_turned_again() {
     let turned = "[[correction]]\ngauge = \"G2\"\nangle_deg = 5.0\n[[correction]]\ngauge = \"G4\"\ngain = 1.1\nangle_deg = -3.0\n";
-    let job = calibrated("calibrated-turned", turned);
+    let job = calibrate_plate("calibrated-turned", turned);
     let text = std::fs::read_to_string(&job).unwrap();
     assert!(
         !text.contains("angle_deg = 5") && !text.contains("angle_deg = -3"),

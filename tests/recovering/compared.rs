@@ -53,9 +53,9 @@ fn files(strain: String, more: &str) -> InMemory {
          [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = {NOISE}\n{more}"
     );
     InMemory::default()
-        .with("job.toml", job)
-        .with("S.csv", s)
-        .with("strain.csv", strain)
+        .with_file("job.toml", job)
+        .with_file("S.csv", s)
+        .with_file("strain.csv", strain)
 }
 
 /// `result.json` of a job without its frame: the answer, and its findings.
@@ -78,7 +78,7 @@ fn of_load<'a>(answer: &'a Value, key: &str, load: &str) -> &'a Value {
 }
 
 /// Normal numbers: sums of twelve even ones.
-fn normal(seed: u64) -> impl FnMut() -> f64 {
+fn normal_numbers(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;
     let mut even = move || {
         state = state
@@ -90,7 +90,7 @@ fn normal(seed: u64) -> impl FnMut() -> f64 {
 }
 
 /// Recorded loads at 128 Hz, `shift` before the clock of the strain record, with errors of a mean of `off` at load A.
-fn recorded(shift: f64, off: f64, seconds: f64) -> String {
+fn format_load_record(shift: f64, off: f64, seconds: f64) -> String {
     let mut text = "time [s],A.FZ [kN],Kraft B\n".to_owned();
     for i in 0..(seconds * 128.0) as usize {
         let t = i as f64 / 128.0;
@@ -106,9 +106,9 @@ fn a_shift_of_a_fraction_of_a_sample_and_an_offset_are_found_in_a_record() {
     // 234.56 samples of the strain record.
     let shift = START + 2.3456;
     let strain = record(6000, START, loads_at, || 0.0);
-    let wft = recorded(shift, 2.0, 40.0);
+    let wft = format_load_record(shift, 2.0, 40.0);
     let (found, findings) =
-        answer(&files(strain.clone(), more).with("wft.csv", wft.clone())).unwrap();
+        answer(&files(strain.clone(), more).with_file("wft.csv", wft.clone())).unwrap();
     let estimated = &found["comparison_shift"];
     // The cubic between samples errs by 3/128 (2 pi f / rate)^4 of a sine: 4e-4 of the fastest at 128 Hz is 1e-5 of its slope in s.
     assert!(
@@ -144,7 +144,7 @@ fn a_shift_of_a_fraction_of_a_sample_and_an_offset_are_found_in_a_record() {
     }
     // A stated shift is used as it is.
     let stated = format!("{more}shift_s = {shift}\n");
-    let (as_stated, _) = answer(&files(strain, &stated).with("wft.csv", wft)).unwrap();
+    let (as_stated, _) = answer(&files(strain, &stated).with_file("wft.csv", wft)).unwrap();
     assert_eq!(as_stated["comparison_shift"]["shift_s"], shift);
     assert!(as_stated["comparison_shift"]["half_width_s"].is_null());
     let a = of_load(&as_stated, "comparison", "A.FZ");
@@ -155,10 +155,10 @@ fn a_shift_of_a_fraction_of_a_sample_and_an_offset_are_found_in_a_record() {
 fn noise_as_stated_leaves_19_of_20_samples_inside_the_interval() {
     let more =
         "[compare]\nfile = \"wft.csv\"\ncolumns = { \"B.FZ\" = \"Kraft B\" }\nshift_s = 5.0\n";
-    let mut noise = normal(7);
+    let mut noise = normal_numbers(7);
     let strain = record(5000, START, loads_at, || NOISE * noise());
-    let wft = recorded(START, 0.0, 60.0);
-    let (found, findings) = answer(&files(strain, more).with("wft.csv", wft)).unwrap();
+    let wft = format_load_record(START, 0.0, 60.0);
+    let (found, findings) = answer(&files(strain, more).with_file("wft.csv", wft)).unwrap();
     for load in ["A.FZ", "B.FZ"] {
         let load = of_load(&found, "comparison", load);
         assert_eq!(load["n"], 5000);
@@ -196,7 +196,7 @@ fn runs_are_compared_by_name_and_loads_that_nobody_recorded_are_not() {
     let in_compare = "[compare]\nfile = \"runs.csv\"\nunits = { force = \"N\" }\n";
     for more in [more, in_compare] {
         let (found, findings) =
-            answer(&files(strains.clone(), more).with("runs.csv", runs.clone())).unwrap();
+            answer(&files(strains.clone(), more).with_file("runs.csv", runs.clone())).unwrap();
         let [a, b] = ["A.FZ", "B.FZ"].map(|l| of_load(&found, "comparison", l).clone());
         assert_eq!((&a["n"], &b["n"]), (&Value::from(12), &Value::from(10)));
         for (v, expected) in [
@@ -219,7 +219,7 @@ fn runs_are_compared_by_name_and_loads_that_nobody_recorded_are_not() {
     }
     // Noise of the recorded loads that the job states is in the interval.
     let noisy = format!("{more}noise = {{ force = 3.0 }}\n");
-    let (found, _) = answer(&files(strains.clone(), &noisy).with("runs.csv", runs)).unwrap();
+    let (found, _) = answer(&files(strains.clone(), &noisy).with_file("runs.csv", runs)).unwrap();
     assert_eq!(
         number(&of_load(&found, "comparison", "A.FZ")["share_within"]),
         1.0
@@ -247,7 +247,7 @@ fn sections_have_the_damage_of_their_sines_and_add_up_to_the_duty_cycle() {
     let strain = record(2000, 0.0, two_stretches, || 0.0);
     // Thirty periods from peak to peak in a record of its own.
     let apart = record(601, 0.0, |t| [20.0 * (TAU * t / 0.2).cos(), 10.0], || 0.0);
-    let (found, _) = answer(&files(strain, more).with("apart.csv", apart)).unwrap();
+    let (found, _) = answer(&files(strain, more).with_file("apart.csv", apart)).unwrap();
     let list = found["sections"].as_array().unwrap();
     let names: Vec<&Value> = list.iter().map(|s| &s["section"]).collect();
     assert_eq!(
@@ -295,7 +295,7 @@ fn sections_have_the_damage_of_their_sines_and_add_up_to_the_duty_cycle() {
 #[test]
 fn what_can_not_be_compared_or_cut_is_refused_with_its_line() {
     let strain = record(3000, START, loads_at, || 0.0);
-    let wft = recorded(START, 0.0, 30.0);
+    let wft = format_load_record(START, 0.0, 30.0);
     let runs = "run,A.FZ,B.FZ\nR1,1,2\n";
     let compare = "[compare]\nfile = \"wft.csv\"\n";
     let section = |from: f64, to: f64| {
@@ -358,16 +358,16 @@ fn what_can_not_be_compared_or_cut_is_refused_with_its_line() {
         ),
     ];
     let mut unlike = "time,A.FZ\n".to_owned();
-    let mut noise = normal(3);
+    let mut noise = normal_numbers(3);
     for i in 0..3000 {
         let _ = writeln!(unlike, "{},{}", f64::from(i) * 0.01, noise());
     }
     for (more, field, words) in cases {
         let files = files(strain.clone(), &more)
-            .with("wft.csv", wft.clone())
-            .with("runs.csv", runs)
-            .with("other.csv", "time,X\n0,1\n0.01,2\n0.02,3\n")
-            .with("unlike.csv", unlike.clone());
+            .with_file("wft.csv", wft.clone())
+            .with_file("runs.csv", runs)
+            .with_file("other.csv", "time,X\n0,1\n0.01,2\n0.02,3\n")
+            .with_file("unlike.csv", unlike.clone());
         let faults = answer(&files).unwrap_err();
         let said = faults.to_string();
         assert!(

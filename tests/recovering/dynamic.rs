@@ -65,7 +65,7 @@ fn first_hz() -> f64 {
 
 /// Curvature at `x` under a force at the tip of the frequency `hz` over that at rest: with `b^4 = m w^2 / (E I)`, from
 /// `w'''' = b^4 w`, clamped at 0, `E I w'''(L) = -F`, `w''(L) = 0` (Timoshenko, Vibration Problems in Engineering, 1937, section 56).
-fn amplified(x: f64, hz: f64) -> f64 {
+fn curvature_amplification(x: f64, hz: f64) -> f64 {
     let b = ((TAU * hz).powi(2) * LINE_MASS / (E * I)).powf(0.25);
     let (l, y) = (b * LENGTH, b * x);
     let even = l.sin() + l.sinh();
@@ -85,16 +85,16 @@ fn parts(t: f64, of_part: impl Fn(f64) -> f64) -> f64 {
 /// The beam's deck, and its record: `S` of the deck at rest times what the closed form adds.
 fn record() -> InMemory {
     let files = InMemory::default()
-        .with("beam.bdf", deck())
-        .with("job.toml", job(""));
+        .with_file("beam.bdf", deck())
+        .with_file("job.toml", job(""));
     let read = Job::read("job.toml", &files).unwrap_or_else(|f| panic!("{f:?}"));
     let sensed =
         strainbridge::sensitivity(&read, &Context::new(&files)).unwrap_or_else(|f| panic!("{f:?}"));
     let s = &sensed.prepared.sensitivity.values;
     let table = table(&GAUGED, s.as_slice(), SAMPLES, |_, x, t| {
-        parts(t, |hz| amplified(x, hz))
+        parts(t, |hz| curvature_amplification(x, hz))
     });
-    files.with("strain.csv", table)
+    files.with_file("strain.csv", table)
 }
 
 /// A record of gauged elements: `strain` of the gauge by number at `x` and a time, over its strain at rest for 1 N, and noise.
@@ -115,7 +115,7 @@ fn table(
             let strain = 1e6 * s[g] * strain(g, x, t);
             match strain.is_finite() {
                 true => {
-                    let _ = write!(table, ",{:.5}", strain + 0.2 * numbers.normal());
+                    let _ = write!(table, ",{:.5}", strain + 0.2 * numbers.draw_normal());
                 }
                 false => table.push(','),
             }
@@ -126,8 +126,8 @@ fn table(
 }
 
 /// Largest error of the samples that are known, how many these are, the share of them whose interval holds, codes of findings.
-fn recovered(files: InMemory, more: &str) -> (f64, usize, f64, Vec<&'static str>) {
-    let files = files.with("job.toml", job(more));
+fn recover_record(files: InMemory, more: &str) -> (f64, usize, f64, Vec<&'static str>) {
+    let files = files.with_file("job.toml", job(more));
     let job = Job::read("job.toml", &files).unwrap_or_else(|f| panic!("{f:?}"));
     let got =
         strainbridge::recover(&job, &Context::new(&files)).unwrap_or_else(|f| panic!("{f:?}"));
@@ -149,9 +149,9 @@ fn recovered(files: InMemory, more: &str) -> (f64, usize, f64, Vec<&'static str>
 
 #[test]
 fn a_beam_shaken_near_its_first_mode_gives_its_force_once_its_vibration_is_taken_out() {
-    assert!((amplified(500.0, 1e-3) - 1.0).abs() < 1e-6);
+    assert!((curvature_amplification(500.0, 1e-3) - 1.0).abs() < 1e-6);
     let files = record();
-    let (worst, known, _, codes) = recovered(files.clone(), "");
+    let (worst, known, _, codes) = recover_record(files.clone(), "");
     // At .93 of the first frequency strain is seven times that at rest: 3 N read as 20, and those beyond it with the wrong sign.
     assert!(worst > 20.0, "{worst}");
     assert_eq!(known, SAMPLES);
@@ -160,7 +160,7 @@ fn a_beam_shaken_near_its_first_mode_gives_its_force_once_its_vibration_is_taken
     let dynamic = format!(
         "[dynamic]\nup_to_hz = {up_to:.4}\ndamping = 1e-5\nfrequency_uncertainty_rel = 0.001\n"
     );
-    let (worst, known, held, codes) = recovered(files, &dynamic);
+    let (worst, known, held, codes) = recover_record(files, &dynamic);
     // The force has 27 N at most. Lumped masses of 60 elements move frequencies by some 1e-4 and the answer at .93 by 15 times that; noise of .2
     // microstrain where 10 N make 59 at the clamp is .05 N.
     assert!(worst < 0.3, "{worst}");
@@ -182,14 +182,14 @@ fn what_lies_beyond_the_band_is_said() {
         0.8 * first_hz()
     );
     // Of the force 3 N of 12 lie at .93 of the first frequency, more than a hundredth of its power.
-    let (_, _, _, codes) = recovered(record(), &dynamic);
+    let (_, _, _, codes) = recover_record(record(), &dynamic);
     assert!(codes.contains(&"content-beyond-band"), "{codes:?}");
 }
 
 #[test]
 fn what_dynamic_cannot_do_is_a_fault_of_its_line() {
     let fault = |files: InMemory, text: String| {
-        let files = files.with("job.toml", text);
+        let files = files.with_file("job.toml", text);
         let faults = match Job::read("job.toml", &files) {
             Ok(job) => strainbridge::recover(&job, &Context::new(&files))
                 .map(|_| ())
@@ -216,15 +216,15 @@ fn what_dynamic_cannot_do_is_a_fault_of_its_line() {
     let given = "units = \"mm-t-s\"\n[sensitivity]\nfile = \"S.csv\"\nper = { force = \"N\" }\n[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.2\n\
                  [dynamic]\nup_to_hz = 10.0\ndamping = 0.02\n";
     let s = "gauge,tip\nG3,1.0\nG20,0.5\nG40,0.2\n".to_owned();
-    let given = fault(files.with("S.csv", s), given.to_owned());
+    let given = fault(files.with_file("S.csv", s), given.to_owned());
     assert!(given.contains("without a model"), "{given}");
 }
 
 /// S of gauged elements, by the job itself.
-fn sensed(gauged: &[usize]) -> Vec<f64> {
+fn compute_sensitivity(gauged: &[usize]) -> Vec<f64> {
     let files = InMemory::default()
-        .with("beam.bdf", deck())
-        .with("job.toml", job_of(gauged, ""));
+        .with_file("beam.bdf", deck())
+        .with_file("job.toml", job_of(gauged, ""));
     let job = Job::read("job.toml", &files).unwrap();
     let sensed = strainbridge::sensitivity(&job, &Context::new(&files)).unwrap();
     sensed.prepared.sensitivity.values.as_slice().to_vec()
@@ -232,7 +232,7 @@ fn sensed(gauged: &[usize]) -> Vec<f64> {
 
 /// A record of a force at the tip, `course` of the time, whose parts strain the gauge by number as `strain` says; share of intervals that hold,
 /// largest error, mean half width, codes.
-fn forced(
+fn recover_tip_force(
     gauged: &[usize],
     samples: usize,
     more: &str,
@@ -240,12 +240,12 @@ fn forced(
     strain: impl Fn(usize, f64, f64) -> f64,
 ) -> (f64, f64, f64, Vec<&'static str>) {
     let files = InMemory::default()
-        .with("beam.bdf", deck())
-        .with(
+        .with_file("beam.bdf", deck())
+        .with_file(
             "strain.csv",
-            table(gauged, &sensed(gauged), samples, strain),
+            table(gauged, &compute_sensitivity(gauged), samples, strain),
         )
-        .with("job.toml", job_of(gauged, more));
+        .with_file("job.toml", job_of(gauged, more));
     let job = Job::read("job.toml", &files).unwrap();
     let got =
         strainbridge::recover(&job, &Context::new(&files)).unwrap_or_else(|f| panic!("{f:?}"));
@@ -271,8 +271,8 @@ fn forced(
 fn a_mode_beyond_the_band_is_taken_out_all_the_same() {
     let wave = |t: f64| 10.0 * (TAU * t).sin();
     let more = "[dynamic]\nup_to_hz = 1.07\ndamping = 0.005\n";
-    let (held, worst, _, codes) = forced(&[3], 5000, more, wave, |_, x, t| {
-        amplified(x, 1.0) * wave(t)
+    let (held, worst, _, codes) = recover_tip_force(&[3], 5000, more, wave, |_, x, t| {
+        curvature_amplification(x, 1.0) * wave(t)
     });
     assert!(held > 0.93, "{held} {worst}");
     assert!(worst < 0.1, "{worst}");
@@ -280,12 +280,15 @@ fn a_mode_beyond_the_band_is_taken_out_all_the_same() {
     // With model and damping exact, frequencies but for the mesh, nothing is left of the second mode for gauges to be blamed for.
     let two = |t: f64| [5.0 * (TAU * 0.3 * t).sin(), 10.0 * (TAU * 2.6 * t).sin()];
     let more = "[dynamic]\nup_to_hz = 4.0\ndamping = 1e-5\nfrequency_uncertainty_rel = 2e-4\ndamping_uncertainty_rel = 0\n";
-    let (held, _, _, codes) = forced(
+    let (held, _, _, codes) = recover_tip_force(
         &GAUGED,
         5000,
         more,
         |t| two(t).iter().sum(),
-        |_, x, t| amplified(x, 0.3) * two(t)[0] + amplified(x, 2.6) * two(t)[1],
+        |_, x, t| {
+            curvature_amplification(x, 0.3) * two(t)[0]
+                + curvature_amplification(x, 2.6) * two(t)[1]
+        },
     );
     assert!(held > 0.93, "{held}");
     let blamed = [
@@ -303,10 +306,11 @@ fn an_error_of_frequency_blames_no_gauge() {
     let two = |t: f64| [5.0 * (TAU * 0.3 * t).sin(), 10.0 * (TAU * 2.6 * t).sin()];
     let more = "[dynamic]\nup_to_hz = 4.0\ndamping = 0.002\n";
     let real = |share: f64, x: f64, t: f64| {
-        amplified(x, 0.3 / share) * two(t)[0] + amplified(x, 2.6 / share) * two(t)[1]
+        curvature_amplification(x, 0.3 / share) * two(t)[0]
+            + curvature_amplification(x, 2.6 / share) * two(t)[1]
     };
     for share in [1.01, 1.02] {
-        let (held, worst, width, codes) = forced(
+        let (held, worst, width, codes) = recover_tip_force(
             &GAUGED,
             5000,
             more,
@@ -319,7 +323,7 @@ fn an_error_of_frequency_blames_no_gauge() {
         assert!(codes.iter().all(|c| !blamed.contains(c)), "{codes:?}");
     }
     let off = |g: usize, x: f64, t: f64| real(1.01, x, t) * if g == 1 { 1.3 } else { 1.0 };
-    let (_, _, _, codes) = forced(&GAUGED, 5000, more, |t| two(t).iter().sum(), off);
+    let (_, _, _, codes) = recover_tip_force(&GAUGED, 5000, more, |t| two(t).iter().sum(), off);
     let said = [
         "gauge-suspect",
         "strain-not-explained",
@@ -334,10 +338,10 @@ fn gauges_that_never_read_together_have_intervals_of_their_own() {
     let wave = |t: f64| 10.0 * (TAU * 2.6 * t).sin();
     let more = "[dynamic]\nup_to_hz = 4.0\ndamping = 0.002\n";
     let end = 5000.0 / RATE;
-    let (held, worst, ..) = forced(&[3, 20], 5000, more, wave, |g, x, t| {
+    let (held, worst, ..) = recover_tip_force(&[3, 20], 5000, more, wave, |g, x, t| {
         match (g == 0) == (t < 0.5 * end) {
             true => f64::NAN,
-            false => amplified(x, 2.6 / 1.02) * wave(t),
+            false => curvature_amplification(x, 2.6 / 1.02) * wave(t),
         }
     });
     assert!(worst > 0.3, "{worst}");
@@ -346,7 +350,7 @@ fn gauges_that_never_read_together_have_intervals_of_their_own() {
 
 #[test]
 fn a_record_shorter_than_the_filter_is_a_fault_whatever_is_blank_in_it() {
-    let s = sensed(&GAUGED);
+    let s = compute_sensitivity(&GAUGED);
     let blank = |_: usize, _: f64, t: f64| {
         if (t - 0.2).abs() < 1e-6 {
             f64::NAN
@@ -356,9 +360,9 @@ fn a_record_shorter_than_the_filter_is_a_fault_whatever_is_blank_in_it() {
     };
     let more = format!("[dynamic]\nup_to_hz = {}\ndamping = 0.01\n", first_hz());
     let files = InMemory::default()
-        .with("beam.bdf", deck())
-        .with("strain.csv", table(&GAUGED, &s, 250, blank))
-        .with("job.toml", job(&more));
+        .with_file("beam.bdf", deck())
+        .with_file("strain.csv", table(&GAUGED, &s, 250, blank))
+        .with_file("job.toml", job(&more));
     let job = Job::read("job.toml", &files).unwrap();
     let faults = strainbridge::recover(&job, &Context::new(&files)).map(|_| ());
     let faults = faults.unwrap_err();
@@ -373,7 +377,7 @@ fn a_record_shorter_than_the_filter_is_a_fault_whatever_is_blank_in_it() {
 #[test]
 fn modes_are_solved_once_and_kept() {
     let more = "[dynamic]\nup_to_hz = 10.0\ndamping = 0.01\nfrequency_uncertainty_rel = 0.001\n";
-    let files = record().with("job.toml", job(more));
+    let files = record().with_file("job.toml", job(more));
     let job = Job::read("job.toml", &files).unwrap();
     let kept = Memory::default();
     let once = || strainbridge::recover(&job, &Context::new(&files).store(&kept)).unwrap();

@@ -56,7 +56,7 @@ fn plate_job(results: &str, load: &str) -> String {
 
 /// S of both gauges in microstrain per N.
 fn s_of(files: &InMemory, job: &str) -> Result<Vec<f64>, Faults> {
-    let files = files.clone().with("job.toml", job);
+    let files = files.clone().with_file("job.toml", job);
     let read = Job::read("job.toml", &files)?;
     let s = sensitivity(&read, &Context::new(&files))?;
     let values = &s.prepared.sensitivity.values;
@@ -67,7 +67,7 @@ fn words(faults: &Faults) -> String {
     faults.iter().map(ToString::to_string).collect()
 }
 
-fn checked(files: &InMemory, names: &[&str]) -> Outcome<Checked> {
+fn check_files(files: &InMemory, names: &[&str]) -> Outcome<Checked> {
     let names: Vec<PathBuf> = names.iter().map(PathBuf::from).collect();
     check(&names, &Context::new(files)).unwrap()
 }
@@ -77,13 +77,13 @@ fn a_subcase_that_two_results_hold_with_other_values_is_not_taken_from_the_first
     let first = [(11, 10e-6), (12, 12e-6)];
     let last = [(11, 18e-6), (12, 20e-6)];
     let files = InMemory::default()
-        .with("plate.bdf", PLATE)
-        .with("first.pch", punch(&first))
-        .with("last.pch", punch(&last))
-        .with("copy.pch", punch(&first))
-        .with("left.pch", punch(&first[..1]))
-        .with("right.pch", punch(&first[1..]))
-        .with("twice.pch", punch(&first) + &punch(&last));
+        .with_file("plate.bdf", PLATE)
+        .with_file("first.pch", punch(&first))
+        .with_file("last.pch", punch(&last))
+        .with_file("copy.pch", punch(&first))
+        .with_file("left.pch", punch(&first[..1]))
+        .with_file("right.pch", punch(&first[1..]))
+        .with_file("twice.pch", punch(&first) + &punch(&last));
     let close = |s: Result<Vec<f64>, Faults>, expected: [f64; 2]| {
         let s = s.unwrap_or_else(|f| panic!("{}", words(&f)));
         let near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-9;
@@ -121,7 +121,7 @@ fn a_subcase_that_two_results_hold_with_other_values_is_not_taken_from_the_first
         (&["plate.bdf", "first.pch", "copy.pch"], 0),
         (&["plate.bdf", "left.pch", "right.pch"], 0),
     ] {
-        let found = checked(&files, names);
+        let found = check_files(&files, names);
         assert!(found.faults.is_empty());
         let n = found.findings.iter().filter(|f| code(f)).count();
         assert_eq!(n, expected, "{names:?}");
@@ -129,7 +129,7 @@ fn a_subcase_that_two_results_hold_with_other_values_is_not_taken_from_the_first
 }
 
 /// A job whose S is given, and a record of four gauges with these times.
-fn recorded(head: &str, time: impl Fn(usize) -> String) -> InMemory {
+fn build_record_job(head: &str, time: impl Fn(usize) -> String) -> InMemory {
     let mut s = "gauge,A,B\n".to_owned();
     for (g, row) in S.iter().enumerate() {
         let _ = writeln!(s, "G{},{},{}", g + 1, row[0], row[1]);
@@ -143,9 +143,9 @@ fn recorded(head: &str, time: impl Fn(usize) -> String) -> InMemory {
     let job = "units = \"m-kg-s\"\n[sensitivity]\nfile = \"s.csv\"\n\
                [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.1\n";
     InMemory::default()
-        .with("s.csv", s)
-        .with("job.toml", job)
-        .with("strain.csv", record)
+        .with_file("s.csv", s)
+        .with_file("job.toml", job)
+        .with_file("strain.csv", record)
 }
 
 #[test]
@@ -153,27 +153,30 @@ fn times_in_any_unit_give_the_rate_and_an_unknown_unit_is_an_error() {
     let noon = 20_574.5 * 86_400.0;
     let at = |i: usize| i as f64 * 0.01;
     for (files, expected) in [
-        (recorded("time", |i| format!("{:.2}", at(i))), None),
-        (recorded("time [ms]", |i| (10 * i).to_string()), None),
+        (build_record_job("time", |i| format!("{:.2}", at(i))), None),
         (
-            recorded("time [d]", |i| format!("{:e}", at(i) / 86_400.0)),
+            build_record_job("time [ms]", |i| (10 * i).to_string()),
             None,
         ),
         (
-            recorded("time", |i| format!("{:.10}", 46_143.5 + at(i) / 86_400.0)),
+            build_record_job("time [d]", |i| format!("{:e}", at(i) / 86_400.0)),
+            None,
+        ),
+        (
+            build_record_job("time", |i| format!("{:.10}", 46_143.5 + at(i) / 86_400.0)),
             Some("time-unit-recognised"),
         ),
         (
-            recorded("time", |i| format!("{:.0}", (noon + at(i)) * 1e3)),
+            build_record_job("time", |i| format!("{:.0}", (noon + at(i)) * 1e3)),
             Some("time-unit-recognised"),
         ),
         // Milliseconds, or samples ten seconds apart.
         (
-            recorded("time", |i| (10 * i).to_string()),
+            build_record_job("time", |i| (10 * i).to_string()),
             Some("time-unit-doubtful"),
         ),
         (
-            recorded("time", |i| format!("{:e}", at(i) * 1e-6)),
+            build_record_job("time", |i| format!("{:e}", at(i) * 1e-6)),
             Some("time-unit-doubtful"),
         ),
     ] {
@@ -195,15 +198,15 @@ fn times_in_any_unit_give_the_rate_and_an_unknown_unit_is_an_error() {
 
 #[test]
 fn check_states_in_one_line_what_a_file_is() {
-    let record = recorded("time", |i| format!("{:.2}", i as f64 * 0.01));
+    let record = build_record_job("time", |i| format!("{:.2}", i as f64 * 0.01));
     let files = record
-        .with("table.csv", "run,G1,G2\nR1,1,2\n")
-        .with("report.pdf", b"%PDF-1.7\n\x00\x01".to_vec())
-        .with(
+        .with_file("table.csv", "run,G1,G2\nR1,1,2\n")
+        .with_file("report.pdf", b"%PDF-1.7\n\x00\x01".to_vec())
+        .with_file(
             "noise.dat",
             [b"GRID,1\n\x00\x08\x1b[31m".to_vec(), vec![0; 5000]].concat(),
         );
-    let found = checked(&files, &["strain.csv", "table.csv"]);
+    let found = check_files(&files, &["strain.csv", "table.csv"]);
     assert!(found.faults.is_empty(), "{:?}", found.faults);
     let lines: Vec<String> = found.records.iter().map(|r| r.text()).collect();
     assert_eq!(
@@ -217,7 +220,7 @@ fn check_states_in_one_line_what_a_file_is() {
         ("report.pdf", "a PDF document"),
         ("noise.dat", "a binary file"),
     ] {
-        let found = checked(&files, &[name]);
+        let found = check_files(&files, &[name]);
         assert_eq!(found.faults.len(), 1, "{:?}", found.faults);
         let fault = found.faults[0].to_string();
         assert!(
@@ -229,9 +232,9 @@ fn check_states_in_one_line_what_a_file_is() {
 
 #[test]
 fn another_kind_of_file_than_the_one_expected_is_one_fault() {
-    let files = recorded("time", |i| format!("{:.2}", i as f64 * 0.01));
+    let files = build_record_job("time", |i| format!("{:.2}", i as f64 * 0.01));
     let strain_is = |bytes: &[u8]| {
-        let files = files.clone().with("strain.csv", bytes);
+        let files = files.clone().with_file("strain.csv", bytes);
         let job = Job::read("job.toml", &files).unwrap();
         let refused = strainbridge::recover(&job, &Context::new(&files));
         words(&refused.err().expect("a fault"))
@@ -243,13 +246,13 @@ fn another_kind_of_file_than_the_one_expected_is_one_fault() {
     let other = strain_is(b"time,left,right\n0,1,2\n0.01,1,2\n");
     assert!(other.contains("its columns are left, right"), "{other}");
     let deck = InMemory::default()
-        .with(
+        .with_file(
             "main.bdf",
             "SOL 101\nCEND\nBEGIN BULK\nINCLUDE 'part.bdf'\nENDDATA\n",
         )
-        .with("part.bdf", b"TDSm\x00\x00".to_vec())
-        .with("rec.rsp", b"TDSm\x00\x00".to_vec());
-    let found = checked(&deck, &["main.bdf"]);
+        .with_file("part.bdf", b"TDSm\x00\x00".to_vec())
+        .with_file("rec.rsp", b"TDSm\x00\x00".to_vec());
+    let found = check_files(&deck, &["main.bdf"]);
     let said: String = found.faults.iter().map(ToString::to_string).collect();
     assert!(said.contains("a record in TDMS form"), "{said}");
     let solved =

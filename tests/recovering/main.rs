@@ -341,7 +341,7 @@ fn a_load_at_a_grid_that_the_deck_lacks_is_a_fault_with_results_too() {
 const EMPTY: [usize; 4] = [0, 4, 9, 13];
 
 /// Strain of runs whose gauges' zeros move by up to 6 microstrain from row to row, and of which some are without load.
-fn drifting() -> String {
+fn drifting_strain_table() -> String {
     table("run", 14, |i, g, v| {
         let [a, b] = loads(i);
         let acts = if EMPTY.contains(&i) {
@@ -360,7 +360,7 @@ fn drifting() -> String {
 fn a_zero_that_drifts_is_followed_through_runs_without_load() {
     let names = EMPTY.map(|i| format!("\"R{i}\"")).join(", ");
     let more = format!("zero_runs = [{names}]\n");
-    let (code, said, result, _) = recover("zero-runs", &drifting(), &more);
+    let (code, said, result, _) = recover("zero-runs", &drifting_strain_table(), &more);
     assert_eq!(code, 0, "{said}");
     let of = |run: usize, name: &str| {
         let all = result["loads"].as_array().unwrap();
@@ -391,7 +391,11 @@ fn a_zero_that_drifts_is_followed_through_runs_without_load() {
     }
     let codes = result["findings"].as_array().unwrap();
     assert!(codes.iter().any(|f| f["code"] == "zero-followed"));
-    let (code, said, _, _) = recover("zero-runs-none", &drifting(), "zero_runs = [\"R99\"]\n");
+    let (code, said, _, _) = recover(
+        "zero-runs-none",
+        &drifting_strain_table(),
+        "zero_runs = [\"R99\"]\n",
+    );
     assert_eq!(code, 2);
     assert!(
         said.contains("measured.zero_runs: `strain.csv` has no run `R99`"),

@@ -27,10 +27,10 @@ fn files(record: impl Fn([f64; 2]) -> [f64; 2]) -> InMemory {
         .map(|(g, [a, b])| format!("G{},{a},{b}\n", g + 1))
         .collect();
     InMemory::default()
-        .with("S.csv", format!("gauge,A.FZ,B.FZ\n{s}"))
-        .with("strain.csv", readings)
-        .with("runs.csv", runs)
-        .with(
+        .with_file("S.csv", format!("gauge,A.FZ,B.FZ\n{s}"))
+        .with_file("strain.csv", readings)
+        .with_file("runs.csv", runs)
+        .with_file(
             "job.toml",
             "units = \"m-kg-s\"\n[sensitivity]\nfile = \"S.csv\"\nper = { force = \"N\" }\n[[load]]\nname = \"A.FZ\"\n[[load]]\nname = \"B.FZ\"\n\
              [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\nmodel_uncertainty_rel = 0.01\nhold_out = [\"R8\", \"R9\"]\n\
@@ -103,8 +103,10 @@ fn carrier(gauges: &str) -> Vec<Finding> {
     let text = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
     let files = ["recover.toml", "frame.bdf", "strain.csv"]
         .iter()
-        .fold(InMemory::default(), |all, name| all.with(name, text(name)))
-        .with("gauges.csv", gauges);
+        .fold(InMemory::default(), |all, name| {
+            all.with_file(name, text(name))
+        })
+        .with_file("gauges.csv", gauges);
     let job = Job::read("recover.toml", &files).unwrap();
     recover(&job, &Context::new(&files)).unwrap().findings.0
 }
@@ -156,7 +158,7 @@ fn readings_in_another_unit_of_strain_leave_all_loads_far_below_their_size() {
     let files = ["recover.toml", "frame.bdf", "gauges.csv"]
         .iter()
         .fold(InMemory::default(), |all, name| {
-            all.with(name, std::fs::read_to_string(folder.join(name)).unwrap())
+            all.with_file(name, std::fs::read_to_string(folder.join(name)).unwrap())
         });
     let strain = std::fs::read_to_string(folder.join("strain.csv")).unwrap();
     let thousandth = |line: &str| {
@@ -167,7 +169,7 @@ fn readings_in_another_unit_of_strain_leave_all_loads_far_below_their_size() {
         cells.collect::<Vec<_>>().join(",")
     };
     let text: Vec<String> = strain.lines().map(thousandth).collect();
-    let files = files.with("strain.csv", text.join("\n") + "\n");
+    let files = files.with_file("strain.csv", text.join("\n") + "\n");
     let job = Job::read("recover.toml", &files).unwrap();
     let found = recover(&job, &Context::new(&files)).unwrap().findings.0;
     let far = found.iter().find(|f| f.code == "load-far-below-expected");
@@ -182,7 +184,7 @@ fn readings_in_another_unit_of_strain_leave_all_loads_far_below_their_size() {
 }
 
 /// The findings of `payload` on the carrier: its job, its strain and its runs file changed.
-fn weighed(
+fn collect_payload_findings(
     job: impl Fn(String) -> String,
     strain: impl Fn(String) -> String,
     runs: impl Fn(String) -> String,
@@ -190,11 +192,11 @@ fn weighed(
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/frame");
     let text = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
     let files = InMemory::default()
-        .with("frame.bdf", text("frame.bdf"))
-        .with("gauges.csv", text("gauges.csv"))
-        .with("payload.toml", job(text("payload.toml")))
-        .with("strain.csv", strain(text("strain.csv")))
-        .with("runs.csv", runs(text("runs.csv")));
+        .with_file("frame.bdf", text("frame.bdf"))
+        .with_file("gauges.csv", text("gauges.csv"))
+        .with_file("payload.toml", job(text("payload.toml")))
+        .with_file("strain.csv", strain(text("strain.csv")))
+        .with_file("runs.csv", runs(text("runs.csv")));
     let job = Job::read("payload.toml", &files).unwrap();
     payload(&job, &Context::new(&files)).unwrap().findings.0
 }
@@ -226,9 +228,9 @@ fn a_stated_place_that_the_strain_refutes_is_named_and_a_right_one_is_not() {
         }
     };
     // The payload of R01 is at the grid, those of R05 and R06 are 300 mm away from it.
-    let right = weighed(at_the_grid, only(["R01", "R01"]), |t| t);
+    let right = collect_payload_findings(at_the_grid, only(["R01", "R01"]), |t| t);
     assert_eq!(of(&right), Vec::<String>::new(), "{right:?}");
-    let wrong = weighed(at_the_grid, only(["R05", "R06"]), |t| t);
+    let wrong = collect_payload_findings(at_the_grid, only(["R05", "R06"]), |t| t);
     assert_eq!(of(&wrong).len(), 1, "{wrong:?}");
     // The runs file states the place of each run, in metres, at the grid or away from it: only a wrong one is named.
     let known = |job: String| {
@@ -236,7 +238,7 @@ fn a_stated_place_that_the_strain_refutes_is_named_and_a_right_one_is_not() {
         job.replace("support = \"known\"", "support = \"free\"")
             .replace("\"strain\", \"reactions\"", "\"strain\"")
     };
-    let own = weighed(known, |t| t, |t| t);
+    let own = collect_payload_findings(known, |t| t, |t| t);
     assert_eq!(of(&own), Vec::<String>::new(), "{own:?}");
     let moved = |text: String| -> String {
         let change = |line: &str| match line.strip_prefix("R03,900,2.100,") {
@@ -245,14 +247,14 @@ fn a_stated_place_that_the_strain_refutes_is_named_and_a_right_one_is_not() {
         };
         text.lines().map(change).collect()
     };
-    let wrong = weighed(known, |t| t, moved);
+    let wrong = collect_payload_findings(known, |t| t, moved);
     assert_eq!(of(&wrong), ["R03"], "{wrong:?}");
 }
 
 #[test]
 fn recorded_masses_that_the_readings_contradict_are_an_error() {
     let named = |found: &[Finding]| found.iter().any(|f| f.code == "recorded-mass-contradicts");
-    assert!(!named(&weighed(|t| t, |t| t, |t| t)));
+    assert!(!named(&collect_payload_findings(|t| t, |t| t, |t| t)));
     let of_sixty_percent = |text: String| -> String {
         let change = |line: &str| {
             let mut f: Vec<String> = line.split(',').map(str::to_owned).collect();
@@ -263,7 +265,7 @@ fn recorded_masses_that_the_readings_contradict_are_an_error() {
         };
         text.lines().map(change).collect()
     };
-    let found = weighed(|t| t, |t| t, of_sixty_percent);
+    let found = collect_payload_findings(|t| t, |t| t, of_sixty_percent);
     assert!(named(&found), "{found:?}");
 }
 
@@ -291,10 +293,10 @@ fn tables_in_the_code_of_windows_are_read_and_names_of_another_case_are_shown_wi
         serde_json::to_value(&found.answer).unwrap()
     };
     assert_eq!(
-        loads(&right.clone().with("strain.csv", windows)),
+        loads(&right.clone().with_file("strain.csv", windows)),
         loads(&right)
     );
-    let lower = right.with("strain.csv", strain.replace('G', "g "));
+    let lower = right.with_file("strain.csv", strain.replace('G', "g "));
     let job = Job::read("job.toml", &lower).unwrap();
     let faults = recover(&job, &Context::new(&lower))
         .err()

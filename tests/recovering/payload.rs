@@ -31,7 +31,7 @@ const ROWS: [[f64; 2]; 8] = [
 struct Lot(ChaCha8Rng);
 
 impl Lot {
-    fn normal(&mut self) -> f64 {
+    fn draw_normal(&mut self) -> f64 {
         let u: f64 = self.0.random_range(1e-12..1.0);
         let v: f64 = self.0.random_range(0.0..1.0);
         (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
@@ -40,7 +40,7 @@ impl Lot {
     fn strain(&mut self, f: [f64; 2]) -> Vec<f64> {
         let one = |row: &[f64; 2]| {
             let clean = 1e-6 * (row[0] * f[0] + row[1] * f[1]);
-            clean * (1.0 + SCATTER * self.normal()) + NOISE * self.normal()
+            clean * (1.0 + SCATTER * self.draw_normal()) + NOISE * self.draw_normal()
         };
         ROWS.iter().map(one).collect()
     }
@@ -55,7 +55,7 @@ impl Lot {
 }
 
 /// S from a dozen payloads; `loads` of the two that act.
-fn calibrated(lot: &mut Lot, loads: usize) -> Sensitivity {
+fn calibrate_sensitivity(lot: &mut Lot, loads: usize) -> Sensitivity {
     let runs = (0..12).map(|i| {
         let [weight, x] = lot.payload();
         let x = if loads == 1 { 0.0 } else { x };
@@ -64,7 +64,7 @@ fn calibrated(lot: &mut Lot, loads: usize) -> Sensitivity {
             run: format!("R{i}"),
             strain: lot.strain(f),
             noise_factor: 1.0,
-            loads: KnownLoads::exact(f[..loads].to_vec()),
+            loads: KnownLoads::from_exact(f[..loads].to_vec()),
             group: i,
         }
     });
@@ -72,7 +72,7 @@ fn calibrated(lot: &mut Lot, loads: usize) -> Sensitivity {
         gauges: (0..ROWS.len()).map(|g| format!("G{g}")).collect(),
         loads: ["payload", "payload.MY"][..loads]
             .iter()
-            .map(|name| Load::named(*name))
+            .map(|name| Load::from_name(*name))
             .collect(),
         noise: NOISE,
         model: None,
@@ -128,7 +128,7 @@ fn intervals_of_payloads_hold_over_calibrations() {
         let mut lot = Lot(ChaCha8Rng::seed_from_u64(1));
         let (mut held, mut held_place, trials) = (0, 0, 600);
         for _ in 0..trials {
-            let s = calibrated(&mut lot, loads);
+            let s = calibrate_sensitivity(&mut lot, loads);
             let [weight, x] = lot.payload();
             let x = if loads == 1 { 0.0 } else { x };
             let strain = lot.strain([weight, weight * x]);
@@ -153,7 +153,7 @@ fn weight_and_moment_have_the_sigma_of_recover_where_both_ask_the_same() {
     for (place, loads) in [(Place::Known, 1), (Place::Free, 2)] {
         let mut lot = Lot(ChaCha8Rng::seed_from_u64(2));
         for _ in 0..20 {
-            let s = calibrated(&mut lot, loads);
+            let s = calibrate_sensitivity(&mut lot, loads);
             let [weight, x] = lot.payload();
             let x = if loads == 1 { 0.0 } else { x };
             let strain = lot.strain([weight, weight * x]);
@@ -228,9 +228,9 @@ fn plate_on_wheels(
         "{gauges}[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\n{more}"
     );
     InMemory::default()
-        .with("deck.bdf", deck)
-        .with("job.toml", job)
-        .with("strain.csv", strain)
+        .with_file("deck.bdf", deck)
+        .with_file("job.toml", job)
+        .with_file("strain.csv", strain)
 }
 
 /// Readings limit a payload, the mass of the model does not.

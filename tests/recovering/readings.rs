@@ -16,9 +16,9 @@ fn job(more: &str) -> String {
 
 fn files(strain: impl AsRef<[u8]>, more: &str) -> InMemory {
     InMemory::default()
-        .with("job.toml", job(more))
-        .with("S.csv", S)
-        .with("strain.csv", strain.as_ref())
+        .with_file("job.toml", job(more))
+        .with_file("S.csv", S)
+        .with_file("strain.csv", strain.as_ref())
 }
 
 /// Strain of five runs or samples in a unit of `micro` microstrain.
@@ -101,7 +101,7 @@ fn every_unit_and_code_of_text_gives_the_same_loads_in_runs_and_in_records() {
 fn a_record_where_runs_are_needed_has_one_message_in_every_command() {
     let record = strain("time", "um/m", 1.0);
     let runs = "[runs]\nfile = \"runs.csv\"\nunits = { force = \"N\" }\n";
-    let files = files(record, runs).with("runs.csv", "run,A.FZ,B.FZ\nR0,1,2\n");
+    let files = files(record, runs).with_file("runs.csv", "run,A.FZ,B.FZ\nR0,1,2\n");
     let job = Job::read("job.toml", &files).unwrap();
     let cx = Context::new(&files);
     let of_calibrate = faults_of(calibrate(&job, &cx));
@@ -151,7 +151,7 @@ fn a_load_without_a_column_is_one_fault_that_names_the_column_meant() {
     for i in 0..5 {
         let _ = writeln!(table, "R{i},100,50");
     }
-    let files = files(strain("run", "um/m", 1.0), runs).with("runs.csv", table);
+    let files = files(strain("run", "um/m", 1.0), runs).with_file("runs.csv", table);
     let job = Job::read("job.toml", &files).unwrap();
     let faults = faults_of(reconcile(&job, &Context::new(&files)));
     let of_load: Vec<String> = faults.iter().map(ToString::to_string).collect();
@@ -179,9 +179,9 @@ fn a_payload_acts_along_a_force_that_is_stated_in_another_coordinate_system() {
         );
         let gauges = "name,element,surface,dir_x,dir_y,dir_z\nG1,7,bottom,1,0,0\nG2,7,bottom,1,1,0\nG3,7,bottom,0,1,0\n";
         let files = InMemory::default()
-            .with("plate.bdf", PLATE)
-            .with("job.toml", job.clone())
-            .with("gauges.csv", gauges);
+            .with_file("plate.bdf", PLATE)
+            .with_file("job.toml", job.clone())
+            .with_file("gauges.csv", gauges);
         let read = Job::read("job.toml", &files).unwrap();
         let s = sensitivity(&read, &Context::new(&files)).unwrap();
         let s = &s.prepared.sensitivity;
@@ -189,8 +189,8 @@ fn a_payload_acts_along_a_force_that_is_stated_in_another_coordinate_system() {
             .map(|g| (s.values[(g, 0)] * -250e6).to_string())
             .collect();
         let files = files
-            .with("strain.csv", format!("run,G1,G2,G3\nR1,{}\n", strain.join(",")))
-            .with(
+            .with_file("strain.csv", format!("run,G1,G2,G3\nR1,{}\n", strain.join(",")))
+            .with_file(
                 "job.toml",
                 format!(
                     "{job}[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.1\n[payload]\ngrid = 2\nuse = [\"strain\"]\n"

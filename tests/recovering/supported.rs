@@ -70,10 +70,14 @@ pub(super) fn job() -> String {
 fn trials(s: &Sensitivity, errors: ErrorModel) -> Vec<(Vec<f64>, Vec<f64>)> {
     let mut numbers = Numbers(19);
     let trial = |_| {
-        let f: Vec<f64> = s.loads.iter().map(|_| 50.0 * numbers.normal()).collect();
+        let f: Vec<f64> = s
+            .loads
+            .iter()
+            .map(|_| 50.0 * numbers.draw_normal())
+            .collect();
         let strain = s.values.row_iter().map(|row| {
             let own: f64 = row.iter().zip(&f).map(|(s, f)| s * f).sum();
-            own + errors.noise * numbers.normal()
+            own + errors.noise * numbers.draw_normal()
         });
         let strain = strain.collect();
         (f, strain)
@@ -84,8 +88,8 @@ fn trials(s: &Sensitivity, errors: ErrorModel) -> Vec<(Vec<f64>, Vec<f64>)> {
 #[test]
 fn intervals_on_a_supported_structure_cover() {
     let files = InMemory::default()
-        .with("plate.bdf", deck())
-        .with("job.toml", job());
+        .with_file("plate.bdf", deck())
+        .with_file("job.toml", job());
     let cx = Context::new(&files);
     let job = Job::read("job.toml", &files).unwrap_or_else(|f| panic!("{f:?}"));
     let sensed = strainbridge::sensitivity(&job, &cx).unwrap_or_else(|f| panic!("{f:?}"));
@@ -167,8 +171,8 @@ fn intervals_on_a_supported_structure_cover() {
 /// A record of 2,000 samples at 1 kHz: the tip load alternates at 100 Hz and the corner's at 7 Hz; `change` wrongs the readings of a sample.
 fn record(change: impl Fn(&mut [f64])) -> InMemory {
     let files = InMemory::default()
-        .with("plate.bdf", deck())
-        .with("job.toml", job());
+        .with_file("plate.bdf", deck())
+        .with_file("job.toml", job());
     let read = Job::read("job.toml", &files).unwrap_or_else(|f| panic!("{f:?}"));
     let sensed =
         strainbridge::sensitivity(&read, &Context::new(&files)).unwrap_or_else(|f| panic!("{f:?}"));
@@ -181,7 +185,7 @@ fn record(change: impl Fn(&mut [f64])) -> InMemory {
         let f = [wave(100.0), wave(7.0), 0.5 * wave(3.0), wave(1.0)];
         let made = s.values.row_iter().map(|row| {
             let own: f64 = row.iter().zip(&f).map(|(s, f)| s * f).sum();
-            1e6 * own + numbers.normal()
+            1e6 * own + numbers.draw_normal()
         });
         let mut readings: Vec<f64> = made.collect();
         change(&mut readings);
@@ -193,8 +197,8 @@ fn record(change: impl Fn(&mut [f64])) -> InMemory {
     }
     let measured = "[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 1.0\nmodel_uncertainty_rel = 0.01\n";
     files
-        .with("job.toml", job() + measured)
-        .with("strain.csv", table)
+        .with_file("job.toml", job() + measured)
+        .with_file("strain.csv", table)
 }
 
 #[test]

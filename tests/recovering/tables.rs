@@ -15,13 +15,13 @@ fn plate(gauges: &str) -> InMemory {
     let job = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n\
                [[load]]\nname = \"P\"\ngrid = 2\ncomponent = \"FY\"\n[gauges]\nfile = \"gauges.csv\"\n";
     InMemory::default()
-        .with("plate.bdf", PLATE)
-        .with("job.toml", job)
-        .with("gauges.csv", gauges)
+        .with_file("plate.bdf", PLATE)
+        .with_file("job.toml", job)
+        .with_file("gauges.csv", gauges)
 }
 
 /// S of the first gauge and the findings, or the faults.
-fn asked(gauges: &str) -> Result<(f64, Vec<Finding>), Faults> {
+fn compute_sensitivity(gauges: &str) -> Result<(f64, Vec<Finding>), Faults> {
     let files = plate(gauges);
     let job = Job::read("job.toml", &files)?;
     let found = sensitivity(&job, &Context::new(&files))?;
@@ -29,7 +29,7 @@ fn asked(gauges: &str) -> Result<(f64, Vec<Finding>), Faults> {
     Ok((value, found.findings.to_vec()))
 }
 
-fn unread(findings: &[Finding]) -> Vec<&Finding> {
+fn find_unread_columns(findings: &[Finding]) -> Vec<&Finding> {
     let of_code = findings.iter().filter(|f| f.code == "column-not-read");
     of_code.collect()
 }
@@ -37,8 +37,10 @@ fn unread(findings: &[Finding]) -> Vec<&Finding> {
 /// A direction is read by whatever name is certain; each of these tables states the same gauge.
 #[test]
 fn other_names_of_the_columns_of_a_gauge_table_are_read() {
-    let (right, _) = asked("name,element,surface,dir_x,dir_y,dir_z\nA,7,bottom,1,1,0\n").unwrap();
-    let (along_x, _) = asked("name,element,surface,dir_x,dir_y,dir_z\nA,7,bottom,1,0,0\n").unwrap();
+    let (right, _) =
+        compute_sensitivity("name,element,surface,dir_x,dir_y,dir_z\nA,7,bottom,1,1,0\n").unwrap();
+    let (along_x, _) =
+        compute_sensitivity("name,element,surface,dir_x,dir_y,dir_z\nA,7,bottom,1,0,0\n").unwrap();
     assert!((right - along_x).abs() > 0.1 * right.abs());
     for header in [
         "name,element,side,axis_x,axis_y,axis_z",
@@ -47,9 +49,13 @@ fn other_names_of_the_columns_of_a_gauge_table_are_read() {
         "name,element,surface,direction_x,direction_y,direction_z",
         "name,element,surface,dir x,dir y,dir z",
     ] {
-        let (found, findings) = asked(&format!("{header}\nA,7,bottom,1,1,0\n")).unwrap();
+        let (found, findings) =
+            compute_sensitivity(&format!("{header}\nA,7,bottom,1,1,0\n")).unwrap();
         assert_eq!(found, right, "{header}");
-        assert!(unread(&findings).is_empty(), "{header}: {findings:?}");
+        assert!(
+            find_unread_columns(&findings).is_empty(),
+            "{header}: {findings:?}"
+        );
     }
     // 45 degrees from the element x axis is the diagonal.
     for (header, angle) in [
@@ -59,15 +65,19 @@ fn other_names_of_the_columns_of_a_gauge_table_are_read() {
         ("angle [rad]", "0.7853981633974483"),
     ] {
         let text = format!("name,element,surface,{header}\nA,7,bottom,{angle}\n");
-        let (found, findings) = asked(&text).unwrap();
+        let (found, findings) = compute_sensitivity(&text).unwrap();
         assert!((found / right - 1.0).abs() < 1e-12, "{header}: {found}");
-        assert!(unread(&findings).is_empty(), "{header}: {findings:?}");
+        assert!(
+            find_unread_columns(&findings).is_empty(),
+            "{header}: {findings:?}"
+        );
     }
 }
 
 #[test]
 fn lengths_in_a_gauge_table_have_the_unit_of_their_header() {
-    let (right, _) = asked("name,x,y,z,surface,angle_deg\nA,40,60,1,top,30\n").unwrap();
+    let (right, _) =
+        compute_sensitivity("name,x,y,z,surface,angle_deg\nA,40,60,1,top,30\n").unwrap();
     for (header, row) in [
         ("x [mm],y [mm],z [mm]", "40,60,1"),
         ("x [m],y [m],z [m]", "0.04,0.06,0.001"),
@@ -75,7 +85,7 @@ fn lengths_in_a_gauge_table_have_the_unit_of_their_header() {
         ("x_m [m],y_m [m],z_m [m]", "0.04,0.06,0.001"),
         ("x_mm,y_mm,z_mm", "40,60,1"),
     ] {
-        let (found, _) = asked(&format!(
+        let (found, _) = compute_sensitivity(&format!(
             "name,{header},surface,angle_deg\nA,{row},top,30\n"
         ))
         .unwrap();
@@ -93,7 +103,7 @@ fn what_can_not_be_meant_in_a_gauge_table_is_a_fault() {
         ("Dir_X,DIRX", "1,1", "DIRX"),
     ] {
         let text = format!("name,element,surface,{header}\nA,7,bottom,{cell}\n");
-        let faults = asked(&text).map(|_| ()).unwrap_err();
+        let faults = compute_sensitivity(&text).map(|_| ()).unwrap_err();
         let named = |f: &strainbridge::Fault| f.field == field;
         assert!(faults.iter().any(named), "{header}: {faults:?}");
     }
@@ -103,28 +113,29 @@ fn what_can_not_be_meant_in_a_gauge_table_is_a_fault() {
 #[test]
 fn columns_of_a_gauge_table_that_nothing_reads_are_named_once() {
     let text = "name,element,surface,angle_deg,leverage,role,colour,wire\nA,7,bottom,45,0.5,estimate,red,3\n";
-    let (_, findings) = asked(text).unwrap();
-    let [one] = unread(&findings)[..] else {
+    let (_, findings) = compute_sensitivity(text).unwrap();
+    let [one] = find_unread_columns(&findings)[..] else {
         panic!("{findings:?}")
     };
     assert_eq!(one.subject, "gauges.csv");
     assert!(one.message.contains("`colour`, `wire`"), "{}", one.message);
     assert!(!one.message.contains("leverage"), "{}", one.message);
     // `side` of a vehicle is not a side of a shell.
-    let (_, findings) = asked("name,element,side,angle_deg\nA,7,left,45\n").unwrap();
-    assert!(unread(&findings)[0].message.contains("`side`"));
+    let (_, findings) = compute_sensitivity("name,element,side,angle_deg\nA,7,left,45\n").unwrap();
+    assert!(find_unread_columns(&findings)[0].message.contains("`side`"));
 }
 
 #[test]
 fn a_gauge_table_without_directions_states_where_its_gauges_point() {
-    let (_, findings) = asked("name,element,surface\nA,7,bottom\n").unwrap();
+    let (_, findings) = compute_sensitivity("name,element,surface\nA,7,bottom\n").unwrap();
     assert!(findings.iter().any(|f| f.code == "gauges-assumed"));
-    let (_, findings) = asked("name,element,surface,angle_deg\nA,7,bottom,0\n").unwrap();
+    let (_, findings) =
+        compute_sensitivity("name,element,surface,angle_deg\nA,7,bottom,0\n").unwrap();
     assert!(findings.iter().all(|f| f.code != "gauges-assumed"));
 }
 
 /// Two loads and three gauges of a given S.
-fn given(s: &str, runs: Option<&str>, more: &str) -> InMemory {
+fn build_sensitivity_job(s: &str, runs: Option<&str>, more: &str) -> InMemory {
     let mut strain = "run,G1,G2,G3\n".to_owned();
     for i in 0..5 {
         let (a, b) = (100.0 + f64::from(i), 50.0 - 2.0 * f64::from(i));
@@ -135,18 +146,18 @@ fn given(s: &str, runs: Option<&str>, more: &str) -> InMemory {
          [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 1.0\n{more}"
     );
     let files = InMemory::default()
-        .with("job.toml", job)
-        .with("S.csv", s)
-        .with("strain.csv", strain);
+        .with_file("job.toml", job)
+        .with_file("S.csv", s)
+        .with_file("strain.csv", strain);
     match runs {
-        Some(text) => files.with("runs.csv", text),
+        Some(text) => files.with_file("runs.csv", text),
         None => files,
     }
 }
 
 const S: &str = "gauge,A.FZ,B.FZ\nG1,1,0\nG2,0,1\nG3,1,1\n";
 
-fn recovered(files: &InMemory) -> Result<(Vec<f64>, Vec<Finding>), Faults> {
+fn recover_load_values(files: &InMemory) -> Result<(Vec<f64>, Vec<Finding>), Faults> {
     let job = Job::read("job.toml", files)?;
     let found = recover(&job, &Context::new(files))?;
     let runs = found.runs().unwrap();
@@ -156,24 +167,33 @@ fn recovered(files: &InMemory) -> Result<(Vec<f64>, Vec<Finding>), Faults> {
 
 #[test]
 fn columns_of_a_table_of_s_are_read_or_named_or_refused() {
-    let (right, findings) = recovered(&given(S, None, "")).unwrap();
-    assert!(unread(&findings).is_empty(), "{findings:?}");
+    let (right, findings) = recover_load_values(&build_sensitivity_job(S, None, "")).unwrap();
+    assert!(find_unread_columns(&findings).is_empty(), "{findings:?}");
     // Case and separators apart.
-    let (found, _) = recovered(&given(&S.replace("A.FZ", "a_fz"), None, "")).unwrap();
+    let (found, _) =
+        recover_load_values(&build_sensitivity_job(&S.replace("A.FZ", "a_fz"), None, "")).unwrap();
     assert_eq!(found, right);
     // A sign is not a separator.
-    let signed = recovered(&given(&S.replace("A.FZ", "A.FZ-"), None, ""));
+    let signed = recover_load_values(&build_sensitivity_job(
+        &S.replace("A.FZ", "A.FZ-"),
+        None,
+        "",
+    ));
     let faults = signed.map(|_| ()).unwrap_err();
     assert!(
         faults.iter().any(|f| f.wrong.contains("A.FZ")),
         "{faults:?}"
     );
     let more = "gauge,A.FZ,B.FZ,C.FZ\nG1,1,0,9\nG2,0,1,9\nG3,1,1,9\n";
-    let (found, findings) = recovered(&given(more, None, "")).unwrap();
+    let (found, findings) = recover_load_values(&build_sensitivity_job(more, None, "")).unwrap();
     assert_eq!(found, right);
-    assert!(unread(&findings)[0].message.contains("`C.FZ`"));
+    assert!(find_unread_columns(&findings)[0].message.contains("`C.FZ`"));
     // Without its column the other load would take the strain of B.
-    let faults = recovered(&given("gauge,A.FZ,Z\nG1,1,0\nG2,0,1\nG3,1,1\n", None, ""));
+    let faults = recover_load_values(&build_sensitivity_job(
+        "gauge,A.FZ,Z\nG1,1,0\nG2,0,1\nG3,1,1\n",
+        None,
+        "",
+    ));
     let faults = faults.map(|_| ()).unwrap_err();
     assert!(
         faults.iter().any(|f| f.wrong.contains("B.FZ")),
@@ -184,13 +204,13 @@ fn columns_of_a_table_of_s_are_read_or_named_or_refused() {
 #[test]
 fn columns_of_the_runs_file_are_read_or_named() {
     let job = |runs: &str| {
-        let files = given(
+        let files = build_sensitivity_job(
             S,
             Some(runs),
             "[runs]\nfile = \"runs.csv\"\nunits = { force = \"N\", mass = \"kg\", length = \"m\" }\n",
         );
         let job = Job::read("job.toml", &files).unwrap();
-        let mut inputs = strainbridge::host::files::Inputs::of(&files);
+        let mut inputs = strainbridge::host::files::Inputs::new(&files);
         let rows = strainbridge::measured::runs_file::read_runs(
             &mut inputs,
             &job,
@@ -199,7 +219,7 @@ fn columns_of_the_runs_file_are_read_or_named() {
         (rows.unwrap(), inputs.findings())
     };
     let (right, findings) = job("run,payload_mass,payload_x,A.FZ,B.FZ\nR0,300,2,1,2\n");
-    assert!(unread(&findings).is_empty());
+    assert!(find_unread_columns(&findings).is_empty());
     for header in [
         "Run,Payload_mass,payload_X,a.fz,b.fz",
         "run,payload mass,PayloadX,A_FZ,B-FZ",
@@ -207,10 +227,13 @@ fn columns_of_the_runs_file_are_read_or_named() {
     ] {
         let (found, findings) = job(&format!("{header}\nR0,300,2,1,2\n"));
         assert_eq!(found, right, "{header}");
-        assert!(unread(&findings).is_empty(), "{header}: {findings:?}");
+        assert!(
+            find_unread_columns(&findings).is_empty(),
+            "{header}: {findings:?}"
+        );
     }
     let (_, findings) = job("run,payload_mass,payload_px,A.FZ,driver\nR0,300,2,1,7\n");
-    let [one] = unread(&findings)[..] else {
+    let [one] = find_unread_columns(&findings)[..] else {
         panic!("{findings:?}")
     };
     assert!(
@@ -228,8 +251,8 @@ fn columns_of_the_runs_file_are_read_or_named() {
 /// A file that the job names is there, whether or not the command reads it.
 #[test]
 fn a_runs_file_that_is_missing_is_a_fault() {
-    let files = given(S, None, "[runs]\nfile = \"absent.csv\"\n");
-    let faults = recovered(&files).map(|_| ()).unwrap_err();
+    let files = build_sensitivity_job(S, None, "[runs]\nfile = \"absent.csv\"\n");
+    let faults = recover_load_values(&files).map(|_| ()).unwrap_err();
     let named = |f: &strainbridge::Fault| f.field == "runs.file" && f.line.is_some();
     assert!(faults.iter().any(named), "{faults:?}");
 }
@@ -238,7 +261,7 @@ fn a_runs_file_that_is_missing_is_a_fault() {
 fn a_job_states_s_once() {
     let text = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"P\"\ngrid = 2\ncomponent = \"FY\"\n\
                 [sensitivity]\nfile = \"S.csv\"\n";
-    let read = |text: &str| Job::read("job.toml", &InMemory::default().with("job.toml", text));
+    let read = |text: &str| Job::read("job.toml", &InMemory::default().with_file("job.toml", text));
     let faults = read(text).map(|_| ()).unwrap_err();
     let named = |f: &strainbridge::Fault| f.field == "sensitivity" && f.line == Some(8);
     assert!(faults.iter().any(named), "{faults:?}");
@@ -252,12 +275,15 @@ fn columns_of_a_table_of_loads_that_nothing_reads_are_named() {
     let job = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"P\"\ngrid = 2\ncomponent = \"FY\"\n\
                [respond]\nloads = \"loads.csv\"\n";
     let files = files
-        .with("job.toml", job)
-        .with("loads.csv", "run,P,P.low,P.high,Q\nR1,10,9,11,5\n");
+        .with_file("job.toml", job)
+        .with_file("loads.csv", "run,P,P.low,P.high,Q\nR1,10,9,11,5\n");
     let job = Job::read("job.toml", &files).unwrap();
     let found = respond(&job, &Context::new(&files)).unwrap();
     let list = found.findings.to_vec();
-    assert!(unread(&list)[0].message.ends_with("`Q`."), "{list:?}");
+    assert!(
+        find_unread_columns(&list)[0].message.ends_with("`Q`."),
+        "{list:?}"
+    );
 }
 
 /// The same loads as a table, as a binary record and in RPC III give the same stress; the 16 bits of RPC III are a step of 1/32,000 of the largest.
@@ -294,7 +320,7 @@ fn loads_of_every_record_format_give_the_stress_of_their_table() {
             "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"P\"\ngrid = 2\ncomponent = \"FY\"\n\
              [respond]\nloads = \"{name}\"\n"
         );
-        let files = files.with("job.toml", job).with(name, bytes);
+        let files = files.with_file("job.toml", job).with_file(name, bytes);
         let job = Job::read("job.toml", &files).unwrap();
         let found = respond(&job, &Context::new(&files)).unwrap();
         (
@@ -320,7 +346,9 @@ fn loads_of_every_record_format_give_the_stress_of_their_table() {
     let files = plate("name,element,surface,angle_deg\nA,7,bottom,45\n");
     let job = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"Q\"\ngrid = 2\ncomponent = \"FY\"\n\
                [respond]\nloads = \"loads.bin\"\n";
-    let files = files.with("job.toml", job).with("loads.bin", binary);
+    let files = files
+        .with_file("job.toml", job)
+        .with_file("loads.bin", binary);
     let job = Job::read("job.toml", &files).unwrap();
     let faults = respond(&job, &Context::new(&files))
         .map(|_| ())
@@ -365,10 +393,10 @@ fn loads_in_another_unit_than_the_report_give_the_same_stress() {
              [respond]\nloads = \"out/{name}\"\n"
         );
         let mut files = files
-            .with("job.toml", job)
-            .with(format!("out/{name}"), bytes);
+            .with_file("job.toml", job)
+            .with_file(format!("out/{name}"), bytes);
         if let Some(text) = beside {
-            files = files.with("out/result.json", text);
+            files = files.with_file("out/result.json", text);
         }
         let job = Job::read("job.toml", &files).unwrap();
         let found = respond(&job, &Context::new(&files)).unwrap();
@@ -411,7 +439,9 @@ fn fatigue_scales_with_the_power_of_the_loads_and_needs_a_history() {
         let files = plate("name,element,surface,angle_deg\nA,7,bottom,45\n");
         let job = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"P\"\ngrid = 2\ncomponent = \"FY\"\n\
                    [respond]\nloads = \"loads.csv\"\nslope = 4.0\n";
-        let files = files.with("job.toml", job).with("loads.csv", table);
+        let files = files
+            .with_file("job.toml", job)
+            .with_file("loads.csv", table);
         let job = Job::read("job.toml", &files).unwrap();
         respond(&job, &Context::new(&files)).map(|o| o.answer.fatigue)
     };

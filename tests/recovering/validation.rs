@@ -35,13 +35,13 @@ fn files(strain: String, role: &str, more: &str) -> InMemory {
          [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = {NOISE}\n{more}"
     );
     InMemory::default()
-        .with("job.toml", job)
-        .with("S.csv", s)
-        .with("gauges.csv", gauges)
-        .with("strain.csv", strain)
+        .with_file("job.toml", job)
+        .with_file("S.csv", s)
+        .with_file("gauges.csv", gauges)
+        .with_file("strain.csv", strain)
 }
 
-fn recovered(files: &InMemory) -> Recovered {
+fn recover_job(files: &InMemory) -> Recovered {
     let job = Job::read("job.toml", files).unwrap();
     recover(&job, &Context::new(files)).unwrap().answer
 }
@@ -57,7 +57,7 @@ fn numbers(found: &Recovered) -> Vec<f64> {
     }
 }
 
-fn only(list: &[ValidationGauge]) -> &ValidationGauge {
+fn require_single_gauge(list: &[ValidationGauge]) -> &ValidationGauge {
     let [gauge] = list else { panic!("{list:?}") };
     assert_eq!(gauge.name, "G4");
     gauge
@@ -67,13 +67,16 @@ fn only(list: &[ValidationGauge]) -> &ValidationGauge {
 #[test]
 fn a_validation_gauge_changes_no_load_and_shows_its_own_error() {
     for key in ["run", "time"] {
-        let right = recovered(&files(readings(key, 40, 0.0), "validation", ""));
-        let off = recovered(&files(readings(key, 40, 50.0), "reserve", ""));
+        let right = recover_job(&files(readings(key, 40, 0.0), "validation", ""));
+        let off = recover_job(&files(readings(key, 40, 50.0), "reserve", ""));
         assert_eq!(numbers(&right), numbers(&off), "{key}");
-        let used = recovered(&files(readings(key, 40, 50.0), "estimate", ""));
+        let used = recover_job(&files(readings(key, 40, 50.0), "estimate", ""));
         assert_ne!(numbers(&right), numbers(&used), "{key}");
         assert!(used.validation.is_empty());
-        let (right, off) = (only(&right.validation), only(&off.validation));
+        let (right, off) = (
+            require_single_gauge(&right.validation),
+            require_single_gauge(&off.validation),
+        );
         assert_eq!((right.n, off.n), (40, 40), "{key}");
         // Readings have sixteen digits.
         assert!(right.rms_microstrain.unwrap() < 1e-9, "{right:?}");
@@ -122,7 +125,7 @@ fn a_validation_gauge_that_contradicts_its_prediction_is_named() {
 fn a_job_of_validation_gauges_alone_is_refused() {
     let files = files(readings("run", 12, 0.0), "validation", "");
     let all = "name,role\nG1,validation\nG2,validation\n";
-    let files = files.with("gauges.csv", all);
+    let files = files.with_file("gauges.csv", all);
     let job = Job::read("job.toml", &files).unwrap();
     let faults = recover(&job, &Context::new(&files))
         .map(|_| ())
@@ -160,8 +163,8 @@ fn commands_that_estimate_from_readings_leave_validation_gauges_out() {
             },
         );
         let files = files
-            .with("runs.csv", runs(command == 2))
-            .with("b.csv", signature);
+            .with_file("runs.csv", runs(command == 2))
+            .with_file("b.csv", signature);
         let job = Job::read("job.toml", &files).unwrap();
         let cx = Context::new(&files);
         match command {

@@ -191,10 +191,10 @@ impl Matrix {
             _ => format!("R{i}"),
         };
         InMemory::default()
-            .with("S.csv", text_of(&format!("gauge,{}", names.join(",")), |g| format!("G{g}"), &self.s))
-            .with("strain.csv", text_of(&format!("{key},{}", self.gauges().join(",")), key_of, readings))
-            .with("runs.csv", text_of(&format!("run,{}", names.join(",")), key_of, &self.loads))
-            .with(
+            .with_file("S.csv", text_of(&format!("gauge,{}", names.join(",")), |g| format!("G{g}"), &self.s))
+            .with_file("strain.csv", text_of(&format!("{key},{}", self.gauges().join(",")), key_of, readings))
+            .with_file("runs.csv", text_of(&format!("run,{}", names.join(",")), key_of, &self.loads))
+            .with_file(
                 "job.toml",
                 format!(
                     "units = \"m-kg-s\"\n[sensitivity]\nfile = \"S.csv\"\nper = {{ force = \"N\" }}\n{loads}[measured]\nstrain = \"strain.csv\"\n\
@@ -211,10 +211,10 @@ impl Matrix {
             .to_vec();
         let text = String::from_utf8(text).unwrap()
             + "[runs]\nfile = \"runs.csv\"\nunits = { force = \"N\" }\nnoise = { force = 1e-3 }\n[calibration]\nmodel_uncertainty_rel = 0.02\n";
-        files.with("job.toml", text)
+        files.with_file("job.toml", text)
     }
 
-    fn recovered(&self, key: &str, readings: &[Vec<f64>]) -> Outcome {
+    fn recover_loads(&self, key: &str, readings: &[Vec<f64>]) -> Outcome {
         let files = self.files(key, readings);
         let job = Job::read("job.toml", &files).unwrap();
         let done = recover(&job, &Context::new(&files)).unwrap();
@@ -240,7 +240,7 @@ fn recover_names_each_fault_of_a_gauge_in_runs_and_records_of_two_matrices() {
     for (shape, model) in [((24, 9), "truck"), ((10, 3), "matrix")] {
         for (key, rows) in [("run", 12), ("time", 400)] {
             let right = Matrix::new(shape, rows, key == "time", 7);
-            let sound = right.recovered(key, &right.readings);
+            let sound = right.recover_loads(key, &right.readings);
             let errors = sound
                 .findings
                 .iter()
@@ -253,7 +253,7 @@ fn recover_names_each_fault_of_a_gauge_in_runs_and_records_of_two_matrices() {
             for planted in &FAULTS {
                 let mut readings = right.readings.clone();
                 (planted.change)(&mut readings);
-                let out = right.recovered(key, &readings);
+                let out = right.recover_loads(key, &readings);
                 check(
                     &format!("{model}, {key}, {}", planted.name),
                     planted,
@@ -348,12 +348,12 @@ impl Carrier {
             "gauges.csv",
             "runs.csv",
         ];
-        let files = names
-            .iter()
-            .fold(InMemory::default(), |all, name| all.with(name, text(name)));
+        let files = names.iter().fold(InMemory::default(), |all, name| {
+            all.with_file(name, text(name))
+        });
         let (header, rows) = numbers(&text("strain.csv"));
         Self {
-            files: files.with("strain.csv", text("strain.csv")),
+            files: files.with_file("strain.csv", text("strain.csv")),
             header,
             rows,
             wheels: numbers(&text("runs.csv")).1,
@@ -364,16 +364,16 @@ impl Carrier {
         self.header.split(',').skip(1).map(str::to_owned).collect()
     }
 
-    fn with(&self, planted: &Planted) -> InMemory {
+    fn files_with_fault(&self, planted: &Planted) -> InMemory {
         let mut rows = self.rows.clone();
         (planted.change)(&mut rows);
         let key = |i: usize| format!("R{:02}", i + 1);
         self.files
             .clone()
-            .with("strain.csv", text_of(&self.header, key, &rows))
+            .with_file("strain.csv", text_of(&self.header, key, &rows))
     }
 
-    fn recovered(&self, files: &InMemory) -> Outcome {
+    fn recover_loads(&self, files: &InMemory) -> Outcome {
         let job = Job::read("recover.toml", files).unwrap();
         let done = recover(&job, &Context::new(files)).unwrap();
         let truth = |run: &str, name: &str| {
@@ -388,7 +388,7 @@ impl Carrier {
         }
     }
 
-    fn weighed(&self, files: &InMemory) -> Outcome {
+    fn recover_payload(&self, files: &InMemory) -> Outcome {
         let job = Job::read("payload.toml", files).unwrap();
         let done = payload(&job, &Context::new(files)).unwrap();
         let answer = serde_json::to_value(&done.answer).unwrap();
@@ -410,7 +410,10 @@ impl Carrier {
 #[test]
 fn recover_and_payload_name_each_fault_of_a_gauge_of_a_frame() {
     let frame = Carrier::new();
-    let sound = [frame.recovered(&frame.files), frame.weighed(&frame.files)];
+    let sound = [
+        frame.recover_loads(&frame.files),
+        frame.recover_payload(&frame.files),
+    ];
     for out in sound {
         let errors = out
             .findings
@@ -419,19 +422,19 @@ fn recover_and_payload_name_each_fault_of_a_gauge_of_a_frame() {
         assert!(out.harmless && errors.count() == 0, "{:?}", out.findings);
     }
     for planted in &FAULTS {
-        let files = frame.with(planted);
+        let files = frame.files_with_fault(planted);
         let name = |command: &str| format!("frame, {command}, {}", planted.name);
         check(
             &name("recover"),
             planted,
             &frame.gauges(),
-            &frame.recovered(&files),
+            &frame.recover_loads(&files),
         );
         check(
             &name("payload"),
             planted,
             &frame.gauges(),
-            &frame.weighed(&files),
+            &frame.recover_payload(&files),
         );
     }
 }
@@ -444,7 +447,7 @@ fn sound_readings_are_an_error_in_one_job_of_a_hundred_at_most() {
     for seed in 0..trials {
         let shape = [(24, 9), (10, 3), (8, 4), (5, 3)][seed as usize % 4];
         let right = Matrix::new(shape, [12, 3, 30][seed as usize % 3], false, 100 + seed);
-        let out = right.recovered("run", &right.readings);
+        let out = right.recover_loads("run", &right.readings);
         errors += u64::from(out.findings.iter().any(|f| f.severity == Severity::Error));
         let of_search = |f: &Finding| f.code.starts_with("input") || f.code == "gauge-dead";
         named += u64::from(out.findings.iter().any(of_search));

@@ -76,7 +76,7 @@ fn doc_comments_stand_alone_and_use_the_words_of_the_field() {
 }
 
 /// Names that `lib.rs` re-exports, each with the path of its module: `pub use workflow::init::{init, init_for};`.
-fn reexported(lib: &str) -> Vec<(String, String)> {
+fn list_reexported_names(lib: &str) -> Vec<(String, String)> {
     let lines = lib.lines().filter_map(|l| l.strip_prefix("pub use "));
     let names = lines.flat_map(|line| {
         let path = line.trim_end_matches(';');
@@ -113,7 +113,7 @@ fn doc_of(text: &str, name: &str) -> Option<String> {
 #[test]
 fn what_the_library_reexports_has_an_example_that_asserts() {
     let lib = std::fs::read_to_string(root().join("src/lib.rs")).unwrap();
-    let names = reexported(&lib);
+    let names = list_reexported_names(&lib);
     assert!(names.len() > 30, "{names:?}");
     let mut files = Vec::new();
     rust_files(&root().join("src"), &mut files);

@@ -14,7 +14,7 @@ pub struct Crate {
 
 impl Crate {
     /// The modules below `root` (`src/`, say) of files given as path and code.
-    pub fn of<'a>(root: &str, files: impl Iterator<Item = (&'a str, String)>) -> Self {
+    pub fn from_files<'a>(root: &str, files: impl Iterator<Item = (&'a str, String)>) -> Self {
         let mut code = BTreeMap::new();
         for (path, text) in files {
             let Some(rest) = path.strip_prefix(root).and_then(|p| p.strip_suffix(".rs")) else {
@@ -49,8 +49,8 @@ impl Crate {
     fn reexports_of(&self, module: &Module) -> Vec<(String, Module)> {
         let mut list = Vec::new();
         for (statement, public) in uses(&self.code[module]) {
-            for path in expanded(&statement) {
-                let Some((from, rest)) = self.resolved(module, &path).filter(|_| public) else {
+            for path in expand_use(&statement) {
+                let Some((from, rest)) = self.resolve_path(module, &path).filter(|_| public) else {
                     continue;
                 };
                 match rest.as_slice() {
@@ -64,7 +64,7 @@ impl Crate {
     }
 
     /// The module that a path leads into, and what is left of the path.
-    fn resolved(&self, here: &Module, path: &str) -> Option<(Module, Vec<String>)> {
+    fn resolve_path(&self, here: &Module, path: &str) -> Option<(Module, Vec<String>)> {
         let mut parts: Vec<String> = path
             .split("::")
             .map(|p| p.trim().to_owned())
@@ -146,14 +146,14 @@ impl Crate {
             let mut rest = code.clone();
             for (statement, public) in uses(code) {
                 if !public {
-                    paths.extend(expanded(&statement));
+                    paths.extend(expand_use(&statement));
                 }
                 rest = rest.replace(&format!("use {statement};"), "");
             }
             paths.extend(paths_in(&rest));
             let targets: BTreeSet<Module> = paths
                 .iter()
-                .filter_map(|p| self.resolved(module, p))
+                .filter_map(|p| self.resolve_path(module, p))
                 .map(|(to, left)| match left.first() {
                     Some(name) if name != "*" => self.definer(to, name, 0),
                     _ => to,
@@ -210,7 +210,7 @@ fn uses(code: &str) -> Vec<(String, bool)> {
 }
 
 /// The paths of a `use` with its braces written out.
-fn expanded(statement: &str) -> Vec<String> {
+fn expand_use(statement: &str) -> Vec<String> {
     let statement = statement.trim();
     let Some(open) = statement.find('{') else {
         let path = statement.split(" as ").next().unwrap_or("");
@@ -233,7 +233,7 @@ fn expanded(statement: &str) -> Vec<String> {
     }
     parts.push(part);
     let full = parts.iter().filter(|p| !p.trim().is_empty());
-    full.flat_map(|p| expanded(&format!("{head}{}", p.trim())))
+    full.flat_map(|p| expand_use(&format!("{head}{}", p.trim())))
         .collect()
 }
 

@@ -262,7 +262,7 @@ fn no_circle_of_imports() {
             .iter()
             .filter(|f| f.0.starts_with(root) && !is_test(&f.0));
         let files = files.map(|(path, lines)| (path.as_str(), lines.join("\n")));
-        for circle in imports::Crate::of(root, files).circles() {
+        for circle in imports::Crate::from_files(root, files).circles() {
             found.push(circle.join(", "));
         }
     }

@@ -14,10 +14,10 @@ fn literals(source: &str) -> Vec<(usize, String)> {
         let (literal, used) = match c {
             '/' if rest.starts_with("//") => (None, rest.find('\n').unwrap_or(rest.len())),
             '"' => {
-                let end = closing(&rest[1..]);
-                (Some(plain(&rest[1..1 + end])), end + 2)
+                let end = find_closing_quote(&rest[1..]);
+                (Some(remove_escapes(&rest[1..1 + end])), end + 2)
             }
-            'r' if !before.is_alphanumeric() && before != '_' => raw(&rest[1..]),
+            'r' if !before.is_alphanumeric() && before != '_' => read_raw_literal(&rest[1..]),
             '\'' => (None, character(rest)),
             _ => (None, c.len_utf8()),
         };
@@ -31,7 +31,7 @@ fn literals(source: &str) -> Vec<(usize, String)> {
 }
 
 /// Returns the offset of the quotation mark that ends a literal.
-fn closing(text: &str) -> usize {
+fn find_closing_quote(text: &str) -> usize {
     let mut is_escaped = false;
     let end = text.char_indices().find(|(_, c)| {
         let ends = *c == '"' && !is_escaped;
@@ -42,7 +42,7 @@ fn closing(text: &str) -> usize {
 }
 
 /// Returns a raw literal that begins after its `r`, if it is one, and the bytes it takes together with the `r`.
-fn raw(text: &str) -> (Option<String>, usize) {
+fn read_raw_literal(text: &str) -> (Option<String>, usize) {
     let marks = text.len() - text.trim_start_matches('#').len();
     let Some(body) = text[marks..].strip_prefix('"') else {
         return (None, 1);
@@ -71,7 +71,7 @@ fn character(text: &str) -> usize {
 }
 
 /// Returns a literal without its escapes and with one word for each place that is filled in.
-fn plain(literal: &str) -> String {
+fn remove_escapes(literal: &str) -> String {
     let joined: Vec<&str> = literal.split("\\\n").map(str::trim_start).collect();
     let text = joined.concat().replace("\\n", "\n").replace("\\\"", "\"");
     let mut parts = text.split('{');

@@ -16,7 +16,7 @@ const ENDS: [&str; 5] = ["Manager", "Helper", "Util", "Utils", "Info"];
 const DEFINES: [&str; 6] = ["fn", "struct", "enum", "trait", "mod", "type"];
 
 /// Kind and name of what a line defines.
-fn defined(line: &str) -> Option<(&str, &str)> {
+fn read_definition(line: &str) -> Option<(&str, &str)> {
     let words: Vec<&str> = line.split_whitespace().collect();
     let before = ["pub", "pub(super)", "pub(crate)", "const", "async"];
     let at = words.iter().position(|w| !before.contains(w))?;
@@ -36,10 +36,122 @@ fn says_nothing((kind, name): (&str, &str)) -> bool {
     }
 }
 
+/// Prepositions, and participles that do not end in `ed`: no name of a function.
+const NO_NAME: [&str; 78] = [
+    "above",
+    "across",
+    "after",
+    "against",
+    "along",
+    "anew",
+    "apart",
+    "around",
+    "at",
+    "before",
+    "begun",
+    "below",
+    "bent",
+    "beside",
+    "between",
+    "beyond",
+    "bound",
+    "broken",
+    "brought",
+    "by",
+    "caught",
+    "chosen",
+    "done",
+    "drawn",
+    "driven",
+    "everything",
+    "fallen",
+    "for_",
+    "found",
+    "given",
+    "heard",
+    "held",
+    "hidden",
+    "inside",
+    "kept",
+    "known",
+    "laid",
+    "left",
+    "lost",
+    "made",
+    "meant",
+    "met",
+    "near",
+    "nothing",
+    "of",
+    "off",
+    "on",
+    "only",
+    "out",
+    "outside",
+    "over",
+    "paid",
+    "per",
+    "same",
+    "seen",
+    "sent",
+    "shaken",
+    "shown",
+    "spent",
+    "spoilt",
+    "struck",
+    "taken",
+    "taught",
+    "than",
+    "thrown",
+    "to",
+    "told",
+    "torn",
+    "toward",
+    "under",
+    "undone",
+    "unlike",
+    "via",
+    "with",
+    "within",
+    "without",
+    "worn",
+    "written",
+];
+/// Nouns and verbs that end as participles do.
+const NAMES: [&str; 16] = [
+    "seed", "speed", "need", "feed", "embed", "spring", "string", "ring", "heading", "warning",
+    "bearing", "finding", "reading", "meaning", "wiring", "coupling",
+];
+
+/// Whether the name of a function is one word that states neither what it does nor what it returns.
+fn is_bare(name: &str) -> bool {
+    let participle = (name.ends_with("ed") || name.ends_with("ing")) && !NAMES.contains(&name);
+    !name.contains('_') && (participle || NO_NAME.contains(&name))
+}
+
+#[test]
+fn functions_are_no_bare_participles_and_prepositions() {
+    assert!(is_bare("scaled") && is_bare("of") && is_bare("closing") && !is_bare("scale_rows"));
+    let mut wrong = String::new();
+    for (path, lines) in sources() {
+        for (n, line) in lines.iter().enumerate() {
+            // A visitor of serde has `expecting`.
+            let function = read_definition(line).filter(|f| f.0 == "fn" && f.1 != "expecting");
+            if let Some((_, name)) = function.filter(|f| is_bare(f.1)) {
+                wrong += &format!("{path}:{}: `{name}`\n", n + 1);
+            }
+        }
+    }
+    assert!(
+        wrong.is_empty(),
+        "ENGLISH.md, rule 8: verb and object:\n{wrong}"
+    );
+}
+
 #[test]
 fn names_say_what_is_done_and_held() {
     assert_eq!(
-        defined("    pub(super) fn get_rows<'a>(x: &'a [f64])"),
+        read_definition("    pub(super) fn get_rows<'a>(x: &'a [f64])"),
         Some(("fn", "get_rows"))
     );
     assert!(says_nothing(("fn", "handle_run")) && says_nothing(("mod", "utils")));
@@ -51,7 +163,9 @@ fn names_say_what_is_done_and_held() {
             wrong += &format!("{path}\n");
         }
         for (n, line) in lines.iter().enumerate() {
-            let Some(found) = defined(line) else { continue };
+            let Some(found) = read_definition(line) else {
+                continue;
+            };
             read += 1;
             if says_nothing(found) {
                 wrong += &format!("{path}:{}: {} `{}`\n", n + 1, found.0, found.1);

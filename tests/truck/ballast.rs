@@ -21,7 +21,7 @@ fn job(folder: &std::path::Path, runs: &str, extra: &str) {
     .unwrap();
 }
 
-fn off(result: &serde_json::Value) -> Vec<f64> {
+fn reaction_errors_percent(result: &serde_json::Value) -> Vec<f64> {
     result["reactions"]
         .as_array()
         .unwrap()
@@ -46,7 +46,7 @@ fn table_3_2_two_masses_bring_the_truck_to_the_measured_reactions() {
         &folder.join("out"),
     );
     assert_eq!(code, 0, "{err}");
-    let e = off(&result);
+    let e = reaction_errors_percent(&result);
     let worst = e.iter().copied().fold(0.0, f64::max);
     println!(
         "3.2: reactions of the thesis: {e:.2?} %, worst {worst:.2} %, masses {}",
@@ -87,7 +87,7 @@ fn reactions_of_a_truck_with_its_masses_are_matched_and_the_ranges_hold_the_trut
         &folder.join("out"),
     );
     assert_eq!(code, 0, "{err}");
-    let e = off(&result);
+    let e = reaction_errors_percent(&result);
     println!("3.2: own masses: {e:.3?} %");
     assert!(e.iter().all(|e| *e < 2.0), "{e:?}");
     let together = &result["together"];
@@ -106,7 +106,7 @@ fn reactions_of_a_truck_with_its_masses_are_matched_and_the_ranges_hold_the_trut
 
 #[test]
 fn section_6_4_eleven_gauges_as_poor_as_the_thesis_end_in_exit_code_1_and_say_why() {
-    use crate::gauges::{measured, strain};
+    use crate::gauges::{simulate_readings, strain};
     use strainbridge::gauge::{CornerRows, GaugePlace, GaugeSpec, build};
     use strainbridge::model::{ShellIx, Vec3};
     let folder = scratch("poor");
@@ -128,17 +128,21 @@ fn section_6_4_eleven_gauges_as_poor_as_the_thesis_end_in_exit_code_1_and_say_wh
         let spec = GaugeSpec {
             place: GaugePlace::Nearest(Vec3::new(x, y, z)),
             direction: Some(Vec3::new(1.0, 0.0, 0.0)),
-            ..GaugeSpec::on(format!("{}", i + 1), ShellIx(0))
+            ..GaugeSpec::place_on_shell(format!("{}", i + 1), ShellIx(0))
         };
         there.push(
-            build(&finer().model, &spec, CornerRows::Present)
+            build(&finer_truck().model, &spec, CornerRows::Present)
                 .unwrap()
                 .0
                 .remove(0),
         );
     }
-    let clean = strain(&there, &finer().standing.contacts, &finer().reactions());
-    let read: Vec<String> = measured(&mut lot, &clean)
+    let clean = strain(
+        &there,
+        &finer_truck().standing.contacts,
+        &finer_truck().reactions(),
+    );
+    let read: Vec<String> = simulate_readings(&mut lot, &clean)
         .iter()
         .map(|v| format!("{:.2}", v * 1e6))
         .collect();

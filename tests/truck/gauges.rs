@@ -1,9 +1,9 @@
 //! Gauges on the trucks: candidates, layouts, readings on the own and on the other model.
 
-use crate::world::{Lot, Truck, own};
+use crate::world::{Lot, Truck, analyst_truck};
 use std::sync::OnceLock;
 use strainbridge::fe::CaseResult;
-use strainbridge::gauge::{CornerRows, Gauge, GaugePlace, GaugeSpec, build, reading};
+use strainbridge::gauge::{CornerRows, Gauge, GaugePlace, GaugeSpec, build, gauge_reading};
 use strainbridge::linalg::Matrix;
 use strainbridge::model::{Model, ShellIx, Vec3};
 use strainbridge::placement::candidates::{Angles, Candidates, Scatter};
@@ -69,7 +69,7 @@ pub fn columns<'a>(cases: &'a [CaseResult], names: &[&str], expected: f64) -> Ve
 }
 
 /// The six vertical wheel loads of a truck.
-pub fn vertical(truck: &Truck) -> Vec<LoadCaseOf<'_>> {
+pub fn vertical_load_cases(truck: &Truck) -> Vec<LoadCaseOf<'_>> {
     columns(&truck.standing.contacts, &crate::world::NAMES, EXPECTED)
 }
 
@@ -120,7 +120,7 @@ fn unevenness(loads: &[LoadCaseOf], scales: &[f64], (shell, side): Site) -> f64 
 
 /// What gluing and models do to a reading: 1 degree, and 5 % of every load's part of it, so that readings made of parts that cancel
 /// count for little.
-pub fn careful() -> Scatter {
+pub fn conservative_scatter() -> Scatter {
     Scatter {
         noise: 1.0,
         angle_sd: 1.0_f64.to_radians(),
@@ -131,7 +131,7 @@ pub fn careful() -> Scatter {
 }
 
 /// Gauges of a layout on the own truck.
-pub fn glued(model: &Model, sites: &[Site], layout: &Layout) -> Vec<Gauge> {
+pub fn glue_gauges(model: &Model, sites: &[Site], layout: &Layout) -> Vec<Gauge> {
     layout
         .gauges
         .iter()
@@ -141,7 +141,7 @@ pub fn glued(model: &Model, sites: &[Site], layout: &Layout) -> Vec<Gauge> {
             let spec = GaugeSpec {
                 surface: Some(surface),
                 angle_rad: g.angle,
-                ..GaugeSpec::on(format!("P{:02}", i + 1), shell)
+                ..GaugeSpec::place_on_shell(format!("P{:02}", i + 1), shell)
             };
             build(model, &spec, CornerRows::Absent).unwrap().0.remove(0)
         })
@@ -149,24 +149,24 @@ pub fn glued(model: &Model, sites: &[Site], layout: &Layout) -> Vec<Gauge> {
 }
 
 /// The D-optimal layout of `n` gauges from all candidates for the six vertical loads, 60 mm apart.
-pub fn best(n: usize) -> (Vec<Gauge>, Layout) {
-    best_with(n, careful())
+pub fn find_best_layout(n: usize) -> (Vec<Gauge>, Layout) {
+    best_with(n, conservative_scatter())
 }
 
 /// The same with other scatter.
 pub fn best_with(n: usize, scatter: Scatter) -> (Vec<Gauge>, Layout) {
-    let truck = own();
-    let (sites, c) = candidates_of(truck, &vertical(truck), scatter);
+    let truck = analyst_truck();
+    let (sites, c) = candidates_of(truck, &vertical_load_cases(truck), scatter);
     let mut spec = Spec::new(n, 6);
     spec.spacing = 60.0;
     let layout = place(&c, &spec).unwrap();
-    (glued(&truck.model, &sites, &layout), layout)
+    (glue_gauges(&truck.model, &sites, &layout), layout)
 }
 
 /// The ten best gauges.
 pub fn best_ten() -> &'static [Gauge] {
     static GAUGES: OnceLock<Vec<Gauge>> = OnceLock::new();
-    GAUGES.get_or_init(|| best(10).0)
+    GAUGES.get_or_init(|| find_best_layout(10).0)
 }
 
 /// S of gauges for given columns.
@@ -181,13 +181,14 @@ pub fn on_other(other: &Truck, gauges: &[Gauge], lot: &mut Lot) -> Vec<Gauge> {
         .iter()
         .map(|g| {
             let across = g.normal.cross(&g.direction);
-            let shift = g.direction * (2.0 * lot.normal()) + across * (2.0 * lot.normal());
+            let shift =
+                g.direction * (2.0 * lot.draw_normal()) + across * (2.0 * lot.draw_normal());
             let spec = GaugeSpec {
                 place: GaugePlace::Nearest(g.position + shift),
                 surface: Some(side_like(other, g, shift)),
                 direction: Some(g.direction),
-                angle_rad: lot.normal().to_radians(),
-                ..GaugeSpec::on(g.name.clone(), ShellIx(0))
+                angle_rad: lot.draw_normal().to_radians(),
+                ..GaugeSpec::place_on_shell(g.name.clone(), ShellIx(0))
             };
             build(&other.model, &spec, CornerRows::Present)
                 .unwrap()
@@ -204,7 +205,7 @@ fn side_like(other: &Truck, g: &Gauge, shift: Vec3) -> strainbridge::fe::strain_
     let probe = GaugeSpec {
         surface: Some(Surface::Top),
         direction: Some(g.direction),
-        ..GaugeSpec::on("probe", foot.shell)
+        ..GaugeSpec::place_on_shell("probe", foot.shell)
     };
     let normal = build(&other.model, &probe, CornerRows::Absent)
         .unwrap()
@@ -231,22 +232,22 @@ pub fn strain(gauges: &[Gauge], cases: &[CaseResult], loads: &[f64]) -> Vec<f64>
             cases
                 .iter()
                 .zip(loads)
-                .map(|(c, f)| f * reading(g, c).unwrap())
+                .map(|(c, f)| f * gauge_reading(g, c).unwrap())
                 .sum()
         })
         .collect()
 }
 
 /// The same with 1 % of gain and 1 microstrain of noise.
-pub fn measured(lot: &mut Lot, clean: &[f64]) -> Vec<f64> {
+pub fn simulate_readings(lot: &mut Lot, clean: &[f64]) -> Vec<f64> {
     clean
         .iter()
-        .map(|e| e * (1.0 + 0.01 * lot.normal()) + MICRO * lot.normal())
+        .map(|e| e * (1.0 + 0.01 * lot.draw_normal()) + MICRO * lot.draw_normal())
         .collect()
 }
 
 /// Least-squares loads.
-pub fn solved(s: &Matrix, y: &[f64]) -> Vec<f64> {
+pub fn solve_least_squares(s: &Matrix, y: &[f64]) -> Vec<f64> {
     let y = strainbridge::linalg::Vector::from_column_slice(y);
     s.clone()
         .svd(true, true)
@@ -270,6 +271,6 @@ pub fn mean(v: &[f64]) -> f64 {
     v.iter().sum::<f64>() / v.len() as f64
 }
 
-pub fn largest(v: &[f64]) -> f64 {
+pub fn largest_value(v: &[f64]) -> f64 {
     v.iter().copied().fold(0.0, f64::max)
 }

@@ -1,7 +1,7 @@
 //! What the workflow says of a model that differs from the structure everywhere a little: shells against bars.
 
 use crate::gauges::*;
-use crate::other_model::{bar_strain, installed};
+use crate::other_model::{bar_strain, build_thesis_gauges};
 use crate::world::*;
 use strainbridge::gauge::Gauge;
 use strainbridge::reconcile::strain::{
@@ -13,17 +13,17 @@ const RUNS: usize = 14;
 
 /// Fourteen runs on the beam truck as an analyst with S of the shell truck sees them.
 fn frame() -> StrainFrame {
-    let list = installed();
+    let list = build_thesis_gauges();
     let gauges: Vec<Gauge> = list.iter().map(|g| g.0.clone()).collect();
-    let s = sensitivity(&gauges, &vertical(own()));
+    let s = sensitivity(&gauges, &vertical_load_cases(analyst_truck()));
     let (n_g, n_l) = (gauges.len(), WHEELS.len());
     let mut lot = Lot::new(69);
     let mean = beam().reactions();
     let loads: Vec<f64> = (0..RUNS)
         .flat_map(|_| {
-            let truck = 1.0 + 0.3 * lot.normal();
+            let truck = 1.0 + 0.3 * lot.draw_normal();
             mean.iter()
-                .map(|f| f / 1e3 * (truck + 0.03 * lot.normal()))
+                .map(|f| f / 1e3 * (truck + 0.03 * lot.draw_normal()))
                 .collect::<Vec<f64>>()
         })
         .collect();
@@ -34,7 +34,7 @@ fn frame() -> StrainFrame {
             let clean: f64 = contacts
                 .map(|(c, f)| 1e3 * f * bar_strain(c, *id, *low, *share))
                 .sum();
-            values.push(clean / MICRO + lot.normal());
+            values.push(clean / MICRO + lot.draw_normal());
         }
     }
     let mut influence = Vec::new();
@@ -67,7 +67,7 @@ fn frame() -> StrainFrame {
         influence,
         tensors: vec![Vec::new(); n_g],
         per_mm: None,
-        loads: loads.iter().map(|f| f + 0.06 * lot.normal()).collect(),
+        loads: loads.iter().map(|f| f + 0.06 * lot.draw_normal()).collect(),
         payload: vec![[0.0; 3]; RUNS],
         payload_origin: [0.0; 2],
         payload_weight: PayloadWeight::InModel,

@@ -18,8 +18,8 @@ const SIZES: [f64; 5] = [1_647.0, 4_135.0, 1.581e6, 0.4151e6, 0.2579e6];
 const COMPONENTS: [&str; 5] = ["FX", "FY", "MX", "MY", "MZ"];
 
 fn all_loads() -> Vec<LoadCaseOf<'static>> {
-    let truck = own();
-    let mut loads = vertical(truck);
+    let truck = analyst_truck();
+    let mut loads = vertical_load_cases(truck);
     for (w, name) in NAMES.iter().enumerate() {
         for ((case, component), size) in truck.others_of(w).iter().zip(COMPONENTS).zip(SIZES) {
             loads.push(LoadCaseOf {
@@ -72,7 +72,7 @@ fn draws(s_true: &Sensitivity, s: &Sensitivity, seed: u64) -> Outcome {
             .enumerate()
             .map(|(l, load)| match VERTICAL.get(l) {
                 Some(v) => *v,
-                None => load.expected.unwrap() * lot.normal(),
+                None => load.expected.unwrap() * lot.draw_normal(),
             })
             .collect();
         let strain = (0..s_true.gauges.len())
@@ -82,7 +82,7 @@ fn draws(s_true: &Sensitivity, s: &Sensitivity, seed: u64) -> Outcome {
                     .enumerate()
                     .map(|(l, f)| s_true.values[(g, l)] * f)
                     .sum();
-                clean + MICRO * lot.normal()
+                clean + MICRO * lot.draw_normal()
             })
             .collect();
         let run = estimate(
@@ -109,10 +109,10 @@ fn draws(s_true: &Sensitivity, s: &Sensitivity, seed: u64) -> Outcome {
 
 /// Layout on the frame for the vertical loads with the others estimated along (Ds), nuisance columns first; `kept` rows are there already.
 fn layout(n: usize, kept: &[Gauge]) -> Vec<Gauge> {
-    let truck = own();
+    let truck = analyst_truck();
     let mut loads = all_loads();
     loads.rotate_left(6);
-    let (sites, c) = candidates_of(truck, &loads, Scatter::uniform(1.0));
+    let (sites, c) = candidates_of(truck, &loads, Scatter::with_uniform_noise(1.0));
     let mut spec = Spec::new(n, 36);
     // Both sides of a plate may carry a gauge: together they tell bending from stretching.
     spec.spacing = 5.0;
@@ -133,13 +133,13 @@ fn layout(n: usize, kept: &[Gauge]) -> Vec<Gauge> {
     }
     spec.effort.starts = 3;
     spec.effort.perturbations = 10;
-    glued(&truck.model, &sites, &place(&c, &spec).unwrap())
+    glue_gauges(&truck.model, &sites, &place(&c, &spec).unwrap())
 }
 
 /// Two gauges on top of every axle stub, near the wheel and near the spring: their difference is the shear force, which neither a moment
 /// nor a force along or across the wheel changes.
 fn on_axles() -> Vec<Gauge> {
-    let truck = own();
+    let truck = analyst_truck();
     let mut out = Vec::new();
     for id in WHEELS {
         let wheel = grid(&truck.model, id);
@@ -158,7 +158,7 @@ fn on_axles() -> Vec<Gauge> {
                     point: 0,
                     station: f64::abs(at_wheel - station),
                 },
-                ..GaugeSpec::on(format!("A{id}.{station}"), ShellIx(0))
+                ..GaugeSpec::place_on_shell(format!("A{id}.{station}"), ShellIx(0))
             };
             out.push(
                 build(&truck.model, &spec, CornerRows::Absent)
@@ -191,9 +191,9 @@ fn table_6_3_vertical_loads_among_thirty_others() {
         let s = sensitivity(&gauges, &loads);
         let with = draws(&s, &s, 63);
         // Blind: the best gauges for the vertical loads alone, the others not in S.
-        let (blind_gauges, _) = best(n);
+        let (blind_gauges, _) = find_best_layout(n);
         let full = sensitivity(&blind_gauges, &loads);
-        let blind_s = sensitivity(&blind_gauges, &vertical(own()));
+        let blind_s = sensitivity(&blind_gauges, &vertical_load_cases(analyst_truck()));
         let blind = draws(&full, &blind_s, 63);
         println!(
             "6.3: {n} gauges, 12 of them on axles: rms {:.2} %, coverage {:.3}; blind: rms {:.1} %, coverage {:.3}",

@@ -2,7 +2,7 @@
 
 use crate::gauges::*;
 use crate::world::*;
-use strainbridge::gauge::{CornerRows, Gauge, GaugePlace, GaugeSpec, build, reading};
+use strainbridge::gauge::{CornerRows, Gauge, GaugePlace, GaugeSpec, build, gauge_reading};
 use strainbridge::linalg::dense;
 use strainbridge::model::Vec3;
 use strainbridge::placement::candidates::{Candidates, Choice, Scatter};
@@ -20,19 +20,19 @@ struct Errors {
 }
 
 /// Loads recovered from the finer truck by gauges glued with scatter.
-fn recovered(gauges: &[Gauge], rel: f64) -> Errors {
-    let truth = finer().reactions();
-    let s = sensitivity(gauges, &vertical(own()));
+fn recover_from_finer_truck(gauges: &[Gauge], rel: f64) -> Errors {
+    let truth = finer_truck().reactions();
+    let s = sensitivity(gauges, &vertical_load_cases(analyst_truck()));
     let (mut means, mut worst, mut held) = (0.0, 0.0, 0.0);
     for seed in 0..TRIALS {
         let mut lot = Lot::new(1000 + seed);
-        let there = on_other(finer(), gauges, &mut lot);
-        let clean = strain(&there, &finer().standing.contacts, &truth);
+        let there = on_other(finer_truck(), gauges, &mut lot);
+        let clean = strain(&there, &finer_truck().standing.contacts, &truth);
         let run = estimate(
             &s,
             &Readings {
                 run: "Run 3".into(),
-                strain: measured(&mut lot, &clean),
+                strain: simulate_readings(&mut lot, &clean),
                 noise_factor: 1.0,
             },
             ErrorModel {
@@ -42,7 +42,7 @@ fn recovered(gauges: &[Gauge], rel: f64) -> Errors {
         );
         let e = percent(&run.estimate.values, &truth);
         means += mean(&e) / TRIALS as f64;
-        worst += largest(&e) / TRIALS as f64;
+        worst += largest_value(&e) / TRIALS as f64;
         for (l, t) in truth.iter().enumerate() {
             let [low, high] = run.estimate.interval(l);
             held += f64::from(u8::from(low < *t && *t < high)) / (6 * TRIALS) as f64;
@@ -57,13 +57,13 @@ fn recovered(gauges: &[Gauge], rel: f64) -> Errors {
 
 /// Forty places on the webs of the rails, high and low, and four in the middle of cross members, along the part, away from joints.
 fn forty_four() -> Vec<Gauge> {
-    let truck = own();
+    let truck = analyst_truck();
     let mut out = Vec::new();
     let mut lay = |at: Vec3, direction: Vec3| {
         let spec = GaugeSpec {
             place: GaugePlace::Nearest(at),
             direction: Some(direction),
-            ..GaugeSpec::on(
+            ..GaugeSpec::place_on_shell(
                 format!("C{:02}", out.len() + 1),
                 strainbridge::model::ShellIx(0),
             )
@@ -107,7 +107,7 @@ fn least_condition(s: &strainbridge::linalg::Matrix) -> f64 {
         .map(|_| {
             let mut left: Vec<usize> = (0..s.nrows()).collect();
             let mut rows: Vec<usize> = (0..10)
-                .map(|_| left.swap_remove(lot.between(0.0, left.len() as f64) as usize))
+                .map(|_| left.swap_remove(lot.draw_between(0.0, left.len() as f64) as usize))
                 .collect();
             let mut best = of(&rows);
             loop {
@@ -149,7 +149,7 @@ fn mitchell(s: &strainbridge::linalg::Matrix, n: usize) -> Vec<usize> {
     };
     let start = |lot: &mut Lot| -> Vec<usize> {
         (0..n)
-            .map(|_| lot.between(0.0, s.nrows() as f64) as usize)
+            .map(|_| lot.draw_between(0.0, s.nrows() as f64) as usize)
             .collect()
     };
     (0..10)
@@ -185,8 +185,8 @@ fn mitchell(s: &strainbridge::linalg::Matrix, n: usize) -> Vec<usize> {
 #[test]
 fn the_thesis_algorithm_repeats_gauges_and_the_proved_layout_of_distinct_ones_does_not() {
     let all = forty_four();
-    let s = sensitivity(&all, &vertical(own())).values;
-    let c = Candidates::from_rows(6, 44, Scatter::uniform(1.0), |g, out| {
+    let s = sensitivity(&all, &vertical_load_cases(analyst_truck())).values;
+    let c = Candidates::from_rows(6, 44, Scatter::with_uniform_noise(1.0), |g, out| {
         for (l, o) in out.iter_mut().enumerate() {
             *o = s[(g, l)] / MICRO * EXPECTED;
         }
@@ -243,7 +243,7 @@ fn the_thesis_algorithm_repeats_gauges_and_the_proved_layout_of_distinct_ones_do
         sigma(&rows),
         a.proved
     );
-    let best = sensitivity(best_ten(), &vertical(own())).values / MICRO;
+    let best = sensitivity(best_ten(), &vertical_load_cases(analyst_truck())).values / MICRO;
     let inverse = (best.transpose() * &best).try_inverse().unwrap();
     let own: Vec<f64> = (0..6).map(|i| inverse[(i, i)].sqrt() / 1000.0).collect();
     println!(
@@ -254,9 +254,9 @@ fn the_thesis_algorithm_repeats_gauges_and_the_proved_layout_of_distinct_ones_do
 
 #[test]
 fn ten_gauges_for_the_condition_number_are_within_a_fifth_of_the_least_that_a_search_finds() {
-    let columns = vertical(own());
+    let columns = vertical_load_cases(analyst_truck());
     let rows_at = |s: &strainbridge::linalg::Matrix| {
-        Candidates::from_rows(6, s.nrows(), Scatter::uniform(1.0), |g, out| {
+        Candidates::from_rows(6, s.nrows(), Scatter::with_uniform_noise(1.0), |g, out| {
             for (l, o) in out.iter_mut().enumerate() {
                 *o = s[(g, l)] / MICRO * EXPECTED;
             }
@@ -276,7 +276,7 @@ fn ten_gauges_for_the_condition_number_are_within_a_fifth_of_the_least_that_a_se
     );
     assert!(got.condition <= 1.2 * least);
     // All candidates, and a search among an even share of them.
-    let (_, all) = candidates_of(own(), &columns, Scatter::uniform(1.0));
+    let (_, all) = candidates_of(analyst_truck(), &columns, Scatter::with_uniform_noise(1.0));
     let spec = Spec::new(10, 6);
     let by_d = place(&all, &spec).unwrap();
     let got =
@@ -306,8 +306,8 @@ fn ten_gauges_for_the_condition_number_are_within_a_fifth_of_the_least_that_a_se
 #[test]
 fn table_6_10_ten_of_forty_four_and_ten_of_all_on_readings_of_the_other_model() {
     let all = forty_four();
-    let s = sensitivity(&all, &vertical(own()));
-    let c = Candidates::from_rows(6, 44, Scatter::uniform(1.0), |g, out| {
+    let s = sensitivity(&all, &vertical_load_cases(analyst_truck()));
+    let c = Candidates::from_rows(6, 44, Scatter::with_uniform_noise(1.0), |g, out| {
         for (l, o) in out.iter_mut().enumerate() {
             *o = s.values[(g, l)] / MICRO * EXPECTED;
         }
@@ -319,8 +319,9 @@ fn table_6_10_ten_of_forty_four_and_ten_of_all_on_readings_of_the_other_model() 
             .iter()
             .map(|g| all[g.place as usize].clone())
             .collect();
-        let condition = dense::condition(&sensitivity(&chosen, &vertical(own())).values);
-        let e = recovered(&chosen, 0.02);
+        let condition =
+            dense::condition(&sensitivity(&chosen, &vertical_load_cases(analyst_truck())).values);
+        let e = recover_from_finer_truck(&chosen, 0.02);
         if n == 10 {
             println!(
                 "6.10: least condition number of ten of 44 by exchange: {:.1}",
@@ -336,8 +337,9 @@ fn table_6_10_ten_of_forty_four_and_ten_of_all_on_readings_of_the_other_model() 
         }
     }
     let best = best_ten();
-    let condition = dense::condition(&sensitivity(best, &vertical(own())).values);
-    let e = recovered(best, 0.02);
+    let condition =
+        dense::condition(&sensitivity(best, &vertical_load_cases(analyst_truck())).values);
+    let e = recover_from_finer_truck(best, 0.02);
     println!(
         "6.10: 10 of all candidates: mean {:.2} %, max {:.2} %, condition {condition:.1}, coverage {:.3}",
         e.mean, e.max, e.coverage
@@ -348,8 +350,8 @@ fn table_6_10_ten_of_forty_four_and_ten_of_all_on_readings_of_the_other_model() 
 
 /// Fifteen gauges like those of the thesis: bending along the rails at its printed stations, and along the flanges near them; the shell
 /// gauge and the bar's recovery point at the same place.
-pub fn installed() -> Vec<(Gauge, (u32, usize, f64))> {
-    let (shell, bars) = (own(), beam());
+pub fn build_thesis_gauges() -> Vec<(Gauge, (u32, usize, f64))> {
+    let (shell, bars) = (analyst_truck(), beam());
     // Table A.1 from the bumper: A2 + 5, gantry + 9.5, 412 + 40.5, in inches; others by eye of figure 3.2.
     let places = [
         (40.0, -1.0, 1.0),
@@ -378,7 +380,10 @@ pub fn installed() -> Vec<(Gauge, (u32, usize, f64))> {
             let spec = GaugeSpec {
                 place: GaugePlace::Nearest(at),
                 direction: Some(Vec3::new(1.0, 0.0, 0.0)),
-                ..GaugeSpec::on(format!("T{:02}", i + 1), strainbridge::model::ShellIx(0))
+                ..GaugeSpec::place_on_shell(
+                    format!("T{:02}", i + 1),
+                    strainbridge::model::ShellIx(0),
+                )
             };
             let gauge = build(&shell.model, &spec, CornerRows::Present)
                 .unwrap()
@@ -424,9 +429,9 @@ pub fn bar_strain(case: &strainbridge::fe::CaseResult, id: u32, low: usize, shar
 
 #[test]
 fn table_6_9_shell_sensitivities_on_the_beam_truck_are_a_bias_of_the_model() {
-    let list = installed();
+    let list = build_thesis_gauges();
     let gauges: Vec<Gauge> = list.iter().map(|g| g.0.clone()).collect();
-    let s = sensitivity(&gauges, &vertical(own()));
+    let s = sensitivity(&gauges, &vertical_load_cases(analyst_truck()));
     let truth = beam().reactions();
     let clean: Vec<f64> = list
         .iter()
@@ -443,12 +448,12 @@ fn table_6_9_shell_sensitivities_on_the_beam_truck_are_a_bias_of_the_model() {
     let own_strain: Vec<f64> = gauges
         .iter()
         .map(|g| {
-            own()
+            analyst_truck()
                 .standing
                 .contacts
                 .iter()
                 .zip(&truth)
-                .map(|(c, f)| f * reading(g, c).unwrap())
+                .map(|(c, f)| f * gauge_reading(g, c).unwrap())
                 .sum()
         })
         .collect();
@@ -456,17 +461,17 @@ fn table_6_9_shell_sensitivities_on_the_beam_truck_are_a_bias_of_the_model() {
         .iter()
         .zip(&own_strain)
         .filter(|(c, _)| {
-            c.abs() > 0.3 * largest(&clean.iter().map(|v| v.abs()).collect::<Vec<_>>())
+            c.abs() > 0.3 * largest_value(&clean.iter().map(|v| v.abs()).collect::<Vec<_>>())
         })
         .map(|(c, o)| 100.0 * (o / c - 1.0).abs())
         .collect();
-    let e = percent(&solved(&s.values, &clean), &truth);
-    let shares = percent(&own().reactions(), &truth);
+    let e = percent(&solve_least_squares(&s.values, &clean), &truth);
+    let shares = percent(&analyst_truck().reactions(), &truth);
     println!(
         "6.9: 15 gauges as installed, beam readings: mean {:.1} %, max {:.1} %, condition {:.1}; hot strains differ by {:.1} % (mean), \
          reactions by {:.2} %",
         mean(&e),
-        largest(&e),
+        largest_value(&e),
         dense::condition(&s.values),
         mean(&hot),
         mean(&shares)
@@ -503,7 +508,7 @@ fn table_6_9_shell_sensitivities_on_the_beam_truck_are_a_bias_of_the_model() {
 
 #[test]
 fn strains_of_the_two_meshes_differ_by_little_where_gauges_go() {
-    let truth = finer().reactions();
+    let truth = finer_truck().reactions();
     let gauges = best_ten();
     let there: Vec<Gauge> = gauges
         .iter()
@@ -511,17 +516,17 @@ fn strains_of_the_two_meshes_differ_by_little_where_gauges_go() {
             let spec = GaugeSpec {
                 place: GaugePlace::Nearest(g.position),
                 direction: Some(g.direction),
-                ..GaugeSpec::on(g.name.clone(), strainbridge::model::ShellIx(0))
+                ..GaugeSpec::place_on_shell(g.name.clone(), strainbridge::model::ShellIx(0))
             };
-            build(&finer().model, &spec, CornerRows::Present)
+            build(&finer_truck().model, &spec, CornerRows::Present)
                 .unwrap()
                 .0
                 .remove(0)
         })
         .collect();
-    let a = strain(gauges, &own().standing.contacts, &truth);
-    let b = strain(&there, &finer().standing.contacts, &truth);
-    let size = largest(&b.iter().map(|v| v.abs()).collect::<Vec<_>>());
+    let a = strain(gauges, &analyst_truck().standing.contacts, &truth);
+    let b = strain(&there, &finer_truck().standing.contacts, &truth);
+    let size = largest_value(&b.iter().map(|v| v.abs()).collect::<Vec<_>>());
     let off: Vec<f64> = a
         .iter()
         .zip(&b)
@@ -530,7 +535,7 @@ fn strains_of_the_two_meshes_differ_by_little_where_gauges_go() {
     println!(
         "mesh: 45 against 22.5 mm: mean {:.2} %, max {:.2} % of the largest strain",
         mean(&off),
-        largest(&off)
+        largest_value(&off)
     );
     let at: Vec<[f64; 3]> = gauges
         .iter()

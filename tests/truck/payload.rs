@@ -9,18 +9,18 @@ use strainbridge::payload::{PayloadModel, PayloadRun, Place, WeighSpec, weigh};
 
 /// Gauges for six wheels and the payload with its two moments, thirty of them.
 fn layout() -> Vec<Gauge> {
-    let truck = own();
-    let mut loads = vertical(truck);
+    let truck = analyst_truck();
+    let mut loads = vertical_load_cases(truck);
     loads.extend(columns(&truck.standing.others[..1], &["P.FZ"], 50_000.0));
     loads.extend(columns(
         &truck.standing.others[1..3],
         &["P.MX", "P.MY"],
         2e7,
     ));
-    let (sites, c) = candidates_of(truck, &loads, careful());
+    let (sites, c) = candidates_of(truck, &loads, conservative_scatter());
     let mut spec = strainbridge::placement::Spec::new(30, 9);
     spec.spacing = 60.0;
-    glued(
+    glue_gauges(
         &truck.model,
         &sites,
         &strainbridge::placement::place(&c, &spec).unwrap(),
@@ -56,8 +56,8 @@ fn floor(truck: &Truck) -> Matrix {
 }
 
 fn model(gauges: &[Gauge]) -> PayloadModel {
-    let truck = own();
-    let s = sensitivity(gauges, &vertical(truck));
+    let truck = analyst_truck();
+    let s = sensitivity(gauges, &vertical_load_cases(truck));
     let direct = sensitivity(
         gauges,
         &columns(&truck.standing.others[..3], &["F", "X", "Y"], 1.0),
@@ -88,7 +88,7 @@ fn model(gauges: &[Gauge]) -> PayloadModel {
 fn size_and_place_of_the_payload_from_wheel_forces_and_from_strain_of_the_other_model() {
     let gauges = layout();
     let model = model(&gauges);
-    let other = finer();
+    let other = finer_truck();
     let theirs = floor(other);
     let sigma_wheel = 60.0;
     let spec = WeighSpec {
@@ -105,8 +105,11 @@ fn size_and_place_of_the_payload_from_wheel_forces_and_from_strain_of_the_other_
         let mut lot = Lot::new(65);
         let (mut square, mut held, mut off) = (0.0, 0, 0.0);
         for _ in 0..trials {
-            let force = lot.between(30_000.0, 60_000.0);
-            let shift = [lot.between(-900.0, 900.0), lot.between(-200.0, 200.0)];
+            let force = lot.draw_between(30_000.0, 60_000.0);
+            let shift = [
+                lot.draw_between(-900.0, 900.0),
+                lot.draw_between(-200.0, 200.0),
+            ];
             let p = [force, force * shift[0], force * shift[1]];
             let reactions: Vec<f64> = (0..6)
                 .map(|w| (0..3).map(|k| theirs[(w, k)] * p[k]).sum())
@@ -123,11 +126,11 @@ fn size_and_place_of_the_payload_from_wheel_forces_and_from_strain_of_the_other_
             }
             let mut run = PayloadRun {
                 run: "Run 3".into(),
-                strain: measured(&mut lot, &clean),
+                strain: simulate_readings(&mut lot, &clean),
                 sigma: vec![MICRO; gauges.len()],
                 reactions: reactions
                     .iter()
-                    .map(|r| r + sigma_wheel * lot.normal())
+                    .map(|r| r + sigma_wheel * lot.draw_normal())
                     .collect(),
                 shift: [0.0; 2],
             };

@@ -107,13 +107,13 @@ fn solve(text: &str) -> Truck {
 }
 
 /// The analyst's model: 45 mm shells.
-pub fn own() -> &'static Truck {
+pub fn analyst_truck() -> &'static Truck {
     static TRUCK: OnceLock<Truck> = OnceLock::new();
     TRUCK.get_or_init(|| solve(&deck_text(45.0, Frame::Shell, true, PAYLOAD_TONNES)))
 }
 
 /// The other model: 22.5 mm shells.
-pub fn finer() -> &'static Truck {
+pub fn finer_truck() -> &'static Truck {
     static TRUCK: OnceLock<Truck> = OnceLock::new();
     TRUCK.get_or_init(|| solve(&deck_text(22.5, Frame::Shell, true, PAYLOAD_TONNES)))
 }
@@ -131,10 +131,10 @@ impl Lot {
     pub fn new(seed: u64) -> Self {
         Self(ChaCha8Rng::seed_from_u64(seed))
     }
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub fn draw_between(&mut self, low: f64, high: f64) -> f64 {
         self.0.random_range(low..high)
     }
-    pub fn normal(&mut self) -> f64 {
-        crate::drawn::normal(&mut self.0)
+    pub fn draw_normal(&mut self) -> f64 {
+        crate::drawn::draw_normal(&mut self.0)
     }
 }

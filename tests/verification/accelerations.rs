@@ -1,6 +1,6 @@
 //! ACCEL, ACCEL1 and RFORCE1: forces of mass in a field of acceleration, in closed form.
 
-use crate::small_decks::{at, close, model, refused, solve};
+use crate::small_decks::{assert_close, displacement_at, list_refused_cards, model, solve};
 
 /// Rounding of a solution of a few unknowns.
 const ROUNDING: f64 = 1e-12;
@@ -10,7 +10,7 @@ const ROD: &str = "GRID,1,,1.,0.,0.\nGRID,2,,3.,0.,0.\nGRID,3,,6.,0.,0.\nCROD,1,
      MAT1,3,4.+9,,.3,500.\nSPC1,1,123456,1\nSPC1,1,23456,2,3\n";
 
 /// Displacements along x of both free grids under forces there: k = E A / L.
-fn stretched(f2: f64, f3: f64) -> [f64; 2] {
+fn exact_displacements(f2: f64, f3: f64) -> [f64; 2] {
     let u2 = (f2 + f3) * 2.0 / 8.0e7;
     [u2, u2 + f3 * 3.0 / 8.0e7]
 }
@@ -19,11 +19,11 @@ fn stretched(f2: f64, f3: f64) -> [f64; 2] {
 fn moves(case_control: &str, cards: &str, [f1, f2, f3]: [f64; 3]) {
     let case_control = format!("SPC = 1\nLOAD = 5\n{case_control}");
     let solved = solve(&case_control, &format!("{ROD}{cards}"));
-    for (grid, expected) in [2, 3].into_iter().zip(stretched(f2, f3)) {
-        close(cards, at(&solved, grid)[0], expected, ROUNDING);
+    for (grid, expected) in [2, 3].into_iter().zip(exact_displacements(f2, f3)) {
+        assert_close(cards, displacement_at(&solved, grid)[0], expected, ROUNDING);
     }
     let total = solved.1.report.reactions[0].total[0];
-    close("reaction", total, -(f1 + f2 + f3), ROUNDING);
+    assert_close("reaction", total, -(f1 + f2 + f3), ROUNDING);
 }
 
 #[test]
@@ -103,7 +103,7 @@ fn rforce1_turns_the_structure_as_rforce_does() {
 
 #[test]
 fn rotations_that_ask_for_more_are_refused_by_their_name() {
-    let of = |card: &str| refused("SPC = 1\nLOAD = 5", &format!("{ROD}{card}"));
+    let of = |card: &str| list_refused_cards("SPC = 1\nLOAD = 5", &format!("{ROD}{card}"));
     assert_eq!(of("RFORCE1,5,1,,3.,0.,0.,1.\n,1."), ["RFORCE1 with RACC 5"]);
     assert_eq!(
         of("RFORCE1,5,1,,3.,0.,0.,1.\n,,,8"),
@@ -129,13 +129,13 @@ fn mass_at_an_offset_turns_where_it_is() {
         moves("", &cards, [0.0, f2, f3 + force]);
         let held = solve("SPC = 1\nLOAD = 5", &format!("{ROD}{cards}"));
         let moment = held.1.report.reactions[0].total[4];
-        close(card, moment, -(2.0 * force + w * w * 0.6), ROUNDING);
+        assert_close(card, moment, -(2.0 * force + w * w * 0.6), ROUNDING);
     }
 }
 
 #[test]
 fn method_2_is_refused_with_mass_at_an_offset_and_other_methods_are_faults() {
-    let of = |cards: &str| refused("SPC = 1\nLOAD = 5", &format!("{ROD}{cards}"));
+    let of = |cards: &str| list_refused_cards("SPC = 1\nLOAD = 5", &format!("{ROD}{cards}"));
     let why = "with METHOD 2 and mass at an offset from its grid 5";
     for mass in [OFF_GRID, "CONM2,70,3,,10.\n,7.\n"] {
         assert_eq!(

@@ -32,7 +32,7 @@ pub fn tray() -> Bulk {
 }
 
 /// The model with the moduli of some shells times a factor.
-pub fn scaled(model: &Model, shells: &[usize], factor: f64) -> Model {
+pub fn scale_moduli(model: &Model, shells: &[usize], factor: f64) -> Model {
     let mut out = model.clone();
     let mut material = out.materials[0];
     let MaterialKind::Isotropic { e, g, .. } = &mut material.kind else {
@@ -66,7 +66,7 @@ pub fn scaled(model: &Model, shells: &[usize], factor: f64) -> Model {
     out
 }
 
-fn reading(case: &CaseResult, t: &StrainTerm) -> f64 {
+fn strain_of_term(case: &CaseResult, t: &StrainTerm) -> f64 {
     let i = t.shell.us();
     let strain = match t.place {
         ShellPlace::Centre => case.shells.centre[i][t.surface.ix()],
@@ -127,12 +127,12 @@ fn the_adjoint_change_is_the_slope_of_solutions_with_some_shells_softer_free_and
         relief: Relief::None,
         by_springs: 0,
     };
-    for support in [Support::free(&model), held] {
+    for support in [Support::without_spc(&model), held] {
         let options = SolveOptions::default();
         let adjoint = Adjoint::solve(&model, support, &loads, &readings, &options).unwrap();
         for (set, change) in sets.iter().zip(adjoint.changes(&sets).unwrap()) {
             let at = |factor: f64| {
-                let model = scaled(&model, set, factor);
+                let model = scale_moduli(&model, set, factor);
                 solve_unit_loads_on(&model, support, &loads, &options)
                     .unwrap()
                     .0
@@ -143,7 +143,7 @@ fn the_adjoint_change_is_the_slope_of_solutions_with_some_shells_softer_free_and
             for (r, terms) in readings.iter().enumerate() {
                 for l in 0..loads.len() {
                     let of = |s: &Solution| -> f64 {
-                        terms.iter().map(|t| reading(&s.cases[l], t)).sum()
+                        terms.iter().map(|t| strain_of_term(&s.cases[l], t)).sum()
                     };
                     let slope = (of(&more) - of(&less)) / (2.0 * STEP);
                     largest = largest.max(slope.abs());
@@ -185,7 +185,7 @@ fn a_mesh_divided_in_part_carries_even_strain_exactly() {
     let divided = model.shells_near(&[ShellIx(12)], 1);
     let n = divided.iter().filter(|d| **d).count();
     assert_eq!(n, 9, "one shell and those that meet it at a grid");
-    let fine = model.refined_at(&divided).unwrap();
+    let fine = model.refine_shells_at(&divided).unwrap();
     assert_eq!(fine.model.shells.len(), model.shells.len() + 3 * n);
     let case = LoadCase {
         subcase: 1,

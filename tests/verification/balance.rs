@@ -1,7 +1,7 @@
 //! What holds a structure, and whether it balances what acts: dofs next to no stiffness, springs of negative stiffness, springs to ground,
 //! scalar points; against closed forms, the same structure modelled otherwise, and the balance of forces.
 
-use crate::mesh::{Bulk, near};
+use crate::mesh::{Bulk, assert_near};
 use strainbridge::fe::*;
 use strainbridge::finding::Severity;
 
@@ -30,7 +30,7 @@ fn answer(b: &Bulk, case: LoadCase) -> Result<(Solution, SolveReport), FeError> 
     solve_cases(&model, &[case], &SolveOptions::default())
 }
 
-fn held(b: &Bulk) -> (Solution, SolveReport) {
+fn solve_without_relief(b: &Bulk) -> (Solution, SolveReport) {
     answer(b, case(Relief::None)).unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -64,7 +64,7 @@ fn codes(s: &Solution) -> Vec<(&str, Severity)> {
 
 /// Reactions and loads sum to zero.
 #[track_caller]
-fn balanced(report: &SolveReport) {
+fn assert_reactions_balance(report: &SolveReport) {
     let r = &report.reactions[0];
     // Rounding of a few dozen unknowns.
     assert!(r.residual < 1e-9, "{r:?}");
@@ -85,17 +85,17 @@ fn a_load_that_autospc_takes_beside_a_far_stiffer_spring_is_an_error_and_without
         b.card(param);
         b
     };
-    let (solution, report) = held(&deck("PARAM,AUTOSPC,YES"));
+    let (solution, report) = solve_without_relief(&deck("PARAM,AUTOSPC,YES"));
     assert!(report.reactions[0].residual > 0.1);
     assert!(
         codes(&solution).contains(&("autospc-holds-load", Severity::Error)),
         "{:?}",
         solution.findings
     );
-    let (solution, report) = held(&deck("PARAM,AUTOSPC,NO"));
+    let (solution, report) = solve_without_relief(&deck("PARAM,AUTOSPC,NO"));
     let expected = 100.0 * 1000.0_f64.powi(3) / (3.0 * E * I);
     // The strut's spring leaves five digits of the softest terms beside it.
-    near("tip", solution.cases[0].displacement[2][1], expected, 1e-4);
+    assert_near("tip", solution.cases[0].displacement[2][1], expected, 1e-4);
     assert!(
         codes(&solution).iter().all(|c| c.0 != "autospc-holds-load"),
         "{:?}",
@@ -165,13 +165,13 @@ fn a_moment_along_a_shell_is_carried_however_the_shell_stands() {
         let (mut b, ids) = plate(angle);
         let (c, s) = (angle.cos(), angle.sin());
         b.card(&format!("MOMENT,1,{},0,100.,0.,{c:.9},{s:.9}", ids[2][1]));
-        let u = held(&b).0.cases[0].displacement[(ids[2][2] - 1) as usize];
+        let u = solve_without_relief(&b).0.cases[0].displacement[(ids[2][2] - 1) as usize];
         u[2] * c - u[1] * s
     };
     let flat = tip(0.0);
     assert!(flat.abs() > 1e-3);
     // Nine figures of the direction.
-    near("deflection", tip(0.7), flat, 1e-7);
+    assert_near("deflection", tip(0.7), flat, 1e-7);
 }
 
 #[test]
@@ -181,10 +181,10 @@ fn a_negative_spring_softens_as_its_closed_form_and_is_named_where_it_outweighs_
         b.card(&format!("CELAS2,9,{k:?},2,2\nFORCE,1,2,0,100.,0.,1.,0."));
         b
     };
-    let (solution, report) = held(&deck(-20.0));
+    let (solution, report) = solve_without_relief(&deck(-20.0));
     let expected = 100.0 / (tip_stiffness() - 20.0);
-    near("tip", solution.cases[0].displacement[1][1], expected, 1e-9);
-    balanced(&report);
+    assert_near("tip", solution.cases[0].displacement[1][1], expected, 1e-9);
+    assert_reactions_balance(&report);
     for k in [-100.0, -1000.0, -1e6] {
         let error = answer(&deck(k), case(Relief::None))
             .map(|_| ())
@@ -217,13 +217,13 @@ fn springs_and_bushes_to_ground_are_reactions_and_balance_the_loads_with_the_sup
         let mut b = cantilever(1);
         b.card(card);
         b.card("FORCE,1,2,0,100.,0.,1.,0.");
-        let (solution, report) = held(&b);
+        let (solution, report) = solve_without_relief(&b);
         let tip = solution.cases[0].displacement[1][1];
-        near(card, tip, expected, 1e-9);
-        balanced(&report);
+        assert_near(card, tip, expected, 1e-9);
+        assert_reactions_balance(&report);
         let at: Vec<u32> = report.reactions[0].grids.iter().map(|r| r.grid).collect();
         assert_eq!(at, [1, 2], "{card}");
-        near(
+        assert_near(
             card,
             report.reactions[0].grids[1].force[1],
             -1000.0 * tip,
@@ -261,13 +261,13 @@ fn a_load_on_a_scalar_point_that_follows_a_grid_is_a_load_on_that_grid() {
             }
         }
         let u = &through.cases[0].displacement;
-        near("point", u[3][0], 2.0 * u[1][1], 1e-9);
+        assert_near("point", u[3][0], 2.0 * u[1][1], 1e-9);
         match relief {
-            Relief::None => balanced(&report),
+            Relief::None => assert_reactions_balance(&report),
             _ => {
                 let (a, b) = (&at_grid.balance[0], &report.balance[0]);
-                near("applied", b.applied[1], a.applied[1], 1e-12);
-                near("carried", b.applied[1], 200.0, 1e-12);
+                assert_near("applied", b.applied[1], a.applied[1], 1e-12);
+                assert_near("carried", b.applied[1], 200.0, 1e-12);
             }
         }
     }
@@ -319,8 +319,8 @@ fn supports_that_all_move_alike_strain_nothing_and_are_not_said_to_lose_a_load()
     let mut b = bar(8);
     b.card("SPC,1,1,123456,0.\nSPC,1,9,123,0.");
     b.card("SPCD,1,1,2,5.\nSPCD,1,9,2,5.");
-    let (solution, _) = held(&b);
-    near("middle", solution.cases[0].displacement[4][1], 5.0, 1e-9);
+    let (solution, _) = solve_without_relief(&b);
+    assert_near("middle", solution.cases[0].displacement[4][1], 5.0, 1e-9);
     assert!(
         codes(&solution).iter().all(|c| c.0 != "loads-unbalanced"),
         "{:?}",
@@ -363,6 +363,6 @@ fn springs_in_series_tie_a_free_structure_to_no_ground() {
         }
     }
     for dof in 0..6 {
-        near("point", b[5 + dof][0], 0.5 * (b[2][dof] + b[3][dof]), 1e-6);
+        assert_near("point", b[5 + dof][0], 0.5 * (b[2][dof] + b[3][dof]), 1e-6);
     }
 }

@@ -1,7 +1,7 @@
 //! Connectors that say something that makes no connector, and what is told of those that do.
 
 use crate::connectors::plates;
-use crate::mesh::{Bulk, near};
+use crate::mesh::{Bulk, assert_near};
 use strainbridge::fe::*;
 use strainbridge::model::{FaultWeight, ModelFault};
 
@@ -183,12 +183,12 @@ fn an_spc_set_that_no_case_selects_does_not_choose_which_end_of_a_rigid_bush_fol
         b.card(unselected);
         let found = faults(&b);
         assert!(found.is_empty(), "{unselected}: {found:?}");
-        b.solve().at(4)
+        b.solve().displacement_at(4)
     };
     let plain = deck("$");
     // Axial, and the moment of the force 80 above the bar.
     let turn = 100.0 * 80.0 * 500.0 / (210_000.0 * 9000.0);
-    near("turn", plain[5], -turn, 1e-9);
+    assert_near("turn", plain[5], -turn, 1e-9);
     for card in ["SPC1,2,3,2", "MPC,2,2,3,1.,1,3,-1."] {
         assert_eq!(deck(card), plain, "{card}");
     }
@@ -214,5 +214,5 @@ fn sheets_at_an_angle_are_told_where_their_corners_are_named_too() {
     let all = findings_of(&b);
     let f = all.iter().find(|f| f.code == "connector-angle");
     let f = f.unwrap_or_else(|| panic!("{all:?}"));
-    near("angle", f.measured.unwrap(), 45.0, 1e-9);
+    assert_near("angle", f.measured.unwrap(), 45.0, 1e-9);
 }

@@ -56,7 +56,7 @@ pub fn plates(connector: &str, load: &str) -> Bulk {
     b
 }
 
-fn solved(b: &Bulk) -> Solved {
+fn solve_without_faults(b: &Bulk) -> Solved {
     let faults = b.faults();
     assert!(faults.is_empty(), "{faults:?}");
     b.solve()
@@ -103,15 +103,15 @@ fn a_weld_of_each_format_bends_stretches_and_twists_as_a_round_cantilever() {
     ];
     for (format, card) in formats() {
         for (load, dof, expected) in &cases {
-            let s = solved(&plates(&card, load));
-            let got = s.at(103)[*dof];
+            let s = solve_without_faults(&plates(&card, load));
+            let got = s.displacement_at(103)[*dof];
             // Rounding: the plates are softer than the weld by three powers of ten.
             assert!(
                 (got - expected).abs() < 1e-7 * expected,
                 "{format}, {load}: {got:e} for {expected:e}"
             );
             assert!(
-                s.at(102).iter().all(|u| u.abs() < 1e-12),
+                s.displacement_at(102).iter().all(|u| u.abs() < 1e-12),
                 "{format}: GA is held"
             );
         }
@@ -131,7 +131,7 @@ fn a_weld_between_two_grids_or_from_a_patch_to_a_grid_is_the_same_cantilever() {
         let mut b = plates(card, load);
         // The upper plate hangs on nothing else.
         b.card("SPC1,1,123456,26,THRU,50");
-        let got = solved(&b).at(103)[3];
+        let got = solve_without_faults(&b).displacement_at(103)[3];
         assert!(
             (got - expected).abs() < 1e-9 * expected,
             "{card}: {got:e} for {expected:e}"
@@ -146,7 +146,7 @@ fn a_spot_weld_and_a_short_one_count_with_their_effective_length() {
     let stretch = |property: &str| {
         let mut b = plates(&formats()[1].1.replace("500,7,", "500,8,"), load);
         b.card(property);
-        solved(&b).at(103)[2]
+        solve_without_faults(&b).displacement_at(103)[2]
     };
     // SPOT: half the sum of the plates, 2. LDMIN 3: 18. LDMAX 1: 6.
     for (property, length) in [
@@ -182,8 +182,8 @@ fn a_fastener_gives_way_by_its_springs_at_the_middle_between_its_ends() {
         for (load, dof, expected) in &cases {
             let mut b = plates(card, load);
             b.card(property);
-            let s = solved(&b);
-            let got = s.at(103)[*dof];
+            let s = solve_without_faults(&b);
+            let got = s.displacement_at(103)[*dof];
             assert!(
                 (got - expected).abs() < 1e-7 * expected,
                 "{card}, {load}: {got:e} for {expected:e}"
@@ -216,7 +216,7 @@ fn the_axes_of_a_fastener_are_those_of_mcid_where_mflag_says_so() {
     ] {
         let mut b = plates("CFAST,500,9,PROP,1,2,101,102,103", load);
         b.card(cards);
-        let got = solved(&b).at(103)[dof];
+        let got = solve_without_faults(&b).displacement_at(103)[dof];
         assert!(
             (got - expected).abs() < 1e-7 * expected,
             "{load}: {got:e} for {expected:e}"
@@ -261,7 +261,7 @@ fn a_piercing_grid_moves_and_turns_with_the_field_of_its_patch() {
         }
         b.card("FORCE,1,103,0,0.,0.,0.,1.");
         // The lower plate is held already: SPC adds the values.
-        let s = solved(&b);
+        let s = solve_without_faults(&b);
         let (x, y) = (AT[0], AT[1]);
         let u = field(x, y);
         let slopes = |c: usize| {
@@ -278,7 +278,7 @@ fn a_piercing_grid_moves_and_turns_with_the_field_of_its_patch() {
             -slopes(2).0,
             (slopes(1).0 - slopes(0).1) / 2.0,
         ];
-        let got = s.at(102);
+        let got = s.displacement_at(102);
         for (k, (a, e)) in got.iter().zip(expected).enumerate() {
             // Values are written with eight figures.
             assert!(
@@ -410,8 +410,8 @@ fn the_formats_agree_where_a_lap_joint_of_two_plates_is_pulled() {
                 &card.replace(",102,103", ",,"),
                 "FORCE,1,48,0,100.,1.,0.,0.\nFORCE,1,46,0,100.,1.,0.,0.",
             );
-            let s = solved(&b);
-            s.at(48)[0]
+            let s = solve_without_faults(&b);
+            s.displacement_at(48)[0]
         })
         .collect();
     for s in &stretch {
@@ -427,7 +427,7 @@ fn the_formats_agree_where_a_lap_joint_of_two_plates_is_pulled() {
 #[test]
 fn a_weld_on_a_property_is_the_deck_that_spells_its_ties_out() {
     let load = "FORCE,1,50,0,100.,.3,-.5,1.\nMOMENT,1,46,0,70.,1.,.2,.4";
-    let weld = solved(&plates("CWELD,500,7,101,PARTPAT,,,,,\n,1,2", load));
+    let weld = solve_without_faults(&plates("CWELD,500,7,101,PARTPAT,,,,,\n,1,2", load));
     let mut b = plates("", load);
     let half = std::f64::consts::PI.sqrt() / 4.0 * D;
     for (side, z) in [(0_u32, 0.0), (1, GAP)] {
@@ -480,10 +480,10 @@ fn a_weld_on_a_property_is_the_deck_that_spells_its_ties_out() {
     }
     b.card(&format!("PBARL,8,1,,ROD,,,,,\n,{:?}", D / 2.0));
     b.card("CBAR,501,8,102,103,1.,0.,0.");
-    let spelt = solved(&b);
+    let spelt = solve_without_faults(&b);
     for id in 26..=50 {
-        let (a, e) = (weld.at(id), spelt.at(id));
-        let size = spelt.at(50)[2].abs();
+        let (a, e) = (weld.displacement_at(id), spelt.displacement_at(id));
+        let size = spelt.displacement_at(50)[2].abs();
         for k in 0..3 {
             // Weights are written with twelve figures, places with nine.
             assert!((a[k] - e[k]).abs() < 1e-6 * size, "grid {id}: {a:?} {e:?}");

@@ -1,6 +1,6 @@
 //! PARAM,COUPMASS: consistent mass of shells and beams against closed forms.
 
-use crate::mesh::{Bulk, free_modes, mass_of, near};
+use crate::mesh::{Bulk, assert_near, free_modes, mass_of};
 
 #[test]
 fn the_coupled_mass_of_one_plate_turns_as_the_plate_itself() {
@@ -13,15 +13,15 @@ fn the_coupled_mass_of_one_plate_turns_as_the_plate_itself() {
     bulk.patch(1, 1, |u, v| [a * u, b * v, 5.0]);
     let p = mass_of(&bulk.model());
     let m = rho * a * b * t;
-    near("mass", p.mass, m, 1e-12);
-    near(
+    assert_near("mass", p.mass, m, 1e-12);
+    assert_near(
         "about the normal",
         p.matrix[(5, 5)],
         m * (a * a + b * b) / 12.0,
         1e-9,
     );
-    near("across", p.matrix[(3, 3)], m * b * b / 12.0, 1e-9);
-    near("centre of gravity", p.cg.z, 5.0, 1e-12);
+    assert_near("across", p.matrix[(3, 3)], m * b * b / 12.0, 1e-9);
+    assert_near("centre of gravity", p.cg.z, 5.0, 1e-12);
 }
 
 #[test]
@@ -34,12 +34,12 @@ fn triangles_and_offsets_keep_mass_and_centre() {
     bulk.card(&format!("CTRIA3,1,1,{},{},{},0.0,4.0", g[0], g[1], g[2]));
     let p = mass_of(&bulk.model());
     let m = 7.85e-9 * 2.0 * 0.5 * 30.0 * 60.0;
-    near("mass", p.mass, m, 1e-12);
-    near("x", p.cg.x, 10.0, 1e-9);
-    near("y", p.cg.y, 20.0, 1e-9);
-    near("z", p.cg.z, 4.0, 1e-9);
+    assert_near("mass", p.mass, m, 1e-12);
+    assert_near("x", p.cg.x, 10.0, 1e-9);
+    assert_near("y", p.cg.y, 20.0, 1e-9);
+    assert_near("z", p.cg.z, 4.0, 1e-9);
     // A triangle about an axis through its centroid, along a side: m h^2 / 18.
-    near("inertia", p.matrix[(3, 3)], m * 60.0 * 60.0 / 18.0, 1e-9);
+    assert_near("inertia", p.matrix[(3, 3)], m * 60.0 * 60.0 / 18.0, 1e-9);
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn eight_beams_with_coupled_mass_have_the_first_frequencies_of_the_free_beam() {
     ];
     for (mode, expected) in modes.iter().zip(expected) {
         // Consistent mass errs by (k L / n)^4 / 720, on the high side.
-        near("frequency", mode.frequency, expected, 2e-3);
+        assert_near("frequency", mode.frequency, expected, 2e-3);
         assert!(mode.frequency > 0.9999 * expected);
     }
 }

@@ -3,7 +3,7 @@
 use nastran::bdf::{IncludeRequest, Loaded, Loader, read_deck};
 use strainbridge::model::Model;
 
-pub use crate::support::shared;
+pub use crate::support::find_shared_path;
 
 struct Files;
 

@@ -2,7 +2,7 @@
 //!
 //! Four hundred trials; `STRAINBRIDGE_TRIALS=2000` for as many as it takes to see a per cent of coverage.
 
-use crate::drawn::normal;
+use crate::drawn::draw_normal;
 use crate::frame_refined::{AXLES, CELL, centre, meshes, of_place};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -84,17 +84,17 @@ struct Trial {
 fn trial(model: &Matrix, fine: &Matrix, m: usize, seed: u64) -> Trial {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let gains: Vec<f64> = (0..GAUGES)
-        .map(|_| 1.0 + COMMON * normal(&mut random))
+        .map(|_| 1.0 + COMMON * draw_normal(&mut random))
         .collect();
     let truth = Matrix::from_fn(GAUGES, LOADS, |g, l| {
-        fine[(g, l)] * gains[g] * (1.0 + ENTRY * normal(&mut random))
+        fine[(g, l)] * gains[g] * (1.0 + ENTRY * draw_normal(&mut random))
     });
     let mut drawn = || -> (Vec<f64>, Vec<f64>) {
         let f: Vec<f64> = (0..LOADS)
-            .map(|_| LOAD * (1.0 + 0.5 * normal(&mut random)))
+            .map(|_| LOAD * (1.0 + 0.5 * draw_normal(&mut random)))
             .collect();
         let read = |g: usize| -> f64 { (0..LOADS).map(|l| truth[(g, l)] * f[l]).sum() };
-        let strain = (0..GAUGES).map(|g| read(g) + NOISE * normal(&mut random));
+        let strain = (0..GAUGES).map(|g| read(g) + NOISE * draw_normal(&mut random));
         (strain.collect(), f.clone())
     };
     let runs: Vec<KnownRun> = (0..m)
@@ -104,13 +104,15 @@ fn trial(model: &Matrix, fine: &Matrix, m: usize, seed: u64) -> Trial {
                 run: format!("R{i}"),
                 strain,
                 noise_factor: 1.0,
-                loads: KnownLoads::exact(f),
+                loads: KnownLoads::from_exact(f),
                 group: i,
             }
         })
         .collect();
     let gauges: Vec<String> = (0..GAUGES).map(|g| format!("G{g}")).collect();
-    let loads: Vec<Load> = (0..LOADS).map(|l| Load::named(format!("L{l}"))).collect();
+    let loads: Vec<Load> = (0..LOADS)
+        .map(|l| Load::from_name(format!("L{l}")))
+        .collect();
     let calibrated = |prior: bool| {
         let task = Task {
             gauges: gauges.clone(),

@@ -133,7 +133,7 @@ impl Frame {
 }
 
 /// Model, and the strain at element centres under a vertical force at each wheel.
-fn solved(k: i32) -> (Model, Solution) {
+fn solve_wheel_loads(k: i32) -> (Model, Solution) {
     let mut frame = Frame::new(k);
     let wheels: Vec<u32> = AXLES
         .into_iter()
@@ -161,7 +161,7 @@ fn solved(k: i32) -> (Model, Solution) {
 /// Meshes of 40 and 13.3 mm, solved once for all tests that ask.
 pub fn meshes() -> &'static [(Model, Solution); 2] {
     static MESHES: OnceLock<[(Model, Solution); 2]> = OnceLock::new();
-    MESHES.get_or_init(|| [solved(1), solved(3)])
+    MESHES.get_or_init(|| [solve_wheel_loads(1), solve_wheel_loads(3)])
 }
 
 /// What an element of a coarse mesh and the middle one of the nine in its place have in common: centre and plane.
@@ -185,7 +185,7 @@ pub fn centre(model: &Model, grids: &[GridIx]) -> Vec3 {
         / 4.0
 }
 
-fn largest(s: &[[f64; 3]; 2]) -> f64 {
+fn largest_principal_strain(s: &[[f64; 3]; 2]) -> f64 {
     let one = |[x, y, g]: [f64; 3]| ((x + y) / 2.0).abs() + ((x - y) / 2.0).hypot(g / 2.0);
     one(s[0]).max(one(s[1]))
 }
@@ -215,8 +215,8 @@ fn strain_of_a_40_mm_mesh_is_within_2_percent_of_that_of_13_mm_where_it_is_hot()
             if gap.norm() > 200.0 {
                 let f = by_place[&of_place(coarse, i)];
                 hot.push((
-                    largest(&b.cases[load].shells.centre[f]),
-                    largest(&a.cases[load].shells.centre[i]),
+                    largest_principal_strain(&b.cases[load].shells.centre[f]),
+                    largest_principal_strain(&a.cases[load].shells.centre[i]),
                 ));
             }
         }

@@ -1,6 +1,6 @@
 //! A truck ladder frame, unit loads with inertia relief, against MYSTRAN (`../shared/nastran/mystran_frame_units`).
 
-use crate::decks::{model_of, shared};
+use crate::decks::{find_shared_path, model_of};
 use nastran::results::ResultsFile;
 use strainbridge::fe::from_results::{ReadOptions, solution_from_file};
 use strainbridge::fe::*;
@@ -21,16 +21,16 @@ fn footprint(model: &Model, loaded: strainbridge::model::GridIx) -> Vec<Vec3> {
     x
 }
 
-fn principal([ex, ey, g]: [f64; 3]) -> f64 {
+fn largest_principal_strain([ex, ey, g]: [f64; 3]) -> f64 {
     ((ex + ey) / 2.0).abs() + ((ex - ey) / 2.0).hypot(g / 2.0)
 }
 
 #[test]
 fn vertical_wheel_loads_on_a_ladder_frame_strain_it_as_mystran_says() {
-    let Some(deck) = shared("nastran/mystran_frame_units/frame.bdf") else {
+    let Some(deck) = find_shared_path("nastran/mystran_frame_units/frame.bdf") else {
         return;
     };
-    let Some(op2) = shared("nastran/mystran_frame_units/frame.op2") else {
+    let Some(op2) = find_shared_path("nastran/mystran_frame_units/frame.op2") else {
         return;
     };
     let (model, control) = model_of(&deck);
@@ -85,7 +85,9 @@ fn vertical_wheel_loads_on_a_ladder_frame_strain_it_as_mystran_says() {
                 difference += (a - b) * (a - b);
                 size += b * b;
             }
-            let peak = |s: &[[f64; 3]; 2]| principal(s[0]).max(principal(s[1]));
+            let peak = |s: &[[f64; 3]; 2]| {
+                largest_principal_strain(s[0]).max(largest_principal_strain(s[1]))
+            };
             hot.push((peak(reference), peak(got)));
         }
         let rms = (difference / size).sqrt();

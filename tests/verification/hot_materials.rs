@@ -1,6 +1,6 @@
 //! MATT1: materials at the temperature of their elements, in closed form.
 
-use crate::small_decks::{at, close, model, refused, solve};
+use crate::small_decks::{assert_close, displacement_at, list_refused_cards, model, solve};
 
 const ROUNDING: f64 = 1e-12;
 
@@ -11,14 +11,14 @@ const STEEL: &str = "MAT1,5,1.+10,,.3,800.,1.-5,20.\nMATT1,5,9\n";
 const TABLE: &str = "TABLEM1,9\n,0.,1.+10,100.,3.+10,200.,2.+10,ENDT\n";
 
 /// Elongation of both rods where they have these moduli.
-fn pulled(e: [f64; 2]) -> f64 {
+fn rod_elongation(e: [f64; 2]) -> f64 {
     600.0 * (2.0 / e[0] + 1.0 / e[1]) / 0.01
 }
 
 #[track_caller]
 fn tip(case_control: &str, cards: &str) -> f64 {
     let case_control = format!("SPC = 1\nLOAD = 1\n{case_control}");
-    at(&solve(&case_control, &format!("{ROD}{cards}")), 3)[0]
+    displacement_at(&solve(&case_control, &format!("{ROD}{cards}")), 3)[0]
 }
 
 #[test]
@@ -26,44 +26,49 @@ fn every_element_has_the_modulus_at_the_mean_temperature_of_its_grids() {
     // Means 50 and 125: 2e10 and 2.75e10.
     let field = "TEMP,3,1,0.,2,100.,3,150.\n";
     let cards = format!("{STEEL}{TABLE}{field}");
-    let expected = pulled([2.0e10, 2.75e10]);
+    let expected = rod_elongation([2.0e10, 2.75e10]);
     for word in [
         "TEMP(MATERIAL) = 3",
         "TEMPERATURE(MATE)=3",
         "TEMP(INIT) = 3",
     ] {
-        close(word, tip(word, &cards), expected, ROUNDING);
+        assert_close(word, tip(word, &cards), expected, ROUNDING);
     }
     // One temperature everywhere changes the material of all.
     let even = format!("{STEEL}{TABLE}TEMPD,3,50.\n");
-    close(
+    assert_close(
         "even",
         tip("TEMP(MATERIAL) = 3", &even),
-        pulled([2.0e10; 2]),
+        rod_elongation([2.0e10; 2]),
         ROUNDING,
     );
     // What the element states goes before its grids.
     let own = format!("{STEEL}{TABLE}TEMPD,3,50.\nTEMPRB,3,2,100.,150.\n");
-    let expected = pulled([2.0e10, 2.75e10]);
-    close("own", tip("TEMP(MATERIAL) = 3", &own), expected, ROUNDING);
+    let expected = rod_elongation([2.0e10, 2.75e10]);
+    assert_close("own", tip("TEMP(MATERIAL) = 3", &own), expected, ROUNDING);
 }
 
 #[test]
 fn without_temperatures_of_materials_the_values_of_mat1_hold() {
     let cards = format!("{STEEL}{TABLE}TEMPD,3,50.\n");
-    close("none", tip("", &cards), pulled([1.0e10; 2]), ROUNDING);
+    assert_close(
+        "none",
+        tip("", &cards),
+        rod_elongation([1.0e10; 2]),
+        ROUNDING,
+    );
     // TEMPERATURE(LOAD) heats: 30 degrees above TREF.
-    let hot = pulled([1.0e10; 2]) + 1.0e-5 * 30.0 * 3.0;
-    close("load", tip("TEMP(LOAD) = 3", &cards), hot, ROUNDING);
+    let hot = rod_elongation([1.0e10; 2]) + 1.0e-5 * 30.0 * 3.0;
+    assert_close("load", tip("TEMP(LOAD) = 3", &cards), hot, ROUNDING);
 }
 
 #[test]
 fn both_changes_the_material_and_heats() {
     // Expansion at 50 degrees: 2e-5 by its own table.
     let cards = "MAT1,5,1.+10,,.3,800.,1.-5,20.\nMATT1,5,9,,,,10\nTABLEM1,10\n,0.,1.-5,100.,3.-5,ENDT\nTEMPD,3,50.\n";
-    let expected = pulled([2.0e10; 2]) + 2.0e-5 * 30.0 * 3.0;
+    let expected = rod_elongation([2.0e10; 2]) + 2.0e-5 * 30.0 * 3.0;
     for word in ["TEMP(BOTH) = 3", "TEMPERATURE = 3"] {
-        close(
+        assert_close(
             word,
             tip(word, &format!("{TABLE}{cards}")),
             expected,
@@ -95,10 +100,10 @@ fn the_four_tables_give_what_their_formulas_say() {
         ("TABLEM4,9,0.,10.,0.,50.\n,1.,2.,3.,ENDT\n", 90.0, 86.0e10),
     ] {
         let cards = format!("{STEEL}{table}TEMPD,3,{t:?}\n");
-        close(
+        assert_close(
             table,
             tip("TEMP(MATERIAL) = 3", &cards),
-            pulled([e; 2]),
+            rod_elongation([e; 2]),
             ROUNDING,
         );
     }
@@ -114,13 +119,13 @@ fn shear_modulus_follows_and_density_weighs() {
         &format!("{bar}{TABLE}"),
     );
     // Twist M L / (G J), G = 2e10 / 2.5.
-    close(
+    assert_close(
         "twist",
-        at(&solved, 2)[3],
+        displacement_at(&solved, 2)[3],
         10.0 * 2.0 / (8.0e9 * 2.0e-5),
         ROUNDING,
     );
-    close("mass", solved.0.weight().mass, 850.0 * 0.02, ROUNDING);
+    assert_close("mass", solved.0.weight().mass, 850.0 * 0.02, ROUNDING);
 }
 
 /// Plates, solids and panels of one property at several temperatures.
@@ -136,10 +141,10 @@ fn shells_and_solids_of_one_property_differ_by_their_temperature() {
     );
     // 600 on a section of .01 over 1: 2e10 on the left, 3e10 on the right.
     let left = 600.0 / 0.01 / 2.0e10;
-    close("left", at(&solved, 2)[0], left, 1e-11);
-    close(
+    assert_close("left", displacement_at(&solved, 2)[0], left, 1e-11);
+    assert_close(
         "right",
-        at(&solved, 6)[0],
+        displacement_at(&solved, 6)[0],
         left + 600.0 / 0.01 / 3.0e10,
         1e-11,
     );
@@ -153,7 +158,7 @@ fn what_no_rule_covers_is_refused_or_a_fault() {
     let cards = format!("{STEEL}{TABLE}TEMPD,3,50.\nTEMPD,4,60.\n");
     let of = |case_control: &str, cards: &str| {
         let case_control = format!("SPC = 1\nLOAD = 1\n{case_control}");
-        refused(&case_control, &format!("{ROD}{cards}"))
+        list_refused_cards(&case_control, &format!("{ROD}{cards}"))
     };
     let differs = "SUBCASE 1\nTEMP(MATERIAL) = 3\nSUBCASE 2\nTEMP(MATERIAL) = 4";
     assert_eq!(of(differs, &cards).len(), 1);
@@ -180,7 +185,7 @@ fn rigid_elements_that_would_expand_are_refused() {
     let rigid =
         "GRID,4,,5.,0.,0.\nRBE2,40,3,123456,4,1.-5\nMAT1,5,1.+10,,.3,800.,1.-5,20.\nTEMPD,3,50.\n";
     let of = |word: &str| {
-        refused(
+        list_refused_cards(
             &format!("SPC = 1\nLOAD = 1\n{word}"),
             &format!("{ROD}{rigid}"),
         )

@@ -1,11 +1,11 @@
 //! What must hold whatever the structure: balance, independence of supports and of the frame, rigid motions.
 
-use crate::mesh::{Bulk, free_modes, near};
+use crate::mesh::{Bulk, assert_near, free_modes};
 use strainbridge::fe::*;
 use strainbridge::model::Model;
 
 /// A curved, folded strip of quadrilaterals and triangles with a mass on an RBE3 and a bar across; turned by `turn` about an oblique axis.
-fn folded(turn: f64) -> (Bulk, impl Fn([f64; 3]) -> [f64; 3]) {
+fn folded_strip(turn: f64) -> (Bulk, impl Fn([f64; 3]) -> [f64; 3]) {
     let axis = nalgebra::Unit::new_normalize(nalgebra::Vector3::new(1.0, -2.0, 0.5));
     let r = nalgebra::Rotation3::from_axis_angle(&axis, turn);
     let rotate = move |x: [f64; 3]| {
@@ -59,7 +59,7 @@ fn load(model: &Model, grid: u32, force: [f64; 3], moment: [f64; 3]) -> UnitLoad
     }
 }
 
-fn flat(case: &CaseResult) -> Vec<f64> {
+fn flatten_centre_strains(case: &CaseResult) -> Vec<f64> {
     case.shells
         .centre
         .iter()
@@ -69,7 +69,7 @@ fn flat(case: &CaseResult) -> Vec<f64> {
         .collect()
 }
 
-fn largest(v: &[f64]) -> f64 {
+fn largest_magnitude(v: &[f64]) -> f64 {
     v.iter().fold(0.0, |a, b| a.max(b.abs()))
 }
 
@@ -79,24 +79,27 @@ fn worst_difference(a: &[f64], b: &[f64]) -> f64 {
         .zip(b)
         .map(|(x, y)| (x - y).abs())
         .fold(0.0, f64::max)
-        / largest(a)
+        / largest_magnitude(a)
 }
 
 #[test]
 fn turning_the_whole_model_turns_the_answer() {
-    let ((a, ra), (b, rb)) = (folded(0.0), folded(0.83));
+    let ((a, ra), (b, rb)) = (folded_strip(0.0), folded_strip(0.83));
     let (ma, mb) = (a.model(), b.model());
     let (f, m) = ([100.0, -40.0, 70.0], [900.0, 300.0, -500.0]);
     let (sa, _) = strains(&ma, &[load(&ma, 20, ra(f), ra(m))]);
     let (sb, _) = strains(&mb, &[load(&mb, 20, rb(f), rb(m))]);
-    let d = worst_difference(&flat(&sa.cases[0]), &flat(&sb.cases[0]));
+    let d = worst_difference(
+        &flatten_centre_strains(&sa.cases[0]),
+        &flatten_centre_strains(&sb.cases[0]),
+    );
     eprintln!("turned model: {d:e}");
     assert!(d < 1e-7, "{d:e}");
 }
 
 #[test]
 fn strains_from_two_supports_agree() {
-    let (mut b, rotate) = folded(0.4);
+    let (mut b, rotate) = folded_strip(0.4);
     b.card("SUPORT1,7,1,123,5,23,51,3");
     b.card("SUPORT1,8,12,123456");
     let model = b.model();
@@ -113,7 +116,7 @@ fn strains_from_two_supports_agree() {
         let (s, r) = solve_cases(&model, &[case(relief)], &SolveOptions::default())
             .unwrap_or_else(|e| panic!("{e}"));
         assert!(r.balance[0].residual < 1e-10, "{:?}", r.balance);
-        flat(&s.cases[0])
+        flatten_centre_strains(&s.cases[0])
     };
     let one = solve(Relief::Suport(Some(7)));
     let d = worst_difference(&one, &solve(Relief::Suport(Some(8))));
@@ -124,7 +127,7 @@ fn strains_from_two_supports_agree() {
 
 #[test]
 fn gravity_alone_strains_a_free_structure_nowhere_and_a_finding_says_so() {
-    let (mut b, _) = folded(0.0);
+    let (mut b, _) = folded_strip(0.0);
     b.card("GRAV,5,,9810.,0.3,0.1,-1.0");
     b.card("FORCE,6,20,0,1.0,0.0,0.0,100.0");
     let model = b.model();
@@ -136,10 +139,13 @@ fn gravity_alone_strains_a_free_structure_nowhere_and_a_finding_says_so() {
         "{:?}",
         s.findings
     );
-    let (weight, force) = (largest(&flat(&s.cases[0])), largest(&flat(&s.cases[1])));
+    let (weight, force) = (
+        largest_magnitude(&flatten_centre_strains(&s.cases[0])),
+        largest_magnitude(&flatten_centre_strains(&s.cases[1])),
+    );
     assert!(weight < 1e-8 * force, "{weight:e} {force:e}");
     let mass = report.mass.unwrap().mass;
-    near(
+    assert_near(
         "gravity resultant",
         report.balance[0].applied[2],
         -9810.0 * mass,
@@ -215,7 +221,7 @@ fn no_rigid_motion_of_a_curved_model_is_resisted() {
 
 #[test]
 fn a_part_that_nothing_joins_is_named() {
-    let (mut b, _) = folded(0.0);
+    let (mut b, _) = folded_strip(0.0);
     let far = [
         b.grid([900.0, 0.0, 0.0]),
         b.grid([950.0, 0.0, 0.0]),
@@ -269,7 +275,7 @@ fn a_hinge_without_torsion_support_is_named_with_what_hangs_there() {
 
 #[test]
 fn an_rbe3_on_a_line_and_a_dof_dependent_twice_are_refused_by_name() {
-    let (mut b, _) = folded(0.0);
+    let (mut b, _) = folded_strip(0.0);
     let point = b.grid([1.0, 2.0, 300.0]);
     b.card(&format!("RBE3,911,,{point},123456,1.0,123,1,2,\n,3"));
     let model = b.model();
@@ -278,7 +284,7 @@ fn an_rbe3_on_a_line_and_a_dof_dependent_twice_are_refused_by_name() {
         solve_unit_loads(&model, std::slice::from_ref(&at), &SolveOptions::default()).unwrap_err();
     assert!(error.to_string().contains("RBE3 911"), "{error}");
 
-    let (mut b, _) = folded(0.0);
+    let (mut b, _) = folded_strip(0.0);
     b.card("RBE2,921,1,123456,12");
     b.card("RBE2,922,2,123,12");
     let error = solve_unit_loads(&b.model(), &[at], &SolveOptions::default()).unwrap_err();
@@ -311,6 +317,6 @@ fn free_modes_of_a_uniform_beam_follow_euler() {
         exact(7.8532, 4000.0),
         exact(7.8532, 9000.0),
     ]) {
-        near("frequency", mode.frequency, expected, 0.01);
+        assert_near("frequency", mode.frequency, expected, 0.01);
     }
 }

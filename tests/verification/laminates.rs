@@ -1,6 +1,6 @@
 //! Laminates against classical lamination theory, written out here a second time by sums over thin slices.
 
-use crate::mesh::{Bulk, mass_of, near};
+use crate::mesh::{Bulk, assert_near, mass_of};
 use nalgebra::{Matrix3, Matrix6, Vector6};
 use strainbridge::fe::ply_strains;
 use strainbridge::model::ShellIx;
@@ -11,7 +11,7 @@ const NU12: f64 = 0.3;
 const G12: f64 = 5_000.0;
 
 /// Reduced stiffness in axes turned by `degrees` from the fibres.
-fn turned(degrees: f64) -> Matrix3<f64> {
+fn reduced_stiffness_at(degrees: f64) -> Matrix3<f64> {
     let d = 1.0 - NU12 * NU12 * E2 / E1;
     let q = Matrix3::new(
         E1 / d,
@@ -47,7 +47,7 @@ fn abd(plies: &[(f64, f64)]) -> Matrix6<f64> {
     for (angle, t) in plies {
         const SLICES: usize = 4000;
         let dz = t / SLICES as f64;
-        let q = turned(*angle);
+        let q = reduced_stiffness_at(*angle);
         for i in 0..SLICES {
             let h = z + (i as f64 + 0.5) * dz;
             for (r, c, w) in [(0, 0, 1.0), (0, 3, h), (3, 0, h), (3, 3, h * h)] {
@@ -171,7 +171,7 @@ fn plies_strain_in_their_own_axes() {
     // Element 1 sits in the distorted corner; its side 1-2 lies along x there.
     let plies = ply_strains(&s.model, ShellIx(0), &s.case.shells.centre[0]);
     assert_eq!(plies.len(), 2);
-    near("fibre strain", plies[0][0], along, 1e-4);
+    assert_near("fibre strain", plies[0][0], along, 1e-4);
 }
 
 #[test]
@@ -187,17 +187,17 @@ fn plies_of_one_material_make_its_plate_and_a_sandwich_shears_by_its_core() {
             b.force(ids[20][j], [0.0, 0.0, 10.0 * share]);
         }
         let s = b.solve();
-        (s.at(ids[20][1])[2], mass_of(&s.model).mass)
+        (s.displacement_at(ids[20][1])[2], mass_of(&s.model).mass)
     };
     let (plate, mass) = cantilever("PSHELL,1,1,6.0,1,,1");
     let (layers, layered_mass) = cantilever("PCOMP,1\n,1,1.0,,,1,2.0\n,1,3.0");
     // TS/T of the plate is 0.833333, of the layers 5/6.
-    near("plate of layers", layers, plate, 1e-6);
-    near("its mass", layered_mass, mass, 1e-12);
+    assert_near("plate of layers", layers, plate, 1e-6);
+    assert_near("its mass", layered_mass, mass, 1e-12);
     let (soft, _) = cantilever("PCOMP,1\n,1,1.0,,,2,18.0\n,1,1.0");
     // Thin faces at distance 19: D = E t d^2 / 2 per width, shear stiffness G d^2 / c.
     let (d, l) = (19.0_f64, 200.0_f64);
     let bending = 10.0 / 20.0 * l.powi(3) / (3.0 * 70_000.0 * d * d / 2.0);
     let shear = 10.0 / 20.0 * l / (50.0 * d * d / 18.0);
-    near("sandwich", soft, bending + shear, 0.02);
+    assert_near("sandwich", soft, bending + shear, 0.02);
 }

@@ -1,6 +1,6 @@
 //! Loads along beams, enforced displacements by SPCD, forces along grids, scalar springs.
 
-use crate::mesh::{Bulk, near};
+use crate::mesh::{Bulk, assert_near};
 use strainbridge::fe::{CaseResult, UnitLoad};
 use strainbridge::model::Model;
 
@@ -35,11 +35,21 @@ fn distributed_loads_bend_a_cantilever_as_the_closed_forms_say() {
             "PLOAD1,1,1,FY,FRPR,0.,2.,1.,2.",
         ] {
             let s = cantilever(beam, "", load).solve();
-            near(load, s.at(2)[1], q * L.powi(4) / (8.0 * E * I1), 1e-9);
-            near("slope", s.at(2)[5], q * L.powi(3) / (6.0 * E * I1), 1e-9);
+            assert_near(
+                load,
+                s.displacement_at(2)[1],
+                q * L.powi(4) / (8.0 * E * I1),
+                1e-9,
+            );
+            assert_near(
+                "slope",
+                s.displacement_at(2)[5],
+                q * L.powi(3) / (6.0 * E * I1),
+                1e-9,
+            );
             // The wall holds the moment q L^2 / 2, which presses the side of positive y together; the tip is free.
             let stations = &s.case.beams.stations[0];
-            near(
+            assert_near(
                 "root",
                 stations[0].1[0],
                 -q * L * L / 2.0 * 5.0 / (E * I1),
@@ -50,29 +60,34 @@ fn distributed_loads_bend_a_cantilever_as_the_closed_forms_say() {
         }
         // Triangular, from nothing at the wall to q at the tip: 11 q L^4 / 120 E I.
         let s = cantilever(beam, "", "PLOAD1,1,1,FY,FR,0.,0.,1.,2.").solve();
-        near(
+        assert_near(
             "triangle",
-            s.at(2)[1],
+            s.displacement_at(2)[1],
             11.0 * q * L.powi(4) / (120.0 * E * I1),
             1e-9,
         );
         // A force in the middle: 5 P L^3 / 48 E I; a moment there: 3 M L^2 / 8 E I; along: P L / 2 E A.
         let s = cantilever(beam, "", "PLOAD1,1,1,FY,FR,.5,30.").solve();
-        near(
+        assert_near(
             "middle",
-            s.at(2)[1],
+            s.displacement_at(2)[1],
             5.0 * 30.0 * L.powi(3) / (48.0 * E * I1),
             1e-9,
         );
         let s = cantilever(beam, "", "PLOAD1,1,1,MZ,FR,.5,900.").solve();
-        near(
+        assert_near(
             "moment",
-            s.at(2)[1],
+            s.displacement_at(2)[1],
             3.0 * 900.0 * L * L / (8.0 * E * I1),
             1e-9,
         );
         let s = cantilever(beam, "", "PLOAD1,1,1,FX,LE,250.,40.").solve();
-        near("along", s.at(2)[0], 40.0 * L / (2.0 * E * 200.0), 1e-9);
+        assert_near(
+            "along",
+            s.displacement_at(2)[0],
+            40.0 * L / (2.0 * E * 200.0),
+            1e-9,
+        );
     }
 }
 
@@ -82,9 +97,9 @@ fn a_propped_beam_with_a_pin_at_the_wall_hangs_between_its_ends() {
     let mut b = cantilever(false, ",\n,6", "PLOAD1,1,1,FY,FR,0.,2.,1.,2.");
     b.hold("2", [2]);
     let s = b.solve();
-    near(
+    assert_near(
         "end slope",
-        s.at(2)[5],
+        s.displacement_at(2)[5],
         -2.0 * L.powi(3) / (24.0 * E * I1),
         1e-9,
     );
@@ -98,9 +113,14 @@ fn spcd_moves_what_spc_holds_and_only_that() {
     let mut b = cantilever(false, "", "SPCD,1,2,2,3.0");
     b.hold("2", [2]);
     let s = b.solve();
-    near("enforced", s.at(2)[1], 3.0, 1e-12);
+    assert_near("enforced", s.displacement_at(2)[1], 3.0, 1e-12);
     // A tip displacement alone: slope 3 w / 2 L.
-    near("slope", s.at(2)[5], 3.0 * 3.0 / (2.0 * L), 1e-9);
+    assert_near(
+        "slope",
+        s.displacement_at(2)[5],
+        3.0 * 3.0 / (2.0 * L),
+        1e-9,
+    );
     let free = cantilever(false, "", "SPCD,1,2,2,3.0").model();
     let case = strainbridge::fe::LoadCase {
         subcase: 1,
@@ -122,9 +142,9 @@ fn forces_along_grids_are_those_written_out() {
         "GRID,3,,500.,3.,4.\nSPC1,1,123456,3\nFORCE1,1,2,50.,2,3",
     )
     .solve();
-    near(
+    assert_near(
         "across",
-        s.at(2)[1],
+        s.displacement_at(2)[1],
         30.0 * L.powi(3) / (3.0 * E * I1),
         1e-9,
     );
@@ -134,9 +154,9 @@ fn forces_along_grids_are_those_written_out() {
         "GRID,3,,500.,3.,0.\nGRID,4,,500.,0.,4.\nSPC1,1,123456,3,4\nFORCE2,1,2,50.,2,3,2,4",
     )
     .solve();
-    near(
+    assert_near(
         "normal of two sides",
-        s.at(2)[0],
+        s.displacement_at(2)[0],
         50.0 * L / (E * 200.0),
         1e-9,
     );
@@ -150,10 +170,15 @@ fn scalar_springs_in_a_row_give_way_one_after_the_other() {
         "PELAS,5,100.\nCELAS3,11,5,101,102\nCELAS4,12,50.,102\nSLOAD,1,101,10.",
     )
     .solve();
-    near("second point", s.at(102)[0], 10.0 / 50.0, 1e-12);
-    near(
+    assert_near(
+        "second point",
+        s.displacement_at(102)[0],
+        10.0 / 50.0,
+        1e-12,
+    );
+    assert_near(
         "first point",
-        s.at(101)[0],
+        s.displacement_at(101)[0],
         10.0 / 50.0 + 10.0 / 100.0,
         1e-12,
     );
@@ -227,13 +252,13 @@ fn strain_at_a_station_of_a_tapered_beam_is_that_of_the_section_there() {
                 .unwrap()
         };
         let grown = 1.0 + x;
-        near(
+        assert_near(
             "end moment",
             at("MOMENT,1,2,0,900.,0.,0.,1.").0[0],
             by_moment(900.0) / grown,
             1e-9,
         );
-        near(
+        assert_near(
             "axial",
             at("FORCE,1,2,0,700.,1.,0.,0.").1,
             700.0 / (E * 200.0 * grown),
@@ -289,7 +314,7 @@ fn coupled_mass_acts_along_a_bar() {
         let weight = MU * 9810.0;
         let s = solved("GRAV,1,,9810.,0.,1.,0.");
         let tip = s.1.displacement[1][1];
-        near("tip", tip, weight * L.powi(4) / (8.0 * E * I1), 1e-9);
+        assert_near("tip", tip, weight * L.powi(4) / (8.0 * E * I1), 1e-9);
         follows("weight", &s, |x| weight * (L - x).powi(2) / 2.0, |_| 0.0);
         let s = solved(
             "PARAM,WTMASS,.5\nLOAD,1,3.,2.,6,1.,7\nGRAV,6,,9810.,0.,1.,0.\nPLOAD1,7,1,FY,FR,0.,2.,1.,2.",

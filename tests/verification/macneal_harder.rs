@@ -1,7 +1,7 @@
 //! The standard set of R. H. MacNeal and R. L. Harder, Finite Elements in Analysis and Design 1 (1985) 3, and companions;
 //! references and tolerances of `../shared/benchmarks/macneal_harder.md`.
 
-use crate::mesh::{Bulk, near, record};
+use crate::mesh::{Bulk, assert_near, record};
 
 /// The five-element patch: grids 1 to 8, inner ones 5 to 8, quadrilaterals or each split into triangles.
 fn patch(split: bool) -> (Bulk, Vec<(u32, f64, f64)>) {
@@ -117,7 +117,7 @@ fn tip(slant: impl Fn(usize) -> f64, direction: [f64; 3]) -> f64 {
     ends.iter()
         .map(|g| {
             (0..3)
-                .map(|i| 0.5 * s.at(*g)[i] * direction[i])
+                .map(|i| 0.5 * s.displacement_at(*g)[i] * direction[i])
                 .sum::<f64>()
         })
         .sum()
@@ -125,9 +125,9 @@ fn tip(slant: impl Fn(usize) -> f64, direction: [f64; 3]) -> f64 {
 
 #[test]
 fn straight_cantilever_rectangular_mesh() {
-    near("extension", tip(|_| 0.0, [1.0, 0.0, 0.0]), 3.0e-5, 0.01);
-    near("in-plane", tip(|_| 0.0, [0.0, 1.0, 0.0]), 0.1081, 0.02);
-    near("out-of-plane", tip(|_| 0.0, [0.0, 0.0, 1.0]), 0.4321, 0.03);
+    assert_near("extension", tip(|_| 0.0, [1.0, 0.0, 0.0]), 3.0e-5, 0.01);
+    assert_near("in-plane", tip(|_| 0.0, [0.0, 1.0, 0.0]), 0.1081, 0.02);
+    assert_near("out-of-plane", tip(|_| 0.0, [0.0, 0.0, 1.0]), 0.4321, 0.03);
 }
 
 #[test]
@@ -144,11 +144,11 @@ fn straight_cantilever_distorted_meshes_bend_out_of_plane() {
         tip(|_| 1.0, [0.0, 1.0, 0.0]),
         0.1081,
     );
-    near("trapezoidal", tip(trapezoid, [0.0, 0.0, 1.0]), 0.4321, 0.05);
-    near("parallelogram", tip(|_| 1.0, [0.0, 0.0, 1.0]), 0.4321, 0.04);
+    assert_near("trapezoidal", tip(trapezoid, [0.0, 0.0, 1.0]), 0.4321, 0.05);
+    assert_near("parallelogram", tip(|_| 1.0, [0.0, 0.0, 1.0]), 0.4321, 0.04);
 }
 
-fn curved(n: usize, m: usize, direction: [f64; 3]) -> f64 {
+fn curved_beam_deflection(n: usize, m: usize, direction: [f64; 3]) -> f64 {
     let mut b = Bulk::shell(1e7, 0.25, 0.1);
     let ids = b.patch(m, n, |u, v| {
         let (r, a) = (4.12 + 0.2 * u, v * std::f64::consts::FRAC_PI_2);
@@ -161,7 +161,12 @@ fn curved(n: usize, m: usize, direction: [f64; 3]) -> f64 {
         b.force(ids[i][n], direction.map(|c| c * share));
     }
     let s = b.solve();
-    let mean = |i: usize| (0..=m).map(|j| s.at(ids[j][n])[i]).sum::<f64>() / (m + 1) as f64;
+    let mean = |i: usize| {
+        (0..=m)
+            .map(|j| s.displacement_at(ids[j][n])[i])
+            .sum::<f64>()
+            / (m + 1) as f64
+    };
     (0..3).map(|i| mean(i) * direction[i]).sum()
 }
 
@@ -170,33 +175,33 @@ fn curved_cantilever() {
     for (n, m) in [(6, 1), (12, 1), (24, 2)] {
         record(
             &format!("curved in-plane, {n} x {m}"),
-            curved(n, m, [0.0, 1.0, 0.0]),
+            curved_beam_deflection(n, m, [0.0, 1.0, 0.0]),
             0.08734,
         );
         record(
             &format!("curved out-of-plane, {n} x {m}"),
-            curved(n, m, [0.0, 0.0, 1.0]),
+            curved_beam_deflection(n, m, [0.0, 0.0, 1.0]),
             0.5022,
         );
     }
     // Of the two grids at the tip the inner one moves less, the outer one more (.929 and .955 at 6 x 1): the work of a load shared
     // by them goes with their mean.
     // At the tip the beam points along -x: a load along +-x is along the beam, one along y is tangential; vertical (MH) is radial.
-    near(
+    assert_near(
         "in-plane, 48 x 2",
-        curved(48, 2, [0.0, 1.0, 0.0]),
+        curved_beam_deflection(48, 2, [0.0, 1.0, 0.0]),
         0.08734,
         0.02,
     );
-    near(
+    assert_near(
         "out-of-plane, 6 x 1",
-        curved(6, 1, [0.0, 0.0, 1.0]),
+        curved_beam_deflection(6, 1, [0.0, 0.0, 1.0]),
         0.5022,
         0.07,
     );
 }
 
-fn twisted(t: f64, load: f64, width: bool) -> f64 {
+fn twisted_beam_deflection(t: f64, load: f64, width: bool) -> f64 {
     let mut b = Bulk::shell(29e6, 0.22, t);
     let ids = b.patch(12, 2, |u, v| {
         let (a, y) = (u * std::f64::consts::FRAC_PI_2, 1.1 * (v - 0.5));
@@ -213,27 +218,32 @@ fn twisted(t: f64, load: f64, width: bool) -> f64 {
         b.force(*g, direction.map(|c| c * share));
     }
     let s = b.solve();
-    s.at(ids[12][1])[if width { 2 } else { 1 }]
+    s.displacement_at(ids[12][1])[if width { 2 } else { 1 }]
 }
 
 #[test]
 fn twisted_cantilever_of_warped_elements() {
-    near(
+    assert_near(
         "in the plane of the tip",
-        twisted(0.32, 1.0, true),
+        twisted_beam_deflection(0.32, 1.0, true),
         0.005424,
         0.03,
     );
-    near("normal to it", twisted(0.32, 1.0, false), 0.001754, 0.03);
-    near(
+    assert_near(
+        "normal to it",
+        twisted_beam_deflection(0.32, 1.0, false),
+        0.001754,
+        0.03,
+    );
+    assert_near(
         "thin, in the plane of the tip",
-        twisted(0.0032, 1e-6, true),
+        twisted_beam_deflection(0.0032, 1e-6, true),
         0.005256,
         0.05,
     );
-    near(
+    assert_near(
         "thin, normal to it",
-        twisted(0.0032, 1e-6, false),
+        twisted_beam_deflection(0.0032, 1e-6, false),
         0.001294,
         0.05,
     );
@@ -259,7 +269,7 @@ fn plate(length: f64, n: usize, clamped: bool, point: bool) -> f64 {
     } else {
         b.card(&format!("PLOAD2,1,1e-4,1,THRU,{}", n * n));
     }
-    b.solve().at(ids[0][0])[2]
+    b.solve().displacement_at(ids[0][0])[2]
 }
 
 #[test]
@@ -281,7 +291,7 @@ fn rectangular_plate() {
             plate(length, 4, clamped, point),
             reference,
         );
-        near(
+        assert_near(
             &what,
             plate(length, 8, clamped, point),
             reference,
@@ -302,15 +312,15 @@ fn scordelis_lo(n: usize) -> f64 {
     b.hold("246", ids.iter().map(|row| row[0]));
     // 90 per unit surface, straight down.
     b.text += &format!("PLOAD4,1,1,90.0,,,,THRU,{}\n,0,0.0,0.0,-1.0\n", n * n);
-    -b.solve().at(ids[0][n])[2]
+    -b.solve().displacement_at(ids[0][n])[2]
 }
 
 #[test]
 fn scordelis_lo_roof() {
     record("Scordelis-Lo, 4", scordelis_lo(4), 0.3024);
     let (coarse, fine) = (scordelis_lo(8) / 0.3024, scordelis_lo(16) / 0.3024);
-    near("Scordelis-Lo, 8", coarse, 1.0, 0.02);
-    near("Scordelis-Lo, 16", fine, 0.995, 0.01);
+    assert_near("Scordelis-Lo, 8", coarse, 1.0, 0.02);
+    assert_near("Scordelis-Lo, 16", fine, 0.995, 0.01);
     assert!(
         (fine - 0.995).abs() <= (coarse - 0.995).abs(),
         "{coarse} {fine}"
@@ -332,14 +342,14 @@ fn hemisphere(n: usize) -> f64 {
     b.hold("3", [ids[n / 2][n]]);
     b.force(ids[0][0], [1.0, 0.0, 0.0]);
     b.force(ids[n][0], [0.0, -1.0, 0.0]);
-    b.solve().at(ids[0][0])[0]
+    b.solve().displacement_at(ids[0][0])[0]
 }
 
 #[test]
 fn hemisphere_with_a_hole() {
     record("hemisphere, 4", hemisphere(4), 0.0940);
-    near("hemisphere, 8", hemisphere(8), 0.0940, 0.03);
-    near("hemisphere, 16", hemisphere(16), 0.0940, 0.02);
+    assert_near("hemisphere, 8", hemisphere(8), 0.0940, 0.03);
+    assert_near("hemisphere, 16", hemisphere(16), 0.0940, 0.02);
 }
 
 fn pinched_cylinder(n: usize) -> f64 {
@@ -353,19 +363,19 @@ fn pinched_cylinder(n: usize) -> f64 {
     b.hold("246", ids.iter().map(|row| row[0]));
     b.hold("345", ids.iter().map(|row| row[n]));
     b.force(ids[0][0], [0.0, 0.0, -0.25]);
-    -b.solve().at(ids[0][0])[2]
+    -b.solve().displacement_at(ids[0][0])[2]
 }
 
 #[test]
 fn pinched_cylinder_with_diaphragms() {
     record("pinched cylinder, 8", pinched_cylinder(8), 1.8248e-5);
-    near(
+    assert_near(
         "pinched cylinder, 16",
         pinched_cylinder(16),
         1.8248e-5,
         0.08,
     );
-    near(
+    assert_near(
         "pinched cylinder, 32",
         pinched_cylinder(32),
         1.8248e-5,
@@ -398,7 +408,7 @@ fn raasch(n: usize, m: usize) -> f64 {
         let share = if j == 0 || j == m { 0.5 } else { 1.0 } / m as f64;
         b.force(*g, [0.0, share, 0.0]);
     }
-    b.solve().at(ids[n][m / 2])[1] / 4.9352
+    b.solve().displacement_at(ids[n][m / 2])[1] / 4.9352
 }
 
 #[test]
@@ -428,7 +438,7 @@ fn an_in_plane_cantilever_converges_with_the_square_of_the_mesh_size() {
             let share = if j == 0 || j == n { 0.5 } else { 1.0 } / n as f64;
             b.force(*g, [0.0, share, 0.0]);
         }
-        b.solve().at(ids[4 * n][n / 2])[1]
+        b.solve().displacement_at(ids[4 * n][n / 2])[1]
     };
     let (a, b, c, fine) = (tip(2), tip(4), tip(8), tip(32));
     let order = |p: f64, q: f64| ((p - fine).abs() / (q - fine).abs()).log2();

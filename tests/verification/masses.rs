@@ -1,6 +1,6 @@
 //! Every kind of mass: the weight of `check` equals the mass of the solver. Scalar masses in closed form.
 
-use crate::small_decks::{at, close, model, refused, solve};
+use crate::small_decks::{assert_close, displacement_at, list_refused_cards, model, solve};
 use strainbridge::fe::*;
 use strainbridge::model::Vec3;
 
@@ -105,8 +105,8 @@ fn the_weight_of_every_kind_of_mass_is_that_of_the_mass_matrix() {
         bulk += "PARAM,AUTOSPC,YES\n";
         let (model, solved) = solve(&case_control, &bulk);
         let (ours, theirs) = (model.weight(), solved.report.mass.unwrap());
-        close(cards, ours.mass, 40.0 + more, 1e-12);
-        close(cards, theirs.mass, ours.mass, 1e-12);
+        assert_close(cards, ours.mass, 40.0 + more, 1e-12);
+        assert_close(cards, theirs.mass, ours.mass, 1e-12);
         let apart = (ours.cg - theirs.cg).norm();
         assert!(apart < 1e-12, "{cards}: {} {}", ours.cg, theirs.cg);
     }
@@ -158,7 +158,7 @@ fn tapered_elements_have_the_mass_and_the_centre_of_the_body() {
             let (model, faults) = model("", &format!("{DENSE}{coupled}{cards}"));
             assert!(faults.is_empty(), "{faults:?}");
             let ours = model.weight();
-            close(cards, ours.mass, mass, 1e-12);
+            assert_close(cards, ours.mass, mass, 1e-12);
             let apart = (ours.cg - Vec3::from(centre)).amax();
             assert!(apart < 1e-12, "{cards}: {} {centre:?}", ours.cg);
         }
@@ -175,7 +175,7 @@ fn the_rigid_mass_of_warped_and_curved_elements_is_that_of_the_mass_matrix() {
     for coupled in ["", "PARAM,COUPMASS,1\n"] {
         let (model, solved) = solve("SPC = 1\nLOAD = 1", &format!("{DENSE}{coupled}{WARPED}"));
         let (ours, theirs) = (model.weight(), solved.report.mass.unwrap());
-        close("mass", ours.mass, theirs.mass, 1e-12);
+        assert_close("mass", ours.mass, theirs.mass, 1e-12);
         let apart = (ours.cg - theirs.cg).norm();
         assert!(apart < 1e-12, "{} {}", ours.cg, theirs.cg);
         let apart = (model.rigid_body_mass(theirs.cg) - theirs.matrix).amax();
@@ -192,8 +192,8 @@ fn a_mass_in_one_direction_weighs_in_that_direction() {
         "SPC = 1\nLOAD = 1",
         &format!("{PLATE}{turned}CMASS2,50,3.,30,2"),
     );
-    close("weight", model.weight().mass, 43.0, 1e-12);
-    close("solver", solved.report.mass.unwrap().mass, 43.0, 1e-12);
+    assert_close("weight", model.weight().mass, 43.0, 1e-12);
+    assert_close("solver", solved.report.mass.unwrap().mass, 43.0, 1e-12);
 }
 
 /// A rod as a spring of 1e6, its free end with 8 kg along x.
@@ -226,11 +226,11 @@ fn scalar_masses_vibrate_on_springs_in_small_large_and_free_field() {
     ] {
         let found = frequencies(cards, 1);
         assert_eq!(found.len(), 1, "{cards}");
-        close(cards, found[0], hertz(1.0e6 / 8.0), 1e-9);
+        assert_close(cards, found[0], hertz(1.0e6 / 8.0), 1e-9);
     }
     // Lower order of magnitude by WTMASS.
     let light = frequencies("PARAM,WTMASS,.01\nCMASS2,50,8.,2,1", 1);
-    close("WTMASS", light[0], hertz(1.0e6 / 0.08), 1e-9);
+    assert_close("WTMASS", light[0], hertz(1.0e6 / 0.08), 1e-9);
 }
 
 /// Two masses in a row, one of them that of a scalar point: k1 = 1e6, k2 = 2e6, m1 = 8, m2 = 4.
@@ -242,14 +242,14 @@ fn a_scalar_point_with_mass_vibrates_with_the_grid() {
     );
     // (3e6 - 8 w) (2e6 - 4 w) = 4e12 for w the square of the frequency: 32 w^2 - 2.8e7 w + 2e12 = 0.
     let root = (2.8e7_f64.powi(2) - 4.0 * 32.0 * 2.0e12).sqrt();
-    close("first", found[0], hertz((2.8e7 - root) / 64.0), 1e-9);
-    close("second", found[1], hertz((2.8e7 + root) / 64.0), 1e-9);
+    assert_close("first", found[0], hertz((2.8e7 - root) / 64.0), 1e-9);
+    assert_close("second", found[1], hertz((2.8e7 + root) / 64.0), 1e-9);
     // A mass between both: its kinetic energy is 5 (u1 - u2)^2 / 2. Symmetric masses 8 and 8, springs 1e6 to ground on both sides.
     let both =
         "CMASS2,50,8.,2,1\nCMASS4,51,8.,90\nCELAS2,60,1.+6,90,,,\nCMASS2,52,5.,2,1,90\nSPOINT,90";
     let found = frequencies(both, 2);
-    close("against each other", found[0], hertz(1.0e6 / 18.0), 1e-9);
-    close("together", found[1], hertz(1.0e6 / 8.0), 1e-9);
+    assert_close("against each other", found[0], hertz(1.0e6 / 18.0), 1e-9);
+    assert_close("together", found[1], hertz(1.0e6 / 8.0), 1e-9);
 }
 
 #[test]
@@ -262,13 +262,13 @@ fn scalar_points_alone_vibrate() {
     let solved = solved.unwrap_or_else(|e| panic!("{e}"));
     let found: Vec<f64> = solved.modes.iter().map(|m| m.frequency).collect();
     // k / m (3 -+ sqrt 5) / 2.
-    close(
+    assert_close(
         "first",
         found[0],
         hertz(0.5e6 * (3.0 - 5.0_f64.sqrt()) / 2.0),
         1e-9,
     );
-    close(
+    assert_close(
         "second",
         found[1],
         hertz(0.5e6 * (3.0 + 5.0_f64.sqrt()) / 2.0),
@@ -282,9 +282,14 @@ fn gravity_pulls_scalar_masses_of_grids_and_leaves_those_of_scalar_points() {
     let cards =
         "CMASS2,50,8.,2,1\nSPOINT,90\nCMASS4,51,4.,90\nCELAS2,60,2.+6,2,1,90\nGRAV,1,,5.,1.,0.,0.";
     let solved = solve("SPC = 1\nLOAD = 1", &format!("{OSCILLATOR}{cards}"));
-    close("grid", at(&solved, 2)[0], 40.0 / 1.0e6, 1e-12);
-    close("point", at(&solved, 90)[0], 40.0 / 1.0e6, 1e-12);
-    close(
+    assert_close("grid", displacement_at(&solved, 2)[0], 40.0 / 1.0e6, 1e-12);
+    assert_close(
+        "point",
+        displacement_at(&solved, 90)[0],
+        40.0 / 1.0e6,
+        1e-12,
+    );
+    assert_close(
         "reaction",
         solved.1.report.reactions[0].total[0],
         -40.0,
@@ -298,16 +303,19 @@ fn inertia_of_scalar_masses_balances_a_free_structure() {
     let free = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCROD,1,7,1,2\nPROD,7,3,.001\nMAT1,3,2.+9,,.3\nSPC1,1,23456,1,2\n\
         CMASS2,50,2.,1,1\nCMASS2,51,4.,2,1\nFORCE,1,2,,60.,1.,0.,0.\nPARAM,INREL,-2\n";
     let solved = solve("SPC = 1\nLOAD = 1", free);
-    let stretch = at(&solved, 2)[0] - at(&solved, 1)[0];
-    close("stretch", stretch, 60.0 * 2.0 / 6.0 / 1.0e6, 1e-9);
-    close(
+    let stretch = displacement_at(&solved, 2)[0] - displacement_at(&solved, 1)[0];
+    assert_close("stretch", stretch, 60.0 * 2.0 / 6.0 / 1.0e6, 1e-9);
+    assert_close(
         "acceleration",
         solved.1.report.balance[0].acceleration[0],
         10.0,
         1e-9,
     );
     let of_point = format!("{free}SPOINT,90\nCMASS4,52,1.,90\nCELAS2,60,1.+6,2,1,90\n");
-    assert_eq!(refused("SPC = 1\nLOAD = 1", &of_point), ["CMASS 52"]);
+    assert_eq!(
+        list_refused_cards("SPC = 1\nLOAD = 1", &of_point),
+        ["CMASS 52"]
+    );
 }
 
 #[test]
@@ -320,7 +328,8 @@ fn a_scalar_mass_without_its_property_or_component_is_a_fault() {
 
 #[test]
 fn non_structural_mass_of_areas_and_lengths_together_is_refused_as_a_total() {
-    let of = |cards: &str| refused("SPC = 1\nLOAD = 1\nNSM = 8", &format!("{PLATE}{cards}"));
+    let of =
+        |cards: &str| list_refused_cards("SPC = 1\nLOAD = 1\nNSM = 8", &format!("{PLATE}{cards}"));
     let what = "NSM of ELEMENT with areas and lengths together 8";
     assert_eq!(of("NSML1,8,ELEMENT,7.,1,2"), [what]);
     assert_eq!(of("NSM1,8,ELEMENT,7.,ALL"), [what]);
@@ -338,8 +347,13 @@ fn non_structural_mass_of_one_element_acts_in_its_loads() {
     let solved = solve("SPC = 1\nLOAD = 1\nNSM = 8", rods);
     // 1 per length on both, 4 more on the second: 2.5 kg at the tip, 3.5 kg at the middle.
     let middle = 60.0 * 2.0 / 1.0e8;
-    close("middle", at(&solved, 2)[0], middle, 1e-12);
-    close("tip", at(&solved, 3)[0], middle + 25.0 / 1.0e8, 1e-12);
+    assert_close("middle", displacement_at(&solved, 2)[0], middle, 1e-12);
+    assert_close(
+        "tip",
+        displacement_at(&solved, 3)[0],
+        middle + 25.0 / 1.0e8,
+        1e-12,
+    );
 }
 
 /// Two plates that meet at ten degrees share their mean normal, which SNORM may state itself, with either sign.
@@ -354,7 +368,8 @@ fn the_mean_normal_stated_by_snorm_changes_nothing() {
         1.0 + c,
         1.0 + c
     );
-    let tip = |cards: &str| at(&solve("SPC = 1\nLOAD = 1", &format!("{fold}{cards}")), 6);
+    let tip =
+        |cards: &str| displacement_at(&solve("SPC = 1\nLOAD = 1", &format!("{fold}{cards}")), 6);
     let plain = tip("");
     for sign in [1.0, -1.0] {
         let n = format!("{:?},0.,{:?}", -half_s * sign, half_c * sign);
@@ -369,7 +384,7 @@ fn the_mean_normal_stated_by_snorm_changes_nothing() {
     // A normal of one of the plates is another one.
     let other = tip("SNORM,2,0,0.,0.,1.\nSNORM,3,0,0.,0.,1.\n");
     assert!((other[2] / plain[2] - 1.0).abs() > 1e-6);
-    let of = |cards: &str| refused("SPC = 1\nLOAD = 1", &format!("{fold}{cards}"));
+    let of = |cards: &str| list_refused_cards("SPC = 1\nLOAD = 1", &format!("{fold}{cards}"));
     assert_eq!(of("SNORM,2,0,1.,0.,1.\n"), ["SNORM 2"]);
     assert_eq!(of("PARAM,SNORM,0.\nSNORM,2,0,0.,0.,1.\n"), ["SNORM 2"]);
 }

@@ -182,19 +182,19 @@ pub struct Solved {
 
 impl Solved {
     /// Displacement of a grid.
-    pub fn at(&self, grid: u32) -> [f64; 6] {
+    pub fn displacement_at(&self, grid: u32) -> [f64; 6] {
         self.case.displacement[self.model.grid_ix(grid).unwrap().us()]
     }
 }
 
 /// Prints `got / reference` for the table in the README (`cargo test --test verification -- --nocapture`), where there is no limit.
 pub fn record(what: &str, got: f64, reference: f64) {
-    near(what, got, reference, f64::INFINITY);
+    assert_near(what, got, reference, f64::INFINITY);
 }
 
 /// Fails with both numbers when `got / reference` is farther from one than `tolerance`.
 #[track_caller]
-pub fn near(what: &str, got: f64, reference: f64, tolerance: f64) {
+pub fn assert_near(what: &str, got: f64, reference: f64, tolerance: f64) {
     let ratio = got / reference;
     eprintln!("{what}: {ratio:.4} of {reference}");
     assert!(

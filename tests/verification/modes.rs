@@ -11,7 +11,7 @@ fn modes(b: &Bulk, spc: Option<u32>, count: usize) -> ModalSolution {
         .unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn within(what: &str, got: f64, expected: f64, share: f64) {
+fn assert_within(what: &str, got: f64, expected: f64, share: f64) {
     assert!(
         (got / expected - 1.0).abs() < share,
         "{what}: {got} for {expected}"
@@ -51,7 +51,7 @@ fn a_cantilever_vibrates_as_euler_says_and_its_modal_masses_are_those_of_the_cla
     ];
     for (mode, expected) in solved.modes.iter().zip(expected) {
         // 80 elements with lumped mass: an error of the order of (pi / 80)^2 at the third bending mode.
-        within("frequency", mode.frequency, expected, 2e-3);
+        assert_within("frequency", mode.frequency, expected, 2e-3);
         assert!(mode.frequency_error < 1e-8, "{}", mode.frequency_error);
         assert!((mode.generalised_mass - 1.0).abs() < 1e-9);
     }
@@ -80,7 +80,7 @@ fn a_mode_strains_as_its_shape_bends() {
     // w'' at the clamp is 2 beta^2 w(l) / 2 for the clamped-free beam: |w''(0)| = beta^2 |w(l)|; strain is z w''.
     let beta = 1.875_104 / l;
     let strain = solved.strain.cases[0].beams.stations[0][0].1[0];
-    within("strain", strain.abs(), 5.0 * beta * beta * tip.abs(), 5e-3);
+    assert_within("strain", strain.abs(), 5.0 * beta * beta * tip.abs(), 5e-3);
 }
 
 #[test]
@@ -113,7 +113,7 @@ fn a_simply_supported_plate_vibrates_as_navier_says() {
     exact.sort_by(f64::total_cmp);
     for (mode, expected) in solved.modes.iter().zip(exact) {
         // 13 elements a half wave at the third mode along a side.
-        within("frequency", mode.frequency, expected, 0.01);
+        assert_within("frequency", mode.frequency, expected, 0.01);
     }
 }
 
@@ -135,7 +135,7 @@ fn a_free_square_plate_has_six_rigid_motions_no_effective_mass_and_the_published
         .iter()
         .zip([13.468, 19.596, 24.270, 34.801, 34.801])
     {
-        within("frequency", mode.frequency, lambda * unit, 0.01);
+        assert_within("frequency", mode.frequency, lambda * unit, 0.01);
         let mass = solved.mass.unwrap().mass;
         assert!(mode.effective_mass[..3].iter().all(|m| m / mass < 1e-9));
     }

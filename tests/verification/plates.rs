@@ -1,6 +1,6 @@
 //! Shells of real decks: strain and displacement of MSC and NX runs.
 
-use crate::decks::{model_of, shared};
+use crate::decks::{find_shared_path, model_of};
 use crate::mesh::Bulk;
 use nastran::results::{Quantity, ResultsFile};
 use strainbridge::fe::from_results::{ReadOptions, solution_from_file};
@@ -42,8 +42,8 @@ fn median_difference(peaks: &[(f64, f64)], n: usize) -> f64 {
 #[test]
 fn the_hottest_strain_of_a_plate_agrees_with_msc() {
     let (Some(deck), Some(op2)) = (
-        shared("nastran/msc_plate/plate.bdf"),
-        shared("nastran/msc_plate/plate.op2"),
+        find_shared_path("nastran/msc_plate/plate.bdf"),
+        find_shared_path("nastran/msc_plate/plate.op2"),
     ) else {
         return;
     };
@@ -74,8 +74,8 @@ fn the_hottest_strain_of_a_plate_agrees_with_msc() {
 #[test]
 fn shells_cut_out_of_an_nx_model_move_and_strain_as_they_did_there() {
     let (Some(deck), Some(op2)) = (
-        shared("nastran/nx_static_shell_bar/static_solid_shell_bar.bdf"),
-        shared("nastran/nx_static_shell_bar/static_solid_shell_bar.op2"),
+        find_shared_path("nastran/nx_static_shell_bar/static_solid_shell_bar.bdf"),
+        find_shared_path("nastran/nx_static_shell_bar/static_solid_shell_bar.op2"),
     ) else {
         return;
     };
@@ -137,7 +137,13 @@ fn shells_cut_out_of_an_nx_model_move_and_strain_as_they_did_there() {
         .flat_map(|g| displacement(*g)[..3].to_vec())
         .fold(0.0_f64, |a, v| a.max(v.abs()));
     for id in LOADED {
-        for (c, (got, expected)) in ours.at(id).iter().zip(displacement(id)).take(3).enumerate() {
+        for (c, (got, expected)) in ours
+            .displacement_at(id)
+            .iter()
+            .zip(displacement(id))
+            .take(3)
+            .enumerate()
+        {
             assert!(
                 (got - expected).abs() < 0.02 * largest,
                 "grid {id} {c}: {got:e} for {expected:e}, largest {largest:e}"

@@ -1,6 +1,6 @@
 //! CQUAD8 and CTRIA6: patch tests, rigid motions, a curved roof; CQUADR and CTRIAR: a moment about the normal.
 
-use crate::mesh::{Bulk, mass_of, near, record};
+use crate::mesh::{Bulk, assert_near, mass_of, record};
 use strainbridge::fe::supported_stiffness;
 
 /// Elements of a warped or flat surface with all mid-side grids but those that `left_out` says; ids by parameter point.
@@ -72,7 +72,7 @@ fn surface(
 }
 
 /// A flat sheet with straight sides and inner grids moved.
-fn kicked(u: f64, v: f64) -> [f64; 3] {
+fn distort_sheet(u: f64, v: f64) -> [f64; 3] {
     let bump = |t: f64| if t < 0.5 { t } else { 1.0 - t };
     let d = 0.3 * bump(u) * bump(v);
     [0.24 * (u + 0.4 * d), 0.12 * (v - 0.5 * d), 0.0]
@@ -89,10 +89,10 @@ fn constant_strain_and_curvature_pass_through_shells_with_mid_side_grids() {
                 [2, 2],
                 triangles,
                 left_out,
-                kicked,
+                distort_sheet,
             );
             for (g, p) in &s.grids {
-                let [x, y, _] = kicked(p[0], p[1]);
+                let [x, y, _] = distort_sheet(p[0], p[1]);
                 if p.iter().any(|v| *v == 0.0 || *v == 1.0) {
                     let u = [1e-3 * (x + y / 2.0), 1e-3 * (y + x / 2.0)];
                     for (dof, u) in u.iter().enumerate() {
@@ -118,10 +118,10 @@ fn constant_strain_and_curvature_pass_through_shells_with_mid_side_grids() {
             [2, 2],
             triangles,
             |_, _| false,
-            kicked,
+            distort_sheet,
         );
         for (g, p) in &s.grids {
-            let [x, y, _] = kicked(p[0], p[1]);
+            let [x, y, _] = distort_sheet(p[0], p[1]);
             if p.iter().any(|v| *v == 0.0 || *v == 1.0) {
                 let w = 1e-3 * (x * x + x * y + y * y) / 2.0;
                 for (dof, v) in [
@@ -250,9 +250,9 @@ fn the_scordelis_lo_roof_stands_on_few_curved_elements() {
         }
         let solved = b.solve();
         let edge = s.grids.iter().find(|g| g.1 == [1.0, 1.0]).unwrap().0;
-        near(
+        assert_near(
             &format!("roof, triangles {triangles}, {n} elements a side"),
-            -solved.at(edge)[2],
+            -solved.displacement_at(edge)[2],
             0.3006,
             tolerance,
         );
@@ -275,7 +275,7 @@ fn mass_of_a_curved_shell_is_that_of_its_surface() {
         },
     );
     // Parabolas through three points of an arc of 0.375 rad: shorter by 1e-5.
-    near(
+    assert_near(
         "mass",
         mass_of(&s.bulk.model()).mass,
         8.0 * 150.0 * 50.0,
@@ -295,12 +295,12 @@ fn shells_with_a_rotation_about_their_normal_carry_a_moment_there() {
             b.card(&format!("MOMENT,1,{g},0,500.,0.,0.,1."));
         }
         let s = b.solve();
-        s.at(ids[10][0])[1]
+        s.displacement_at(ids[10][0])[1]
     };
     let exact = 1000.0 * 100.0 * 100.0 / (2.0 * 210_000.0 * 2.0 * 1000.0 / 12.0);
     // One element across cannot contract as the strip does: a plate in cylindrical bending, 1 - nu^2 of the beam's deflection.
     let across = exact * (1.0 - 0.3 * 0.3);
-    near(
+    assert_near(
         "CQUADR under a drilling moment",
         tip("CQUADR"),
         across,

@@ -1,17 +1,17 @@
 //! Decks of `../shared/nastran` solved by other solvers.
 
-use crate::decks::{model_of, shared};
+use crate::decks::{find_shared_path, model_of};
 use crate::mesh::mass_of;
 use serde_json::Value;
 use strainbridge::fe::*;
 
-fn expected(folder: &str) -> Option<Value> {
-    let path = shared(&format!("nastran/{folder}/expected.json"))?;
+fn read_expected_values(folder: &str) -> Option<Value> {
+    let path = find_shared_path(&format!("nastran/{folder}/expected.json"))?;
     Some(serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap())
 }
 
 fn deck_cases(deck: &str) -> Option<(strainbridge::model::Model, Vec<LoadCase>)> {
-    let (model, control) = model_of(&shared(deck)?);
+    let (model, control) = model_of(&find_shared_path(deck)?);
     let cases = control
         .effective_subcases()
         .iter()
@@ -30,8 +30,10 @@ fn mass_agrees_with_the_grid_point_weight_generator() {
         ("nx_gpwg_1", "rdop2gpwg_1.dat"),
         ("nx_opg_1", "rdop2opg_1.dat"),
     ] {
-        let Some(e) = expected(folder) else { return };
-        let Some(path) = shared(&format!("nastran/{folder}/{deck}")) else {
+        let Some(e) = read_expected_values(folder) else {
+            return;
+        };
+        let Some(path) = find_shared_path(&format!("nastran/{folder}/{deck}")) else {
             return;
         };
         let (model, _) = model_of(&path);
@@ -65,7 +67,7 @@ fn mass_agrees_with_the_grid_point_weight_generator() {
 
 #[test]
 fn the_displacements_of_a_cbeam_cantilever_agree() {
-    let Some(e) = expected("msc_svanberg_beam") else {
+    let Some(e) = read_expected_values("msc_svanberg_beam") else {
         return;
     };
     let Some((model, cases)) = deck_cases("nastran/msc_svanberg_beam/static.dat") else {
@@ -122,7 +124,7 @@ fn displacement_rows(table: &Value) -> Vec<(u32, Vec<f64>)> {
 
 #[test]
 fn a_free_ring_under_a_force_and_rotation_moves_as_nastran_95_printed() {
-    let Some(e) = expected("n95_inertia_relief_ring") else {
+    let Some(e) = read_expected_values("n95_inertia_relief_ring") else {
         return;
     };
     let Some((model, mut cases)) = deck_cases("nastran/n95_inertia_relief_ring/d02011a.dat") else {
@@ -155,7 +157,7 @@ fn a_free_ring_under_a_force_and_rotation_moves_as_nastran_95_printed() {
 
 #[test]
 fn a_plate_in_tension_and_shear_agrees_with_msc() {
-    let Some(e) = expected("msc_plate") else {
+    let Some(e) = read_expected_values("msc_plate") else {
         return;
     };
     let Some((model, cases)) = deck_cases("nastran/msc_plate/plate.bdf") else {

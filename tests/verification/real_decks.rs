@@ -1,7 +1,7 @@
 //! Static decks of `../shared/nastran` with results of MSC and NX: displacement and strain of every element type, as the table of the
 //! README (`cargo test --test verification real_decks -- --nocapture`).
 
-use crate::decks::{faulty_model_of, shared};
+use crate::decks::{faulty_model_of, find_shared_path};
 use crate::real_deck_limits::{self as limits, Limits};
 use nastran::results::{Analysis, Quantity, ResultsFile, Rows};
 use std::collections::BTreeMap;
@@ -41,9 +41,9 @@ struct Solved {
 }
 
 /// The model and cases of a deck, or of the geometry blocks where there is none.
-fn prepared(deck: Option<&str>, file: &ResultsFile) -> Option<(Model, Vec<LoadCase>)> {
+fn prepare_model(deck: Option<&str>, file: &ResultsFile) -> Option<(Model, Vec<LoadCase>)> {
     if let Some(deck) = deck {
-        let (model, control) = faulty_model_of(&shared(deck)?);
+        let (model, control) = faulty_model_of(&find_shared_path(deck)?);
         let cases = control
             .effective_subcases()
             .iter()
@@ -74,7 +74,7 @@ fn prepared(deck: Option<&str>, file: &ResultsFile) -> Option<(Model, Vec<LoadCa
 }
 
 /// Strain of a solid or rod from a row of stress, where the material is isotropic.
-fn isotropic(
+fn isotropic_constants(
     model: &Model,
     material: Option<strainbridge::model::MaterialIx>,
 ) -> Option<(f64, f64)> {
@@ -89,9 +89,9 @@ fn solve(
     results: &str,
     alter: impl Fn(&mut Model, &mut Vec<LoadCase>),
 ) -> Option<Solved> {
-    let bytes = std::fs::read(shared(results)?).unwrap();
+    let bytes = std::fs::read(find_shared_path(results)?).unwrap();
     let file = ResultsFile::read(&bytes, results).unwrap();
-    let (mut model, mut cases) = prepared(deck, &file)?;
+    let (mut model, mut cases) = prepare_model(deck, &file)?;
     alter(&mut model, &mut cases);
     let (solution, _) = solve_cases(&model, &cases, &SolveOptions::default())
         .unwrap_or_else(|e| panic!("{results}: {e}"));
@@ -116,7 +116,7 @@ fn solve(
             solved.block(block.quantity, element, block.subcase, &rows);
         }
     }
-    solved.recovered(&cases, &reference);
+    solved.compare_recovered_strain(&cases, &reference);
     for (name, list) in &solved.table {
         eprintln!(
             "{results}: {name}: {} rows, median {:.2e}, 95 % {:.2e}",
@@ -177,7 +177,7 @@ impl Solved {
     }
 
     /// Strain that our elements recover from the displacements of the file: each element's own formula, whatever the rest does.
-    fn recovered(&mut self, cases: &[LoadCase], reference: &Solution) {
+    fn compare_recovered_strain(&mut self, cases: &[LoadCase], reference: &Solution) {
         let mut theirs = reference.clone();
         theirs.cases.retain(|c| !c.displacement.is_empty());
         let cases: Vec<LoadCase> = theirs
@@ -282,7 +282,8 @@ impl Solved {
             if stress.is_some() {
                 let property =
                     &self.model.solid_properties[self.model.solids[ix].property as usize];
-                let Some((e, nu)) = isotropic(&self.model, Some(property.material)) else {
+                let Some((e, nu)) = isotropic_constants(&self.model, Some(property.material))
+                else {
                     continue;
                 };
                 let c = e / ((1.0 + nu) * (1.0 - 2.0 * nu));
@@ -322,7 +323,7 @@ impl Solved {
             let d = at(rod.grids[1]) - at(rod.grids[0]);
             let u = |g: GridIx| Vec3::from_column_slice(&case.displacement[g.us()][..3]);
             let strain = (u(rod.grids[1]) - u(rod.grids[0])).dot(&d) / d.norm_squared();
-            let Some((e, _)) = isotropic(&self.model, Some(rod.material)) else {
+            let Some((e, _)) = isotropic_constants(&self.model, Some(rod.material)) else {
                 continue;
             };
             let card = match rod.card {

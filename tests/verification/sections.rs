@@ -15,7 +15,7 @@ fn section(kind: &str, dims: &[f64]) -> Section {
     b.model().beam_properties[0].sections[0].1
 }
 
-fn close(what: &str, got: f64, expected: f64, tolerance: f64) {
+fn assert_close(what: &str, got: f64, expected: f64, tolerance: f64) {
     assert!(
         (got - expected).abs() <= tolerance * expected.abs(),
         "{what}: {got} for {expected}"
@@ -33,7 +33,7 @@ fn a_hat_on_a_plate_has_the_area_inertia_and_torsion_of_its_parts() {
     let s = section("HAT1", &[w, h, crown, t, plate]);
     // The manual's area formula.
     let area = w * plate + crown * t + (w - crown) * t + 2.0 * (h - plate - t) * t;
-    close("area", s.area, area, 1e-12);
+    assert_close("area", s.area, area, 1e-12);
     // Rectangles by Steiner: (width, height, y of the middle).
     let parts = [
         (w, plate, plate / 2.0),
@@ -46,16 +46,16 @@ fn a_hat_on_a_plate_has_the_area_inertia_and_torsion_of_its_parts() {
         .iter()
         .map(|(b, d, y)| b * d.powi(3) / 12.0 + b * d * (y - y0).powi(2))
         .sum();
-    close("I1", s.i1, i1, 1e-12);
+    assert_close("I1", s.i1, i1, 1e-12);
     let web = (crown - t) / 2.0;
     let i2 = plate * w.powi(3) / 12.0
         + t * (w.powi(3) - crown.powi(3)) / 12.0
         + 2.0 * (h - plate - t) * (t.powi(3) / 12.0 + t * web * web)
         + t * crown.powi(3) / 12.0;
-    close("I2", s.i2, i2, 1e-12);
+    assert_close("I2", s.i2, i2, 1e-12);
     let (wide, high) = (crown - t, h - t / 2.0 - plate / 2.0);
     let cell = bredt(wide * high, &[(wide, t), (wide, plate), (2.0 * high, t)]);
-    close(
+    assert_close(
         "J",
         s.j,
         cell + (w - crown) * (t + plate).powi(3) / 3.0,
@@ -73,7 +73,7 @@ fn a_double_box_has_the_area_inertia_and_torsion_of_its_cells() {
     let (w, h) = (200.0, 80.0);
     let s = section("DBOX", &[w, h, 100.0, 4.0, 3.0, 4.0, 5.0, 5.0, 5.0, 5.0]);
     let (wm, hm) = (w - 4.0, h - 5.0);
-    close(
+    assert_close(
         "J",
         s.j,
         bredt(wm * hm, &[(2.0 * wm, 5.0), (2.0 * hm, 4.0)]),
@@ -85,8 +85,8 @@ fn a_double_box_has_the_area_inertia_and_torsion_of_its_cells() {
         s.neutral
     );
     let lying = 2.0 * ((w - 11.0) * 5.0_f64.powi(3) / 12.0 + (w - 11.0) * 5.0 * (hm / 2.0).powi(2));
-    close("I1", s.i1, 11.0 * h.powi(3) / 12.0 + lying, 1e-12);
-    close("area", s.area, 11.0 * h + 2.0 * (w - 11.0) * 5.0, 1e-12);
+    assert_close("I1", s.i1, 11.0 * h.powi(3) / 12.0 + lying, 1e-12);
+    assert_close("area", s.area, 11.0 * h + 2.0 * (w - 11.0) * 5.0, 1e-12);
     // Not symmetric: the flows q1, q2 of two cells from equal twist, by Cramer's rule.
     let [left, web, right, tl, bl, tr, br] = [4.0, 2.0, 6.0, 5.0, 5.0, 3.0, 3.0];
     let s = section("DBOX", &[w, h, 80.0, left, web, right, tl, bl, tr, br]);
@@ -105,7 +105,7 @@ fn a_double_box_has_the_area_inertia_and_torsion_of_its_cells() {
         (2.0 * a1 * d22 - 2.0 * a2 * d12) / det,
         (2.0 * a2 * d11 - 2.0 * a1 * d12) / det,
     );
-    close("J of two cells", s.j, 2.0 * (a1 * q1 + a2 * q2), 1e-9);
+    assert_close("J of two cells", s.j, 2.0 * (a1 * q1 + a2 * q2), 1e-9);
     // Blank DIM5 to DIM8 are DIM4, DIM9 and DIM10 DIM6.
     for (right, dims) in [(6.0, "4.,,6."), (4.0, "4.")] {
         let short = section(
@@ -117,7 +117,7 @@ fn a_double_box_has_the_area_inertia_and_torsion_of_its_cells() {
             "MAT1,1,210000.,,.3\nPBARL,2,1,,DBOX,,,,,\n,200.,80.,80.,{dims}"
         ));
         assert!(b.faults().is_empty(), "{:?}", b.faults());
-        close(
+        assert_close(
             "defaults",
             b.model().beam_properties[0].sections[0].1.area,
             short.area,
@@ -146,7 +146,7 @@ fn a_box_of_unlike_sides_has_the_shear_centre_of_its_shear_flow() {
     let right = (corner + tf * h * b / 2.0) * h + t2 * h.powi(3) / 12.0 - q * h;
     let flange = q * b - (corner * b + tf * h * b * b / 4.0);
     let centre = (b * right - h * flange) / i;
-    close("shear centre", -s.recovery[2][1] - t1 / 2.0, centre, 1e-6);
+    assert_close("shear centre", -s.recovery[2][1] - t1 / 2.0, centre, 1e-6);
 }
 
 /// Pure bending of a CBAR strains the points of every section by `M y / I` about its centroid: bending of one sign on both sides of a
@@ -202,9 +202,9 @@ fn points_of_a_pbarl_count_from_the_centroid() {
         + 6.0 * 92.0_f64.powi(3) / 12.0
         + web * (54.0 - from_top).powi(2);
     let t = section("T", &[80.0, 100.0, 8.0, 6.0]);
-    close("I1", t.i1, i, 1e-12);
-    close("top", t.recovery[0][0] - t.neutral[0], from_top, 1e-12);
-    close(
+    assert_close("I1", t.i1, i, 1e-12);
+    assert_close("top", t.recovery[0][0] - t.neutral[0], from_top, 1e-12);
+    assert_close(
         "bottom",
         t.recovery[2][0] - t.neutral[0],
         from_top - 100.0,

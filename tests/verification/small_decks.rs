@@ -40,12 +40,12 @@ pub fn solve(case_control: &str, bulk: &str) -> (Model, Solved) {
 }
 
 /// Displacement of a grid.
-pub fn at((model, solved): &(Model, Solved), grid: u32) -> [f64; 6] {
+pub fn displacement_at((model, solved): &(Model, Solved), grid: u32) -> [f64; 6] {
     solved.displacements[0][model.grid_ix(grid).unwrap().us()]
 }
 
 /// Returns the cards that the solver refuses.
-pub fn refused(case_control: &str, bulk: &str) -> Vec<String> {
+pub fn list_refused_cards(case_control: &str, bulk: &str) -> Vec<String> {
     match try_solve(case_control, bulk) {
         Err(FeError::Refused(list)) => list.into_iter().map(|r| r.card).collect(),
         Err(other) => panic!("{other}"),
@@ -55,7 +55,7 @@ pub fn refused(case_control: &str, bulk: &str) -> Vec<String> {
 
 /// Fails where `got` is farther from `expected` than a share of it.
 #[track_caller]
-pub fn close(what: &str, got: f64, expected: f64, share: f64) {
+pub fn assert_close(what: &str, got: f64, expected: f64, share: f64) {
     let limit = share * expected.abs().max(f64::MIN_POSITIVE);
     assert!(
         (got - expected).abs() <= limit,

@@ -1,6 +1,6 @@
 //! Solids: patch tests, MacNeal and Harder's beam and thick cylinder, mass, free strain.
 
-use crate::mesh::{Bulk, Solved, mass_of, near, record};
+use crate::mesh::{Bulk, Solved, assert_near, mass_of, record};
 use std::collections::BTreeMap;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,7 +132,7 @@ impl Block {
             if quadratic {
                 for (a, b) in edges {
                     let (a, b) = (list[*a], list[*b]);
-                    let m = self.mid(a, b);
+                    let m = self.mid_side_grid(a, b);
                     list.push(m);
                 }
             }
@@ -155,7 +155,7 @@ impl Block {
         }
     }
 
-    fn mid(&mut self, a: u32, b: u32) -> u32 {
+    fn mid_side_grid(&mut self, a: u32, b: u32) -> u32 {
         let key = (a.min(b), a.max(b));
         if let Some(m) = self.mids.get(&key) {
             return *m;
@@ -175,7 +175,7 @@ fn material(e: f64, nu: f64) -> Bulk {
 }
 
 /// A cube with every grid moved, the inner one and those of the edges included.
-fn kicked([x, y, z]: [f64; 3]) -> [f64; 3] {
+fn distort_cube([x, y, z]: [f64; 3]) -> [f64; 3] {
     let inside = |v: f64| if v > 0.1 && v < 0.9 { 1.0 } else { 0.0 };
     let d = 0.13;
     [
@@ -195,7 +195,7 @@ fn constant_strain_passes_through_distorted_solids() {
         ]
     };
     for kind in ALL {
-        let mut b = Block::new(material(1e6, 0.25), [2, 2, 2], kind, kicked);
+        let mut b = Block::new(material(1e6, 0.25), [2, 2, 2], kind, distort_cube);
         let on_boundary = |x: &[f64; 3]| x.iter().any(|v| *v < 1e-9 || *v > 1.0 - 1e-9);
         for (id, x) in b.x.clone() {
             if on_boundary(&x) {
@@ -208,7 +208,7 @@ fn constant_strain_passes_through_distorted_solids() {
         b.bulk.card("FORCE,1,1,0,1.0,0.0,0.0,1.0");
         let solved = b.bulk.solve();
         for (id, x) in &b.x {
-            for (u, e) in solved.at(*id).iter().zip(exact(*x)) {
+            for (u, e) in solved.displacement_at(*id).iter().zip(exact(*x)) {
                 assert!(
                     (u - e).abs() < 1e-8 * 2e-3,
                     "{kind:?} grid {id}: {u} for {e}"
@@ -244,7 +244,10 @@ fn cantilever(kind: (Kind, bool), n: [usize; 3], load: [f64; 3]) -> f64 {
     }
     let s = b.bulk.solve();
     let along = load.iter().position(|f| *f != 0.0).unwrap();
-    tip.iter().map(|g| s.at(*g)[along]).sum::<f64>() / tip.len() as f64
+    tip.iter()
+        .map(|g| s.displacement_at(*g)[along])
+        .sum::<f64>()
+        / tip.len() as f64
 }
 
 #[test]
@@ -262,7 +265,7 @@ fn a_slender_cantilever_of_bricks_and_quadratic_solids_bends_as_macneal_and_hard
             ((Kind::Penta, true), 0.06),
         ] {
             let got = cantilever(kind, [6, 1, 1], load);
-            near(
+            assert_near(
                 &format!("cantilever {kind:?} {name}"),
                 got,
                 reference,
@@ -279,7 +282,7 @@ fn a_slender_cantilever_of_bricks_and_quadratic_solids_bends_as_macneal_and_hard
         }
         // Refined, quadratic tetrahedra arrive as well.
         let got = cantilever((Kind::Tetra, true), [30, 1, 1], load);
-        near(
+        assert_near(
             &format!("cantilever 30 long, ten-node tetrahedra, {name}"),
             got,
             reference,
@@ -351,7 +354,7 @@ fn cylinder(kind: (Kind, bool), nu: f64) -> f64 {
     }
     let s = b.bulk.solve();
     let g = b.lattice[0][0][0];
-    let u = s.at(g);
+    let u = s.displacement_at(g);
     u[0]
 }
 
@@ -367,7 +370,7 @@ fn a_thick_cylinder_nearly_incompressible_does_not_lock() {
                 record(&what, got, reference);
             } else {
                 // Five elements along the radius: the published figures of such elements lie from 0.96 to 1.0.
-                near(&what, got, reference, 0.05);
+                assert_near(&what, got, reference, 0.05);
             }
         }
     }
@@ -377,11 +380,11 @@ fn a_thick_cylinder_nearly_incompressible_does_not_lock() {
 fn mass_and_centre_of_gravity_are_those_of_the_body() {
     for kind in ALL {
         let b = Block::new(material(1e6, 0.25), [2, 2, 2], kind, |x| {
-            kicked(x).map(|v| v + 3.0)
+            distort_cube(x).map(|v| v + 3.0)
         });
         let p = mass_of(&b.bulk.model());
         // Density 2, volume 1: the boundary of the kicked cube stays flat.
-        near(&format!("mass {kind:?}"), p.mass, 2.0, 1e-9);
+        assert_near(&format!("mass {kind:?}"), p.mass, 2.0, 1e-9);
         for c in p.cg.iter() {
             // Lumped masses of linear solids put the centre where the shape functions do: exact.
             assert!((c - 3.5).abs() < 1e-9, "{kind:?}: {:?}", p.cg);
@@ -423,12 +426,12 @@ fn the_axis_of_a_material_coordinate_system_is_followed() {
         b.bulk.force(*g, [0.0, 2.5, 0.0]);
     }
     let s: Solved = b.bulk.solve();
-    near(
+    assert_near(
         "pull along the stiff axis",
-        s.at(top[0])[1],
+        s.displacement_at(top[0])[1],
         10.0 * 4.0 / 1e5,
         1e-9,
     );
     // Strain is given in the material frame: the first component lies along basic y.
-    near("strain along it", s.case.solids.centre[0][0], 1e-4, 1e-9);
+    assert_near("strain along it", s.case.solids.centre[0][0], 1e-4, 1e-9);
 }

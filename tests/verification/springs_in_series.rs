@@ -1,6 +1,6 @@
 //! Chains of scalar springs: displacements in closed form, and no `loads-unbalanced`.
 
-use crate::small_decks::{at, close, solve};
+use crate::small_decks::{assert_close, displacement_at, solve};
 
 /// Springs of 100 between the points of a chain that begins at ground; loads there by point.
 fn chain(points: &str, first: &str) {
@@ -21,7 +21,7 @@ fn chain(points: &str, first: &str) {
     let solved = solve("SPC = 1\nLOAD = 1", &springs);
     // 6 in the first spring, 5 in the second, 3 in the third.
     for (id, expected) in [(2, 0.06), (3, 0.11), (4, 0.14)] {
-        close(points, at(&solved, id)[0], expected, 1e-12);
+        assert_close(points, displacement_at(&solved, id)[0], expected, 1e-12);
     }
     let codes: Vec<&str> = solved.1.findings.iter().map(|f| f.code).collect();
     assert!(!codes.contains(&"loads-unbalanced"), "{points}: {codes:?}");

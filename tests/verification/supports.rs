@@ -27,7 +27,7 @@ fn bar(n: u32) -> Bulk {
     b
 }
 
-fn on(spc: Option<u32>, relief: Relief, load: UnitLoad) -> LoadCase {
+fn build_load_case(spc: Option<u32>, relief: Relief, load: UnitLoad) -> LoadCase {
     LoadCase {
         subcase: 1,
         label: String::new(),
@@ -38,12 +38,12 @@ fn on(spc: Option<u32>, relief: Relief, load: UnitLoad) -> LoadCase {
     }
 }
 
-fn solved(b: &Bulk) -> (Solution, SolveReport) {
-    let case = on(Some(1), Relief::None, UnitLoad::Set(1));
+fn solve_load_case(b: &Bulk) -> (Solution, SolveReport) {
+    let case = build_load_case(Some(1), Relief::None, UnitLoad::Set(1));
     solve_cases(&b.model(), &[case], &SolveOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn told<'a>(findings: &'a [Finding], code: &str) -> &'a Finding {
+fn find_finding<'a>(findings: &'a [Finding], code: &str) -> &'a Finding {
     findings
         .iter()
         .find(|f| f.code == code)
@@ -53,7 +53,7 @@ fn told<'a>(findings: &'a [Finding], code: &str) -> &'a Finding {
 /// Relative to the larger: rounding of a few dozen unknowns.
 const ROUNDING: f64 = 1e-9;
 
-fn same(what: &str, got: f64, expected: f64) {
+fn assert_equal_to_rounding(what: &str, got: f64, expected: f64) {
     assert!(
         (got - expected).abs() <= ROUNDING * expected.abs(),
         "{what}: {got} for {expected}"
@@ -65,11 +65,11 @@ fn a_cantilever_bends_by_pl3_over_3ei_and_its_support_reacts_with_p_and_pl() {
     let mut b = bar(10);
     b.hold("123456", [1]);
     b.force(11, [0.0, 30.0, 100.0]);
-    let (solution, report) = solved(&b);
+    let (solution, report) = solve_load_case(&b);
     let tip = solution.cases[0].displacement[10];
     let cube = LENGTH.powi(3) / (3.0 * E);
-    same("along y", tip[1], 30.0 * cube / I1);
-    same("along z", tip[2], 100.0 * cube / I2);
+    assert_equal_to_rounding("along y", tip[1], 30.0 * cube / I1);
+    assert_equal_to_rounding("along z", tip[2], 100.0 * cube / I2);
     let reactions = &report.reactions[0];
     assert_eq!((reactions.subcase, reactions.grids.len()), (1, 1));
     assert_eq!(reactions.grids[0].grid, 1);
@@ -96,8 +96,8 @@ fn reactions_reach_supports_through_rigid_elements_and_turned_frames() {
     b.card("RBE2,900,50,123456,1");
     b.hold("123456", [50]);
     b.force(11, [7.0, 0.0, 100.0]);
-    let (solution, report) = solved(&b);
-    same(
+    let (solution, report) = solve_load_case(&b);
+    assert_equal_to_rounding(
         "tip",
         solution.cases[0].displacement[10][2],
         100.0 * LENGTH.powi(3) / (3.0 * E * I2),
@@ -116,9 +116,9 @@ fn gravity_on_a_cantilever_is_carried_by_its_support_alone() {
     let mut b = bar(10);
     b.hold("123456", [1]);
     b.card("GRAV,1,,9810.,0.,0.,-1.");
-    let (_, report) = solved(&b);
+    let (_, report) = solve_load_case(&b);
     let weight = RHO * AREA * LENGTH * 9810.0;
-    same("reaction", report.reactions[0].total[2], weight);
+    assert_equal_to_rounding("reaction", report.reactions[0].total[2], weight);
 }
 
 #[test]
@@ -127,8 +127,8 @@ fn a_load_on_a_held_grid_says_that_it_strains_nothing() {
     b.hold("123456", [1]);
     b.force(1, [0.0, 0.0, 100.0]);
     b.force(5, [0.0, 0.0, 300.0]);
-    let (solution, _) = solved(&b);
-    let finding = told(&solution.findings, "load-into-support");
+    let (solution, _) = solve_load_case(&b);
+    let finding = find_finding(&solution.findings, "load-into-support");
     assert_eq!(finding.severity, Severity::Warning);
     // 100 of 400.
     assert!((finding.measured.unwrap() - 0.25).abs() < 1e-12);
@@ -136,7 +136,7 @@ fn a_load_on_a_held_grid_says_that_it_strains_nothing() {
     let mut b = bar(4);
     b.hold("123456", [1]);
     b.force(5, [0.0, 0.0, 300.0]);
-    let (solution, _) = solved(&b);
+    let (solution, _) = solve_load_case(&b);
     assert!(
         solution
             .findings
@@ -152,8 +152,8 @@ fn every_dof_held_is_a_finding_and_no_strain() {
     let all: Vec<u32> = ids.into_iter().flatten().collect();
     b.force(all[4], [0.0, 0.0, 5.0]);
     b.hold("123456", all);
-    let (solution, report) = solved(&b);
-    told(&solution.findings, "every-dof-held");
+    let (solution, report) = solve_load_case(&b);
+    find_finding(&solution.findings, "every-dof-held");
     let case = &solution.cases[0];
     assert_eq!(case.shells.centre.len(), 4);
     assert!(
@@ -164,7 +164,7 @@ fn every_dof_held_is_a_finding_and_no_strain() {
             .flatten()
             .all(|e| *e == 0.0)
     );
-    same("reaction", report.reactions[0].total[2], -5.0);
+    assert_equal_to_rounding("reaction", report.reactions[0].total[2], -5.0);
 }
 
 #[test]
@@ -172,7 +172,7 @@ fn numbers_that_overflow_are_refused() {
     let mut b = bar(2);
     b.hold("123456", [1]);
     b.card("FORCE,1,3,0,1.+308,0.,0.,10.");
-    let case = || on(Some(1), Relief::None, UnitLoad::Set(1));
+    let case = || build_load_case(Some(1), Relief::None, UnitLoad::Set(1));
     let error = solve_cases(&b.model(), &[case()], &SolveOptions::default()).unwrap_err();
     assert!(
         matches!(error, FeError::Overflow { what: "loads", .. }),
@@ -197,9 +197,9 @@ fn nothing_that_acts_and_gravity_without_mass_are_said() {
     let mut b = bar(2);
     b.hold("123456", [1]);
     b.force(3, [0.0; 3]);
-    let (solution, _) = solved(&b);
+    let (solution, _) = solve_load_case(&b);
     assert!(
-        told(&solution.findings, "no-load")
+        find_finding(&solution.findings, "no-load")
             .message
             .contains("Nothing acts")
     );
@@ -210,8 +210,12 @@ fn nothing_that_acts_and_gravity_without_mass_are_said() {
     b.card(&format!("CBAR,1,2,{a},{e},0.,1.,0."));
     b.hold("123456", [a]);
     b.card("GRAV,1,,9810.,0.,0.,-1.");
-    let (solution, _) = solved(&b);
-    assert!(told(&solution.findings, "no-load").message.contains("mass"));
+    let (solution, _) = solve_load_case(&b);
+    assert!(
+        find_finding(&solution.findings, "no-load")
+            .message
+            .contains("mass")
+    );
 }
 
 #[test]
@@ -221,7 +225,7 @@ fn a_support_that_leaves_a_motion_free_is_a_mechanism_without_relief_and_balance
     b.hold("23456", [1]);
     b.force(5, [50.0, 0.0, 0.0]);
     let model = b.model();
-    let case = |relief| on(Some(1), relief, UnitLoad::Set(1));
+    let case = |relief| build_load_case(Some(1), relief, UnitLoad::Set(1));
     let error = solve_cases(&model, &[case(Relief::None)], &SolveOptions::default()).unwrap_err();
     let FeError::Mechanism { dofs, .. } = &error else {
         panic!("{error}")
@@ -231,7 +235,7 @@ fn a_support_that_leaves_a_motion_free_is_a_mechanism_without_relief_and_balance
         solve_cases(&model, &[case(Relief::Automatic)], &SolveOptions::default()).unwrap();
     // The force is carried by inertia: left of the middle lie 3/8 of the lumped mass, which the second element pulls along.
     let axial = &solution.cases[0].beams.axial;
-    same("middle", axial[1][1], 50.0 * 3.0 / 8.0 / (E * AREA));
+    assert_equal_to_rounding("middle", axial[1][1], 50.0 * 3.0 / 8.0 / (E * AREA));
     // Without any mass a structure that its supports hold needs no relief to be solved.
     let mut b = Bulk::default();
     b.card("MAT1,1,210000.,,.3");
@@ -246,7 +250,7 @@ fn a_support_that_leaves_a_motion_free_is_a_mechanism_without_relief_and_balance
         &SolveOptions::default(),
     )
     .unwrap();
-    same(
+    assert_equal_to_rounding(
         "tip",
         solution.cases[0].displacement[1][2],
         100.0 * LENGTH.powi(3) / (3.0 * E * I2),
@@ -283,9 +287,21 @@ fn inside_out_solids_re_entrant_and_folded_quadrilaterals_are_named() {
     b.card(&format!("CTETRA,31,8,{},{},{},{}", g[0], g[1], g[2], g[3]));
     b.card(&format!("CTETRA,32,8,{},{},{},{}", g[0], g[2], g[1], g[3]));
     let findings = check_shapes(&b.model());
-    assert!(told(&findings, "re-entrant-quad").subject.ends_with(" 1"));
-    assert!(told(&findings, "folded-quad").subject.ends_with(" 2"));
-    assert!(told(&findings, "inverted-solid").subject.ends_with(" 32"));
+    assert!(
+        find_finding(&findings, "re-entrant-quad")
+            .subject
+            .ends_with(" 1")
+    );
+    assert!(
+        find_finding(&findings, "folded-quad")
+            .subject
+            .ends_with(" 2")
+    );
+    assert!(
+        find_finding(&findings, "inverted-solid")
+            .subject
+            .ends_with(" 32")
+    );
     assert_eq!(findings.len(), 3);
 }
 
@@ -294,7 +310,7 @@ fn work_that_is_to_stop_gives_no_solution() {
     let mut b = bar(4);
     b.hold("123456", [1]);
     b.force(5, [0.0, 0.0, 100.0]);
-    let case = on(Some(1), Relief::None, UnitLoad::Set(1));
+    let case = build_load_case(Some(1), Relief::None, UnitLoad::Set(1));
     let options = SolveOptions {
         stop: strainbridge::stop::Stop::new(),
         ..SolveOptions::default()
@@ -323,9 +339,9 @@ fn a_bar_without_area_bends_as_a_cantilever() {
         b.card(&format!("SPC1,1,123456,{}", g[0]));
         let direction = if plane == 2 { "0.,1.,0." } else { "0.,0.,1." };
         b.card(&format!("FORCE,1,{},,100.,{direction}", g[1]));
-        let (solution, _) = solved(&b);
+        let (solution, _) = solve_load_case(&b);
         let tip = solution.cases[0].displacement[1][plane - 1];
-        same(&property, tip, 100.0 * LENGTH.powi(3) / (3.0 * E * inertia));
+        assert_equal_to_rounding(&property, tip, 100.0 * LENGTH.powi(3) / (3.0 * E * inertia));
     }
 }
 
@@ -361,10 +377,10 @@ fn a_rod_without_any_stiffness_is_a_fault_and_one_with_torsion_alone_twists() {
     b.card(&format!("SPC1,1,123456,{}", g[0]));
     b.card(&format!("SPC1,1,12356,{}", g[1]));
     b.card(&format!("MOMENT,1,{},,100.,1.,0.,0.", g[1]));
-    let (solution, _) = solved(&b);
+    let (solution, _) = solve_load_case(&b);
     let shear = E / 2.6;
     let twist = 100.0 * LENGTH / (shear * torsion);
-    same("twist", solution.cases[0].displacement[1][3], twist);
+    assert_equal_to_rounding("twist", solution.cases[0].displacement[1][3], twist);
 }
 
 #[test]
@@ -434,7 +450,7 @@ fn a_structure_on_springs_to_ground_is_held_by_them() {
             assert!(support.is_held(), "{held}");
             assert!(relief_finding(&model, support, SupportChoice::Deck).is_none());
             for relief in [Relief::Automatic, support.relief] {
-                let case = on(None, relief, UnitLoad::Set(1));
+                let case = build_load_case(None, relief, UnitLoad::Set(1));
                 let (solution, report) =
                     solve_cases(&model, &[case], &SolveOptions::default()).unwrap();
                 assert!(
@@ -446,10 +462,14 @@ fn a_structure_on_springs_to_ground_is_held_by_them() {
                     solution.findings
                 );
                 let u = &solution.cases[0].displacement;
-                same("grid 1", u[0][0], 1000.0 / k);
-                same("grid 2", u[1][0], 1000.0 / k + 1000.0 * 2.0 / (1e10 * 0.01));
-                same("strain", solution.cases[0].beams.axial[0][0], 1e-5);
-                same("reaction", report.reactions[0].total[0], -1000.0);
+                assert_equal_to_rounding("grid 1", u[0][0], 1000.0 / k);
+                assert_equal_to_rounding(
+                    "grid 2",
+                    u[1][0],
+                    1000.0 / k + 1000.0 * 2.0 / (1e10 * 0.01),
+                );
+                assert_equal_to_rounding("strain", solution.cases[0].beams.axial[0][0], 1e-5);
+                assert_equal_to_rounding("reaction", report.reactions[0].total[0], -1000.0);
             }
         }
     }
@@ -472,7 +492,7 @@ fn each_spring_to_ground_takes_one_rigid_motion() {
         }
         b.force(2, [3.0, 5.0, 7.0]);
         let model = b.model();
-        let support = Support::free(&model);
+        let support = Support::without_spc(&model);
         assert_eq!(usize::from(support.by_springs), n);
         assert_eq!(support.is_held(), n == 6);
         assert_eq!(determinate_dofs(&model).len(), 6 - n);
@@ -503,12 +523,12 @@ fn springs_carry_what_they_resist_and_inertia_balances_the_rest() {
     assert_eq!((support.by_springs, support.relief), (3, Relief::Automatic));
     let assumed = relief_finding(&model, support, SupportChoice::Deck).unwrap();
     assert_eq!(assumed.code, "inertia-relief-assumed");
-    let case = on(None, support.relief, UnitLoad::Set(1));
+    let case = build_load_case(None, support.relief, UnitLoad::Set(1));
     let (solution, report) = solve_cases(&model, &[case], &SolveOptions::default()).unwrap();
     assert!(solution.findings.iter().all(|f| f.code != "tied-to-ground"));
     // Equilibrium of a plate on three feet under a force at the fourth corner: -1, 1, 1 times the force.
     for (g, share) in [(0, -1.0), (1, 1.0), (2, 1.0)] {
-        same(
+        assert_equal_to_rounding(
             "foot",
             solution.cases[0].displacement[g][2] * k,
             90.0 * share,
@@ -516,7 +536,7 @@ fn springs_carry_what_they_resist_and_inertia_balances_the_rest() {
     }
     let balance = &report.balance[0];
     let mass = report.mass.as_ref().unwrap().mass;
-    same("along x", balance.acceleration[0], 20.0 / mass);
+    assert_equal_to_rounding("along x", balance.acceleration[0], 20.0 / mass);
     assert!(balance.inertia[2].abs() < 1e-9, "{balance:?}");
     // The written deck of such a job holds the free motions by SUPORT.
     let dofs = determinate_dofs(&model);
@@ -527,7 +547,7 @@ fn springs_carry_what_they_resist_and_inertia_balances_the_rest() {
     for (grid, dof) in dofs {
         b.card(&format!("SUPORT,{},{dof}", model.grids[grid.us()].id));
     }
-    let stated = on(None, Relief::Suport(None), UnitLoad::Set(1));
+    let stated = build_load_case(None, Relief::Suport(None), UnitLoad::Set(1));
     let (by_suport, _) = solve_cases(&b.model(), &[stated], &SolveOptions::default()).unwrap();
     let strain = |s: &Solution| s.cases[0].beams.axial[3][1];
     assert!((strain(&solution) - strain(&by_suport)).abs() <= ROUNDING * strain(&solution).abs());
@@ -558,7 +578,7 @@ fn chains_of_scalar_points_reach_ground_and_springs_within_the_structure_do_not(
     let by = |cards: &str| {
         let mut b = bar(2);
         b.card(cards);
-        Support::free(&b.model()).by_springs
+        Support::without_spc(&b.model()).by_springs
     };
     assert_eq!(
         by("SPOINT,91,92\nCELAS2,11,5.,1,3,91\nCELAS2,12,7.,91,,92\nCELAS2,13,9.,92"),

@@ -1,6 +1,6 @@
 //! Temperature: free bodies grow without mechanical strain, held ones carry it, layered ones bend. Set 9 is the temperature.
 
-use crate::mesh::{Bulk, Solved, near};
+use crate::mesh::{Bulk, Solved, assert_near};
 use strainbridge::fe::{HeatedStrain, SolveOptions};
 
 const ALPHA: f64 = 1.2e-5;
@@ -26,7 +26,7 @@ fn sheet(b: &mut Bulk) -> Vec<Vec<u32>> {
     ids
 }
 
-fn largest(s: &Solved) -> f64 {
+fn largest_strain(s: &Solved) -> f64 {
     s.case
         .shells
         .centre
@@ -50,11 +50,11 @@ fn a_free_sheet_grows_and_strains_nothing_mechanically() {
         for g in row {
             let x = s.model.grids[s.model.grid_ix(*g).unwrap().us()].x;
             for i in 0..3 {
-                assert!((s.at(*g)[i] - 100.0 * ALPHA * x[i]).abs() < 1e-9);
+                assert!((s.displacement_at(*g)[i] - 100.0 * ALPHA * x[i]).abs() < 1e-9);
             }
         }
     }
-    assert!(largest(&s) < 1e-12, "{:e}", largest(&s));
+    assert!(largest_strain(&s) < 1e-12, "{:e}", largest_strain(&s));
 }
 
 #[test]
@@ -72,7 +72,7 @@ fn total_strain_holds_the_expansion_of_a_free_sheet_and_of_a_free_bar() {
         ..SolveOptions::default()
     };
     let (mechanical, total) = (b.solve_hot(), b.solve_hot_with(&total));
-    assert!(largest(&mechanical) < 1e-12);
+    assert!(largest_strain(&mechanical) < 1e-12);
     for surface in total.case.shells.centre.iter().flatten() {
         for (e, exact) in surface.iter().zip([hot, hot, 0.0]) {
             assert!((e - exact).abs() < 1e-12, "{surface:?}");
@@ -114,13 +114,13 @@ fn a_gradient_through_the_thickness_bends_a_free_sheet_to_a_bowl() {
     b.card("TEMPP1,9,1,20.,5.\n,2,THRU,99");
     b.hold("123456", [ids[0][0]]);
     let s = b.solve_hot();
-    assert!(largest(&s) < 1e-10, "{:e}", largest(&s));
+    assert!(largest_strain(&s) < 1e-10, "{:e}", largest_strain(&s));
     // The top is warmer and longer: the sheet bends down from the held corner, w = -alpha T' (x^2 + y^2) / 2.
     let far = ids[3][3];
     let x = s.model.grids[s.model.grid_ix(far).unwrap().us()].x;
-    near(
+    assert_near(
         "bowl",
-        s.at(far)[2],
+        s.displacement_at(far)[2],
         -ALPHA * 5.0 * (x.x * x.x + x.y * x.y) / 2.0,
         1e-6,
     );
@@ -143,9 +143,9 @@ fn a_bimetal_strip_bends_as_timoshenko_says() {
     let kappa = 6.0 * (a2 - a1) * dt * (1.0 + m).powi(2)
         / (h * (3.0 * (1.0 + m).powi(2) + (1.0 + m * n) * (m * m + 1.0 / (m * n))));
     // The second layer, on top, grows more: the strip bends down.
-    near(
+    assert_near(
         "bimetal",
-        s.at(ids[6][0])[2],
+        s.displacement_at(ids[6][0])[2],
         -kappa * 120.0 * 120.0 / 2.0,
         1e-6,
     );
@@ -177,9 +177,9 @@ fn bars_and_rods_grow_freely_push_when_held_and_bend_under_a_gradient() {
     let mut b = build(false);
     b.card("TEMPD,9,120.");
     let s = b.solve_hot();
-    near("bar", s.at(3)[0], 100.0 * ALPHA * 250.0, 1e-10);
+    assert_near("bar", s.displacement_at(3)[0], 100.0 * ALPHA * 250.0, 1e-10);
     // The rod pushes its free end away; held sideways at grid 4 in x alone.
-    near("rod", s.at(4)[1], 100.0 * ALPHA * 80.0, 1e-10);
+    assert_near("rod", s.displacement_at(4)[1], 100.0 * ALPHA * 80.0, 1e-10);
     for (_, strain) in s.case.beams.stations.iter().flatten() {
         assert!(strain.iter().all(|e| e.abs() < 1e-13), "{strain:?}");
     }
@@ -198,8 +198,8 @@ fn bars_and_rods_grow_freely_push_when_held_and_bend_under_a_gradient() {
     b.card("TEMPD,9,20.");
     b.card("TEMPRB,9,1,20.,20.,3.,3.,0.,0.,\n,\n,2");
     let s = b.solve_hot();
-    let tip = s.at(3)[1];
-    near(
+    let tip = s.displacement_at(3)[1];
+    assert_near(
         "gradient along y",
         tip,
         -ALPHA * 3.0 * 250.0 * 250.0 / 2.0,
@@ -244,5 +244,10 @@ fn solids_under_a_linear_temperature_field_are_free_of_mechanical_strain() {
         }
     }
     // Along the bottom edge of the row, in x: integral of alpha dT.
-    near("length", s.at(layer[8])[0], ALPHA * (2.0 * 200.0), 1e-9);
+    assert_near(
+        "length",
+        s.displacement_at(layer[8])[0],
+        ALPHA * (2.0 * 200.0),
+        1e-9,
+    );
 }

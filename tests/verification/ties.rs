@@ -20,7 +20,7 @@ pub fn findings(b: &Bulk) -> Vec<Finding> {
     s.findings
 }
 
-fn close(what: &str, got: f64, expected: f64, tolerance: f64) {
+fn assert_close(what: &str, got: f64, expected: f64, tolerance: f64) {
     assert!(
         (got - expected).abs() <= tolerance * expected.abs().max(1e-12),
         "{what}: {got:e} for {expected:e}"
@@ -52,7 +52,7 @@ fn a_straight_spline_is_a_cubic_between_its_ends_and_a_straight_line_in_twist_an
     }
     b.card("CBAR,1,2,1,3,0.,1.,0.\nFORCE,1,3,0,0.,0.,0.,1.");
     assert!(b.faults().is_empty(), "{:?}", b.faults());
-    let u = b.solve().at(2);
+    let u = b.solve().displacement_at(2);
     // Hermite at a quarter of L = 100.
     let (s, l) = (0.25_f64, 100.0);
     let h = [
@@ -68,17 +68,17 @@ fn a_straight_spline_is_a_cubic_between_its_ends_and_a_straight_line_in_twist_an
         3.0 * s * s - 2.0 * s,
     ];
     let cubic = |f: &[f64; 4], ends: [f64; 4]| f.iter().zip(ends).map(|(a, b)| a * b).sum::<f64>();
-    close("along", u[0], v[0] + s * (w[0] - v[0]), 1e-6);
-    close("y", u[1], cubic(&h, [v[1], v[5], w[1], w[5]]), 1e-6);
-    close("z", u[2], cubic(&h, [v[2], -v[4], w[2], -w[4]]), 1e-6);
-    close("twist", u[3], v[3] + s * (w[3] - v[3]), 1e-6);
-    close(
+    assert_close("along", u[0], v[0] + s * (w[0] - v[0]), 1e-6);
+    assert_close("y", u[1], cubic(&h, [v[1], v[5], w[1], w[5]]), 1e-6);
+    assert_close("z", u[2], cubic(&h, [v[2], -v[4], w[2], -w[4]]), 1e-6);
+    assert_close("twist", u[3], v[3] + s * (w[3] - v[3]), 1e-6);
+    assert_close(
         "about y",
         u[4],
         -cubic(&slope, [v[2], -v[4], w[2], -w[4]]),
         1e-6,
     );
-    close(
+    assert_close(
         "about z",
         u[5],
         cubic(&slope, [v[1], v[5], w[1], w[5]]),
@@ -131,12 +131,12 @@ fn a_bent_spline_moves_as_bars_of_the_tube_that_it_stands_for() {
     assert!(spline.faults().is_empty(), "{:?}", spline.faults());
     let (a, b) = (bars.solve(), spline.solve());
     for id in 2..=6 {
-        for (x, y) in a.at(id).iter().zip(b.at(id)) {
+        for (x, y) in a.displacement_at(id).iter().zip(b.displacement_at(id)) {
             assert!(
                 (x - y).abs() < 1e-7 * 5e-3,
                 "grid {id}: {:?} {:?}",
-                a.at(id),
-                b.at(id)
+                a.displacement_at(id),
+                b.displacement_at(id)
             );
         }
     }
@@ -176,9 +176,9 @@ fn a_gap_carries_ka_and_kt_while_closed_and_kb_alone_while_open_and_says_so() {
         ("PGAP,6,.5,0.,1000.,7.,300.", across, 1, 0.0),
     ] {
         let b = with(property, load);
-        let got = b.solve().at(2)[dof].abs();
+        let got = b.solve().displacement_at(2)[dof].abs();
         // The grid's rotations are free, as a solid's are: the stiffness across acts on translations.
-        close(property, got, 100.0 / (k + 1.0), 1e-9);
+        assert_close(property, got, 100.0 / (k + 1.0), 1e-9);
         let told = findings(&b);
         let gap = told
             .iter()
@@ -235,9 +235,19 @@ fn rigid_components_of_a_bush_hand_on_motion_and_the_others_give_way() {
             // Across the middle of the bush: the hinge feels the force over half the arm.
             let hinge_turn = hinge * m / 2.0;
             let expected = 100.0 * l / (E * 200.0) - turn * a - hinge_turn * a / 2.0;
-            close("arm, x", s.at(arm)[0], expected, 1e-9);
-            close("arm, y", s.at(arm)[1], m * l * l / (2.0 * E * i), 1e-9);
-            close("arm, turn", s.at(arm)[5], turn + hinge_turn, 1e-9);
+            assert_close("arm, x", s.displacement_at(arm)[0], expected, 1e-9);
+            assert_close(
+                "arm, y",
+                s.displacement_at(arm)[1],
+                m * l * l / (2.0 * E * i),
+                1e-9,
+            );
+            assert_close(
+                "arm, turn",
+                s.displacement_at(arm)[5],
+                turn + hinge_turn,
+                1e-9,
+            );
         }
     }
 }
@@ -260,8 +270,8 @@ fn a_rigid_bush_follows_whichever_end_is_free_to() {
     let s = b.solve();
     let turn = -100.0 * a * l / (E * i);
     let expected = 100.0 * l / (E * 200.0) - turn * a;
-    close("arm, x", s.at(load)[0], expected, 1e-9);
-    close("arm, turn", s.at(load)[5], turn, 1e-9);
+    assert_close("arm, x", s.displacement_at(load)[0], expected, 1e-9);
+    assert_close("arm, turn", s.displacement_at(load)[5], turn, 1e-9);
 }
 
 #[test]
@@ -284,7 +294,7 @@ fn which_dofs_a_rigid_bush_makes_dependent_does_not_hang_on_the_unit_of_length()
         assert!(b.faults().is_empty(), "{:?}", b.faults());
         let turn = 100.0 * a / 2.0 * l / (e * i);
         let expected = 100.0 * l / (e * area) + turn * a / 2.0;
-        close("arm, x", b.solve().at(arm)[0], expected, 1e-9);
+        assert_close("arm, x", b.solve().displacement_at(arm)[0], expected, 1e-9);
     }
 }
 
@@ -324,9 +334,9 @@ fn a_rigid_bush_to_ground_is_a_support_with_a_reaction() {
             .unwrap_or_else(|e| panic!("{e}"));
         let r = &report.reactions[0];
         assert!(r.residual < 1e-9, "{}", r.residual);
-        close("x", r.total[0], -100.0, 1e-9);
-        close("y", r.total[1], -200.0, 1e-9);
-        close("z", r.total[2], -300.0, 1e-9);
+        assert_close("x", r.total[0], -100.0, 1e-9);
+        assert_close("y", r.total[1], -200.0, 1e-9);
+        assert_close("z", r.total[2], -300.0, 1e-9);
         assert!(!told(&b));
     }
     // One direction alone, askew: no single dof holds it, and that is said.
@@ -348,7 +358,7 @@ fn a_bush_without_axes_takes_the_basic_frame_and_says_so_where_it_matters() {
         }
         b.force(1, [100.0, 60.0, 30.0]);
         assert!(b.faults().is_empty(), "{:?}", b.faults());
-        (b.solve().at(1), findings(&b))
+        (b.solve().displacement_at(1), findings(&b))
     };
     // A vector without a line to go with is not thrown away in silence.
     for (property, faulty) in [("50.,30.,10.", true), ("10.,10.,10.", false)] {
@@ -399,8 +409,18 @@ fn a_moment_on_an_rbe3_is_shared_out_by_lever_arms() {
     let s = b.solve();
     let sum: f64 = 4.0 * (a * a + b_ * b_);
     for (g, c) in (1..=4).zip(corners) {
-        close("x", s.at(g)[0] * 100.0, -1000.0 * c[1] / sum, 1e-9);
-        close("y", s.at(g)[1] * 100.0, 1000.0 * c[0] / sum, 1e-9);
+        assert_close(
+            "x",
+            s.displacement_at(g)[0] * 100.0,
+            -1000.0 * c[1] / sum,
+            1e-9,
+        );
+        assert_close(
+            "y",
+            s.displacement_at(g)[1] * 100.0,
+            1000.0 * c[0] / sum,
+            1e-9,
+        );
     }
     // About x: forces along z by y / sum y^2.
     let text = b.text.replace("0.,0.,1.\n", "1.,0.,0.\n");
@@ -408,9 +428,9 @@ fn a_moment_on_an_rbe3_is_shared_out_by_lever_arms() {
     b.text = text;
     let s = b.solve();
     for (g, c) in (1..=4).zip(corners) {
-        close(
+        assert_close(
             "z",
-            s.at(g)[2] * 100.0,
+            s.displacement_at(g)[2] * 100.0,
             1000.0 * c[1] / (4.0 * b_ * b_),
             1e-9,
         );
@@ -441,8 +461,8 @@ fn equations_that_chain_carry_forces_and_motion_through_all_of_them() {
     let (s, _) = solve_cases(&b.model(), &[case], &SolveOptions::default())
         .unwrap_or_else(|e| panic!("{e}"));
     let u = |g: usize| s.cases[0].displacement[g - 1][0];
-    close("1", u(1), 3.0 * 20.0 / 10.0, 1e-12);
-    close("2", u(2), 3.0, 1e-12);
-    close("3", u(3), 9.0, 1e-12);
-    close("4", u(4), 18.0, 1e-12);
+    assert_close("1", u(1), 3.0 * 20.0 / 10.0, 1e-12);
+    assert_close("2", u(2), 3.0, 1e-12);
+    assert_close("3", u(3), 9.0, 1e-12);
+    assert_close("4", u(4), 18.0, 1e-12);
 }

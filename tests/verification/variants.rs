@@ -1,6 +1,6 @@
 //! Variants of a model on its factor, against solutions with a factor of their own.
 
-use crate::adjoint::{scaled, tray};
+use crate::adjoint::{scale_moduli, tray};
 use strainbridge::fe::shell_frame::ShellPlace;
 use strainbridge::fe::*;
 use strainbridge::model::{Model, ShellKind, Vec3};
@@ -19,7 +19,7 @@ fn model() -> Model {
 }
 
 /// Thicker and heavier: its inertia balances loads otherwise.
-fn thicker(model: &Model, factor: f64) -> Model {
+fn thicken_shells(model: &Model, factor: f64) -> Model {
     let mut out = model.clone();
     for p in &mut out.shell_properties {
         if let ShellKind::Homogeneous { t, .. } = &mut p.kind {
@@ -39,7 +39,7 @@ fn bush(model: &Model, factor: f64) -> Model {
     out
 }
 
-fn moved(model: &Model) -> Model {
+fn move_grid(model: &Model) -> Model {
     let mut out = model.clone();
     out.grids[20].x += Vec3::new(3.0, -2.0, 1.0);
     out
@@ -73,16 +73,16 @@ fn variants_on_the_factor_of_their_base_are_those_with_factors_of_their_own() {
         by_springs: 0,
     };
     let variants = [
-        thicker(&model, 1.1),
-        scaled(&model, &[9, 10, 11, 17], 0.5),
+        thicken_shells(&model, 1.1),
+        scale_moduli(&model, &[9, 10, 11, 17], 0.5),
         bush(&model, 2.0),
         bush(&model, 0.01),
         // Of no use to the factor of the base: a cut through and a moved grid.
-        scaled(&model, &[0, 1, 2, 3, 4, 5], 1e-5),
-        moved(&model),
+        scale_moduli(&model, &[0, 1, 2, 3, 4, 5], 1e-5),
+        move_grid(&model),
         model.clone(),
     ];
-    for support in [Support::free(&model), held] {
+    for support in [Support::without_spc(&model), held] {
         let options = SolveOptions::default();
         let own = |m: &Model| {
             let solved = solve_unit_loads_on(m, support, &loads, &options).unwrap();
@@ -177,10 +177,10 @@ fn changes_of_readings_are_exact_for_bushes_and_first_order_for_shells() {
     let variants = [
         bush(&model, 2.0),
         bush(&model, 0.01),
-        thicker(&model, 1.0 + steps[0]),
-        thicker(&model, 1.0 + steps[1]),
+        thicken_shells(&model, 1.0 + steps[0]),
+        thicken_shells(&model, 1.0 + steps[1]),
     ];
-    for support in [Support::free(&model), held] {
+    for support in [Support::without_spc(&model), held] {
         let options = SolveOptions::default();
         let own = |m: &Model| {
             let solved = solve_unit_loads_on(m, support, &loads, &options).unwrap();
@@ -209,8 +209,8 @@ fn changes_of_readings_are_exact_for_bushes_and_first_order_for_shells() {
         assert!((ratio - 2.0).abs() < 0.1, "{errors:?}");
     }
     // A moved grid is no change of stiffness alone.
-    let none = [moved(&model)].into_iter();
-    let support = Support::free(&model);
+    let none = [move_grid(&model)].into_iter();
+    let support = Support::without_spc(&model);
     let options = SolveOptions::default();
     let found = reading_changes(&model, support, &loads, &readings(), none, &options);
     assert_eq!(found.unwrap(), None);

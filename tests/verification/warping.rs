@@ -1,6 +1,6 @@
 //! CBEAM with warping points: Vlasov's closed forms of restrained torsion, and an I-beam of shells.
 
-use crate::mesh::{Bulk, near};
+use crate::mesh::{Bulk, assert_near};
 use strainbridge::fe::*;
 
 const E: f64 = 210_000.0;
@@ -48,21 +48,36 @@ fn torsion_with_warping_held_at_one_end_or_both_is_that_of_vlasov() {
             let mut b = bar(n, length, (j, cw));
             b.card("SPC1,1,1,1001");
             let tip = b.solve();
-            near("warping held at the root", tip.at(n + 1)[3], one_end, 1e-7);
+            assert_near(
+                "warping held at the root",
+                tip.displacement_at(n + 1)[3],
+                one_end,
+                1e-7,
+            );
             // The rate of twist at the free end, which its warping point holds.
             let rate = torque / (g * j) * (1.0 - 1.0 / psi.cosh());
-            near("rate of twist", tip.at(1001 + n)[0], rate, 1e-6);
+            assert_near(
+                "rate of twist",
+                tip.displacement_at(1001 + n)[0],
+                rate,
+                1e-6,
+            );
             b.card(&format!("SPC1,1,1,{}", 1001 + n));
-            near(
+            assert_near(
                 "warping held at both ends",
-                b.solve().at(n + 1)[3],
+                b.solve().displacement_at(n + 1)[3],
                 both,
                 1e-6,
             );
         }
         // Free to warp: Saint-Venant.
         let b = bar(2, length, (j, cw));
-        near("free", b.solve().at(3)[3], torque * length / (g * j), 1e-6);
+        assert_near(
+            "free",
+            b.solve().displacement_at(3)[3],
+            torque * length / (g * j),
+            1e-6,
+        );
     }
 }
 
@@ -72,17 +87,17 @@ fn without_warping_points_or_constant_a_beam_twists_as_saint_venant_has_it() {
     let mut b = bar(1, 1500.0, (28_800.0, 1e10));
     b.text = b.text.replace("\n,1001,1002", "");
     b.card("SPC1,1,1,1001,1002");
-    near(
+    assert_near(
         "no points",
-        b.solve().at(2)[3],
+        b.solve().displacement_at(2)[3],
         1e6 * 1500.0 / (g * 28_800.0),
         1e-9,
     );
     let mut b = bar(1, 1500.0, (28_800.0, 0.0));
     b.card("SPC1,1,1,1001,1002");
-    near(
+    assert_near(
         "no constant",
-        b.solve().at(2)[3],
+        b.solve().displacement_at(2)[3],
         1e6 * 1500.0 / (g * 28_800.0),
         1e-9,
     );
@@ -136,14 +151,14 @@ fn an_i_beam_of_shells_twists_as_the_warping_beam() {
     b.force(high, [0.0, -p, 0.0]);
     b.force(low, [0.0, p, 0.0]);
     let s = b.solve();
-    let shells = (s.at(low)[1] - s.at(high)[1]) / h;
+    let shells = (s.displacement_at(low)[1] - s.displacement_at(high)[1]) / h;
     let j = (2.0 * w + h) * t.powi(3) / 3.0;
     let cw = h * h * w.powi(3) * t / 24.0;
     let mut beam = bar(1, length, (j, cw));
     beam.card("SPC1,1,1,1001");
-    let twist = beam.solve().at(2)[3];
+    let twist = beam.solve().displacement_at(2)[3];
     // Thin-wall theory leaves out shear strain of the flanges and warping across the walls.
-    near("I-beam of shells over warping beam", shells, twist, 0.03);
+    assert_near("I-beam of shells over warping beam", shells, twist, 0.03);
     // Without warping it would twist more than twice as much.
     let g = E / (2.0 + 2.0 * NU);
     assert!(1e6 * length / (g * j) > 2.0 * twist);
@@ -164,12 +179,12 @@ fn the_warping_constants_of_open_sections_are_those_of_the_books() {
     // I, equal flanges: h^2 b^3 t / 24 with midline sizes.
     let (h, b, t, tw) = (194.0_f64, 100.0_f64, 6.0, 4.0);
     let i = h * h * b.powi(3) * t / 24.0;
-    near("I", of("I", &[200.0, b, b, tw, t, t]), i, 1e-9);
-    near("I1", of("I1", &[b - tw, tw, 188.0, 200.0]), i, 1e-9);
-    near("H", of("H", &[194.0 - 6.0, 12.0, b, tw]), i, 1e-9);
+    assert_near("I", of("I", &[200.0, b, b, tw, t, t]), i, 1e-9);
+    assert_near("I1", of("I1", &[b - tw, tw, 188.0, 200.0]), i, 1e-9);
+    assert_near("H", of("H", &[194.0 - 6.0, 12.0, b, tw]), i, 1e-9);
     // Unequal flanges: h^2 I1 I2 / (I1 + I2).
     let (i1, i2) = (6.0 * b.powi(3) / 12.0, 6.0 * 60.0_f64.powi(3) / 12.0);
-    near(
+    assert_near(
         "I, one narrow",
         of("I", &[200.0, b, 60.0, tw, t, t]),
         h * h * i1 * i2 / (i1 + i2),
@@ -179,17 +194,17 @@ fn the_warping_constants_of_open_sections_are_those_of_the_books() {
     let (h, b) = (194.0_f64, 58.0_f64);
     let channel =
         b.powi(3) * h * h * t / 12.0 * (3.0 * b * t + 2.0 * h * tw) / (6.0 * b * t + h * tw);
-    near("CHAN", of("CHAN", &[60.0, 200.0, tw, t]), channel, 1e-9);
-    near(
+    assert_near("CHAN", of("CHAN", &[60.0, 200.0, tw, t]), channel, 1e-9);
+    assert_near(
         "CHAN1",
         of("CHAN1", &[56.0, tw, 188.0, 200.0]),
         channel,
         1e-9,
     );
-    near("CHAN2", of("CHAN2", &[t, tw, 60.0, 200.0]), channel, 1e-9);
+    assert_near("CHAN2", of("CHAN2", &[t, tw, 60.0, 200.0]), channel, 1e-9);
     // Z: b^3 h^2 t / 12 (b t + 2 h tw) / (2 b t + h tw).
     let z = b.powi(3) * h * h * t / 12.0 * (b * t + 2.0 * h * tw) / (2.0 * b * t + h * tw);
-    near("Z", of("Z", &[56.0, tw, 188.0, 200.0]), z, 1e-9);
+    assert_near("Z", of("Z", &[56.0, tw, 188.0, 200.0]), z, 1e-9);
     for (kind, dims) in [
         ("T", [100.0, 80.0, 5.0, 5.0]),
         ("L", [100.0, 80.0, 5.0, 5.0]),
@@ -222,7 +237,7 @@ fn torques_along_a_warping_beam_twist_it_as_vlasov_has_it_however_few_the_elemen
                 b.card(&format!("PLOAD1,1,{k},MXE,FR,0.,{m:?},1.,{m:?}"));
             }
             let s = b.solve();
-            near("uniform torque", s.at(n + 1)[3], uniform, 1e-6);
+            assert_near("uniform torque", s.displacement_at(n + 1)[3], uniform, 1e-6);
         }
     }
 }
@@ -238,7 +253,7 @@ fn a_torque_within_a_warping_beam_is_the_same_wherever_elements_end() {
             b.card("SPC1,1,1,1001");
             loads.iter().for_each(|l| b.card(l));
             let s = b.solve();
-            [s.at(n + 1)[3], s.at(1001 + n)[0]]
+            [s.displacement_at(n + 1)[3], s.displacement_at(1001 + n)[0]]
         };
         let card = |element: u32, rest: &str| format!("PLOAD1,1,{element},MXE,FR,{rest}");
         let pairs = [
@@ -264,7 +279,7 @@ fn a_torque_within_a_warping_beam_is_the_same_wherever_elements_end() {
         ];
         for (one, three) in pairs {
             let (a, b) = (solved(1, &one), solved(3, &three));
-            near(&one[0], a[0], b[0], 1e-6);
+            assert_near(&one[0], a[0], b[0], 1e-6);
             // Far from a torque the rate dies out to nothing.
             let rate = (a[1] - b[1]).abs();
             assert!(rate < 1e-6 * (b[0] / 1500.0), "{}: {a:?} {b:?}", one[0]);
@@ -290,7 +305,7 @@ fn bimoments_count_neither_as_forces_of_supports_nor_as_forces_on_a_free_body() 
         .unwrap_or_else(|e| panic!("{e}"));
     let r = &report.reactions[0];
     assert!(r.residual < 1e-9, "{}", r.residual);
-    near("reaction", r.total[3], -(1e6 + 100.0 * 1500.0), 1e-9);
+    assert_near("reaction", r.total[3], -(1e6 + 100.0 * 1500.0), 1e-9);
     assert!(r.total[0].abs() < 1e-6 * r.total[3].abs(), "{:?}", r.total);
     // Free, under a torque that grows along it: the bimoments of its ends don't cancel, and push nothing.
     let mut b = bar(1, 1500.0, (28_800.0, 1e10));
@@ -299,8 +314,8 @@ fn bimoments_count_neither_as_forces_of_supports_nor_as_forces_on_a_free_body() 
     let (_, report) = solve_cases(&b.model(), &[case(Relief::Automatic, None)], &options)
         .unwrap_or_else(|e| panic!("{e}"));
     let balance = &report.balance[0];
-    near("torque", balance.applied[3], 1e6 + 50.0 * 1500.0, 1e-9);
-    near(
+    assert_near("torque", balance.applied[3], 1e6 + 50.0 * 1500.0, 1e-9);
+    assert_near(
         "spin",
         balance.acceleration[3],
         balance.applied[3] / 1800.0,

@@ -1,6 +1,6 @@
 //! Whole structures of other people, solved as free bodies: satellites and a support structure.
 
-use crate::decks::{faulty_model_of, shared};
+use crate::decks::{faulty_model_of, find_shared_path};
 use crate::mesh::free_modes;
 use strainbridge::fe::*;
 use strainbridge::model::Model;
@@ -10,7 +10,7 @@ fn solve(
     deck: &str,
     alter: impl Fn(&mut Model),
 ) -> Option<(Model, Vec<Mode>, Solution, SolveReport)> {
-    let path = shared(&format!("nastran/{deck}"))?;
+    let path = find_shared_path(&format!("nastran/{deck}"))?;
     let (mut model, control) = faulty_model_of(&path);
     alter(&mut model);
     let mpc = control.mpc_of_structure();
@@ -102,7 +102,7 @@ fn a_support_structure_vibrates_and_strains_freely() {
 fn a_satellite_of_many_files_vibrates_and_strains_freely() {
     // Its outer panel 06 (grids 55010 and up) is not joined to anything in the deck: said so, then left out.
     let deck = "deck_satellite_includes/JOBS/QS/relative_path.bdf";
-    let Some(path) = shared(&format!("nastran/{deck}")) else {
+    let Some(path) = find_shared_path(&format!("nastran/{deck}")) else {
         return;
     };
     let (model, _) = faulty_model_of(&path);

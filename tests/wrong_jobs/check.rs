@@ -1,6 +1,6 @@
 //! `check JOB` agrees with the commands: what one of them refuses or can't rely on, it says, and it refuses nothing that they read.
 
-use super::copies::copied;
+use super::copies::copy_example;
 use std::path::Path;
 use std::process::Command;
 
@@ -103,7 +103,7 @@ fn lines(text: &str, n: usize) -> Vec<u8> {
 
 #[test]
 fn of_a_record_check_says_what_recover_says() {
-    let folder = copied("check_record", "fleet");
+    let folder = copy_example("check_record", "fleet");
     std::fs::write(folder.join("job.toml"), RECORD).unwrap();
     let dated = |t: &str| {
         let rows = t.lines().enumerate().map(|(i, line)| match i {
@@ -204,7 +204,7 @@ fn of_a_record_check_says_what_recover_says() {
 
 #[test]
 fn the_record_of_a_zero_may_hold_what_a_record_may_hold() {
-    let folder = copied("check_zero", "fleet");
+    let folder = copy_example("check_zero", "fleet");
     let zero = "noise_microstrain = 0.1\nzero = \"zero.csv\"\n";
     let job = RECORD.replace("noise_microstrain = 0.1\n", zero);
     std::fs::write(folder.join("job.toml"), job).unwrap();
@@ -240,7 +240,7 @@ fn the_record_of_a_zero_may_hold_what_a_record_may_hold() {
 
 #[test]
 fn loads_and_gauges_are_counted_where_they_were_read() {
-    let folder = copied("check_counted", "fleet");
+    let folder = copy_example("check_counted", "fleet");
     std::fs::write(folder.join("job.toml"), RECORD).unwrap();
     let (code, said) = ask("check", &folder.join("job.toml"));
     assert_eq!(code, 0, "{said}");
@@ -250,7 +250,7 @@ fn loads_and_gauges_are_counted_where_they_were_read() {
 
 #[test]
 fn of_a_vehicle_check_says_what_identify_says() {
-    let folder = copied("check_vehicle", "quarter_truck");
+    let folder = copy_example("check_vehicle", "quarter_truck");
     let twice = |t: &str| {
         let rows: String = t.split_inclusive('\n').skip(1).collect();
         format!("{t}{rows}").into_bytes()
@@ -292,7 +292,7 @@ fn of_a_vehicle_check_says_what_identify_says() {
 
 #[test]
 fn of_runs_check_says_what_respond_and_reconcile_say() {
-    let folder = copied("check_runs", "frame");
+    let folder = copy_example("check_runs", "frame");
     let job = std::fs::read_to_string(folder.join("respond.toml")).unwrap();
     let loads = job.replace("hottest = 10", "hottest = 10\nloads = \"loads.csv\"");
     std::fs::write(folder.join("loads.toml"), loads).unwrap();
@@ -345,7 +345,7 @@ fn of_runs_check_says_what_respond_and_reconcile_say() {
 
 #[test]
 fn a_point_away_from_the_element_beside_it_is_an_error_that_names_gauge_and_distance() {
-    let folder = copied("check_point", "frame");
+    let folder = copy_example("check_point", "frame");
     let job = folder.join("recover.toml");
     let gauges = std::fs::read_to_string(folder.join("gauges.csv")).unwrap();
     let (code, said) = ask("check", &job);
@@ -367,7 +367,7 @@ fn a_point_away_from_the_element_beside_it_is_an_error_that_names_gauge_and_dist
 
 #[test]
 fn a_layout_that_will_not_tell_its_loads_is_an_error() {
-    let folder = copied("check_planned", "frame");
+    let folder = copy_example("check_planned", "frame");
     let job = folder.join("place.toml");
     let text = std::fs::read_to_string(&job).unwrap();
     assert_eq!(ask("place", &job).0, 0);
@@ -380,7 +380,7 @@ fn a_layout_that_will_not_tell_its_loads_is_an_error() {
 
 #[test]
 fn a_channel_is_not_exchanged_with_itself() {
-    let folder = copied("check_exchanged", "fleet");
+    let folder = copy_example("check_exchanged", "fleet");
     let own = "[[correction]]\ngauge = \"P01\"\nexchanged_with = \"P01\"\n";
     std::fs::write(folder.join("job.toml"), format!("{RECORD}{own}")).unwrap();
     let (code, said) = ask("check", &folder.join("job.toml"));
@@ -392,7 +392,7 @@ fn a_channel_is_not_exchanged_with_itself() {
 
 #[test]
 fn fleet_says_of_a_gauge_without_a_row_of_s_what_recover_says() {
-    let folder = copied("check_no_row", "fleet");
+    let folder = copy_example("check_no_row", "fleet");
     let s = std::fs::read_to_string(folder.join("s_wheels.csv")).unwrap();
     let less: String = s.split_inclusive('\n').take(12).collect();
     std::fs::write(folder.join("s_wheels.csv"), less).unwrap();
@@ -411,7 +411,7 @@ fn fleet_says_of_a_gauge_without_a_row_of_s_what_recover_says() {
 
 #[test]
 fn of_a_deck_that_can_not_be_solved_or_glued_on_check_says_what_the_commands_say() {
-    let folder = copied("check_deck", "frame");
+    let folder = copy_example("check_deck", "frame");
     // A bar that hangs on the carrier by a hinge.
     let hinge = "GRID,990,,-300.,-400.,0.\nPBAR,990,1,10.,100.,100.,200.\n\
                  CBAR,990,990,1,990,0.,0.,1.,\n,456\nENDDATA";
@@ -471,7 +471,7 @@ fn readings(text: &str, change: impl Fn(usize, usize, &str) -> String) -> Vec<u8
 
 #[test]
 fn of_readings_that_are_no_loads_check_says_what_recover_says() {
-    let folder = copied("check_readings", "frame");
+    let folder = copy_example("check_readings", "frame");
     let keep = |f: &str| f.to_owned();
     let damages: [(Damage, Ends); 5] = [
         (("nothing", &|t| t.as_bytes().to_vec()), Ends::Right),

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// A copy of a folder of `examples/`, its files alone, under a name that no other test has.
-pub fn copied(name: &str, folder: &str) -> PathBuf {
+pub fn copy_example(name: &str, folder: &str) -> PathBuf {
     let from = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("examples")
         .join(folder);

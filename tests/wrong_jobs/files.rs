@@ -1,6 +1,6 @@
 //! Jobs of `examples/` whose files are cut, replaced or of a header alone.
 
-use super::copies::{copied, edit};
+use super::copies::{copy_example, edit};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
@@ -20,7 +20,7 @@ fn call(folder: &Path, arguments: &[&str]) -> (i32, String) {
 
 #[test]
 fn no_output_is_written_over_what_the_command_has_read() {
-    let dir = copied("own_inputs", "fleet");
+    let dir = copy_example("own_inputs", "fleet");
     std::fs::rename(dir.join("s_wheels.csv"), dir.join("sensitivity.csv")).unwrap();
     std::fs::rename(dir.join("A_2026-05-01.csv"), dir.join("loads.csv")).unwrap();
     edit(&dir, "fleet.toml", |t| {
@@ -48,7 +48,7 @@ fn no_output_is_written_over_what_the_command_has_read() {
 
 #[test]
 fn a_file_that_no_command_wrote_is_refused_before_anything_is_computed_and_stays() {
-    let dir = copied("own_files", "frame");
+    let dir = copy_example("own_files", "frame");
     let mine = "a table of my own";
     for (command, name) in [
         ("sensitivity", "sensitivity.csv"),
@@ -88,7 +88,7 @@ fn a_file_that_no_command_wrote_is_refused_before_anything_is_computed_and_stays
 
 #[test]
 fn what_a_command_wrote_it_may_write_again_and_what_others_wrote_stays_and_is_said() {
-    let dir = copied("own_again", "frame");
+    let dir = copy_example("own_again", "frame");
     let files = |out: &str| -> Vec<String> {
         let entries = std::fs::read_dir(dir.join(out)).unwrap();
         let mut names: Vec<String> = entries
@@ -137,7 +137,7 @@ fn what_a_command_wrote_it_may_write_again_and_what_others_wrote_stays_and_is_sa
 
 #[test]
 fn a_folder_of_two_commands_is_verified_by_the_files_of_the_last() {
-    let dir = copied("two_commands", "frame");
+    let dir = copy_example("two_commands", "frame");
     for command in ["sensitivity", "recover"] {
         let (code, said) = call(&dir, &[command, "recover.toml"]);
         assert_eq!(code, 0, "{said}");
@@ -154,7 +154,7 @@ fn a_folder_of_two_commands_is_verified_by_the_files_of_the_last() {
 
 #[test]
 fn a_folder_of_a_fleet_is_verified_from_its_records() {
-    let dir = copied("verified_fleet", "fleet");
+    let dir = copy_example("verified_fleet", "fleet");
     let days = ["A_2026-05-01.csv", "A_2026-05-02.csv", "B_2026-05-01.csv"];
     let mut fleet = vec!["fleet", "fleet.toml"];
     fleet.extend(days);
@@ -174,7 +174,7 @@ fn a_folder_of_a_fleet_is_verified_from_its_records() {
 
 #[test]
 fn a_table_whose_last_number_may_be_cut_is_said_and_a_record_is_read_without_it() {
-    let dir = copied("cut_record", "fleet");
+    let dir = copy_example("cut_record", "fleet");
     let record = dir.join("A_2026-05-01.csv");
     let whole = std::fs::read(&record).unwrap();
     let samples = || -> u64 {
@@ -203,7 +203,7 @@ fn a_table_whose_last_number_may_be_cut_is_said_and_a_record_is_read_without_it(
     let (_, said) = call(&dir, &recover);
     assert!(!said.contains("table-may-be-cut"), "{said}");
     assert_eq!(samples(), all);
-    let dir = copied("cut_runs", "frame");
+    let dir = copy_example("cut_runs", "frame");
     let strain = std::fs::read(dir.join("strain.csv")).unwrap();
     std::fs::write(dir.join("strain.csv"), &strain[..strain.len() - 2]).unwrap();
     // All numbers of the table have two digits after the point, and the last has one.
@@ -224,7 +224,7 @@ fn a_table_whose_last_number_may_be_cut_is_said_and_a_record_is_read_without_it(
 
 #[test]
 fn a_record_whose_rate_changes_is_told_so_and_keeps_its_samples() {
-    let dir = copied("rate_changes", "fleet");
+    let dir = copy_example("rate_changes", "fleet");
     let samples = |out: &str| -> u64 {
         let text = std::fs::read_to_string(dir.join(out).join("result.json")).unwrap();
         let result: Value = serde_json::from_str(&text).unwrap();
@@ -250,7 +250,7 @@ fn a_record_whose_rate_changes_is_told_so_and_keeps_its_samples() {
 
 #[test]
 fn a_record_of_no_number_is_refused_without_one() {
-    let dir = copied("no_number", "fleet");
+    let dir = copy_example("no_number", "fleet");
     edit(&dir, "A_2026-05-01.csv", |t| {
         let lines = t.lines().enumerate().map(|(i, line)| match i {
             0 => format!("{line}\n"),
@@ -268,7 +268,7 @@ fn a_record_of_no_number_is_refused_without_one() {
         assert!(!said.contains(word), "{said}");
     }
     // A run without a reading among others.
-    let dir = copied("no_reading", "frame");
+    let dir = copy_example("no_reading", "frame");
     edit(&dir, "strain.csv", |t| {
         let lines = t.lines().map(|line| match line.split_once(',') {
             Some(("R03", rest)) => {
@@ -295,7 +295,7 @@ fn a_record_of_no_number_is_refused_without_one() {
 
 #[test]
 fn names_of_a_megabyte_and_columns_without_number_are_not_repeated_in_messages() {
-    let dir = copied("long_names", "frame");
+    let dir = copy_example("long_names", "frame");
     let name = "n".repeat(1_000_000);
     edit(&dir, "strain.csv", |t| t.replacen("P01", &name, 1));
     for command in ["recover", "check"] {
@@ -303,7 +303,7 @@ fn names_of_a_megabyte_and_columns_without_number_are_not_repeated_in_messages()
         assert!(said.contains("strain-without-gauge"), "{command}");
         assert!(said.len() < 20_000, "{command}: {} bytes", said.len());
     }
-    let dir = copied("many_columns", "frame");
+    let dir = copy_example("many_columns", "frame");
     edit(&dir, "strain.csv", |t| {
         let lines = t.lines().enumerate().map(|(i, line)| {
             let more = (0..20_000).map(|c| match i {
@@ -321,7 +321,7 @@ fn names_of_a_megabyte_and_columns_without_number_are_not_repeated_in_messages()
 
 #[test]
 fn steps_of_angles_below_a_tenth_of_a_degree_are_refused_at_their_line() {
-    let dir = copied("angles", "frame");
+    let dir = copy_example("angles", "frame");
     for step in ["1e-9", "0.05"] {
         let job = dir.join("place.toml");
         let text = std::fs::read_to_string(&job).unwrap();
@@ -344,7 +344,7 @@ fn steps_of_angles_below_a_tenth_of_a_degree_are_refused_at_their_line() {
 
 #[test]
 fn fewer_gauges_than_loads_are_not_told_that_they_stand_too_close() {
-    let dir = copied("few_gauges", "frame");
+    let dir = copy_example("few_gauges", "frame");
     edit(&dir, "place.toml", |t| {
         t.replace("gauges = 12", "gauges = 5")
     });
@@ -359,7 +359,7 @@ fn fewer_gauges_than_loads_are_not_told_that_they_stand_too_close() {
 
 #[test]
 fn a_table_of_a_header_alone_is_refused_by_every_command_that_reads_it() {
-    let dir = copied("no_rows", "frame");
+    let dir = copy_example("no_rows", "frame");
     let cut = |name: &str| {
         let text = std::fs::read_to_string(dir.join(name)).unwrap();
         let header = text.lines().next().unwrap().to_owned();
@@ -389,7 +389,7 @@ fn a_table_of_a_header_alone_is_refused_by_every_command_that_reads_it() {
 
 #[test]
 fn results_that_a_job_names_are_opened_by_those_that_have_no_use_for_them() {
-    let dir = copied("named_results", "frame");
+    let dir = copy_example("named_results", "frame");
     let (code, said) = call(&dir, &["solve", "place.toml", "--out", "solved"]);
     assert_eq!(code, 0, "{said}");
     let whole = std::fs::read(dir.join("solved/results.op2")).unwrap();

@@ -1,6 +1,6 @@
 //! What a stranger may give to the command: times out of order, numbers cut within, decks that contradict themselves.
 
-use super::copies::{copied, edit};
+use super::copies::{copy_example, edit};
 use std::path::Path;
 use std::process::Command;
 
@@ -19,7 +19,7 @@ fn call(folder: &Path, arguments: &[&str]) -> (i32, String) {
 
 #[test]
 fn samples_out_of_order_are_refused_by_respond_too() {
-    let dir = copied("respond_times", "frame");
+    let dir = copy_example("respond_times", "frame");
     edit(&dir, "respond.toml", |t| {
         t.replace("[respond]", "[respond]\nloads = \"loads.csv\"")
     });
@@ -54,7 +54,7 @@ fn samples_out_of_order_are_refused_by_respond_too() {
 
 #[test]
 fn a_last_number_without_the_point_that_all_others_have_is_an_error() {
-    let dir = copied("cut_point", "frame");
+    let dir = copy_example("cut_point", "frame");
     let whole = std::fs::read_to_string(dir.join("strain.csv")).unwrap();
     let cut = whole.trim_end().rfind('.').unwrap();
     // What is left of the last number is a whole one.
@@ -68,7 +68,7 @@ fn a_last_number_without_the_point_that_all_others_have_is_an_error() {
 
 #[test]
 fn check_of_a_deck_says_what_solving_it_would_say_of_its_supports_and_shapes() {
-    let dir = copied("strange_deck", "frame");
+    let dir = copy_example("strange_deck", "frame");
     let hexa = |order: [u32; 8]| {
         let ids = order.map(|i| (9000 + i).to_string());
         let mut text = String::new();
@@ -119,7 +119,7 @@ fn fields(text: &str, change: impl Fn(usize, usize, &str) -> String) -> String {
 
 #[test]
 fn a_zero_or_held_out_file_that_is_the_strain_file_itself_is_refused() {
-    let dir = copied("own_record", "quarter_truck");
+    let dir = copy_example("own_record", "quarter_truck");
     edit(&dir, "identify.toml", |t| {
         t.replace("hold_out = \"holdout.csv\"", "hold_out = \"data.csv\"")
     });
@@ -134,7 +134,7 @@ fn a_zero_or_held_out_file_that_is_the_strain_file_itself_is_refused() {
         ("zero", "differences from their mean"),
         ("hold_out", "no run would remain to be held out"),
     ] {
-        let dir = copied(&format!("own_{key}"), "frame");
+        let dir = copy_example(&format!("own_{key}"), "frame");
         edit(&dir, "recover.toml", |t| {
             let line = format!("{key} = \"strain.csv\"\nnoise_microstrain");
             t.replace("noise_microstrain", &line)
@@ -152,7 +152,7 @@ fn a_zero_or_held_out_file_that_is_the_strain_file_itself_is_refused() {
 
 #[test]
 fn blank_readings_and_runs_without_a_measurement_are_said() {
-    let dir = copied("blank_runs", "frame");
+    let dir = copy_example("blank_runs", "frame");
     let asked = |found: &[&str]| {
         for command in ["recover", "check"] {
             let (code, said) = call(&dir, &[command, "recover.toml"]);
@@ -201,7 +201,7 @@ fn blank_readings_and_runs_without_a_measurement_are_said() {
 
 #[test]
 fn a_record_that_repeats_itself_in_a_part_is_said_to_stand_still_or_to_be_no_measurement() {
-    let dir = copied("still_record", "fleet");
+    let dir = copy_example("still_record", "fleet");
     let file = dir.join("A_2026-05-01.csv");
     let whole = std::fs::read_to_string(&file).unwrap();
     let said = |text: &str| {
@@ -233,7 +233,7 @@ fn a_record_that_repeats_itself_in_a_part_is_said_to_stand_still_or_to_be_no_mea
 
 #[test]
 fn noise_that_nobody_states_is_said_to_be_assumed() {
-    let dir = copied("no_noise", "frame");
+    let dir = copy_example("no_noise", "frame");
     let (_, said) = call(&dir, &["recover", "recover.toml"]);
     assert!(!said.contains("noise-assumed"), "{said}");
     edit(&dir, "recover.toml", |t| {
@@ -247,7 +247,7 @@ fn noise_that_nobody_states_is_said_to_be_assumed() {
 
 #[test]
 fn a_runs_file_of_other_runs_is_refused_by_payload_and_places_that_are_assumed_are_said() {
-    let dir = copied("other_runs", "frame");
+    let dir = copy_example("other_runs", "frame");
     let runs = std::fs::read_to_string(dir.join("runs.csv")).unwrap();
     let payload = ["payload", "payload.toml"];
     std::fs::write(dir.join("runs.csv"), runs.replace("\nR", "\nQ")).unwrap();
@@ -276,7 +276,7 @@ fn an_answer_that_does_not_get_to_standard_output_is_no_success() {
     let Ok(full) = std::fs::File::options().write(true).open("/dev/full") else {
         return;
     };
-    let dir = copied("full_output", "frame");
+    let dir = copy_example("full_output", "frame");
     for arguments in [
         &["check", "recover.toml"][..],
         &["recover", "recover.toml", "--json"],
@@ -298,7 +298,7 @@ fn an_answer_that_does_not_get_to_standard_output_is_no_success() {
 #[cfg(unix)]
 #[test]
 fn a_command_that_is_told_to_end_leaves_no_half_files() {
-    let dir = copied("told_to_end", "fleet");
+    let dir = copy_example("told_to_end", "fleet");
     let whole = std::fs::read_to_string(dir.join("A_2026-05-01.csv")).unwrap();
     let (header, rows) = whole.split_once('\n').unwrap();
     let readings: Vec<&str> = rows.lines().map(|l| l.split_once(',').unwrap().1).collect();
@@ -336,7 +336,7 @@ fn a_command_that_is_told_to_end_leaves_no_half_files() {
 #[test]
 fn a_long_chain_of_load_cards_is_solved_and_a_circle_of_them_is_named() {
     const CARDS: usize = 20_000;
-    let dir = copied("load_chain", "frame");
+    let dir = copy_example("load_chain", "frame");
     let deck = |last: usize| {
         let mut text = "SOL 101\nCEND\nSPC=1\nLOAD=1\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,100.,0.,0.\nCROD,1,1,1,2\n\
                         PROD,1,1,10.\nMAT1,1,200000.,,.3,7.85-9\nSPC1,1,123456,1\nSPC1,1,23456,2\n"
@@ -364,7 +364,7 @@ fn a_long_chain_of_load_cards_is_solved_and_a_circle_of_them_is_named() {
 
 #[test]
 fn what_follows_plus_and_minus_in_words_is_half_of_the_interval_in_the_table() {
-    let dir = copied("half_widths", "frame");
+    let dir = copy_example("half_widths", "frame");
     let (code, said) = call(&dir, &["recover", "recover.toml", "--out", "out"]);
     assert_eq!(code, 0, "{said}");
     let table = std::fs::read_to_string(dir.join("out/loads.csv")).unwrap();

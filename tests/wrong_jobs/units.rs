@@ -1,12 +1,12 @@
 //! Jobs of `examples/` whose numbers are in other units than stated: nothing is answered without an error.
 
-use super::copies::{copied, edit};
+use super::copies::{copy_example, edit};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 
 /// A table with the numbers of a column, or of all but the first, times a factor.
-fn scaled(text: &str, column: Option<&str>, factor: f64) -> String {
+fn scale_table(text: &str, column: Option<&str>, factor: f64) -> String {
     let mut lines = text.lines();
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();
     let mut out = header.join(",") + "\n";
@@ -36,7 +36,7 @@ fn with_number(text: &str, line: usize, column: &str, number: &str) -> String {
 }
 
 /// Runs a command in a folder: exit code, its findings (severity, code, subject, message and remedy), standard error.
-fn judged(folder: &Path, arguments: &[&str]) -> (i32, Vec<String>, String) {
+fn run_command(folder: &Path, arguments: &[&str]) -> (i32, Vec<String>, String) {
     let out = folder.join("judged.out");
     let _ = std::fs::remove_dir_all(&out);
     let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
@@ -90,7 +90,7 @@ const SAYS: [(&str, &[&str]); 9] = [
 
 /// Asserts an exit code of 1 with an error that begins with this code, its subject where stated, and says what `SAYS` says of it.
 fn asks(folder: &Path, arguments: &[&str], error: &str) {
-    let (exit, findings, errors) = judged(folder, arguments);
+    let (exit, findings, errors) = run_command(folder, arguments);
     assert_eq!(exit, 1, "{arguments:?}\n{errors}");
     let code = error.split(' ').next().unwrap();
     let of_code = SAYS.iter().find(|s| s.0 == code);
@@ -105,7 +105,7 @@ fn asks(folder: &Path, arguments: &[&str], error: &str) {
 
 /// Asserts a fault at this place, and nothing written.
 fn refuses(folder: &Path, arguments: &[&str], place: &str) {
-    let (exit, _, errors) = judged(folder, arguments);
+    let (exit, _, errors) = run_command(folder, arguments);
     assert_eq!(exit, 2, "{arguments:?}\n{errors}");
     assert!(errors.contains(place), "{arguments:?}\n{errors}");
     assert!(!folder.join("judged.out").exists(), "{arguments:?}");
@@ -127,23 +127,23 @@ fn every_command_that_reads_strain_asks_for_its_unit() {
         let asked = if folder == "bridge" { 1 } else { 2 };
         for (factor, code) in &both[..asked] {
             let factor = *factor;
-            let to = copied("strain", folder);
-            edit(&to, strain, |t| scaled(t, None, factor));
+            let to = copy_example("strain", folder);
+            edit(&to, strain, |t| scale_table(t, None, factor));
             asks(&to, &[command, job], code);
         }
     }
-    let to = copied("no_strain", "frame");
-    edit(&to, "strain_wired.csv", |t| scaled(t, None, 1e9));
+    let to = copy_example("no_strain", "frame");
+    edit(&to, "strain_wired.csv", |t| scale_table(t, None, 1e9));
     refuses(&to, &["reconcile", "reconcile.toml"], "strain_wired.csv");
     for factor in [1e4, 1e9] {
-        let to = copied("any_signal", "bridge");
-        edit(&to, "strain.csv", |t| scaled(t, None, factor));
+        let to = copy_example("any_signal", "bridge");
+        edit(&to, "strain.csv", |t| scale_table(t, None, factor));
         for command in ["calibrate", "check"] {
-            let (exit, codes, errors) = judged(&to, &[command, "calibrate.toml"]);
+            let (exit, codes, errors) = run_command(&to, &[command, "calibrate.toml"]);
             assert_eq!(exit, 0, "{command}: {codes:?}\n{errors}");
         }
     }
-    let to = copied("fleet", "fleet");
+    let to = copy_example("fleet", "fleet");
     let records = [
         "A_2026-05-01.csv",
         "A_2026-05-02.csv",
@@ -151,7 +151,7 @@ fn every_command_that_reads_strain_asks_for_its_unit() {
         "B_2026-05-02.csv",
     ];
     for record in records {
-        edit(&to, record, |t| scaled(t, None, 1e3));
+        edit(&to, record, |t| scale_table(t, None, 1e3));
     }
     let fleet = [["fleet", "fleet.toml"].as_slice(), &records].concat();
     for vehicle in ["A", "B"] {
@@ -162,7 +162,7 @@ fn every_command_that_reads_strain_asks_for_its_unit() {
         );
     }
     // The first record of each is named.
-    let (_, findings, _) = judged(&to, &fleet);
+    let (_, findings, _) = run_command(&to, &fleet);
     for first in [records[0], records[2]] {
         let named = format!("the first {first}: ");
         assert!(findings.iter().any(|f| f.contains(&named)), "{findings:?}");
@@ -182,30 +182,30 @@ fn a_load_or_a_payload_that_nothing_weighs_is_a_fault_of_its_line() {
     ] {
         for number in ["1e308", "-1e200"] {
             let line = if file == "empty.csv" { 2 } else { 3 };
-            let to = copied("runs", folder);
+            let to = copy_example("runs", folder);
             edit(&to, file, |t| with_number(t, line, column, number));
             let command = job.strip_suffix(".toml").unwrap();
             refuses(&to, &[command, job], &format!("{file}:{line}: {column}: "));
         }
     }
-    let to = copied("factor", "bridge");
+    let to = copy_example("factor", "bridge");
     edit(&to, "calibrate.toml", |t| {
         t.replace("terms = { west = 1,", "terms = { west = 1e308,")
     });
     refuses(&to, &["calibrate", "calibrate.toml"], "combination.terms");
-    let to = copied("noise_of_job", "bridge");
+    let to = copy_example("noise_of_job", "bridge");
     edit(&to, "calibrate.toml", |t| {
         t.replace("noise_microstrain = 0.05", "noise_microstrain = 1e300")
     });
-    let (exit, _, errors) = judged(&to, &["calibrate", "calibrate.toml"]);
+    let (exit, _, errors) = run_command(&to, &["calibrate", "calibrate.toml"]);
     assert!(exit == 2 && errors.contains("1e300"), "{errors}");
     assert!(!errors.contains("0000000"), "{errors}");
 }
 
 #[test]
 fn wheel_forces_in_another_unit_are_asked_for() {
-    let to = copied("ballast", "frame");
-    edit(&to, "empty.csv", |t| scaled(t, None, 1e3));
+    let to = copy_example("ballast", "frame");
+    edit(&to, "empty.csv", |t| scale_table(t, None, 1e3));
     asks(
         &to,
         &["ballast", "ballast.toml"],
@@ -215,27 +215,27 @@ fn wheel_forces_in_another_unit_are_asked_for() {
     edit(&to, "runs.csv", |t| {
         ["N.FZ", "L.FZ", "R.FZ"]
             .iter()
-            .fold(t.to_owned(), |t, c| scaled(&t, Some(c), 1e3))
+            .fold(t.to_owned(), |t, c| scale_table(&t, Some(c), 1e3))
     });
     asks(&to, &reconcile, "input-unit N.FZ, L.FZ, R.FZ ");
 }
 
 #[test]
 fn loads_of_another_unit_give_no_stress_without_an_error() {
-    let to = copied("respond", "frame");
-    let (exit, _, errors) = judged(&to, &["recover", "recover.toml"]);
+    let to = copy_example("respond", "frame");
+    let (exit, _, errors) = run_command(&to, &["recover", "recover.toml"]);
     assert_eq!(exit, 0, "{errors}");
     std::fs::copy(to.join("judged.out/loads.csv"), to.join("loads.csv")).unwrap();
     edit(&to, "respond.toml", |t| {
         t.replace("[respond]", "[respond]\nloads = \"loads.csv\"")
     });
     let respond = ["respond", "respond.toml"];
-    let (exit, _, errors) = judged(&to, &respond);
+    let (exit, _, errors) = run_command(&to, &respond);
     assert_eq!(exit, 0, "{errors}");
     let table = std::fs::read_to_string(to.join("loads.csv")).unwrap();
     edit(&to, "loads.csv", |t| with_number(t, 3, "L.FZ", "1e308"));
     refuses(&to, &respond, "loads.csv:3: L.FZ: ");
-    std::fs::write(to.join("loads.csv"), scaled(&table, None, 1e3)).unwrap();
+    std::fs::write(to.join("loads.csv"), scale_table(&table, None, 1e3)).unwrap();
     for load in ["N.FZ", "L.FZ", "R.FZ"] {
         asks(&to, &respond, &format!("load-beyond-expected {load} "));
     }
@@ -253,15 +253,15 @@ fn channels_that_read_less_than_their_noise_tell_nothing_of_a_vehicle() {
     let identify = ["identify", "identify.toml"];
     for column in [Some("f_wheel"), None] {
         let factor = if column.is_some() { 1e-3 } else { 1e-6 };
-        let to = copied("channels", quarter);
+        let to = copy_example("channels", quarter);
         for file in ["data.csv", "holdout.csv"] {
-            edit(&to, file, |t| scaled(t, column, factor));
+            edit(&to, file, |t| scale_table(t, column, factor));
         }
         for channel in ["f_wheel", "a_wheel"] {
             asks(&to, &identify, &format!("readings-below-noise {channel} "));
         }
     }
-    let to = copied("noise", quarter);
+    let to = copy_example("noise", quarter);
     let stated = "noise = { acc = 0.02, force = 60.0 }";
     edit(&to, "identify.toml", |t| {
         t.replace(stated, "noise = { acc = 2000.0, force = 6e7 }")
@@ -269,17 +269,17 @@ fn channels_that_read_less_than_their_noise_tell_nothing_of_a_vehicle() {
     for channel in ["f_wheel", "a_body", "a_wheel"] {
         asks(&to, &identify, &format!("readings-below-noise {channel} "));
     }
-    let to = copied("known", quarter);
+    let to = copy_example("known", quarter);
     edit(&to, "identify.toml", |t| {
         t.replace(stated, &format!("{stated}\nknown = {{ m_b = 1e308 }}"))
     });
     refuses(&to, &identify, "vehicle.known.m_b");
-    let to = copied("huge_sample", quarter);
+    let to = copy_example("huge_sample", quarter);
     edit(&to, "data.csv", |t| with_number(t, 9, "a_wheel", "1e308"));
     refuses(&to, &identify, "a_wheel");
-    let to = copied("compared", quarter);
+    let to = copy_example("compared", quarter);
     for file in ["data_worn.csv", "holdout_worn.csv"] {
-        edit(&to, file, |t| scaled(t, Some("f_wheel"), 1e-3));
+        edit(&to, file, |t| scale_table(t, Some("f_wheel"), 1e-3));
     }
     asks(
         &to,
@@ -290,7 +290,7 @@ fn channels_that_read_less_than_their_noise_tell_nothing_of_a_vehicle() {
 
 #[test]
 fn every_command_that_reads_a_job_s_deck_judges_its_modulus() {
-    let to = copied("modulus", "frame");
+    let to = copy_example("modulus", "frame");
     edit(&to, "frame.bdf", |t| {
         t.replace("MAT1,1,2.1+5", "MAT1,1,1.+30")
     });
@@ -313,12 +313,12 @@ fn a_deck_whose_mass_is_more_than_numbers_can_be_is_a_fault_of_every_command() {
         ("dense", "0.3,7.85-9", "0.3,1.+308"),
         ("heavy", "ENDDATA", "CONM2,9001,180,,1.+308\nENDDATA"),
     ] {
-        let folder = copied(&format!("mass_{name}"), "frame");
+        let folder = copy_example(&format!("mass_{name}"), "frame");
         edit(&folder, "frame.bdf", |t| t.replace(from, to));
         let says = "mass: the mass of the model";
         refuses(&folder, &["sensitivity", "recover.toml"], says);
         // What it read is written, the fault among it.
-        let (exit, _, errors) = judged(&folder, &["check", "recover.toml"]);
+        let (exit, _, errors) = run_command(&folder, &["check", "recover.toml"]);
         assert_eq!(exit, 2, "{errors}");
         assert!(errors.contains(says), "{errors}");
         let report = std::fs::read_to_string(folder.join("judged.out/report.html")).unwrap();
@@ -328,7 +328,7 @@ fn a_deck_whose_mass_is_more_than_numbers_can_be_is_a_fault_of_every_command() {
 
 #[test]
 fn a_support_that_moves_is_refused_where_unit_loads_are_asked() {
-    let to = copied("moving_support", "frame");
+    let to = copy_example("moving_support", "frame");
     let held = |by: &str| format!("SPC1,7,123456,1\nSPC,7,2,3,{by}\nENDDATA");
     edit(&to, "frame.bdf", |t| t.replace("ENDDATA", &held("0.01")));
     edit(&to, "recover.toml", |t| {
@@ -344,7 +344,7 @@ fn a_support_that_moves_is_refused_where_unit_loads_are_asked() {
     edit(&to, "frame.bdf", |t| {
         t.replace("SPC,7,2,3,0.01", "SPC,7,2,3,0.0")
     });
-    let (exit, _, errors) = judged(&to, &["sensitivity", "recover.toml"]);
+    let (exit, _, errors) = run_command(&to, &["sensitivity", "recover.toml"]);
     assert!(exit < 2, "{errors}");
 }
 
@@ -353,7 +353,7 @@ fn limits_of_a_vehicle_that_leave_no_value_are_faults_and_open_ones_change_nothi
     let identify = ["identify", "identify.toml"];
     let stated = "noise = { acc = 0.02, force = 60.0 }";
     let with = |key: &str| {
-        let to = copied("limits", "quarter_truck");
+        let to = copy_example("limits", "quarter_truck");
         edit(&to, "identify.toml", |t| {
             t.replace(stated, &format!("{stated}\n{key}"))
         });
@@ -375,13 +375,13 @@ fn limits_of_a_vehicle_that_leave_no_value_are_faults_and_open_ones_change_nothi
     let to = with("places = { lf = [nan, 0.0] }");
     refuses(&to, &identify, "vehicle.places.lf: ");
     let parameters = |to: &Path| {
-        let (exit, _, errors) = judged(to, &identify);
+        let (exit, _, errors) = run_command(to, &identify);
         let text = std::fs::read(to.join("judged.out/result.json")).unwrap();
         let result: Value = serde_json::from_slice(&text).unwrap();
         assert!(result["parameters"].is_array(), "{errors}");
         (exit, result["parameters"].clone())
     };
-    let free = parameters(&copied("no_limits", "quarter_truck"));
+    let free = parameters(&copy_example("no_limits", "quarter_truck"));
     for limits in ["[0.0, inf]", "[-inf, inf]", "[-1e9, 1e9]"] {
         let to = with(&format!("bounds = {{ k_s = {limits} }}"));
         assert_eq!(parameters(&to), free, "{limits}");
@@ -390,8 +390,8 @@ fn limits_of_a_vehicle_that_leave_no_value_are_faults_and_open_ones_change_nothi
 
 #[test]
 fn strain_beside_a_table_of_loads_is_judged_too() {
-    let to = copied("beside_loads", "frame");
-    let (exit, _, errors) = judged(&to, &["recover", "recover.toml"]);
+    let to = copy_example("beside_loads", "frame");
+    let (exit, _, errors) = run_command(&to, &["recover", "recover.toml"]);
     assert_eq!(exit, 0, "{errors}");
     std::fs::copy(to.join("judged.out/loads.csv"), to.join("loads.csv")).unwrap();
     edit(&to, "respond.toml", |t| {
@@ -407,7 +407,7 @@ fn strain_beside_a_table_of_loads_is_judged_too() {
         (1e3, "reading-beyond-gauges"),
         (1e9, "reading-impossible"),
     ] {
-        std::fs::write(to.join("strain.csv"), scaled(&strain, None, factor)).unwrap();
+        std::fs::write(to.join("strain.csv"), scale_table(&strain, None, factor)).unwrap();
         asks(&to, &["respond", "respond.toml"], code);
     }
 }
@@ -419,9 +419,9 @@ fn one_reading_beyond_five_per_cent_is_doubtful_and_one_beyond_twenty_is_no_stra
         ("60000", Some("warning")),
         ("210000", Some("error")),
     ] {
-        let to = copied("one_reading", "frame");
+        let to = copy_example("one_reading", "frame");
         edit(&to, "strain.csv", |t| with_number(t, 3, "P01", number));
-        let (_, codes, errors) = judged(&to, &["check", "recover.toml"]);
+        let (_, codes, errors) = run_command(&to, &["check", "recover.toml"]);
         let found = codes.iter().find(|c| c.contains(" reading-beyond-gauges "));
         let severity_of = |c: &String| c.split(' ').next().map(str::to_owned);
         assert_eq!(
@@ -443,10 +443,10 @@ fn a_point_beside_its_element_is_doubtful_beyond_its_tolerance_and_wrong_beyond_
         ("1600", tolerant, Some("error")),
         ("112500", "", Some("error")),
     ] {
-        let to = copied("point", "frame");
+        let to = copy_example("point", "frame");
         edit(&to, "gauges.csv", |t| with_number(t, 2, "x", x));
         edit(&to, "recover.toml", |t| format!("{t}\n# x = {x}\n{more}"));
-        let (_, codes, errors) = judged(&to, &["check", "recover.toml"]);
+        let (_, codes, errors) = run_command(&to, &["check", "recover.toml"]);
         let found = codes.iter().find(|c| c.contains(" point-off-element P01"));
         let severity_of = |c: &String| c.split(' ').next().map(str::to_owned);
         assert_eq!(
@@ -459,22 +459,22 @@ fn a_point_beside_its_element_is_doubtful_beyond_its_tolerance_and_wrong_beyond_
 
 #[test]
 fn ballast_of_a_structure_without_density_is_held_against_its_weight_in_steel() {
-    let to = copied("ballast_without_density", "frame");
+    let to = copy_example("ballast_without_density", "frame");
     edit(&to, "frame.bdf", |t| {
         let lumps = "CONM2,9001,180,,1.-4\nCONM2,9002,71,,1.-4\nCONM2,9003,156,,1.-4";
         t.replace("2.1+5,,0.3,7.85-9", &format!("2.1+5,,0.3\n{lumps}"))
     });
     let ballast = ["ballast", "ballast.toml"];
-    let (exit, codes, errors) = judged(&to, &ballast);
+    let (exit, codes, errors) = run_command(&to, &ballast);
     assert_eq!(exit, 0, "{codes:?}\n{errors}");
-    edit(&to, "empty.csv", |t| scaled(t, None, 1e3));
+    edit(&to, "empty.csv", |t| scale_table(t, None, 1e3));
     asks(&to, &ballast, "ballast-beyond-model");
 }
 
 #[test]
 fn loads_beside_a_long_record_are_answered_without_a_comparison() {
-    let to = copied("beside_record", "frame");
-    let (exit, _, errors) = judged(&to, &["recover", "recover.toml"]);
+    let to = copy_example("beside_record", "frame");
+    let (exit, _, errors) = run_command(&to, &["recover", "recover.toml"]);
     assert_eq!(exit, 0, "{errors}");
     std::fs::copy(to.join("judged.out/loads.csv"), to.join("loads.csv")).unwrap();
     edit(&to, "respond.toml", |t| {
@@ -493,7 +493,7 @@ fn loads_beside_a_long_record_are_answered_without_a_comparison() {
         }
         record
     });
-    let (exit, codes, errors) = judged(&to, &["respond", "respond.toml"]);
+    let (exit, codes, errors) = run_command(&to, &["respond", "respond.toml"]);
     assert_eq!(exit, 0, "{codes:?}\n{errors}");
     let said = |c: &String| c.contains(" gauges-not-compared ");
     assert!(codes.iter().any(said), "{codes:?}");
@@ -508,7 +508,7 @@ fn a_deck_alone_is_tested_for_its_densities() {
              CQUAD4,1,1,1,2,3,4\nPSHELL,1,1,.2,1,,1\n{material}\nSPC1,1,123456,1,4\nFORCE,1,2,,1.,0.,0.,1.\nENDDATA\n"
         )
     };
-    let folder = copied("deck-alone-densities", "frame");
+    let folder = copy_example("deck-alone-densities", "frame");
     for (material, wrong) in [
         ("MAT1,1,70000.,,.33,2700.", true),
         ("MAT1,1,1.0+7,,.33,.1", true),

@@ -162,7 +162,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
                 self.attach(cut, line)
             }
             Open::Orphan if asked => self.extend_orphan(cut, line),
-            _ => self.orphan(cut, line),
+            _ => self.begin_orphan(cut, line),
         }
     }
 
@@ -193,7 +193,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
         self.attach(&cut, &line);
     }
 
-    fn orphan(&mut self, cut: &Cut<'a>, line: &Line) {
+    fn begin_orphan(&mut self, cut: &Cut<'a>, line: &Line) {
         self.finish();
         let label = key(strip_marks(cut.head));
         let mut scratch = Vec::new();

@@ -34,7 +34,7 @@ pub(super) fn scan(
     };
     let mut before: &[u8] = &[];
     for line in Lines::new(bytes, at, bytes.len(), number) {
-        if let Some(special) = special(line.text) {
+        if let Some(special) = parse_special_statement(line.text) {
             close(&chunk, line.start);
             return Some((special, line.start, line.end, line.number));
         }
@@ -66,7 +66,7 @@ fn is_closed(line: &[u8]) -> bool {
 }
 
 #[inline]
-fn special(line: &[u8]) -> Option<Special> {
+fn parse_special_statement(line: &[u8]) -> Option<Special> {
     let first = *line.first()?;
     if !matches!(
         first,

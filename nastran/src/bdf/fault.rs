@@ -148,7 +148,7 @@ impl Wrong {
     }
 
     /// The text that was found, where there is one.
-    pub fn found(&self) -> Option<&str> {
+    pub fn found_text(&self) -> Option<&str> {
         match self {
             Self::NotInteger { found }
             | Self::NotReal { found }

@@ -79,18 +79,18 @@ impl<'a, 'f> Fields<'a, 'f> {
 
     /// Returns the trimmed text of a field, empty for a missing field.
     #[inline]
-    pub(super) fn raw(&self, i: usize) -> &'a [u8] {
+    pub(super) fn bytes_at(&self, i: usize) -> &'a [u8] {
         self.list.get(i).copied().unwrap_or_default()
     }
 
     #[inline]
     pub(super) fn is_blank(&self, i: usize) -> bool {
-        self.raw(i).is_empty()
+        self.bytes_at(i).is_empty()
     }
 
     #[inline]
     pub(super) fn value(&self, i: usize) -> Value {
-        let raw = self.raw(i);
+        let raw = self.bytes_at(i);
         if raw.is_empty() {
             return Value::Blank;
         }
@@ -116,8 +116,8 @@ impl<'a, 'f> Fields<'a, 'f> {
         );
     }
 
-    fn found(&self, i: usize) -> String {
-        excerpt(self.raw(i))
+    fn excerpt_at(&self, i: usize) -> String {
+        excerpt(self.bytes_at(i))
     }
 
     /// An integer; `None` and a fault where the field is neither blank nor integer.
@@ -127,7 +127,7 @@ impl<'a, 'f> Fields<'a, 'f> {
             Value::Blank => None,
             Value::Integer(n) => Some(n),
             Value::Real(_) | Value::Text => {
-                let found = self.found(i);
+                let found = self.excerpt_at(i);
                 self.fault(i, name, Wrong::NotInteger { found });
                 None
             }
@@ -148,7 +148,7 @@ impl<'a, 'f> Fields<'a, 'f> {
     #[cold]
     fn bad_id(&mut self, i: usize, name: &'static str) -> u32 {
         self.unusable = true;
-        let found = self.found(i);
+        let found = self.excerpt_at(i);
         match self.value(i) {
             Value::Blank => self.fault(i, name, Wrong::Missing),
             Value::Integer(_) => self.fault(
@@ -170,7 +170,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         let n = self.integer(i, name)?;
         let id = u32::try_from(n).ok();
         if id.is_none() {
-            let found = self.found(i);
+            let found = self.excerpt_at(i);
             self.fault(
                 i,
                 name,
@@ -189,7 +189,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         let n = self.integer(i, name)?;
         let id = i32::try_from(n).ok();
         if id.is_none() {
-            let found = self.found(i);
+            let found = self.excerpt_at(i);
             self.fault(
                 i,
                 name,
@@ -209,12 +209,12 @@ impl<'a, 'f> Fields<'a, 'f> {
             Value::Blank => None,
             Value::Real(x) => Some(x),
             Value::Integer(n) => {
-                let found = self.found(i);
+                let found = self.excerpt_at(i);
                 self.fault(i, name, Wrong::IntegerForReal { found });
                 Some(n as f64)
             }
             Value::Text => {
-                let found = self.found(i);
+                let found = self.excerpt_at(i);
                 self.fault(i, name, Wrong::NotReal { found });
                 None
             }
@@ -228,7 +228,7 @@ impl<'a, 'f> Fields<'a, 'f> {
     }
 
     /// A required real; 0 and a fault where blank.
-    pub(super) fn real(&mut self, i: usize, name: &'static str) -> f64 {
+    pub(super) fn required_real(&mut self, i: usize, name: &'static str) -> f64 {
         if self.is_blank(i) {
             self.fault(i, name, Wrong::Missing);
         }
@@ -246,7 +246,7 @@ impl<'a, 'f> Fields<'a, 'f> {
 
     /// Degrees of freedom; `None` where blank or faulty. 0 is the empty set.
     pub(super) fn opt_dofs(&mut self, i: usize, name: &'static str) -> Option<Dofs> {
-        let raw = self.raw(i);
+        let raw = self.bytes_at(i);
         if raw.is_empty() {
             return None;
         }
@@ -255,7 +255,7 @@ impl<'a, 'f> Fields<'a, 'f> {
             _ => None,
         };
         if dofs.is_none() {
-            let found = self.found(i);
+            let found = self.excerpt_at(i);
             self.fault(i, name, Wrong::NotDofs { found });
         }
         dofs
@@ -272,7 +272,7 @@ impl<'a, 'f> Fields<'a, 'f> {
             None => 0,
             Some(n @ 0..=6) => n as u8,
             Some(_) => {
-                let found = self.found(i);
+                let found = self.excerpt_at(i);
                 self.fault(
                     i,
                     name,
@@ -299,7 +299,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         if super::budget::take(self.budget, length.saturating_mul(4)) {
             return range.step_by(step).collect();
         }
-        let found = excerpt(self.raw(i));
+        let found = excerpt(self.bytes_at(i));
         let allowed = "a shorter range";
         self.fault(i, name, Wrong::OutOfRange { found, allowed });
         Vec::new()
@@ -307,12 +307,12 @@ impl<'a, 'f> Fields<'a, 'f> {
 
     /// The field in upper case.
     pub(super) fn word(&self, i: usize) -> String {
-        super::line::text_of(self.raw(i)).to_ascii_uppercase()
+        super::line::text_of(self.bytes_at(i)).to_ascii_uppercase()
     }
 
     /// Whether the field is this word (upper case), in any case.
     pub(super) fn is_word(&self, i: usize, word: &str) -> bool {
-        self.raw(i).eq_ignore_ascii_case(word.as_bytes())
+        self.bytes_at(i).eq_ignore_ascii_case(word.as_bytes())
     }
 
     /// Whether the field is text: not blank and not a number.

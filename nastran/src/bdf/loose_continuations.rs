@@ -90,7 +90,13 @@ pub(super) fn resolve(loose: Loose<'_>, budget: &AtomicUsize) -> Part {
 /// Returns the next continuation of a list, one of the file of the last line before others.
 fn next_of(list: &mut Vec<usize>, orphans: &[Orphan], lines: &[Span]) -> Option<usize> {
     let source = lines.last().map(|s| s.at.source);
-    let of_file = |i: &usize| orphans.get(*i).and_then(Orphan::at).map(|at| at.source) == source;
+    let of_file = |i: &usize| {
+        orphans
+            .get(*i)
+            .and_then(Orphan::first_place)
+            .map(|at| at.source)
+            == source
+    };
     let k = list.iter().position(of_file).unwrap_or(0);
     (k < list.len()).then(|| list.remove(k))
 }
@@ -113,7 +119,8 @@ fn refuse_ambiguous(
     let mut ambiguous = HashSet::new();
     let mut first: HashMap<(&[u8], u32), Place> = HashMap::new();
     for orphan in orphans {
-        let (Some(at), Some(all)) = (orphan.at(), askers.get(orphan.label.as_slice())) else {
+        let (Some(at), Some(all)) = (orphan.first_place(), askers.get(orphan.label.as_slice()))
+        else {
             continue;
         };
         let own: Vec<Place> = all

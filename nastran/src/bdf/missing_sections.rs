@@ -16,7 +16,7 @@ pub(super) const PARTS: [&str; 10] = [
 ];
 
 /// Returns the fault of a statement that is missing above `found`, or misspelt there.
-pub(super) fn missing(card: &str, at: Place, found: &str, why: &'static str) -> Fault {
+pub(super) fn missing_statement(card: &str, at: Place, found: &str, why: &'static str) -> Fault {
     Fault {
         at,
         card: card.to_owned(),

@@ -58,7 +58,7 @@ impl NameReader {
         };
         match first.to_ascii_uppercase() {
             b'H' | b'S' if starts(body, b"HMNAME") || starts(body, b"SXNAME") => {
-                quoted(body.get(6..).unwrap_or_default(), at, labels);
+                read_quoted_names(body.get(6..).unwrap_or_default(), at, labels);
             }
             b'A' if starts(body, b"ANSA_NAME") => self.ansa(body, at, labels),
             b'F' | b'S' if starts(body, b"FEMAP") || starts(body, b"Simcenter") => {
@@ -66,16 +66,16 @@ impl NameReader {
             }
             b'C' => labels.extend(component_at_grid(body, at)),
             b'*' => self.star(trim(body.get(1..).unwrap_or_default()), at),
-            b'E' => self.after(
+            b'E' => self.read_name_after(
                 body,
                 b"Elements and Element Properties for region",
                 (Named::Property, at),
             ),
-            b'P' => self.after(body, b"Property", (Named::Property, at)),
+            b'P' => self.read_name_after(body, b"Property", (Named::Property, at)),
             b'M' if starts(body, b"Material Record") => {
-                self.after(body, b"Material Record", (Named::Material, at));
+                self.read_name_after(body, b"Material Record", (Named::Material, at));
             }
-            b'M' => self.after(body, b"Material", (Named::Material, at)),
+            b'M' => self.read_name_after(body, b"Material", (Named::Material, at)),
             _ => {}
         }
     }
@@ -144,7 +144,7 @@ impl NameReader {
     }
 
     /// `HEAD : name`.
-    fn after(&mut self, body: &[u8], head: &[u8], (kind, at): (Named, Place)) {
+    fn read_name_after(&mut self, body: &[u8], head: &[u8], (kind, at): (Named, Place)) {
         if starts(body, head)
             && let Some(rest) = body.get(head.len()..).map(trim)
             && let Some(name) = rest.strip_prefix(b":").map(trim)
@@ -239,7 +239,7 @@ fn has_property(name: &[u8]) -> bool {
 }
 
 /// Reads `COMP 5 "rail"`, `PROP    201     PBARL   "rail"`, and `COMP 5 "rail" 201 "rail section" 4` with property and its name.
-fn quoted(rest: &[u8], at: Place, labels: &mut Vec<Label>) {
+fn read_quoted_names(rest: &[u8], at: Place, labels: &mut Vec<Label>) {
     let Some((head, name, tail)) = quotation(rest) else {
         return;
     };

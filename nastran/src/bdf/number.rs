@@ -41,11 +41,11 @@ pub fn read_number(field: &[u8]) -> Option<Number> {
     };
     if count <= DIGITS
         && mantissa <= 1 << 53
-        && let Some(value) = exact(mantissa, exponent - behind as i64)
+        && let Some(value) = scale_exactly(mantissa, exponent - behind as i64)
     {
         return Some(Number::Real(if negative { -value } else { value }));
     }
-    slow(field)
+    parse_with_std(field)
 }
 
 /// Digits that a `u64` holds whatever they are.
@@ -110,7 +110,7 @@ fn exponent(field: &[u8], at: usize, point: bool) -> Option<i64> {
 }
 
 /// `mantissa * 10^power` where one rounding suffices: both factors are exact doubles.
-fn exact(mantissa: u64, power: i64) -> Option<f64> {
+fn scale_exactly(mantissa: u64, power: i64) -> Option<f64> {
     const POWERS: [f64; 23] = [
         1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
         1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
@@ -121,7 +121,7 @@ fn exact(mantissa: u64, power: i64) -> Option<f64> {
 }
 
 /// By the standard library, for long mantissas and large exponents.
-fn slow(field: &[u8]) -> Option<Number> {
+fn parse_with_std(field: &[u8]) -> Option<Number> {
     let mut text = String::with_capacity(field.len() + 1);
     let mut digit_seen = false;
     for &c in field {

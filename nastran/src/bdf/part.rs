@@ -103,7 +103,7 @@ pub(super) struct Orphan {
 
 impl Orphan {
     /// Returns the place of the first line.
-    pub(super) fn at(&self) -> Option<Place> {
+    pub(super) fn first_place(&self) -> Option<Place> {
         self.lines.first().map(|s| s.at)
     }
 }

@@ -55,7 +55,7 @@ impl Template {
                     self.card = next;
                     return Ok(());
                 }
-                [b'*', increment @ ..] => next.push(increased(above, increment, step)?),
+                [b'*', increment @ ..] => next.push(add_increment(above, increment, step)?),
                 text => next.push(text.to_vec()),
             }
         }
@@ -64,7 +64,7 @@ impl Template {
     }
 }
 
-fn increased(above: &[u8], increment: &[u8], step: &[u8]) -> Result<Vec<u8>, Wrong> {
+fn add_increment(above: &[u8], increment: &[u8], step: &[u8]) -> Result<Vec<u8>, Wrong> {
     let wrong = |why| Wrong::Replication {
         found: excerpt(step),
         why,
@@ -88,8 +88,8 @@ fn increased(above: &[u8], increment: &[u8], step: &[u8]) -> Result<Vec<u8>, Wro
             .ok_or_else(|| wrong("the number is too large"))?
             .to_string()
             .into_bytes()),
-        (Number::Real(a), Number::Real(b)) => Ok(real(a + b)),
-        (Number::Real(a), Number::Integer(b)) => Ok(real(a + b as f64)),
+        (Number::Real(a), Number::Real(b)) => Ok(format_exact_real(a + b)),
+        (Number::Real(a), Number::Integer(b)) => Ok(format_exact_real(a + b as f64)),
         (Number::Integer(_), Number::Real(_)) => Err(wrong("a real is added to an integer")),
     }
 }
@@ -102,6 +102,6 @@ fn zero_like(n: Number) -> Number {
 }
 
 /// Every digit of the number, with a point or exponent.
-fn real(x: f64) -> Vec<u8> {
+fn format_exact_real(x: f64) -> Vec<u8> {
     format!("{x:?}").into_bytes()
 }

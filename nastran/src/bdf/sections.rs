@@ -8,7 +8,7 @@ use super::fields::note_fault;
 use super::include::{IncludeRequest, Loaded, Loader};
 use super::include_statement::include_name;
 use super::line::{Lines, text_of, without_comment};
-use super::missing_sections::{PARTS, is_bulk_entry, missing};
+use super::missing_sections::{PARTS, is_bulk_entry, missing_statement};
 use super::source::{Chunk, Note, Position, SectionBounds, Source};
 use crate::place::{Place, SourceIx};
 
@@ -125,7 +125,7 @@ impl Sections<'_> {
             let entry = self.case.split_off(first);
             let fault = entry
                 .first()
-                .map(|s| missing("BEGIN BULK", s.at, &s.text, why));
+                .map(|s| missing_statement("BEGIN BULK", s.at, &s.text, why));
             self.faults.extend(fault);
         }
     }
@@ -260,12 +260,12 @@ impl Sections<'_> {
         };
         if self.section == Section::Executive {
             let why = "CEND, which ends executive control, is missing above";
-            note_fault(&mut self.faults, missing("CEND", at, text, why));
+            note_fault(&mut self.faults, missing_statement("CEND", at, text, why));
         }
         let is_known = PARTS.contains(&what);
         if !is_known {
             let why = "no part of bulk data has this name, BEGIN BULK is needed";
-            note_fault(&mut self.faults, missing("BEGIN", at, text, why));
+            note_fault(&mut self.faults, missing_statement("BEGIN", at, text, why));
         }
         let number_is_zero = upper.rsplit('=').next().is_some_and(|n| n.trim() == "0");
         if what == "BULK" && !upper.contains('=') || number_is_zero || !is_known {

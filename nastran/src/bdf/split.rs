@@ -48,7 +48,7 @@ pub(super) fn cut(body: &[u8]) -> Cut<'_> {
     if let Some(comma) = comma {
         let head = trim(body.get(..comma).unwrap_or_default());
         if head.len() <= 16 && !head.iter().any(|&c| is_blank(c)) {
-            return free(body, head, comma + 1);
+            return cut_free_line(body, head, comma + 1);
         }
     }
     if let Some(head) = repetition(body) {
@@ -104,7 +104,7 @@ fn repetition(body: &[u8]) -> Option<&[u8]> {
     matches!(token, [b'=', b'(' | b'0'..=b'9', ..]).then_some(token)
 }
 
-fn free<'a>(body: &'a [u8], head: &'a [u8], rest: usize) -> Cut<'a> {
+fn cut_free_line<'a>(body: &'a [u8], head: &'a [u8], rest: usize) -> Cut<'a> {
     let lead = lead(head, Lead::Name);
     let starred = match lead {
         Lead::Name => head.strip_suffix(b"*"),
@@ -194,15 +194,15 @@ impl<'a> Cut<'a> {
     #[inline]
     pub(super) fn fields(&self, out: &mut Vec<&'a [u8]>) -> &'a [u8] {
         match self.format {
-            Format::Small | Format::Large => self.fixed(out),
-            Format::Free | Format::FreeLarge => self.separated(out),
+            Format::Small | Format::Large => self.split_fixed_fields(out),
+            Format::Free | Format::FreeLarge => self.split_free_fields(out),
         }
     }
 
     #[inline]
-    fn fixed(&self, out: &mut Vec<&'a [u8]>) -> &'a [u8] {
+    fn split_fixed_fields(&self, out: &mut Vec<&'a [u8]>) -> &'a [u8] {
         if memchr::memchr(b'\t', self.body).is_some() {
-            return self.tabbed(out);
+            return self.split_tabbed_fields(out);
         }
         let body = self.body;
         let slice = |from: usize, to: usize| {
@@ -220,7 +220,7 @@ impl<'a> Cut<'a> {
     }
 
     /// A tab goes to the next column after a multiple of 8.
-    fn tabbed(&self, out: &mut Vec<&'a [u8]>) -> &'a [u8] {
+    fn split_tabbed_fields(&self, out: &mut Vec<&'a [u8]>) -> &'a [u8] {
         // byte offset at which columns 0, 8, 16 .. 80 begin
         let mut starts = [self.body.len(); 11];
         let mut column = 0_usize;
@@ -249,7 +249,7 @@ impl<'a> Cut<'a> {
         slice(9, 10)
     }
 
-    fn separated(&self, out: &mut Vec<&'a [u8]>) -> &'a [u8] {
+    fn split_free_fields(&self, out: &mut Vec<&'a [u8]>) -> &'a [u8] {
         let rest = self.body.get(self.rest..).unwrap_or_default();
         let width = self.width();
         let first = out.len();

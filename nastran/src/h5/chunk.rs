@@ -23,7 +23,7 @@ pub(super) struct Chunks {
 
 impl Chunks {
     /// `None` where the table is not chunked, or is packed with other filters than deflate, shuffle and Fletcher's checksum.
-    pub(super) fn of(
+    pub(super) fn from_dataset(
         dataset: &Dataset,
         rows_a_chunk: u64,
     ) -> Result<Option<Self>, hdf5_pure::Error> {

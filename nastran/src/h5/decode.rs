@@ -38,7 +38,7 @@ pub(super) fn rows(
     };
     table.each_record(start, count, |r| {
         let entity = id.id(r, 0);
-        let value = |f: &Option<Field>, k: usize| f.map_or(f64::NAN, |f| f.real(r, k));
+        let value = |f: &Option<Field>, k: usize| f.map_or(f64::NAN, |f| f.read_real(r, k));
         match layout.kind {
             Kind::Plain | Kind::Station | Kind::Ply => {
                 let at = match (layout.kind, layout.element, out.ids.last()) {

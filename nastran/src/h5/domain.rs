@@ -28,7 +28,7 @@ pub(super) fn domains(table: &Table<'_>) -> Result<BTreeMap<i64, Domain>, H5Erro
             subcase: subcase.id(r, 0),
             analysis: Analysis::from_code(i32::try_from(analysis.integer(r, 0)).unwrap_or(0)),
             mode: mode.map_or(0, |f| i32::try_from(f.integer(r, 0)).unwrap_or(0)),
-            step: value.map_or(0.0, |f| f.real(r, 0)),
+            step: value.map_or(0.0, |f| f.read_real(r, 0)),
         };
         all.insert(id.integer(r, 0), domain);
         Ok(())

@@ -2,7 +2,7 @@
 
 use super::domain::{Domain, domains};
 use super::extent::stated_length;
-use super::layout::{Kind, Layout, elemental, nodal};
+use super::layout::{Kind, Layout, elemental_layout, nodal};
 use super::table::Table;
 use super::weight::grid_point_weight;
 use super::{H5Error, decode};
@@ -43,7 +43,9 @@ impl H5 {
     /// # Errors
     /// [`H5Error::Damaged`] for a file that is cut short or whose tables can't all be opened, and every error of [`H5::salvage`].
     pub fn read(bytes: &[u8]) -> Result<Self, H5Error> {
-        Self::salvage(bytes)?.whole().map_err(H5Error::Damaged)
+        Self::salvage(bytes)?
+            .require_undamaged()
+            .map_err(H5Error::Damaged)
     }
 
     /// Builds the index of the readable part of a file that may be cut or damaged, with the damage.
@@ -82,7 +84,7 @@ impl H5 {
         }
         let domains = domains(&this.table(&format!("{RESULT}/DOMAINS"))?)?;
         this.nodal(&domains)?;
-        this.elemental(&domains)?;
+        this.index_elemental_tables(&domains)?;
         let damage = std::mem::take(&mut this.damage);
         Ok(Salvaged { file: this, damage })
     }
@@ -117,7 +119,7 @@ impl H5 {
             if name == "GRID_WEIGHT" {
                 match self.table(&path).and_then(|t| grid_point_weight(&t)) {
                     Ok(weight) => self.grid_point_weight = weight,
-                    Err(e) => self.unread(&path, &e),
+                    Err(e) => self.note_unread_table(&path, &e),
                 }
                 continue;
             }
@@ -129,7 +131,7 @@ impl H5 {
         Ok(())
     }
 
-    fn elemental(&mut self, domains: &BTreeMap<i64, Domain>) -> Result<(), H5Error> {
+    fn index_elemental_tables(&mut self, domains: &BTreeMap<i64, Domain>) -> Result<(), H5Error> {
         let root = format!("{RESULT}/ELEMENTAL");
         let (_, groups) = self.children(&root)?;
         for group in groups {
@@ -144,7 +146,7 @@ impl H5 {
             };
             for name in self.children(&path)?.0 {
                 self.index(&format!("{path}/{name}"), domains, |table| {
-                    elemental(quantity, &name, table)
+                    elemental_layout(quantity, &name, table)
                 });
             }
         }
@@ -152,7 +154,7 @@ impl H5 {
     }
 
     /// A table that can't be read: damage, or of a kind that is passed over.
-    fn unread(&mut self, path: &str, why: &H5Error) {
+    fn note_unread_table(&mut self, path: &str, why: &H5Error) {
         if why.is_damage() {
             self.damage.push(Damage {
                 at: path.to_string(),
@@ -222,7 +224,7 @@ impl H5 {
                 );
             }
             Ok(blocks) => blocks,
-            Err(e) => return self.unread(path, &e),
+            Err(e) => return self.note_unread_table(path, &e),
         };
         for (id, span, form) in blocks {
             let Some(d) = domains.get(&id) else {

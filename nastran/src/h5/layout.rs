@@ -61,7 +61,11 @@ pub(super) fn nodal(name: &str) -> Option<Layout> {
 }
 
 /// The layout of `/NASTRAN/RESULT/ELEMENTAL/STRAIN/<name>` or `STRESS`.
-pub(super) fn elemental(quantity: Quantity, name: &str, table: &Table<'_>) -> Option<Layout> {
+pub(super) fn elemental_layout(
+    quantity: Quantity,
+    name: &str,
+    table: &Table<'_>,
+) -> Option<Layout> {
     let strain = quantity == Quantity::Strain;
     let with_corners = table.field("FD1").is_some_and(|f| f.count > 1);
     let number = match (name, with_corners) {

@@ -87,7 +87,7 @@ impl<'f> Table<'f> {
             .iter()
             .filter_map(|m| Some((m.name.clone(), field(m.byte_offset, &m.datatype, record)?)))
             .collect();
-        let chunks = Chunks::of(&dataset, rows_a_chunk).map_err(fail)?;
+        let chunks = Chunks::from_dataset(&dataset, rows_a_chunk).map_err(fail)?;
         Ok(Self {
             path: path.to_string(),
             rows,
@@ -137,9 +137,9 @@ impl<'f> Table<'f> {
             let bytes = self
                 .dataset
                 .read_raw_rows(at, n)
-                .map_err(|e| self.damaged(e.to_string()))?;
+                .map_err(|e| self.damage_error(e.to_string()))?;
             if bytes.len() as u64 != n * self.record as u64 {
-                return Err(self.damaged(format!("{} bytes for {n} records", bytes.len())));
+                return Err(self.damage_error(format!("{} bytes for {n} records", bytes.len())));
             }
             bytes.chunks_exact(self.record).try_for_each(&mut each)?;
             at += n;
@@ -147,7 +147,7 @@ impl<'f> Table<'f> {
         Ok(())
     }
 
-    fn damaged(&self, reason: String) -> H5Error {
+    fn damage_error(&self, reason: String) -> H5Error {
         H5Error::Container {
             path: self.path.clone(),
             reason,
@@ -216,7 +216,7 @@ impl Field {
     }
 
     /// Entry `k` as a real; NaN outside the array.
-    pub(super) fn real(self, record: &[u8], k: usize) -> f64 {
+    pub(super) fn read_real(self, record: &[u8], k: usize) -> f64 {
         match (self.bits(record, k), self.number, self.size) {
             (None, ..) => f64::NAN,
             (Some(b), Number::Float, 4) => f64::from(f32::from_bits(b as u32)),

@@ -2,13 +2,14 @@ use super::{H5, H5Error, is_h5};
 use crate::results::{Analysis, ElementType, Quantity, RowId, Rows, ShellForm};
 use serde_json::Value;
 
-fn shared(path: &str) -> Option<Vec<u8>> {
+fn read_shared_file(path: &str) -> Option<Vec<u8>> {
     crate::support::bytes(&format!("nastran/{path}"))
 }
 
 /// The oracle's table of that name: rows of (ids, values).
-fn expected(case: &str, result: &str, n_ids: usize) -> Option<Vec<(Vec<u32>, Vec<f64>)>> {
-    let json: Value = serde_json::from_slice(&shared(&format!("{case}/expected.json"))?).unwrap();
+fn read_expected_rows(case: &str, result: &str, n_ids: usize) -> Option<Vec<(Vec<u32>, Vec<f64>)>> {
+    let json: Value =
+        serde_json::from_slice(&read_shared_file(&format!("{case}/expected.json"))?).unwrap();
     let table = json["op2"]["results"]
         .as_array()
         .unwrap()
@@ -59,7 +60,7 @@ fn difference(rows: &Rows, wanted: &[(Vec<u32>, Vec<f64>)], cols: std::ops::Rang
 
 #[test]
 fn the_double_precision_h5_of_the_svanberg_beam_agrees_with_the_op2_of_the_same_run() {
-    let Some(bytes) = shared("msc_svanberg_beam/static.h5") else {
+    let Some(bytes) = read_shared_file("msc_svanberg_beam/static.h5") else {
         return;
     };
     let h5 = H5::read(&bytes).unwrap();
@@ -74,7 +75,7 @@ fn the_double_precision_h5_of_the_svanberg_beam_agrees_with_the_op2_of_the_same_
             (1, Analysis::Statics)
         );
         let rows = h5.rows(ix).unwrap();
-        let wanted = expected("msc_svanberg_beam", name, 2).unwrap();
+        let wanted = read_expected_rows("msc_svanberg_beam", name, 2).unwrap();
         assert_eq!(
             rows.ids
                 .iter()
@@ -90,7 +91,7 @@ fn the_double_precision_h5_of_the_svanberg_beam_agrees_with_the_op2_of_the_same_
         (Quantity::Stress, "stress.cbeam_stress"),
     ] {
         let rows = h5.rows(block(&h5, quantity, Some(2))).unwrap();
-        let wanted = expected("msc_svanberg_beam", name, 2).unwrap();
+        let wanted = read_expected_rows("msc_svanberg_beam", name, 2).unwrap();
         assert_eq!(
             rows.ids
                 .iter()
@@ -110,8 +111,8 @@ fn the_double_precision_h5_of_the_svanberg_beam_agrees_with_the_op2_of_the_same_
 #[test]
 fn the_grid_point_weight_of_the_svanberg_beam_is_that_of_its_printed_output() {
     let (Some(bytes), Some(f06)) = (
-        shared("msc_svanberg_beam/static.h5"),
-        shared("msc_svanberg_beam/static.f06"),
+        read_shared_file("msc_svanberg_beam/static.h5"),
+        read_shared_file("msc_svanberg_beam/static.f06"),
     ) else {
         return;
     };
@@ -143,7 +144,7 @@ fn the_grid_point_weight_of_the_svanberg_beam_is_that_of_its_printed_output() {
 
 #[test]
 fn compressed_tables_of_msc_agree_with_the_op2_that_nx_wrote_for_the_same_deck() {
-    let Some(bytes) = shared("nx_static_shell_bar/static_solid_shell_bar.h5") else {
+    let Some(bytes) = read_shared_file("nx_static_shell_bar/static_solid_shell_bar.h5") else {
         return;
     };
     let h5 = H5::read(&bytes).unwrap();
@@ -195,7 +196,7 @@ fn compressed_tables_of_msc_agree_with_the_op2_that_nx_wrote_for_the_same_deck()
         ),
     ] {
         let rows = h5.rows(block(&h5, quantity, element)).unwrap();
-        let wanted = expected("nx_static_shell_bar", name, n_ids).unwrap();
+        let wanted = read_expected_rows("nx_static_shell_bar", name, n_ids).unwrap();
         assert_eq!(rows.len(), wanted.len(), "{name}");
         let ids: Vec<_> = rows
             .ids
@@ -222,7 +223,7 @@ fn compressed_tables_of_msc_agree_with_the_op2_that_nx_wrote_for_the_same_deck()
 
 #[test]
 fn every_table_of_the_element_zoo_is_read_or_noted() {
-    let Some(bytes) = shared("nx_static_elements/static_elements.h5") else {
+    let Some(bytes) = read_shared_file("nx_static_elements/static_elements.h5") else {
         return;
     };
     let h5 = H5::read(&bytes).unwrap();
@@ -269,7 +270,7 @@ fn a_file_that_is_no_nastran_result_is_refused_with_the_reason() {
 
 #[test]
 fn truncated_and_mutated_files_give_an_answer_or_an_error_but_no_panic() {
-    let Some(bytes) = shared("nx_static_shell_bar/static_solid_shell_bar.h5") else {
+    let Some(bytes) = read_shared_file("nx_static_shell_bar/static_solid_shell_bar.h5") else {
         return;
     };
     let read_all = |bytes: &[u8]| {

@@ -22,12 +22,12 @@ pub(super) fn grid_point_weight(table: &Table<'_>) -> Result<Option<GridPointWei
     table.each_record(0, table.rows.min(1), |r| {
         found = Some(GridPointWeight {
             reference: id.id(r, 0),
-            mo: std::array::from_fn(|i| std::array::from_fn(|j| mo.real(r, 6 * i + j))),
-            s: std::array::from_fn(|i| std::array::from_fn(|j| s.real(r, 3 * i + j))),
-            mass: mass.map(|f| f.real(r, 0)),
-            cg: cg.map(|row| row.map(|f| f.real(r, 0))),
+            mo: std::array::from_fn(|i| std::array::from_fn(|j| mo.read_real(r, 6 * i + j))),
+            s: std::array::from_fn(|i| std::array::from_fn(|j| s.read_real(r, 3 * i + j))),
+            mass: mass.map(|f| f.read_real(r, 0)),
+            cg: cg.map(|row| row.map(|f| f.read_real(r, 0))),
             inertia_cg: std::array::from_fn(|i| {
-                std::array::from_fn(|j| inertia.real(r, 3 * i + j))
+                std::array::from_fn(|j| inertia.read_real(r, 3 * i + j))
             }),
         });
         Ok(())

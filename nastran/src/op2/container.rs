@@ -316,17 +316,17 @@ impl Container {
     }
 
     fn note(&mut self, message: String) {
-        let subject = self.here();
+        let subject = self.describe_position();
         self.notes.push(Note { subject, message });
     }
 
     fn harm(&mut self, what: String) {
-        let at = self.here();
+        let at = self.describe_position();
         self.damage.push(Damage { at, what });
     }
 
     /// The last table and record that was met.
-    fn here(&self) -> String {
+    fn describe_position(&self) -> String {
         self.tables.last().map_or_else(
             || "file".to_owned(),
             |t| format!("table {}, record {}", t.name, t.records.len()),

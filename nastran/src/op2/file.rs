@@ -59,7 +59,9 @@ impl<'a> Op2<'a> {
     ///
     /// [`Op2Error::Damaged`] for a file that is cut short or contradicts itself, and every error of [`Op2::salvage`].
     pub fn read(file: &'a [u8]) -> Result<Op2<'a>, Op2Error> {
-        Self::salvage(file)?.whole().map_err(Op2Error::Damaged)
+        Self::salvage(file)?
+            .require_undamaged()
+            .map_err(Op2Error::Damaged)
     }
 
     /// Indexes the readable part of a file that may be cut or damaged, with the damage: tables may be missing, the last block may lack rows.
@@ -116,7 +118,7 @@ impl<'a> Op2<'a> {
                 count: self.blocks.len(),
             });
         };
-        let place = |why| self.unsupported(b, span, why);
+        let place = |why| self.unsupported_error(b, span, why);
         if b.complex {
             return Err(place(Unsupported::Complex));
         }
@@ -221,7 +223,7 @@ impl<'a> Op2<'a> {
         (span.record.saturating_sub(first).saturating_add(3), offset)
     }
 
-    fn unsupported(&self, block: &Block, span: &Span, why: Unsupported) -> Op2Error {
+    fn unsupported_error(&self, block: &Block, span: &Span, why: Unsupported) -> Op2Error {
         let (record, offset) = self.locate(span);
         Op2Error::Unsupported {
             table: block.table.clone(),

@@ -39,10 +39,10 @@ pub(super) fn read_ident(w: Words<'_>) -> Option<Ident> {
     let format = small(8).unwrap_or(0);
     let (mode, step) = match analysis {
         Analysis::Modes | Analysis::PostBuckling | Analysis::ComplexEigen => {
-            (small(4).unwrap_or(0), w.real(5).unwrap_or(0.0))
+            (small(4).unwrap_or(0), w.real_at(5).unwrap_or(0.0))
         }
         Analysis::Frequency | Analysis::Transient | Analysis::NonlinearStatics => {
-            (0, w.real(4).unwrap_or(0.0))
+            (0, w.real_at(4).unwrap_or(0.0))
         }
         _ => (0, 0.0),
     };

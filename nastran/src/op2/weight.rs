@@ -8,7 +8,7 @@ pub(super) fn read_weight(w: Words<'_>, reference: u32) -> Option<GridPointWeigh
     if w.len() < 78 {
         return None;
     }
-    let v = |i: usize| w.real(i).unwrap_or(f64::NAN);
+    let v = |i: usize| w.real_at(i).unwrap_or(f64::NAN);
     let three = |from: usize| std::array::from_fn(|i| std::array::from_fn(|j| v(from + 3 * i + j)));
     Some(GridPointWeight {
         reference,

@@ -106,7 +106,7 @@ impl<'a> Words<'a> {
     }
 
     /// The bytes of word `i`.
-    fn raw(&self, i: usize) -> Option<&'a [u8]> {
+    fn bytes_at(&self, i: usize) -> Option<&'a [u8]> {
         let w = self.format.bytes();
         let a = i.checked_mul(w)?;
         self.bytes.get(a..a.checked_add(w)?)
@@ -115,7 +115,7 @@ impl<'a> Words<'a> {
     /// Word `i` as an integer.
     #[inline]
     pub(super) fn int(&self, i: usize) -> Option<i64> {
-        let raw = self.raw(i)?;
+        let raw = self.bytes_at(i)?;
         Some(match self.format {
             Format {
                 order: ByteOrder::Little,
@@ -138,8 +138,8 @@ impl<'a> Words<'a> {
 
     /// Word `i` as a real; 32-bit values are widened exactly.
     #[inline]
-    pub(super) fn real(&self, i: usize) -> Option<f64> {
-        let raw = self.raw(i)?;
+    pub(super) fn real_at(&self, i: usize) -> Option<f64> {
+        let raw = self.bytes_at(i)?;
         Some(match self.format {
             Format {
                 order: ByteOrder::Little,
@@ -161,7 +161,7 @@ impl<'a> Words<'a> {
     }
 
     /// A double of 8 bytes that starts at word `i`: one word of a 64-bit file, two of a 32-bit file.
-    pub(super) fn double(&self, i: usize) -> Option<f64> {
+    pub(super) fn double_at(&self, i: usize) -> Option<f64> {
         let a = i.checked_mul(self.format.bytes())?;
         let raw = *self.bytes.get(a..)?.first_chunk()?;
         Some(match self.format.order {

@@ -123,17 +123,17 @@ pub(super) fn push(block: &Block, entry: &Entry, rows: &mut Rows) -> Result<(), 
             rows.values.extend(std::iter::repeat_n(0.0, missing));
         }
         // A blank margin of safety at the end of an entry is cut off with the line's other blanks.
-        Some(Layout::Bar) => whole(entry, 13..=15, id(0, 0), rows)?,
-        Some(Layout::Rod) => whole(entry, 3..=4, id(0, 0), rows)?,
-        Some(Layout::Spring) => whole(entry, 1..=1, id(0, 0), rows)?,
-        Some(Layout::Bush) => whole(entry, 6..=6, id(0, 0), rows)?,
-        Some(Layout::ShearPanel) => whole(entry, 2..=3, id(0, 0), rows)?,
+        Some(Layout::Bar) => push_padded_row(entry, 13..=15, id(0, 0), rows)?,
+        Some(Layout::Rod) => push_padded_row(entry, 3..=4, id(0, 0), rows)?,
+        Some(Layout::Spring) => push_padded_row(entry, 1..=1, id(0, 0), rows)?,
+        Some(Layout::Bush) => push_padded_row(entry, 6..=6, id(0, 0), rows)?,
+        Some(Layout::ShearPanel) => push_padded_row(entry, 2..=3, id(0, 0), rows)?,
         Some(Layout::BarStation) => {
             let station = match rows.ids.last() {
                 Some(last) if last.entity == entry.id => last.at.saturating_add(1),
                 _ => 1,
             };
-            whole(entry, 8..=9, id(station, 0), rows)?;
+            push_padded_row(entry, 8..=9, id(station, 0), rows)?;
         }
         Some(Layout::Ply) => {
             count(entry, 10)?;
@@ -171,7 +171,7 @@ pub(super) fn push(block: &Block, entry: &Entry, rows: &mut Rows) -> Result<(), 
             }
             for (i, station) in words.chunks(10).enumerate() {
                 let (grid, values) = station.split_first().unwrap_or((&Word::Blank, &[]));
-                let x_xb = values.first().map_or(0.0, |w| w.real());
+                let x_xb = values.first().map_or(0.0, |w| w.to_real());
                 // Stations that were not asked for are rows of zeros.
                 if i == 0 || grid.id().unwrap_or(0) != 0 || x_xb != 0.0 {
                     push_row(rows, id(grid.id().unwrap_or(0), 0), values);
@@ -212,7 +212,7 @@ pub(super) fn push(block: &Block, entry: &Entry, rows: &mut Rows) -> Result<(), 
     Ok(())
 }
 
-fn whole(
+fn push_padded_row(
     entry: &Entry,
     wanted: RangeInclusive<usize>,
     id: RowId,
@@ -257,7 +257,7 @@ fn not_an_id(entry: &Entry) -> PunchError {
 
 fn push_row(rows: &mut Rows, id: RowId, words: &[Word]) {
     rows.ids.push(id);
-    rows.values.extend(words.iter().map(|w| w.real()));
+    rows.values.extend(words.iter().map(|w| w.to_real()));
 }
 
 fn two_fibres(entry: &Entry, at: u32, words: &[Word], rows: &mut Rows) {

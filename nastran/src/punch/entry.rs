@@ -12,7 +12,7 @@ pub(super) enum Word {
 }
 
 impl Word {
-    pub(super) fn real(self) -> f64 {
+    pub(super) fn to_real(self) -> f64 {
         match self {
             Word::Real(v) => v,
             Word::Integer(i) => i as f64,
@@ -67,21 +67,25 @@ pub(super) fn each_entry(
         }
         if !is_continuation(line) {
             if open {
-                close(&mut entry, &mut each)?;
+                finish_entry(&mut entry, &mut each)?;
             }
             open = true;
             begin(&mut entry, line, number)?;
         } else if !open {
-            return Err(bad(number, line, "an entry before its continuation"));
+            return Err(bad_field_error(
+                number,
+                line,
+                "an entry before its continuation",
+            ));
         }
         for slot in line.get(18..).unwrap_or(&[]).chunks(18) {
             entry
                 .words
-                .push(word(slot).ok_or_else(|| bad(number, slot, "a number"))?);
+                .push(word(slot).ok_or_else(|| bad_field_error(number, slot, "a number"))?);
         }
     }
     if open {
-        close(&mut entry, &mut each)
+        finish_entry(&mut entry, &mut each)
     } else {
         Ok(())
     }
@@ -91,17 +95,17 @@ fn begin(entry: &mut Entry, line: &[u8], number: u32) -> Result<(), PunchError> 
     entry.words.clear();
     entry.line = number;
     let head = line.get(..18).unwrap_or(line);
-    let text = std::str::from_utf8(head).map_err(|_| bad(number, head, "an id"))?;
+    let text = std::str::from_utf8(head).map_err(|_| bad_field_error(number, head, "an id"))?;
     let mut parts = text.split_whitespace();
     entry.id = parts
         .next()
         .and_then(|t| t.parse().ok())
-        .ok_or_else(|| bad(number, head, "an id"))?;
+        .ok_or_else(|| bad_field_error(number, head, "an id"))?;
     entry.letter = parts.next().and_then(|t| t.bytes().next());
     Ok(())
 }
 
-fn close(
+fn finish_entry(
     entry: &mut Entry,
     each: &mut impl FnMut(&Entry) -> Result<(), PunchError>,
 ) -> Result<(), PunchError> {
@@ -111,7 +115,7 @@ fn close(
     each(entry)
 }
 
-fn bad(line: u32, text: &[u8], expected: &'static str) -> PunchError {
+fn bad_field_error(line: u32, text: &[u8], expected: &'static str) -> PunchError {
     PunchError::BadField {
         line,
         text: String::from_utf8_lossy(text).trim().to_string(),
@@ -127,7 +131,7 @@ fn word(slot: &[u8]) -> Option<Word> {
     if let Ok(i) = text.parse::<i64>() {
         return Some(Word::Integer(i));
     }
-    if let Some(v) = real(text) {
+    if let Some(v) = parse_real(text) {
         return Some(Word::Real(v));
     }
     text.starts_with(|c: char| c.is_ascii_alphabetic())
@@ -135,7 +139,7 @@ fn word(slot: &[u8]) -> Option<Word> {
 }
 
 /// A real, exponents of three digits without E (`1.234567-101`) and D exponents included; `None` for anything else.
-pub(super) fn real(text: &str) -> Option<f64> {
+pub(super) fn parse_real(text: &str) -> Option<f64> {
     let starts_as_number =
         text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.'));
     if !starts_as_number {

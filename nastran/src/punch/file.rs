@@ -54,7 +54,9 @@ impl<'a> Punch<'a> {
     /// # Errors
     /// [`PunchError::Damaged`] for a text that ends within an entry, and every error of [`Punch::salvage`].
     pub fn read(bytes: &'a [u8]) -> Result<Self, PunchError> {
-        Self::salvage(bytes)?.whole().map_err(PunchError::Damaged)
+        Self::salvage(bytes)?
+            .require_undamaged()
+            .map_err(PunchError::Damaged)
     }
 
     /// Builds the index of the readable part of a punch file that may be cut, with the damage.

@@ -78,7 +78,7 @@ impl Header {
                 let mut parts = value.split_whitespace();
                 self.step = parts
                     .next()
-                    .and_then(super::entry::real)
+                    .and_then(super::entry::parse_real)
                     .unwrap_or(f64::NAN);
                 self.mode = value
                     .rsplit_once('=')

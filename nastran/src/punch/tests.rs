@@ -47,15 +47,15 @@ fn reals(values: impl IntoIterator<Item = f64>) -> Vec<String> {
     values.into_iter().map(|v| format!("{v:.6E}")).collect()
 }
 
-fn shared(path: &str) -> Option<Vec<u8>> {
+fn read_shared_file(path: &str) -> Option<Vec<u8>> {
     crate::support::bytes(&format!("nastran/{path}"))
 }
 
 #[test]
 fn the_punch_file_of_a_bush_agrees_with_pynastran_s_reading_of_its_op2() {
     let (Some(bytes), Some(json)) = (
-        shared("nx_cbush/cbush.pch"),
-        shared("nx_cbush/expected.json"),
+        read_shared_file("nx_cbush/cbush.pch"),
+        read_shared_file("nx_cbush/expected.json"),
     ) else {
         return;
     };
@@ -308,7 +308,7 @@ fn crlf_and_missing_line_numbers_change_nothing() {
 fn truncated_and_mutated_files_give_an_answer_or_an_error_but_no_panic() {
     let mut corner = vec!["CEN/              ".to_string(), "4        ".to_string()];
     corner.extend(reals((0..84).map(f64::from)));
-    let sample = shared("nx_cbush/cbush.pch").unwrap_or_default();
+    let sample = read_shared_file("nx_cbush/cbush.pch").unwrap_or_default();
     let mut text =
         header(3, "ELEMENT STRAINS", "$ELEMENT TYPE =         144  QUAD4C") + &entry(77, &corner);
     text += &(header(3, "ELEMENT STRAINS", "$ELEMENT TYPE =          67  HEXA")

@@ -29,7 +29,7 @@ impl<T> Salvaged<T> {
     ///
     /// # Errors
     /// The first damage.
-    pub fn whole(self) -> Result<T, Damage> {
+    pub fn require_undamaged(self) -> Result<T, Damage> {
         match self.damage.into_iter().next() {
             None => Ok(self.file),
             Some(damage) => Err(damage),

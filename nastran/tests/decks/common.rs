@@ -8,7 +8,7 @@ use nastran::bdf::{Deck, IncludeRequest, Loaded, Loader, read_deck};
 
 /// The folder of real cases, where it is present.
 pub(crate) fn cases_folder() -> Option<PathBuf> {
-    crate::support::shared("nastran")
+    crate::support::find_shared_path("nastran")
 }
 
 /// A case: its folder, and its `case.json` and `expected.json`.

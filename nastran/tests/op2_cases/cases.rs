@@ -9,7 +9,7 @@ const LEAST: usize = 25;
 
 /// Calls `check` with name, file and oracle of every case that has an OP2; what it compared, `None` where the set is absent.
 pub fn each_op2(mut check: impl FnMut(&str, &Op2<'_>, &Value) -> usize) -> Option<usize> {
-    let shared = crate::support::shared("nastran")?;
+    let shared = crate::support::find_shared_path("nastran")?;
     let (mut cases, mut compared) = (0, 0);
     let folders = std::fs::read_dir(shared).unwrap();
     let mut folders: Vec<_> = folders.flatten().map(|f| f.path()).collect();

@@ -15,7 +15,7 @@ pub fn compare(case: &str, op2: &Op2<'_>, expected: &Value) -> usize {
         let place = format!("{case} {} {}", want["result"], want["subcase_key"]);
         assert!(want["l2"].is_array(), "{place}: the oracle has no numbers");
         let steps = want["shape"][0].as_u64().unwrap() as usize;
-        let mut blocks = matching(op2, want);
+        let mut blocks = find_matching_blocks(op2, want);
         // the same key may stand for several runs of blocks (buckling loops): take them in file order
         let key = format!(
             "{}{}{}{}",
@@ -35,7 +35,7 @@ pub fn compare(case: &str, op2: &Op2<'_>, expected: &Value) -> usize {
 }
 
 /// Blocks that may be the table.
-fn matching(op2: &Op2<'_>, want: &Value) -> Vec<usize> {
+fn find_matching_blocks(op2: &Op2<'_>, want: &Value) -> Vec<usize> {
     let quantity = columns::quantity(want["result"].as_str().unwrap());
     let int = |name: &str| want[name].as_i64();
     let sort2 = want["subcase_key"]

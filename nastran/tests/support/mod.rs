@@ -8,7 +8,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// A file or folder of the reference material; `None` where it is absent.
-pub fn shared(path: &str) -> Option<PathBuf> {
+pub fn find_shared_path(path: &str) -> Option<PathBuf> {
     let own = Path::new(env!("CARGO_MANIFEST_DIR"));
     let root = if own.ends_with("nastran") {
         own.parent().unwrap_or(own)
@@ -49,10 +49,10 @@ pub fn count_skip(absent: &str) {
 
 /// The bytes of a file of the reference material.
 pub fn bytes(path: &str) -> Option<Vec<u8>> {
-    std::fs::read(shared(path)?).ok()
+    std::fs::read(find_shared_path(path)?).ok()
 }
 
 /// The text of a file of the reference material.
 pub fn text(path: &str) -> Option<String> {
-    std::fs::read_to_string(shared(path)?).ok()
+    std::fs::read_to_string(find_shared_path(path)?).ok()
 }

@@ -1,7 +1,7 @@
 //! Assumptions of the strain model: proportional to the loads, through zero, known loads with independent errors, runs that repeat.
 
-use super::glued::normal;
-use super::repeats::{lanes, task, weighed};
+use super::glued::draw_normal;
+use super::repeats::{lanes, recover_with_intervals, task};
 use super::severe;
 use crate::calibrate::*;
 use crate::finding::Severity;
@@ -22,15 +22,14 @@ fn runs(
     let one = |i: usize| {
         let f = [0; 2].map(|_| random.random_range(20.0..100.0));
         let factor = 1.0 + bend * (f[0] + f[1]);
-        let strain = s
-            .row_iter()
-            .zip(zero)
-            .map(|(row, z)| factor * (row[0] * f[0] + row[1] * f[1]) + z + NOISE * normal(random));
+        let strain = s.row_iter().zip(zero).map(|(row, z)| {
+            factor * (row[0] * f[0] + row[1] * f[1]) + z + NOISE * draw_normal(random)
+        });
         KnownRun {
             run: format!("R{i}"),
             strain: strain.collect(),
             noise_factor: 1.0,
-            loads: KnownLoads::exact(f.to_vec()),
+            loads: KnownLoads::from_exact(f.to_vec()),
             group: i,
         }
     };
@@ -50,7 +49,7 @@ fn a_common_zero_is_found_and_an_intercept_is_what_it_was() {
     let s = lanes(&mut random);
     let zero: Vec<f64> = s
         .row_iter()
-        .map(|_| 20.0 * NOISE * normal(&mut random))
+        .map(|_| 20.0 * NOISE * draw_normal(&mut random))
         .collect();
     let mut all = runs(&s, 40, (&zero, 0.0), &mut random);
     let new = all.split_off(16);
@@ -90,7 +89,10 @@ fn a_common_zero_is_found_and_an_intercept_is_what_it_was() {
         .into_iter()
         .enumerate()
         {
-            for (found, known) in weighed(s, strain, NOISE).iter().zip(&run.loads.mean) {
+            for (found, known) in recover_with_intervals(s, strain, NOISE)
+                .iter()
+                .zip(&run.loads.mean)
+            {
                 halves[i] += found[2];
                 held[i] += usize::from((found[0] - known).abs() <= found[2]);
             }
@@ -139,7 +141,7 @@ fn an_error_that_known_loads_share_is_that_of_every_recovered_load() {
         };
         let found = calibrate(&shared).unwrap();
         for run in &exact {
-            let of_run = weighed(&found.sensitivity, run.strain.clone(), NOISE);
+            let of_run = recover_with_intervals(&found.sensitivity, run.strain.clone(), NOISE);
             let sum: f64 = run.loads.mean.iter().sum();
             for (w, known) in of_run.iter().zip(run.loads.mean.iter().chain([&sum])) {
                 let share = w[1] / known;
@@ -156,14 +158,14 @@ fn one_run_a_load_is_an_error_and_no_gauge_is_named_by_what_it_taught() {
     let s = lanes(&mut random);
     let mut read = |f: [f64; 2]| -> Vec<f64> {
         let rows = s.row_iter();
-        rows.map(|row| (row[0] * f[0] + row[1] * f[1]) * (1.0 + 0.05 * normal(&mut random)))
+        rows.map(|row| (row[0] * f[0] + row[1] * f[1]) * (1.0 + 0.05 * draw_normal(&mut random)))
             .collect()
     };
     let known = |i: usize, f: [f64; 2], strain: Vec<f64>| KnownRun {
         run: format!("R{i}"),
         strain,
         noise_factor: 1.0,
-        loads: KnownLoads::exact(f.to_vec()),
+        loads: KnownLoads::from_exact(f.to_vec()),
         group: i,
     };
     let taught = [[100.0, 0.0], [0.0, 100.0]];
@@ -208,12 +210,11 @@ fn check_runs_are_recovered_as_new_runs_are() {
     let checks = all.split_off(12);
     let found = calibrate(&task(2, all, None)).unwrap();
     for c in recover_checks(&found, NOISE, &checks) {
-        for (v, w) in
-            c.estimate
-                .values
-                .iter()
-                .zip(weighed(&found.sensitivity, c.run.strain.clone(), NOISE))
-        {
+        for (v, w) in c.estimate.values.iter().zip(recover_with_intervals(
+            &found.sensitivity,
+            c.run.strain.clone(),
+            NOISE,
+        )) {
             assert!((v - w[0]).abs() < 1e-9 * v.abs());
         }
     }

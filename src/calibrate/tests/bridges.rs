@@ -20,8 +20,8 @@ struct Bridge {
     runs: Vec<(String, usize, Vec<f64>)>,
 }
 
-fn shared(path: &str) -> Option<PathBuf> {
-    crate::support::shared(&format!("bridges/{path}"))
+fn find_bridge_file(path: &str) -> Option<PathBuf> {
+    crate::support::find_shared_path(&format!("bridges/{path}"))
 }
 
 /// Cells of a table by row; quoted commas inside notes are respected.
@@ -43,8 +43,8 @@ fn cells(path: &Path) -> Vec<Vec<String>> {
 
 /// Runs that `keep` takes of the columns quality and fit_for_weighing.
 fn bridge(name: &str, keep: impl Fn(&str, &str) -> bool) -> Option<Bridge> {
-    let runs = cells(&shared(&format!("{name}/runs.csv"))?);
-    let peaks = cells(&shared(&format!("{name}/peaks.csv"))?);
+    let runs = cells(&find_bridge_file(&format!("{name}/runs.csv"))?);
+    let peaks = cells(&find_bridge_file(&format!("{name}/peaks.csv"))?);
     let column = |n: &str| runs[0].iter().position(|h| h == n);
     let (lane, quality, fit, truck) = (
         column("lane")?,
@@ -93,7 +93,7 @@ fn task(b: &Bridge, teach: &[usize]) -> Task {
             run: run.clone(),
             strain: strain.clone(),
             noise_factor: 1.0,
-            loads: KnownLoads::exact(
+            loads: KnownLoads::from_exact(
                 (0..k)
                     .map(|l| if l == *lane { TRUCK } else { 0.0 })
                     .collect(),
@@ -103,7 +103,7 @@ fn task(b: &Bridge, teach: &[usize]) -> Task {
     };
     Task {
         gauges: b.gauges.clone(),
-        loads: b.lanes.iter().map(Load::named).collect(),
+        loads: b.lanes.iter().map(Load::from_name).collect(),
         noise: NOISE,
         model: None,
         runs: teach.iter().map(known).collect(),
@@ -306,11 +306,11 @@ fn a_wrong_lane_and_loggers_tared_under_load_are_named_without_being_told() {
 }
 
 /// Findings on gauges when the test runs of a planted case are weighed by its calibration runs.
-fn planted(case: &str) -> Option<(Vec<String>, Vec<String>)> {
+fn check_planted_case(case: &str) -> Option<(Vec<String>, Vec<String>)> {
     let folder = format!("planted/{case}");
-    shared(&format!("{folder}/truth.json"))?;
+    find_bridge_file(&format!("{folder}/truth.json"))?;
     let b = bridge(&folder, |_, _| true)?;
-    let roles = cells(&shared(&format!("{folder}/runs.csv"))?);
+    let roles = cells(&find_bridge_file(&format!("{folder}/runs.csv"))?);
     let role = roles[0].iter().position(|h| h == "role")?;
     let teaches = |i: &usize| {
         roles
@@ -352,7 +352,7 @@ fn planted_faults_of_gauges_are_named_and_controls_stay_clean() {
         ("case06", "gauge-dead", &["B7031"]),
         ("case07", "inputs-exchanged", &["B5406", "B5381"]),
     ] {
-        let Some((codes, subjects)) = planted(case) else {
+        let Some((codes, subjects)) = check_planted_case(case) else {
             return;
         };
         assert_eq!(
@@ -370,7 +370,7 @@ fn planted_faults_of_gauges_are_named_and_controls_stay_clean() {
     // others expect. In other cases at Ponca, where it is sound, it reads .93 to 1.47 of that. What is asked of them is that no other gauge is
     // blamed.
     for case in ["case01", "case05", "case08", "case09", "case10"] {
-        let (codes, subjects) = planted(case).unwrap();
+        let (codes, subjects) = check_planted_case(case).unwrap();
         assert!(codes.is_empty(), "{case}: {codes:?} {subjects:?}");
     }
 }

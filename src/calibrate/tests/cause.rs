@@ -1,6 +1,6 @@
 //! Words for gauges of the clamped strip that are wrong in one way that is known.
 
-use super::glued::{NOISE, normal, pushes, reading, row, sites};
+use super::glued::{NOISE, draw_normal, pushes, reading, row, sites};
 use crate::calibrate::*;
 use crate::linalg::Matrix;
 use crate::sensitivity::Load;
@@ -42,10 +42,10 @@ fn task(wrong: usize, offset: [f64; 3], gain: f64, seed: u64) -> Task {
                 true => (offset, gain),
                 false => ([0.0; 3], 1.0),
             };
-            let common = own * (1.0 + OFF * normal(&mut random));
+            let common = own * (1.0 + OFF * draw_normal(&mut random));
             let mut row = row(sites[g], at);
             for s in &mut row {
-                *s *= common * (1.0 + OFF * normal(&mut random));
+                *s *= common * (1.0 + OFF * draw_normal(&mut random));
             }
             row
         })
@@ -55,15 +55,15 @@ fn task(wrong: usize, offset: [f64; 3], gain: f64, seed: u64) -> Task {
         run: format!("R{i}"),
         strain: truth
             .iter()
-            .map(|row| reading(row, f) + NOISE * normal(&mut random))
+            .map(|row| reading(row, f) + NOISE * draw_normal(&mut random))
             .collect(),
         noise_factor: 1.0,
-        loads: KnownLoads::exact(f.to_vec()),
+        loads: KnownLoads::from_exact(f.to_vec()),
         group: i,
     });
     Task {
         gauges: (0..sites.len()).map(|g| format!("G{g}")).collect(),
-        loads: (0..4).map(|l| Load::named(format!("L{l}"))).collect(),
+        loads: (0..4).map(|l| Load::from_name(format!("L{l}"))).collect(),
         noise: NOISE,
         runs: runs.collect(),
         model: Some(ModelPrior {

@@ -18,7 +18,7 @@ const POISSON: f64 = 0.3;
 /// Strain at the hottest place of each load of size 1.
 const HOT: f64 = 300e-6;
 
-pub(super) fn normal(random: &mut ChaCha8Rng) -> f64 {
+pub(super) fn draw_normal(random: &mut ChaCha8Rng) -> f64 {
     let (u, v): (f64, f64) = (
         random.random_range(1e-300..1.0),
         random.random_range(0.0..1.0),
@@ -81,7 +81,7 @@ pub(super) fn reading(row: &[f64], f: &[f64; 4]) -> f64 {
 
 /// Sd of (along, across, turned) that no unbiased use of the pushes and of what is stated can undercut: the inverse of
 /// `J' J / noise^2 + prior`, J by differences of the closed form, the gain known to within `gain`.
-fn bound(site: Site, gain: f64) -> [f64; 3] {
+fn sd_lower_bound(site: Site, gain: f64) -> [f64; 3] {
     let pushes = pushes();
     let drawn = row(site, [0.0; 3]);
     let jacobian = DMatrix::from_fn(pushes.len(), 4, |r, c| {
@@ -121,15 +121,16 @@ fn trial(seed: u64) -> Trial {
         .iter()
         .map(|_| {
             [
-                POSITION * normal(&mut random),
-                POSITION * normal(&mut random),
-                ANGLE * normal(&mut random),
+                POSITION * draw_normal(&mut random),
+                POSITION * draw_normal(&mut random),
+                ANGLE * draw_normal(&mut random),
             ]
         })
         .collect();
     let mut read = |f: &[f64; 4]| -> Vec<f64> {
-        let of =
-            |(s, o): (&Site, &[f64; 3])| reading(&row(*s, *o), f) + NOISE * normal(&mut random);
+        let of = |(s, o): (&Site, &[f64; 3])| {
+            reading(&row(*s, *o), f) + NOISE * draw_normal(&mut random)
+        };
         sites.iter().zip(&offsets).map(of).collect()
     };
     let known = pushes();
@@ -137,11 +138,11 @@ fn trial(seed: u64) -> Trial {
         run: format!("R{i}"),
         strain: read(f),
         noise_factor: 1.0,
-        loads: KnownLoads::exact(f.to_vec()),
+        loads: KnownLoads::from_exact(f.to_vec()),
         group: i,
     });
     let drawn = Matrix::from_fn(sites.len(), 4, |g, l| row(sites[g], [0.0; 3])[l]);
-    let loads: Vec<Load> = (0..4).map(|l| Load::named(format!("L{l}"))).collect();
+    let loads: Vec<Load> = (0..4).map(|l| Load::from_name(format!("L{l}"))).collect();
     let gauges: Vec<String> = (0..sites.len()).map(|g| format!("G{g}")).collect();
     let task = Task {
         gauges: gauges.clone(),
@@ -194,9 +195,9 @@ fn trial(seed: u64) -> Trial {
     };
     let kinds = [MoveKind::Along, MoveKind::Across, MoveKind::Turned];
     for ((glued, truth), site) in found.as_glued.iter().zip(&offsets).zip(&sites) {
-        let bound = bound(*site, MODEL);
+        let bound = sd_lower_bound(*site, MODEL);
         for (i, kind) in kinds.into_iter().enumerate() {
-            let g = glued.of(kind).unwrap();
+            let g = glued.find_move(kind).unwrap();
             out.held += usize::from((g.value - truth[i]).abs() < 1.96 * g.sigma);
             out.of += 1;
             out.over_bound.push(g.sigma / bound[i]);

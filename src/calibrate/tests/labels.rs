@@ -37,14 +37,14 @@ fn lanes(times: usize, scatter: f64, seed: u64) -> Task {
                     .map(|row| 1e-6 * 100.0 * row[lane] * size * off())
                     .collect(),
                 noise_factor: 1.0,
-                loads: KnownLoads::exact(loads.collect()),
+                loads: KnownLoads::from_exact(loads.collect()),
                 group: lane,
             }
         })
         .collect();
     Task {
         gauges: (0..ROWS.len()).map(|g| format!("G{g}")).collect(),
-        loads: ["east", "middle", "west"].map(Load::named).to_vec(),
+        loads: ["east", "middle", "west"].map(Load::from_name).to_vec(),
         noise: NOISE,
         model: None,
         runs,
@@ -135,7 +135,7 @@ fn sound_gauges_are_not_blamed_where_the_runs_do_not_tell_the_loads_apart() {
         for (i, run) in task.runs.iter_mut().enumerate() {
             let size = 0.5 + 0.1 * i as f64;
             run.strain = first.strain.iter().map(|v| v * size).collect();
-            run.loads = KnownLoads::exact(vec![100.0 * size, 50.0 * size, 80.0 * size]);
+            run.loads = KnownLoads::from_exact(vec![100.0 * size, 50.0 * size, 80.0 * size]);
             run.group = i;
         }
         let c = calibrate(&task).unwrap();

@@ -1,6 +1,6 @@
 //! The next known load against plain formulas of dense matrices.
 
-use super::glued::{NOISE, normal, pushes, reading, row, sites};
+use super::glued::{NOISE, draw_normal, pushes, reading, row, sites};
 use crate::calibrate::posterior::{Equation, solve};
 use crate::calibrate::state::{State, sensitivity_of};
 use crate::calibrate::*;
@@ -13,7 +13,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 /// Four pushes of the clamped strip, the loads two by two.
-fn calibrated() -> Calibration {
+fn calibrate_four_pushes() -> Calibration {
     let sites = sites();
     let runs = pushes().into_iter().take(4).enumerate();
     let runs = runs.map(|(i, mut f)| {
@@ -25,13 +25,13 @@ fn calibrated() -> Calibration {
                 .map(|s| reading(&row(*s, [0.0; 3]), &f))
                 .collect(),
             noise_factor: 1.0,
-            loads: KnownLoads::exact(f.to_vec()),
+            loads: KnownLoads::from_exact(f.to_vec()),
             group: i,
         }
     });
     let task = Task {
         gauges: (0..sites.len()).map(|g| format!("G{g}")).collect(),
-        loads: (0..4).map(|l| Load::named(format!("L{l}"))).collect(),
+        loads: (0..4).map(|l| Load::from_name(format!("L{l}"))).collect(),
         noise: NOISE,
         runs: runs.collect(),
         model: Some(ModelPrior {
@@ -64,7 +64,7 @@ fn sigma_of(s: &Sensitivity, sizes: &[f64], l: usize) -> f64 {
 
 #[test]
 fn the_next_load_buys_what_its_readings_would_take_from_the_covariance_of_s() {
-    let found = calibrated();
+    let found = calibrate_four_pushes();
     let sizes = [1.0, 0.5, 2.0, 1.5];
     let s = &found.sensitivity;
     let known = s.uncertainty.as_ref().unwrap();
@@ -116,7 +116,7 @@ fn the_next_load_buys_what_its_readings_would_take_from_the_covariance_of_s() {
 
 #[test]
 fn sizes_that_are_not_one_a_load_are_said() {
-    let found = calibrated();
+    let found = calibrate_four_pushes();
     for sizes in [&[1.0; 3][..], &[1.0; 5], &[1.0, 1.0, 1.0, f64::NAN]] {
         assert!(next_runs(&found, NOISE, sizes).is_err(), "{sizes:?}");
     }
@@ -126,29 +126,29 @@ fn sizes_that_are_not_one_a_load_are_said() {
 const SCATTER: [f64; 2] = [0.03, 0.01];
 
 /// Returns the six pushes three times each; repeats scatter.
-fn repeated() -> Task {
+fn task_with_repeats() -> Task {
     let mut random = ChaCha8Rng::seed_from_u64(5);
     let sites = sites();
     let mut runs = Vec::new();
     for (group, f) in pushes().into_iter().enumerate() {
         for _ in 0..3 {
-            let alike = 1.0 + SCATTER[0] * normal(&mut random);
+            let alike = 1.0 + SCATTER[0] * draw_normal(&mut random);
             let strain = sites.iter().map(|s| {
-                let own = alike + SCATTER[1] * normal(&mut random);
-                own * reading(&row(*s, [0.0; 3]), &f) + NOISE * normal(&mut random)
+                let own = alike + SCATTER[1] * draw_normal(&mut random);
+                own * reading(&row(*s, [0.0; 3]), &f) + NOISE * draw_normal(&mut random)
             });
             runs.push(KnownRun {
                 run: format!("R{}", runs.len()),
                 strain: strain.collect(),
                 noise_factor: 1.0,
-                loads: KnownLoads::exact(f.to_vec()),
+                loads: KnownLoads::from_exact(f.to_vec()),
                 group,
             });
         }
     }
     Task {
         gauges: (0..sites.len()).map(|g| format!("G{g}")).collect(),
-        loads: (0..4).map(|l| Load::named(format!("L{l}"))).collect(),
+        loads: (0..4).map(|l| Load::from_name(format!("L{l}"))).collect(),
         noise: NOISE,
         runs,
         model: Some(ModelPrior {
@@ -166,9 +166,9 @@ fn repeated() -> Task {
 
 #[test]
 fn with_repeats_that_scatter_the_next_load_buys_what_a_refit_with_it_has() {
-    let task = repeated();
+    let task = task_with_repeats();
     let all: Vec<usize> = (0..task.runs.len()).collect();
-    let state = State::of(&task, &all, &[]).unwrap();
+    let state = State::fit_runs(&task, &all, &[]).unwrap();
     let scatter = &state.scatter.covariance;
     assert!(scatter.iter().any(|c| *c > 0.0), "no scatter was learnt");
     let found = Calibration {
@@ -180,7 +180,11 @@ fn with_repeats_that_scatter_the_next_load_buys_what_a_refit_with_it_has() {
     let sizes = [1.0, 0.5, 2.0, 1.5];
     let next = next_runs(&found, NOISE, &sizes).unwrap();
     assert_eq!(next.len(), k + 1);
-    let log_det = |covariance: &[f64]| Precision::of(covariance, n * k).unwrap().log_det();
+    let log_det = |covariance: &[f64]| {
+        Precision::from_covariance(covariance, n * k)
+            .unwrap()
+            .log_det()
+    };
     for run in next {
         // The run as the others are taken, its readings those that S makes, so that the refit changes the covariance alone.
         let phi: Vec<f64> = run

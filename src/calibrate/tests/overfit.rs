@@ -1,7 +1,7 @@
 //! Scatter of few runs over many gauges, which is too small without the correction.
 
-use super::glued::normal;
-use super::repeats::{lanes, task, weighed};
+use super::glued::draw_normal;
+use super::repeats::{lanes, recover_with_intervals, task};
 use crate::calibrate::{KnownLoads, KnownRun, Task, calibrate, overfit};
 use crate::linalg::{Matrix, spd};
 use rand::{RngExt, SeedableRng};
@@ -17,8 +17,10 @@ fn what_an_unshrunk_scatter_says_of_loads_is_widened_by_the_patterns_it_has_lear
     let dof = 40.0;
     let runs: Vec<Vec<f64>> = (0..40)
         .map(|_| {
-            let common = normal(&mut random);
-            (0..N).map(|_| 3.0 * common + normal(&mut random)).collect()
+            let common = draw_normal(&mut random);
+            (0..N)
+                .map(|_| 3.0 * common + draw_normal(&mut random))
+                .collect()
         })
         .collect();
     let mut sample = vec![0.0; N * N];
@@ -26,7 +28,7 @@ fn what_an_unshrunk_scatter_says_of_loads_is_widened_by_the_patterns_it_has_lear
         spd::add_outer(&mut sample, r, 1.0 / dof);
     }
     for k in [1, 2, 3] {
-        let columns = Matrix::from_fn(N, k, |_, _| 1.0 + normal(&mut random));
+        let columns = Matrix::from_fn(N, k, |_, _| 1.0 + draw_normal(&mut random));
         let loads = |c: &[f64]| -> Matrix {
             let c = Matrix::from_row_slice(N, N, c).try_inverse().unwrap();
             (columns.transpose() * c * &columns).try_inverse().unwrap()
@@ -41,7 +43,7 @@ fn what_an_unshrunk_scatter_says_of_loads_is_widened_by_the_patterns_it_has_lear
 
 /// Eight gauges whose scatter of 3 % goes together, correlation .9; runs of two loads each drawn at random; whether the intervals of one more run
 /// hold, each load and the sum.
-fn together(runs: usize, seed: u64) -> Vec<bool> {
+fn check_common_scatter(runs: usize, seed: u64) -> Vec<bool> {
     const NOISE: f64 = 1e-8;
     const N: usize = 8;
     let mut random = ChaCha8Rng::seed_from_u64(seed);
@@ -52,10 +54,10 @@ fn together(runs: usize, seed: u64) -> Vec<bool> {
             .map(|g| s[(g, 0)] * f[0] + s[(g, 1)] * f[1])
             .collect();
         let size = 0.03 * (clean.iter().map(|e| e * e).sum::<f64>() / N as f64).sqrt();
-        let common = 0.9_f64.sqrt() * normal(&mut random);
+        let common = 0.9_f64.sqrt() * draw_normal(&mut random);
         let read = clean.iter().map(|e| {
-            let own = 0.1_f64.sqrt() * normal(&mut random);
-            e + size * (common + own) + NOISE * normal(&mut random)
+            let own = 0.1_f64.sqrt() * draw_normal(&mut random);
+            e + size * (common + own) + NOISE * draw_normal(&mut random)
         });
         (read.collect(), f)
     };
@@ -65,7 +67,7 @@ fn together(runs: usize, seed: u64) -> Vec<bool> {
             run: format!("R{i}"),
             strain,
             noise_factor: 1.0,
-            loads: KnownLoads::exact(f),
+            loads: KnownLoads::from_exact(f),
             group: i,
         }
     });
@@ -74,7 +76,7 @@ fn together(runs: usize, seed: u64) -> Vec<bool> {
         ..task(2, known.collect(), None)
     };
     let (strain, f) = drawn();
-    let found = weighed(&calibrate(&task).unwrap().sensitivity, strain, NOISE);
+    let found = recover_with_intervals(&calibrate(&task).unwrap().sensitivity, strain, NOISE);
     let truth = [f[0], f[1], f[0] + f[1]];
     let each = found.iter().zip(truth);
     each.map(|([value, _, half], f)| (value - f).abs() <= *half)
@@ -86,7 +88,7 @@ fn intervals_hold_where_gauges_scatter_together_and_are_many_against_the_runs() 
     for runs in [24, 36] {
         let trials: Vec<Vec<bool>> = (0..1200)
             .into_par_iter()
-            .map(|seed| together(runs, seed))
+            .map(|seed| check_common_scatter(runs, seed))
             .collect();
         let held = trials.iter().flatten().filter(|h| **h).count() as f64 / 3600.0;
         eprintln!("{runs} runs: {:.1} % held", 100.0 * held);

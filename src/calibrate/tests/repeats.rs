@@ -1,6 +1,6 @@
 //! Runs alike: what they have in common, runs weighed by sums alone, a column that the loads depend on. Truth is drawn; coverage and width are held.
 
-use super::glued::normal;
+use super::glued::draw_normal;
 use crate::calibrate::*;
 use crate::linalg::Matrix;
 use crate::recovery::{ErrorModel, Readings, estimate};
@@ -16,14 +16,14 @@ const GAUGES: usize = 8;
 pub(super) fn lanes(random: &mut ChaCha8Rng) -> Matrix {
     Matrix::from_fn(GAUGES, 2, |g, l| {
         let near = if l == 0 { GAUGES - g } else { g + 1 };
-        1e-7 * (0.2 + near as f64 / GAUGES as f64) * (1.0 + 0.1 * normal(random))
+        1e-7 * (0.2 + near as f64 / GAUGES as f64) * (1.0 + 0.1 * draw_normal(random))
     })
 }
 
 pub(super) fn task(k: usize, runs: Vec<KnownRun>, model: Option<ModelPrior>) -> Task {
     Task {
         gauges: (0..GAUGES).map(|g| format!("G{g}")).collect(),
-        loads: (0..k).map(|l| Load::named(format!("L{l}"))).collect(),
+        loads: (0..k).map(|l| Load::from_name(format!("L{l}"))).collect(),
         noise: NOISE,
         model,
         runs,
@@ -35,7 +35,11 @@ pub(super) fn task(k: usize, runs: Vec<KnownRun>, model: Option<ModelPrior>) -> 
 }
 
 /// Values of one more run with their sigma and the half width of the interval: each load, then the sum.
-pub(super) fn weighed(s: &Sensitivity, strain: Vec<f64>, noise: f64) -> Vec<[f64; 3]> {
+pub(super) fn recover_with_intervals(
+    s: &Sensitivity,
+    strain: Vec<f64>,
+    noise: f64,
+) -> Vec<[f64; 3]> {
     let readings = Readings {
         run: "new".into(),
         strain,
@@ -85,7 +89,9 @@ fn passages(aside: f64, passage: f64, told: bool, seed: u64) -> Vec<[f64; 3]> {
     let strain = |f: [f64; 2], off: f64, random: &mut ChaCha8Rng| -> Vec<f64> {
         let moved = [f[0] - off, f[1] + off];
         (0..GAUGES)
-            .map(|g| (0..2).map(|l| s[(g, l)] * moved[l]).sum::<f64>() + NOISE * normal(random))
+            .map(|g| {
+                (0..2).map(|l| s[(g, l)] * moved[l]).sum::<f64>() + NOISE * draw_normal(random)
+            })
             .collect()
     };
     let mut runs = Vec::new();
@@ -93,14 +99,14 @@ fn passages(aside: f64, passage: f64, told: bool, seed: u64) -> Vec<[f64; 3]> {
         let weight = random.random_range(150.0..400.0);
         let west = f64::from(group) / 5.0;
         let f = [weight * west, weight * (1.0 - west)];
-        let of_group = aside * weight * normal(&mut random);
+        let of_group = aside * weight * draw_normal(&mut random);
         for _ in 0..5 {
-            let off = of_group + passage * weight * normal(&mut random);
+            let off = of_group + passage * weight * draw_normal(&mut random);
             runs.push(KnownRun {
                 run: format!("R{}", runs.len()),
                 strain: strain(f, off, &mut random),
                 noise_factor: 1.0,
-                loads: KnownLoads::exact(f.to_vec()),
+                loads: KnownLoads::from_exact(f.to_vec()),
                 group: if told { group as usize } else { runs.len() },
             });
         }
@@ -108,11 +114,11 @@ fn passages(aside: f64, passage: f64, told: bool, seed: u64) -> Vec<[f64; 3]> {
     let weight = random.random_range(150.0..400.0);
     let west = random.random_range(0.0..1.0);
     let f = [weight * west, weight * (1.0 - west)];
-    let off = weight * aside.hypot(passage) * normal(&mut random);
+    let off = weight * aside.hypot(passage) * draw_normal(&mut random);
     let read = strain(f, off, &mut random);
     let c = calibrate(&task(2, runs, None)).unwrap();
     let truth = [f[0], f[1], weight];
-    let found = weighed(&c.sensitivity, read, NOISE);
+    let found = recover_with_intervals(&c.sensitivity, read, NOISE);
     found
         .iter()
         .zip(truth)
@@ -179,18 +185,18 @@ enum Apart {
 /// would have it.
 fn by_sums(apart: Apart, seed: u64) -> Vec<[f64; 3]> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let model = Matrix::from_fn(GAUGES, 3, |_, _| 1e-6 * normal(&mut random));
+    let model = Matrix::from_fn(GAUGES, 3, |_, _| 1e-6 * draw_normal(&mut random));
     let gains: Vec<f64> = (0..GAUGES)
-        .map(|_| 1.0 + 0.03 * normal(&mut random))
+        .map(|_| 1.0 + 0.03 * draw_normal(&mut random))
         .collect();
     let s = Matrix::from_fn(GAUGES, 3, |g, l| {
-        model[(g, l)] * gains[g] * (1.0 + 0.02 * normal(&mut random))
+        model[(g, l)] * gains[g] * (1.0 + 0.02 * draw_normal(&mut random))
     });
     let draw = |random: &mut ChaCha8Rng| [(); 3].map(|()| random.random_range(0.0..30.0));
     let read = |f: [f64; 3], random: &mut ChaCha8Rng| -> Vec<f64> {
         let row = |g: usize| (0..3).map(|l| s[(g, l)] * f[l]).sum::<f64>();
         (0..GAUGES)
-            .map(|g| row(g) + NOISE * normal(random))
+            .map(|g| row(g) + NOISE * draw_normal(random))
             .collect()
     };
     let run = |i: usize, strain: Vec<f64>, loads: KnownLoads| KnownRun {
@@ -209,11 +215,11 @@ fn by_sums(apart: Apart, seed: u64) -> Vec<[f64; 3]> {
     ];
     for f in bays.into_iter().filter(|_| apart == Apart::Runs) {
         let strain = read(f, &mut random);
-        runs.push(run(runs.len(), strain, KnownLoads::exact(f.to_vec())));
+        runs.push(run(runs.len(), strain, KnownLoads::from_exact(f.to_vec())));
     }
     for _ in 0..16 {
         let f = draw(&mut random);
-        let total: f64 = f.iter().sum::<f64>() + 0.1 * normal(&mut random);
+        let total: f64 = f.iter().sum::<f64>() + 0.1 * draw_normal(&mut random);
         let strain = read(f, &mut random);
         runs.push(run(runs.len(), strain, by_sum(total, 0.1)));
     }
@@ -229,7 +235,7 @@ fn by_sums(apart: Apart, seed: u64) -> Vec<[f64; 3]> {
     let untold = if apart == Apart::Runs { 0 } else { 2 };
     assert_eq!(c.undetermined.len(), untold, "{apart:?}");
     let f = draw(&mut random);
-    let found = weighed(&c.sensitivity, read(f, &mut random), NOISE);
+    let found = recover_with_intervals(&c.sensitivity, read(f, &mut random), NOISE);
     let truth = [f[0], f[1], f[2], f.iter().sum()];
     let each = found.iter().zip(truth);
     let mut out: Vec<[f64; 3]> = each
@@ -292,16 +298,16 @@ fn slope_of(slope: f64, seed: u64) -> [f64; 2] {
         };
         // Both lanes at one mean speed: a slope is a share of what loads are at the mean.
         let speed = 20.0 + 4.0 * f64::from(i / 2) * 2.0;
-        let size = (1.0 + slope * (speed - 48.0)) * (1.0 + 0.02 * normal(&mut random));
+        let size = (1.0 + slope * (speed - 48.0)) * (1.0 + 0.02 * draw_normal(&mut random));
         let row = |g: usize| (0..2).map(|l| s[(g, l)] * f[l] * size).sum::<f64>();
         column.push(speed);
         runs.push(KnownRun {
             run: format!("R{i}"),
             strain: (0..GAUGES)
-                .map(|g| row(g) + NOISE * normal(&mut random))
+                .map(|g| row(g) + NOISE * draw_normal(&mut random))
                 .collect(),
             noise_factor: 1.0,
-            loads: KnownLoads::exact(f.to_vec()),
+            loads: KnownLoads::from_exact(f.to_vec()),
             group: (i % 2) as usize,
         });
     }

@@ -1,6 +1,6 @@
 //! Structures made of random numbers, whose truth is known.
 
-use super::glued::normal;
+use super::glued::draw_normal;
 use crate::calibrate::*;
 use crate::linalg::Matrix;
 use crate::recovery::{ErrorModel, Readings, estimate};
@@ -24,19 +24,23 @@ fn trial(n: usize, k: usize, m: usize, seed: u64) -> Trial {
     const NOISE: f64 = 1e-6;
     const LOAD: f64 = 1e4;
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let model = Matrix::from_fn(n, k, |_, _| 1e-8 * normal(&mut random));
-    let gains: Vec<f64> = (0..n).map(|_| 1.0 + 0.05 * normal(&mut random)).collect();
+    let model = Matrix::from_fn(n, k, |_, _| 1e-8 * draw_normal(&mut random));
+    let gains: Vec<f64> = (0..n)
+        .map(|_| 1.0 + 0.05 * draw_normal(&mut random))
+        .collect();
     let truth = Matrix::from_fn(n, k, |g, l| {
-        model[(g, l)] * gains[g] * (1.0 + 0.02 * normal(&mut random))
+        model[(g, l)] * gains[g] * (1.0 + 0.02 * draw_normal(&mut random))
     });
     let draw = |random: &mut ChaCha8Rng| -> Vec<f64> {
         (0..k)
-            .map(|_| LOAD * (1.0 + 0.5 * normal(random)))
+            .map(|_| LOAD * (1.0 + 0.5 * draw_normal(random)))
             .collect()
     };
     let read = |f: &[f64], random: &mut ChaCha8Rng| -> Vec<f64> {
         (0..n)
-            .map(|g| (0..k).map(|l| truth[(g, l)] * f[l]).sum::<f64>() + NOISE * normal(random))
+            .map(|g| {
+                (0..k).map(|l| truth[(g, l)] * f[l]).sum::<f64>() + NOISE * draw_normal(random)
+            })
             .collect()
     };
     let runs: Vec<KnownRun> = (0..m)
@@ -46,12 +50,12 @@ fn trial(n: usize, k: usize, m: usize, seed: u64) -> Trial {
                 run: format!("R{i}"),
                 strain: read(&f, &mut random),
                 noise_factor: 1.0,
-                loads: KnownLoads::exact(f),
+                loads: KnownLoads::from_exact(f),
                 group: i,
             }
         })
         .collect();
-    let loads: Vec<Load> = (0..k).map(|l| Load::named(format!("L{l}"))).collect();
+    let loads: Vec<Load> = (0..k).map(|l| Load::from_name(format!("L{l}"))).collect();
     let task = |prior: bool| Task {
         gauges: (0..n).map(|g| format!("G{g}")).collect(),
         loads: loads.clone(),

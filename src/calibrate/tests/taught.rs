@@ -1,6 +1,6 @@
 //! Record of a calibration on its runs: whether each run had one load alone.
 
-use super::glued::normal;
+use super::glued::draw_normal;
 use super::repeats::lanes;
 use crate::calibrate::*;
 use crate::sensitivity::Load;
@@ -15,24 +15,24 @@ fn task(more: &[[f64; 2]]) -> Task {
     let s = lanes(&mut random);
     let alone = (0..6).map(|i| if i < 3 { [200.0, 0.0] } else { [0.0, 200.0] });
     let runs = alone.chain(more.iter().copied()).enumerate().map(|(i, f)| {
-        let size = 1.0 + 0.03 * normal(&mut random);
+        let size = 1.0 + 0.03 * draw_normal(&mut random);
         let clean = (0..s.nrows()).map(|g| s[(g, 0)] * f[0] + s[(g, 1)] * f[1]);
         let strain: Vec<f64> = clean.map(|e| size * e).collect();
         KnownRun {
             run: format!("R{i}"),
             strain: strain
                 .into_iter()
-                .map(|e| e + NOISE * normal(&mut random))
+                .map(|e| e + NOISE * draw_normal(&mut random))
                 .collect(),
             noise_factor: 1.0,
-            loads: KnownLoads::exact(f.to_vec()),
+            loads: KnownLoads::from_exact(f.to_vec()),
             group: i,
         }
     });
     Task {
         runs: runs.collect(),
         gauges: (0..s.nrows()).map(|g| format!("G{g}")).collect(),
-        loads: ["west", "east"].map(Load::named).to_vec(),
+        loads: ["west", "east"].map(Load::from_name).to_vec(),
         noise: NOISE,
         model: None,
         sums: Vec::new(),

@@ -52,13 +52,13 @@ fn task(times: usize, seed: u64) -> Task {
             run: format!("R{}", i + 1),
             strain: strain.collect(),
             noise_factor: 1.0,
-            loads: KnownLoads::exact(f.to_vec()),
+            loads: KnownLoads::from_exact(f.to_vec()),
             group: i / times,
         }
     });
     Task {
         gauges: (0..PLATE.len()).map(|g| format!("G{g}")).collect(),
-        loads: ["FZ", "FX", "MX"].map(Load::named).to_vec(),
+        loads: ["FZ", "FX", "MX"].map(Load::from_name).to_vec(),
         noise: NOISE,
         model: Some(ModelPrior {
             values: Matrix::from_fn(PLATE.len(), 3, |g, l| 1e-6 * PLATE[g][l]),

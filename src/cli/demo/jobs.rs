@@ -36,7 +36,7 @@ const MODEL: f64 = 0.02;
 
 /// kN, kN m, m, kg, MPa.
 pub(super) fn report_units() -> ReportUnits {
-    let mut units = ReportUnits::of(crate::units::UnitSystem::MmTS);
+    let mut units = ReportUnits::from_system(crate::units::UnitSystem::MmTS);
     let named = |quantity, name, own| find_unit(quantity, name).unwrap_or(own);
     units.force = named(Quantity::Force, "kN", units.force);
     units.moment = named(Quantity::Moment, "kN m", units.moment);
@@ -74,7 +74,7 @@ fn payload_loads() -> String {
         + &load("payload.MY", PAYLOAD, "MY", 1.0e7)
 }
 
-fn measured(strain: &str) -> String {
+fn measured_section(strain: &str) -> String {
     let held: Vec<String> = HOLD_OUT.iter().map(|r| format!("\"{r}\"")).collect();
     format!(
         "[gauges]\nfile = \"2-place/gauges.csv\"\n\n[measured]\nstrain = \"{strain}\"\nnoise_microstrain = {:.1}\n\
@@ -113,7 +113,7 @@ pub(super) fn plan() -> String {
 
 /// Nine loads from strain.
 pub(super) fn recover(strain: &str) -> String {
-    HEAD.to_owned() + &wheel_loads() + &payload_loads() + &measured(strain)
+    HEAD.to_owned() + &wheel_loads() + &payload_loads() + &measured_section(strain)
 }
 
 /// Measured wheel forces against strain.
@@ -121,7 +121,7 @@ pub(super) fn reconcile() -> String {
     let zones: Vec<String> = ZONES.iter().map(|(n, p)| format!("{n} = [{p}]")).collect();
     HEAD.to_owned()
         + &wheel_loads()
-        + &measured("strain.csv")
+        + &measured_section("strain.csv")
         + &runs()
         + &format!(
             "[payload]\ngrid = {PAYLOAD}\nposition = \"known\"\nweight_in_model = true\n\n[reconcile]\npath = \"static\"\n\
@@ -135,7 +135,7 @@ pub(super) fn payload(strain: &str) -> String {
     HEAD.to_owned()
         + &wheel_loads()
         + &payload_loads()
-        + &measured(strain)
+        + &measured_section(strain)
         + &runs()
         + &format!(
             "[payload]\ngrid = {PAYLOAD}\nposition = \"free\"\nuse = [\"strain\", \"reactions\"]\n"
@@ -147,6 +147,6 @@ pub(super) fn respond(strain: &str) -> String {
     HEAD.to_owned()
         + &wheel_loads()
         + &payload_loads()
-        + &measured(strain)
+        + &measured_section(strain)
         + "[respond]\nhottest = 12\n"
 }

@@ -136,13 +136,13 @@ impl Report for Outcome<Story> {
 /// A folder that can't be written.
 pub fn story(folder: &Path, cx: &Context) -> Result<Outcome<Story>, Faults> {
     let mut work = Work::new(cx);
-    let units = StatedUnits::of(UnitSystem::MmTS, &jobs::report_units());
-    let story = told(folder, &mut work)?;
+    let units = StatedUnits::from_units(UnitSystem::MmTS, &jobs::report_units());
+    let story = run_story(folder, &mut work)?;
     Ok(work.finish(units, story))
 }
 
 /// Solves, and chooses the gauges.
-fn planned(
+fn solve_and_place(
     folder: &Path,
     work: &mut Work,
     story: &mut Vec<Chapter>,
@@ -169,7 +169,7 @@ fn planned(
     });
     let place = write(folder, "place.toml", &jobs::plan())?;
     let step = play(work, "place", folder, "2-place", &place)?;
-    let gauges = simulated_measurements::Glued::of(&step.result);
+    let gauges = simulated_measurements::Glued::read_gauges(&step.result);
     story.push(Chapter {
         folder: "2-place",
         title: "Place",
@@ -193,7 +193,7 @@ fn planned(
 }
 
 /// Payload and stress with the corrected gauge; the error of the payload.
-fn used(
+fn run_payload_and_respond(
     folder: &Path,
     work: &mut Work,
     story: &mut Vec<Chapter>,
@@ -247,11 +247,11 @@ fn used(
     Ok(off)
 }
 
-fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
+fn run_story(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
     Output::check_free(folder, &INPUT_NAMES)?;
-    std::fs::create_dir_all(folder).map_err(|e| unwritable(folder, &e))?;
+    std::fs::create_dir_all(folder).map_err(|e| unwritable_folder_fault(folder, &e))?;
     let mut story: Vec<Chapter> = Vec::new();
-    let gauges = planned(folder, work, &mut story)?;
+    let gauges = solve_and_place(folder, work, &mut story)?;
     // The truck stands on uneven ground, its gauge factors scatter, its readings are noisy, and two wires are swapped.
     let measured = work.stage("drive the truck", |_| {
         simulated_measurements::simulate(&gauges)
@@ -338,7 +338,7 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         command: "recover",
         step,
     });
-    let off = used(folder, work, &mut story, &corrected, &measured)?;
+    let off = run_payload_and_respond(folder, work, &mut story, &corrected, &measured)?;
     let step = |c: &Chapter| StepTold {
         command: c.command,
         folder: c.folder,
@@ -370,10 +370,10 @@ fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, Faults> {
     Ok(folder.join(name))
 }
 
-fn unwritable(path: &Path, e: &std::io::Error) -> Fault {
+fn unwritable_folder_fault(path: &Path, e: &std::io::Error) -> Fault {
     let shown = path.display().to_string();
     let remedy = "name another folder: strainbridge demo DIR";
-    Fault::of(
+    Fault::new(
         shown,
         "output",
         format!("the folder cannot be written ({e})"),
@@ -394,22 +394,25 @@ fn play(
     work.stage(command, |_| {
         let job = Job::read(job, cx.files)?;
         match command {
-            "solve" => asked(&workflow::solve::solve(&job, solving(), &cx)?, &folder),
-            "place" => asked(&workflow::place::place(&job, &cx)?, &folder),
+            "solve" => save_step(
+                &workflow::solve::solve(&job, solve_options(), &cx)?,
+                &folder,
+            ),
+            "place" => save_step(&workflow::place::place(&job, &cx)?, &folder),
             "recover" => Ok(step_of(&recover_and_save(&job, &cx, &folder)?.0)),
             "reconcile" => {
                 let mut found = workflow::reconcile::reconcile(&job, &cx)?;
                 found.answer.put_into(&folder);
-                asked(&found, &folder)
+                save_step(&found, &folder)
             }
-            "payload" => asked(&workflow::payload::payload(&job, &cx)?, &folder),
-            _ => asked(&workflow::respond::respond(&job, &cx)?, &folder),
+            "payload" => save_step(&workflow::payload::payload(&job, &cx)?, &folder),
+            _ => save_step(&workflow::respond::respond(&job, &cx)?, &folder),
         }
     })
 }
 
 /// An outcome written into its folder.
-fn asked<A: Answer>(outcome: &Outcome<A>, folder: &Path) -> Result<Step, Faults>
+fn save_step<A: Answer>(outcome: &Outcome<A>, folder: &Path) -> Result<Step, Faults>
 where
     Outcome<A>: Report,
 {
@@ -430,7 +433,7 @@ where
 }
 
 /// Returns the options of the solver for the demo.
-fn solving() -> SolveOptions {
+fn solve_options() -> SolveOptions {
     SolveOptions {
         modes: workflow::solve::MODES,
         ..SolveOptions::default()

@@ -5,7 +5,7 @@ use super::jobs::{NOISE, PAYLOAD, WHEELS};
 use crate::fe::floor::{FloorLoad, Standing, solve_standing};
 use crate::fe::strain_tensor::Surface;
 use crate::fe::{CaseResult, UnitLoad};
-use crate::gauge::{CornerRows, Gauge, GaugeSpec, build, on_refined, reading};
+use crate::gauge::{CornerRows, Gauge, GaugeSpec, build, gauge_reading, on_refined};
 use crate::host::fault::{Fault, Faults};
 use crate::model::{GridIx, Model, Vec3};
 use crate::report::figure::{Ends, Figure, intervals};
@@ -27,7 +27,7 @@ pub(super) struct Glued {
 
 impl Glued {
     /// The gauges of a placement's result.
-    pub(super) fn of(result: &Value) -> Vec<Self> {
+    pub(super) fn read_gauges(result: &Value) -> Vec<Self> {
         let number = |v: &Value| v.as_f64().unwrap_or(f64::NAN);
         result["gauges"]
             .as_array()
@@ -156,7 +156,7 @@ const SEED: u64 = 11;
 /// Mistakes of the program only: the deck is its own.
 pub(super) fn simulate(glued: &[Glued]) -> Result<Simulated, Faults> {
     let program = |wrong: String| {
-        Faults::from(Fault::of(
+        Faults::from(Fault::new(
             "truck.bdf",
             "demo",
             wrong,
@@ -200,7 +200,7 @@ pub(super) fn simulate(glued: &[Glued]) -> Result<Simulated, Faults> {
         .collect();
     // The truck itself is finer than its model: what it reads comes from a mesh half as wide.
     let real = model
-        .refined()
+        .refine_shells()
         .ok_or_else(|| program("the mesh cannot be refined".into()))?;
     let standing = solve_standing(&real.model, 2, &wheels, &loads, None)
         .map_err(|e| program(e.to_string()))?;
@@ -210,7 +210,7 @@ pub(super) fn simulate(glued: &[Glued]) -> Result<Simulated, Faults> {
             let spec = GaugeSpec {
                 surface: Some(g.surface),
                 direction: Some(g.direction),
-                ..GaugeSpec::on(g.name.clone(), model.shell_ix(g.element)?)
+                ..GaugeSpec::place_on_shell(g.name.clone(), model.shell_ix(g.element)?)
             };
             let gauge = build(&model, &spec, CornerRows::Absent)
                 .ok()?
@@ -252,8 +252,8 @@ pub(super) fn simulate(glued: &[Glued]) -> Result<Simulated, Faults> {
         let reactions = reactions(&standing, &turns, at, &amounts, &heights);
         let _ = write!(simulated.strain_csv, "\n{run}");
         for (gauge, gain) in gauges.iter().zip(&gains) {
-            let strain = superposed(gauge, &standing.contacts, &reactions)
-                + superposed(gauge, &standing.others, &amounts);
+            let strain = superpose_strain(gauge, &standing.contacts, &reactions)
+                + superpose_strain(gauge, &standing.others, &amounts);
             let read = gain * strain / MICROSTRAIN + NOISE.0 * normal();
             let _ = write!(simulated.strain_csv, ",{read:.2}");
         }
@@ -279,7 +279,8 @@ fn reads_most(gauges: &[Gauge], standing: &Standing, turns: &[(Vec3, Vec3); 3], 
     let amounts = [-1.0, 0.0, 0.0];
     let reactions = reactions(standing, turns, at, &amounts, &[0.0; WHEELS.len()]);
     let reading = |g: &Gauge| {
-        superposed(g, &standing.contacts, &reactions) + superposed(g, &standing.others, &amounts)
+        superpose_strain(g, &standing.contacts, &reactions)
+            + superpose_strain(g, &standing.others, &amounts)
     };
     let sizes = gauges.iter().map(|g| reading(g).abs()).enumerate();
     sizes
@@ -313,10 +314,10 @@ fn reactions(
     sum
 }
 
-fn superposed(gauge: &Gauge, cases: &[CaseResult], amounts: &[f64]) -> f64 {
+fn superpose_strain(gauge: &Gauge, cases: &[CaseResult], amounts: &[f64]) -> f64 {
     cases
         .iter()
         .zip(amounts)
-        .map(|(c, a)| a * reading(gauge, c).unwrap_or(0.0))
+        .map(|(c, a)| a * gauge_reading(gauge, c).unwrap_or(0.0))
         .sum()
 }

@@ -145,7 +145,7 @@ pub(crate) fn reduce(
             } => mean::relations(model, axes, rigid, (*reference, *refc), arms, um, claim),
             RigidKind::Equations { equations, .. } => Ok(equations
                 .iter()
-                .filter_map(|terms| following(terms, claim))
+                .filter_map(|terms| express_first_term(terms, claim))
                 .collect()),
         };
         claims.push(Claim {
@@ -164,7 +164,7 @@ pub(crate) fn reduce(
                 card: format!("MPC {}", set.sid),
                 at: *at,
             });
-            match following(terms, claim) {
+            match express_first_term(terms, claim) {
                 Some(relation) => relations.push(relation),
                 None => refused.push(Refusal {
                     card: format!("MPC {}", set.sid),
@@ -182,7 +182,7 @@ pub(crate) fn reduce(
 }
 
 /// The first term by the others; `None` where it has no coefficient.
-fn following(terms: &[(GridIx, u8, f64)], claim: u32) -> Option<Relation> {
+fn express_first_term(terms: &[(GridIx, u8, f64)], claim: u32) -> Option<Relation> {
     let (&(g, i, a), rest) = terms.split_first()?;
     (a != 0.0).then(|| Relation {
         dependent: 6 * g.0 + u32::from(i),

@@ -26,8 +26,8 @@ pub fn check_ids(model: &Model, name: &str, file: &ResultsFile) -> Vec<Finding> 
     let ours_e = element_ids(model);
     let ours_g: BTreeSet<u32> = model.grids.iter().map(|g| g.id).collect();
     let mut findings = Vec::new();
-    lacking(&mut findings, name, "element", &elements, &ours_e);
-    lacking(&mut findings, name, "grid", &grids, &ours_g);
+    report_missing_ids(&mut findings, name, "element", &elements, &ours_e);
+    report_missing_ids(&mut findings, name, "grid", &grids, &ours_g);
     if !grids.is_empty() && !grids.is_disjoint(&ours_g) {
         let absent: Vec<u32> = ours_g.difference(&grids).copied().collect();
         if !absent.is_empty() {
@@ -121,7 +121,7 @@ fn element_ids(model: &Model) -> BTreeSet<u32> {
 }
 
 /// A finding for what the file has and the deck lacks: an error where they have nothing in common.
-fn lacking(
+fn report_missing_ids(
     findings: &mut Vec<Finding>,
     name: &str,
     what: &str,

@@ -21,7 +21,7 @@ pub struct StrainDifference {
 impl StrainDifference {
     /// Compares the strain of shells at the centre of both surfaces, and of bars at their stations. Elements without strain in one of the
     /// fields are not compared; `None` if no element with strain is in both.
-    pub fn between(results: &CaseResult, solved: &CaseResult) -> Option<Self> {
+    pub fn compare(results: &CaseResult, solved: &CaseResult) -> Option<Self> {
         let shells = sums_of_shells(&results.shells, &solved.shells);
         let mean = shells.iter().map(|s| s.1.larger).sum::<f64>() / shells.len().max(1) as f64;
         let strained = shells.iter().filter(|s| s.1.larger > mean / 2.0);

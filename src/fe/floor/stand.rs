@@ -27,7 +27,7 @@ pub fn solve_standing(
     others: &[UnitLoad],
     rate: Option<f64>,
 ) -> Result<Standing, FloorError> {
-    let motions = Support::free(model).by_springs;
+    let motions = Support::without_spc(model).by_springs;
     if motions > 0 {
         let springs = springs_in_words(model);
         return Err(FloorError::Springs { motions, springs });

@@ -19,7 +19,7 @@ pub(super) fn merge(solutions: Vec<Solution>, repeated: &[Repeated]) -> Solution
         for case in solution.cases {
             let mut cases = all.cases.iter_mut();
             match cases.find(|c| c.subcase == case.subcase && !differs(c.subcase)) {
-                Some(same) => complete(same, case),
+                Some(same) => complete_case(same, case),
                 None => all.cases.push(case),
             }
         }
@@ -29,7 +29,7 @@ pub(super) fn merge(solutions: Vec<Solution>, repeated: &[Repeated]) -> Solution
 }
 
 /// Adds elements, displacements and label to a case that only another case has.
-pub fn complete(case: &mut CaseResult, other: CaseResult) {
+pub fn complete_case(case: &mut CaseResult, other: CaseResult) {
     if case.label.is_empty() {
         case.label = other.label;
     }
@@ -45,7 +45,7 @@ fn complete_shells(shells: &mut ShellField, other: ShellField) {
         *shells = other;
         return;
     }
-    let order = joined(&shells.elements, &other.elements);
+    let order = join_element_lists(&shells.elements, &other.elements);
     if order.iter().all(|(_, of_other, _)| !of_other) {
         return;
     }
@@ -53,9 +53,9 @@ fn complete_shells(shells: &mut ShellField, other: ShellField) {
     let has_corners = !shells.corners.is_empty() && !other.corners.is_empty();
     *shells = ShellField {
         elements: Arc::new(order.iter().map(|o| o.0).collect()),
-        centre: picked(&order, &shells.centre, &other.centre),
+        centre: pick_values(&order, &shells.centre, &other.centre),
         corners: match has_corners {
-            true => picked(&order, &shells.corners, &other.corners),
+            true => pick_values(&order, &shells.corners, &other.corners),
             false => Vec::new(),
         },
         from_stress: shells.from_stress || other.from_stress,
@@ -67,14 +67,14 @@ fn complete_beams(beams: &mut BeamField, other: BeamField) {
         *beams = other;
         return;
     }
-    let order = joined(&beams.elements, &other.elements);
+    let order = join_element_lists(&beams.elements, &other.elements);
     if order.iter().all(|(_, of_other, _)| !of_other) {
         return;
     }
     *beams = BeamField {
         elements: Arc::new(order.iter().map(|o| o.0).collect()),
-        stations: picked(&order, &beams.stations, &other.stations),
-        axial: picked(&order, &beams.axial, &other.axial),
+        stations: pick_values(&order, &beams.stations, &other.stations),
+        axial: pick_values(&order, &beams.axial, &other.axial),
         solved: None,
         stations_alone: beams
             .stations_alone
@@ -85,7 +85,7 @@ fn complete_beams(beams: &mut BeamField, other: BeamField) {
 }
 
 /// The elements of both lists, ascending, each with whether it is taken from the other list and its place there.
-fn joined<T: Copy + Ord>(own: &[T], other: &[T]) -> Vec<(T, bool, usize)> {
+fn join_element_lists<T: Copy + Ord>(own: &[T], other: &[T]) -> Vec<(T, bool, usize)> {
     let lacks = |e: &T| own.binary_search(e).is_err();
     let own_places = own.iter().enumerate().map(|(i, e)| (*e, false, i));
     let others = other.iter().enumerate().filter(|(_, e)| lacks(e));
@@ -96,7 +96,7 @@ fn joined<T: Copy + Ord>(own: &[T], other: &[T]) -> Vec<(T, bool, usize)> {
     all
 }
 
-fn picked<T, V: Clone>(order: &[(T, bool, usize)], own: &[V], other: &[V]) -> Vec<V> {
+fn pick_values<T, V: Clone>(order: &[(T, bool, usize)], own: &[V], other: &[V]) -> Vec<V> {
     let list = |of_other: bool| if of_other { other } else { own };
     let value = |o: &(T, bool, usize)| list(o.1).get(o.2).cloned();
     order.iter().filter_map(value).collect()

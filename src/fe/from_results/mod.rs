@@ -16,7 +16,7 @@ mod repeated;
 mod shells;
 mod tally;
 
-pub use merge::complete;
+pub use merge::complete_case;
 pub use read::{
     Displacements, ReadOptions, solution_from_file, solution_from_results, subcase_labels,
 };

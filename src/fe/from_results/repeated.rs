@@ -55,7 +55,7 @@ pub fn find_repeated_results(
             continue;
         }
         let mut times: BTreeMap<usize, usize> = BTreeMap::new();
-        for at in conflicting(files, &blocks) {
+        for at in find_conflicting_files(files, &blocks) {
             *times.entry(at).or_default() += 1;
         }
         let entry = found.entry((subcase, quantity)).or_default();
@@ -98,7 +98,7 @@ fn key_of(block: &Block) -> Option<Key> {
 }
 
 /// The file of each of these blocks that shares rows with another one and has other values there.
-fn conflicting(files: &[&ResultsFile], blocks: &[(usize, usize)]) -> Vec<usize> {
+fn find_conflicting_files(files: &[&ResultsFile], blocks: &[(usize, usize)]) -> Vec<usize> {
     let decoded = blocks.iter().filter_map(|(f, b)| {
         let file = files.get(*f)?;
         Some((*f, file.precision(), file.rows(*b).ok()?))
@@ -106,7 +106,7 @@ fn conflicting(files: &[&ResultsFile], blocks: &[(usize, usize)]) -> Vec<usize> 
     let decoded: Vec<(usize, f64, Rows)> = decoded.collect();
     let largest = decoded
         .iter()
-        .flat_map(|d| compared(&d.2).flat_map(|r| r.1));
+        .flat_map(|d| rows_to_compare(&d.2).flat_map(|r| r.1));
     let largest = largest.fold(0.0_f64, |most, v| {
         if v.is_finite() {
             most.max(v.abs())
@@ -117,7 +117,7 @@ fn conflicting(files: &[&ResultsFile], blocks: &[(usize, usize)]) -> Vec<usize> 
     let mut first: HashMap<(RowId, usize), (usize, &[f64])> = HashMap::new();
     let mut conflict = vec![false; decoded.len()];
     for (at, (_, precision, rows)) in decoded.iter().enumerate() {
-        for (key, values) in compared(rows) {
+        for (key, values) in rows_to_compare(rows) {
             let Some((other, before)) = first.get(&key).copied() else {
                 first.insert(key, (at, values));
                 continue;
@@ -141,7 +141,7 @@ fn conflicting(files: &[&ResultsFile], blocks: &[(usize, usize)]) -> Vec<usize> 
 }
 
 /// Rows with what they are compared by: id and number among rows of one id (stations of beams), values without those derived of others.
-fn compared(rows: &Rows) -> impl Iterator<Item = ((RowId, usize), &[f64])> {
+fn rows_to_compare(rows: &Rows) -> impl Iterator<Item = ((RowId, usize), &[f64])> {
     // The distance of a fibre comes first in rows of shells; angle and principal values follow the components.
     let columns = match rows.columns.first() {
         Some(&"fiber") => 1..4,

@@ -74,7 +74,7 @@ impl<'m> ShellCollector<'m> {
                 }
             };
             let Some(target) = target else { continue };
-            self.put(target, first.at, &fibres, tally);
+            self.store_fibres(target, first.at, &fibres, tally);
         }
     }
 
@@ -94,7 +94,7 @@ impl<'m> ShellCollector<'m> {
         let z = self.model.fibres(shell);
         let law = match block.quantity {
             Quantity::Stress => {
-                let law = isotropic(self.model, shell);
+                let law = isotropic_constants(self.model, shell);
                 tally.add(
                     if law.is_some() {
                         Met::ShellFromStress
@@ -134,7 +134,7 @@ impl<'m> ShellCollector<'m> {
         })
     }
 
-    fn put(&mut self, target: Target, at: u32, fibres: &[[f64; 4]; 2], tally: &mut Tally) {
+    fn store_fibres(&mut self, target: Target, at: u32, fibres: &[[f64; 4]; 2], tally: &mut Tally) {
         if at == 0 {
             if let Some(centre) = self.centre.get_mut(target.slot) {
                 *centre = target.strain(fibres, None);
@@ -238,7 +238,7 @@ impl Target {
         match self.law {
             Law::Fibre => values,
             Law::Curvature(z) => z
-                .at(corner)
+                .distances_at(corner)
                 .map(|z| strain_from_curvature(values[0], values[1], z)),
             Law::Stress([e, g, nu]) => values.map(|s| strain_from_stress(s, e, g, nu)),
         }
@@ -246,7 +246,7 @@ impl Target {
 }
 
 /// E, G, nu of a shell that is one isotropic material in membrane and bending.
-fn isotropic(model: &Model, shell: &Shell) -> Option<[f64; 3]> {
+fn isotropic_constants(model: &Model, shell: &Shell) -> Option<[f64; 3]> {
     let property = model.shell_properties.get(shell.property.us())?;
     let ShellKind::Homogeneous {
         membrane, bending, ..

@@ -74,7 +74,7 @@ fn codes(solution: &Solution) -> Vec<&str> {
     solution.findings.iter().map(|f| f.code).collect()
 }
 
-fn close(a: [f64; 3], b: [f64; 3]) {
+fn assert_close(a: [f64; 3], b: [f64; 3]) {
     a.iter()
         .zip(b)
         .for_each(|(x, y)| assert!((x - y).abs() < 1e-12, "{a:?} {b:?}"));
@@ -99,8 +99,8 @@ fn fibre_and_curvature_form_of_one_state_give_the_same_strain_at_the_surfaces() 
     let (a, b) = (solve(&fibre), solve(&curvature));
     for s in [&a, &b] {
         let [bottom, top] = s.cases[0].shells.centre[0];
-        close(bottom, at(-0.2));
-        close(top, at(0.2));
+        assert_close(bottom, at(-0.2));
+        assert_close(top, at(0.2));
         assert!(!codes(s).contains(&"fibre-distance-differs"));
     }
     assert_eq!(a.cases[0].label, "PULL");
@@ -121,8 +121,8 @@ fn elements_come_out_ascending_whatever_the_order_of_blocks() {
     );
     let shells = &solve(&text).cases[0].shells;
     assert!(shells.elements.is_sorted());
-    close(shells.centre[0][0], [1e-4; 3]);
-    close(shells.centre[1][0], [2e-4; 3]);
+    assert_close(shells.centre[0][0], [1e-4; 3]);
+    assert_close(shells.centre[1][0], [2e-4; 3]);
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn strain_comes_from_stress_only_where_there_is_no_strain_and_says_so() {
     let alone = solve(&stress);
     assert!(alone.cases[0].shells.from_stress && codes(&alone).contains(&"strain-from-stress"));
     // E 200000, nu 0.25, G 80000.
-    close(alone.cases[0].shells.centre[0][0], [1e-3, -2.5e-4, 1e-3]);
+    assert_close(alone.cases[0].shells.centre[0][0], [1e-3, -2.5e-4, 1e-3]);
     let strain = block(
         1,
         "ELEMENT STRAINS",
@@ -148,7 +148,7 @@ fn strain_comes_from_stress_only_where_there_is_no_strain_and_says_so() {
     );
     let both = solve(&(stress + &strain));
     assert!(!both.cases[0].shells.from_stress);
-    close(both.cases[0].shells.centre[0][0], [5e-4; 3]);
+    assert_close(both.cases[0].shells.centre[0][0], [5e-4; 3]);
 }
 
 #[test]
@@ -318,8 +318,8 @@ fn elements_that_are_spread_over_two_files_are_one_case_and_other_values_are_two
     assert_eq!(spread.cases.len(), 1);
     let shells = &spread.cases[0].shells;
     assert!(shells.elements.is_sorted() && shells.elements.len() == 2);
-    close(shells.centre[0][0], [1e-4; 3]);
-    close(shells.centre[1][0], [2e-4; 3]);
+    assert_close(shells.centre[0][0], [1e-4; 3]);
+    assert_close(shells.centre[1][0], [2e-4; 3]);
     assert!(!codes(&spread).contains(&"subcase-ambiguous"));
     let two = of(&[0, 2]);
     assert_eq!(two.cases.len(), 2);

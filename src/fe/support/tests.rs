@@ -40,11 +40,11 @@ fn the_decks_own_set_holds_unless_the_job_says_free_or_names_another() {
     assert_eq!(support_of(&model(&[1]), SupportChoice::Deck), held(1));
     assert_eq!(
         support_of(&model(&[]), SupportChoice::Deck),
-        Ok(Support::free(&model(&[])))
+        Ok(Support::without_spc(&model(&[])))
     );
     assert_eq!(
         support_of(&model(&[1]), SupportChoice::Free),
-        Ok(Support::free(&model(&[])))
+        Ok(Support::without_spc(&model(&[])))
     );
     assert_eq!(support_of(&model(&[1]), SupportChoice::Set(2)), held(2));
 }

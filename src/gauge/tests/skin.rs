@@ -3,7 +3,7 @@
 use super::*;
 
 /// Numbers the corners of every shell in `which` the other way round, which turns its normal.
-fn flipped(mut m: Model, which: &[usize]) -> Model {
+fn flip_normals(mut m: Model, which: &[usize]) -> Model {
     for &i in which {
         m.shells[i].grids.swap(1, 3);
         m.shells[i].grids.swap(5, 7);
@@ -28,15 +28,15 @@ fn with_plate(mut m: Model, other: Model, by: Vec3) -> Model {
     m
 }
 
-fn at(x: [f64; 3]) -> GaugeSpec {
+fn spec_at(x: [f64; 3]) -> GaugeSpec {
     GaugeSpec {
         place: GaugePlace::Nearest(Vec3::from(x)),
         direction: Some(Vec3::new(1.0, 1.0, 0.3)),
-        ..GaugeSpec::on("p", ShellIx(0))
+        ..GaugeSpec::place_on_shell("p", ShellIx(0))
     }
 }
 
-fn found(m: &Model, spec: &GaugeSpec) -> (u32, Surface) {
+fn find_element_and_side(m: &Model, spec: &GaugeSpec) -> (u32, Surface) {
     let (g, _) = build(m, spec, CornerRows::Absent).unwrap();
     (g[0].element, g[0].surface)
 }
@@ -48,12 +48,16 @@ fn a_position_is_on_the_nearest_skin_whatever_the_offset_and_the_normal() {
             let mut m = plate(3, 1, 0);
             m.shells.iter_mut().for_each(|s| s.zoffs = zoffs);
             let (m, sign) = match turned {
-                true => (flipped(m, &[0, 1, 2]), -1.0),
+                true => (flip_normals(m, &[0, 1, 2]), -1.0),
                 false => (m, 1.0),
             };
             for (side, z) in [(Surface::Bottom, zoffs - 1.0), (Surface::Top, zoffs + 1.0)] {
-                let spec = at([13.0, 4.0, sign * z]);
-                assert_eq!(found(&m, &spec), (2, side), "{zoffs} {turned}");
+                let spec = spec_at([13.0, 4.0, sign * z]);
+                assert_eq!(
+                    find_element_and_side(&m, &spec),
+                    (2, side),
+                    "{zoffs} {turned}"
+                );
                 let (_, findings) = build(&m, &spec, CornerRows::Absent).unwrap();
                 assert!(findings[0].message.contains("0.0000 from the stated"));
             }
@@ -74,7 +78,11 @@ fn the_nearest_of_close_plates_is_found_by_their_skins() {
         (4.0, (2, Surface::Top)),
         (8.0, (2, Surface::Top)),
     ] {
-        assert_eq!(found(&m, &at([4.0, 5.0, z])), expected, "{z}");
+        assert_eq!(
+            find_element_and_side(&m, &spec_at([4.0, 5.0, z])),
+            expected,
+            "{z}"
+        );
     }
     // Two plates on the same grids, one above and one below: their common face belongs to both, and the stated side decides.
     let [mut lower, mut upper] = [plate(1, 1, 0), plate(1, 1, 0)];
@@ -83,9 +91,9 @@ fn the_nearest_of_close_plates_is_found_by_their_skins() {
     for (side, element) in [(Surface::Top, 1), (Surface::Bottom, 2)] {
         let spec = GaugeSpec {
             surface: Some(side),
-            ..at([4.0, 5.0, 0.0])
+            ..spec_at([4.0, 5.0, 0.0])
         };
-        assert_eq!(found(&m, &spec), (element, side));
+        assert_eq!(find_element_and_side(&m, &spec), (element, side));
     }
 }
 
@@ -97,16 +105,25 @@ fn next_to_a_web_the_skin_of_the_flange_is_found() {
         g.x = Vec3::new(g.x.x, 5.0, g.x.y);
     }
     let m = with_plate(plate(1, 1, 0), web, Vec3::zeros());
-    assert_eq!(found(&m, &at([4.0, 4.5, 1.0])), (1, Surface::Top));
+    assert_eq!(
+        find_element_and_side(&m, &spec_at([4.0, 4.5, 1.0])),
+        (1, Surface::Top)
+    );
     // Inside the flange, nearer to a skin of the web than to its own: a place stated on the middle surface is in that plate.
-    assert_eq!(found(&m, &at([4.0, 3.5, 0.0])).0, 1);
+    assert_eq!(find_element_and_side(&m, &spec_at([4.0, 3.5, 0.0])).0, 1);
     // Normal of the web: x cross z = -y.
-    assert_eq!(found(&m, &at([4.0, 4.0, 3.0])), (2, Surface::Top));
-    assert_eq!(found(&m, &at([4.0, 6.0, 3.0])), (2, Surface::Bottom));
+    assert_eq!(
+        find_element_and_side(&m, &spec_at([4.0, 4.0, 3.0])),
+        (2, Surface::Top)
+    );
+    assert_eq!(
+        find_element_and_side(&m, &spec_at([4.0, 6.0, 3.0])),
+        (2, Surface::Bottom)
+    );
 }
 
 /// Bending: basic strain that changes its sign through the thickness and along x, and a part along the plate.
-fn bent(m: &Model, corners: CornerRows) -> CaseResult {
+fn bending_field(m: &Model, corners: CornerRows) -> CaseResult {
     let mut case = field(m, corners, |x, z| {
         E.map(|e| e * (0.2 + (1.0 + 0.01 * x.x) * z))
     });
@@ -138,11 +155,11 @@ fn a_grid_over_turned_shells_keeps_its_side_in_space() {
                     direction: Some(Vec3::new(1.0, 0.2, 0.0)),
                     bridge,
                     rosette,
-                    ..GaugeSpec::on("g", ShellIx(22))
+                    ..GaugeSpec::place_on_shell("g", ShellIx(22))
                 };
                 let of = |which: &[usize]| {
-                    let m = flipped(plate(9, 5, 0), which);
-                    read(&m, &spec, corners, &bent(&m, corners))
+                    let m = flip_normals(plate(9, 5, 0), which);
+                    read(&m, &spec, corners, &bending_field(&m, corners))
                 };
                 let plain = of(&[]);
                 for which in [&[21, 23][..], &[20, 23, 25], &[13, 14, 30, 31, 32, 21]] {
@@ -174,22 +191,22 @@ fn a_grid_over_a_step_of_thickness_stays_on_the_same_skin() {
         grid_length: 6.0,
         surface: Some(Surface::Bottom),
         direction: Some(Vec3::x()),
-        ..at([10.0, 5.0, -1.0])
+        ..spec_at([10.0, 5.0, -1.0])
     };
     // Centre rows alone vary linearly between centres: the mean of both at the edge.
-    let m_turned = flipped(m.clone(), &[1]);
+    let m_turned = flip_normals(m.clone(), &[1]);
     let mut turned = case.clone();
     turned.shells.centre[1].swap(0, 1);
     for (m, case) in [(m, case), (m_turned, turned)] {
         let (gauges, _) = build(&m, &spec, CornerRows::Absent).unwrap();
-        let got = reading(&gauges[0], &case).unwrap();
+        let got = gauge_reading(&gauges[0], &case).unwrap();
         assert!(got < -0.9e-6 && got > -2.6e-6, "{got}");
         let opposite = GaugeSpec {
             surface: Some(Surface::Top),
             ..spec.clone()
         };
         let (gauges, _) = build(&m, &opposite, CornerRows::Absent).unwrap();
-        assert!((reading(&gauges[0], &case).unwrap() + got).abs() < 1e-18);
+        assert!((gauge_reading(&gauges[0], &case).unwrap() + got).abs() < 1e-18);
     }
 }
 
@@ -200,7 +217,7 @@ fn a_grid_that_is_longer_than_the_part_is_refused_and_one_over_the_edge_is_named
         let spec = GaugeSpec {
             grid_length: length,
             direction: Some(along),
-            ..GaugeSpec::on("g", ShellIx(shell))
+            ..GaugeSpec::place_on_shell("g", ShellIx(shell))
         };
         build(&m, &spec, CornerRows::Absent).map(|b| b.1)
     };
@@ -249,7 +266,7 @@ fn a_grid_round_a_tube_is_no_longer_than_the_tube_is_wide() {
         let spec = GaugeSpec {
             grid_length: length,
             direction: Some(Vec3::y()),
-            ..GaugeSpec::on("g", ShellIx(18))
+            ..GaugeSpec::place_on_shell("g", ShellIx(18))
         };
         build(&m, &spec, CornerRows::Absent)
     };
@@ -272,11 +289,12 @@ fn the_second_pair_of_a_bridge_turns_with_its_axes() {
             angle_rad: deg.to_radians(),
             pair: Some(Pair {
                 turn,
-                ..Pair::parallel(ShellIx(1), Surface::Top)
+                ..Pair::with_parallel_axis(ShellIx(1), Surface::Top)
             }),
-            ..GaugeSpec::on("h", ShellIx(0))
+            ..GaugeSpec::place_on_shell("h", ShellIx(0))
         };
-        let expected = along(E, deg.to_radians()) - along(E, (deg + 90.0).to_radians());
+        let expected =
+            strain_along(E, deg.to_radians()) - strain_along(E, (deg + 90.0).to_radians());
         let got = read(&m, &spec, CornerRows::Absent, &case)[0];
         assert!((got - expected).abs() < 1e-15, "{deg}: {got}");
     }
@@ -292,7 +310,7 @@ fn a_leg_of_a_rosette_can_be_turned_alone() {
     };
     let legs = read(&m, &spec, CornerRows::Absent, &case);
     let turned = std::f64::consts::FRAC_PI_4 + 0.1;
-    assert!((legs[1] - along(E, turned)).abs() < 1e-15);
+    assert!((legs[1] - strain_along(E, turned)).abs() < 1e-15);
     assert!((legs[0] - E[0]).abs() < 1e-15 && (legs[2] - E[1]).abs() < 1e-15);
 }
 
@@ -311,7 +329,7 @@ fn a_grid_on_a_bar_is_no_longer_than_the_straight_bars_along_it() {
                 station: 0.5,
             },
             grid_length: length,
-            ..GaugeSpec::on("b", ShellIx(0))
+            ..GaugeSpec::place_on_shell("b", ShellIx(0))
         };
         let got = build(&m, &spec, CornerRows::Absent);
         assert_eq!(got.is_ok(), fits, "{length}: {got:?}");
@@ -328,6 +346,10 @@ fn only_shells_that_are_about_parallel_have_an_opposite_side() {
     let from = (ShellIx(0), Surface::Top);
     assert_eq!(away_from(&m, from, ShellIx(1)), None);
     assert_eq!(away_from(&m, from, ShellIx(0)), Some(Surface::Bottom));
-    let m = with_plate(plate(1, 1, 0), flipped(plate(1, 1, 0), &[0]), Vec3::z());
+    let m = with_plate(
+        plate(1, 1, 0),
+        flip_normals(plate(1, 1, 0), &[0]),
+        Vec3::z(),
+    );
     assert_eq!(away_from(&m, from, ShellIx(1)), Some(Surface::Top));
 }

@@ -40,7 +40,7 @@ pub struct Folder(PathBuf);
 
 impl Folder {
     /// Uses this folder. It is created when the first solution is stored.
-    pub fn at(folder: impl Into<PathBuf>) -> Self {
+    pub fn new(folder: impl Into<PathBuf>) -> Self {
         Self(folder.into())
     }
 
@@ -70,7 +70,7 @@ impl Folder {
 
     /// Returns the number of stored solutions and their bytes.
     pub fn size(&self) -> (usize, u64) {
-        let kept = self.kept();
+        let kept = self.kept_solutions();
         (kept.len(), kept.iter().map(|k| k.1).sum())
     }
 
@@ -81,7 +81,7 @@ impl Folder {
     pub fn clean(&self) -> std::io::Result<(usize, u64)> {
         half_written::remove_stale(&self.0);
         let (mut n, mut bytes) = (0, 0);
-        for (_, size, path) in self.kept() {
+        for (_, size, path) in self.kept_solutions() {
             std::fs::remove_file(path)?;
             n += 1;
             bytes += size;
@@ -92,7 +92,7 @@ impl Folder {
     }
 
     /// Kept solutions, the oldest use first: when, bytes, file.
-    fn kept(&self) -> Vec<(std::time::SystemTime, u64, PathBuf)> {
+    fn kept_solutions(&self) -> Vec<(std::time::SystemTime, u64, PathBuf)> {
         let entries = std::fs::read_dir(&self.0).into_iter().flatten();
         let mut files: Vec<_> = entries
             .filter_map(Result::ok)
@@ -111,7 +111,7 @@ impl Folder {
     }
 
     fn forget_oldest(&self) {
-        let mut files = self.kept();
+        let mut files = self.kept_solutions();
         // The one just kept stays, however large.
         files.pop();
         let mut room = MOST_BYTES;

@@ -8,7 +8,7 @@ pub struct Key(pub(super) [u8; 32]);
 
 impl Key {
     /// Returns the key of a text that states all inputs of a solution.
-    pub fn of(identity: &str) -> Self {
+    pub fn from_identity(identity: &str) -> Self {
         Self(Sha256::digest(identity.as_bytes()).into())
     }
 

@@ -20,10 +20,10 @@ pub(super) fn encode(solved: &Solved, Key(hash): &Key) -> Vec<u8> {
     out.extend_from_slice(MARK);
     out.extend_from_slice(hash);
     let report = &solved.report;
-    put(&mut out, report.grids);
-    put(&mut out, report.dofs);
-    put(&mut out, report.factor_nonzeros);
-    put(
+    write_count(&mut out, report.grids);
+    write_count(&mut out, report.dofs);
+    write_count(&mut out, report.factor_nonzeros);
+    write_count(
         &mut out,
         match report.ordering {
             None => 0,
@@ -33,38 +33,38 @@ pub(super) fn encode(solved: &Solved, Key(hash): &Key) -> Vec<u8> {
     );
     let [first, last] = report.epsilon;
     reals(&mut out, &[report.smallest_pivot, first, last]);
-    put(&mut out, usize::from(report.mass.is_some()));
+    write_count(&mut out, usize::from(report.mass.is_some()));
     if let Some(m) = &report.mass {
         reals(&mut out, &[m.mass, m.cg.x, m.cg.y, m.cg.z]);
         reals(&mut out, m.matrix.as_slice());
     }
-    put(&mut out, report.modes.len());
+    write_count(&mut out, report.modes.len());
     reals(&mut out, &report.modes);
-    put(&mut out, report.balance.len());
+    write_count(&mut out, report.balance.len());
     for b in &report.balance {
-        put(&mut out, b.subcase as usize);
+        write_count(&mut out, b.subcase as usize);
         for six in [&b.applied, &b.inertia, &b.acceleration] {
             reals(&mut out, six);
         }
         reals(&mut out, &[b.residual]);
     }
-    put(&mut out, report.reactions.len());
+    write_count(&mut out, report.reactions.len());
     for r in &report.reactions {
-        put(&mut out, r.subcase as usize);
+        write_count(&mut out, r.subcase as usize);
         reals(&mut out, &r.applied);
         reals(&mut out, &r.total);
         reals(&mut out, &[r.residual]);
-        put(&mut out, r.grids.len());
+        write_count(&mut out, r.grids.len());
         for g in &r.grids {
-            put(&mut out, g.grid as usize);
+            write_count(&mut out, g.grid as usize);
             reals(&mut out, &g.force);
         }
     }
-    put(&mut out, solved.findings.len());
+    write_count(&mut out, solved.findings.len());
     for f in &solved.findings {
-        put(&mut out, f.severity as usize);
+        write_count(&mut out, f.severity as usize);
         for t in [f.code, &f.subject, &f.message, &f.remedy] {
-            put(&mut out, t.len());
+            write_count(&mut out, t.len());
             out.extend_from_slice(t.as_bytes());
         }
         // What is not there is not a number.
@@ -73,9 +73,9 @@ pub(super) fn encode(solved: &Solved, Key(hash): &Key) -> Vec<u8> {
             &[f.measured.unwrap_or(f64::NAN), f.limit.unwrap_or(f64::NAN)],
         );
     }
-    put(&mut out, fields.len());
+    write_count(&mut out, fields.len());
     for field in fields {
-        put(&mut out, field.len());
+        write_count(&mut out, field.len());
         field.iter().for_each(|u| reals(&mut out, u));
     }
     let sum = Sha256::digest(&out);
@@ -83,7 +83,7 @@ pub(super) fn encode(solved: &Solved, Key(hash): &Key) -> Vec<u8> {
     out
 }
 
-fn put(out: &mut Vec<u8>, n: usize) {
+fn write_count(out: &mut Vec<u8>, n: usize) {
     out.extend_from_slice(&(n as u64).to_le_bytes());
 }
 
@@ -124,14 +124,14 @@ pub(super) fn decode(bytes: &[u8], Key(hash): &Key, grids: usize, cases: usize) 
             matrix,
         });
     }
-    report.modes = at.list(Cursor::real)?;
+    report.modes = at.list(Cursor::read_real)?;
     report.balance = at.list(|at| {
         Some(Balance {
             subcase: u32::try_from(at.count()?).ok()?,
             applied: at.array()?,
             inertia: at.array()?,
             acceleration: at.array()?,
-            residual: at.real()?,
+            residual: at.read_real()?,
         })
     })?;
     report.reactions = at.list(|at| {
@@ -139,7 +139,7 @@ pub(super) fn decode(bytes: &[u8], Key(hash): &Key, grids: usize, cases: usize) 
             subcase: u32::try_from(at.count()?).ok()?,
             applied: at.array()?,
             total: at.array()?,
-            residual: at.real()?,
+            residual: at.read_real()?,
             grids: at.list(|at| {
                 Some(Reaction {
                     grid: u32::try_from(at.count()?).ok()?,
@@ -186,14 +186,14 @@ impl<'a> Cursor<'a> {
         usize::try_from(u64::from_le_bytes(bytes)).ok()
     }
 
-    fn real(&mut self) -> Option<f64> {
+    fn read_real(&mut self) -> Option<f64> {
         Some(f64::from_le_bytes(self.take(8)?.try_into().ok()?))
     }
 
     fn array<const N: usize>(&mut self) -> Option<[f64; N]> {
         let mut out = [0.0; N];
         for o in &mut out {
-            *o = self.real()?;
+            *o = self.read_real()?;
         }
         Some(out)
     }

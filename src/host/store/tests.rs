@@ -8,7 +8,7 @@ use crate::linalg::Matrix6;
 use crate::linalg::sparse::OrderingMethod;
 use crate::model::Vec3;
 
-fn solved() -> Solved {
+fn example_solution() -> Solved {
     Solved {
         displacements: vec![vec![[0.1, -0.2, 1e-300, 4.0, 5.0, 1.0 / 3.0]; 7]; 3],
         report: SolveReport {
@@ -52,7 +52,7 @@ fn solved() -> Solved {
 
 #[test]
 fn a_kept_solution_comes_back_bit_by_bit() {
-    let (s, hash) = (solved(), Key([7; 32]));
+    let (s, hash) = (example_solution(), Key([7; 32]));
     let back = decode(&encode(&s, &hash), &hash, 7, 3).unwrap();
     assert_eq!(back.displacements, s.displacements);
     assert_eq!(back.report, s.report);
@@ -63,7 +63,7 @@ fn a_kept_solution_comes_back_bit_by_bit() {
 fn findings_of_every_code_come_back() {
     let hash = Key([7; 32]);
     for code in codes() {
-        let mut s = solved();
+        let mut s = example_solution();
         s.findings = vec![Finding::new(Severity::Warning, code.code, "a", "b", "c")];
         let back = decode(&encode(&s, &hash), &hash, 7, 3);
         assert_eq!(back.expect(code.code).findings, s.findings);
@@ -72,7 +72,7 @@ fn findings_of_every_code_come_back() {
 
 #[test]
 fn a_file_with_any_byte_changed_or_cut_off_is_no_solution() {
-    let (s, hash) = (solved(), Key([7; 32]));
+    let (s, hash) = (example_solution(), Key([7; 32]));
     let bytes = encode(&s, &hash);
     for at in 0..bytes.len() {
         let mut other = bytes.clone();
@@ -99,7 +99,7 @@ fn a_solution_half_written_by_a_killed_run_goes_when_another_is_kept() {
     let own = format!("-{}-", std::process::id());
     let dead = name_of_part("0.solution", 0).replace(&own, &format!("-{}-", u32::MAX));
     std::fs::write(path.join(&dead), "half").unwrap();
-    let store = Folder::at(&path);
+    let store = Folder::new(&path);
     store.write(&Key([7; 32]), b"whole".to_vec()).unwrap();
     assert!(!path.join(&dead).exists());
     assert_eq!(store.read(&Key([7; 32])), Ok(Some(b"whole".to_vec())));

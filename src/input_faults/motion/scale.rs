@@ -27,7 +27,7 @@ pub fn finding_of_scale(
     let as_if = |kind: ChannelKind, unit: &str, read: &str| {
         format!(
             "all {} may be in {unit} and are read as {read}",
-            kind.plural()
+            kind.plural_name()
         )
     };
     let finding = |severity, message: String, remedy: String, number: f64, limit: f64| {

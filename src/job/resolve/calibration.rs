@@ -34,7 +34,7 @@ pub(super) fn calibration(
     out.depends_on = raw.depends_on.as_ref().map(|w| w.value().clone());
     let key = "calibration.model_uncertainty_rel";
     if c.fraction(&raw.model_uncertainty_rel, key).is_some()
-        && let Some(rel) = c.positive(&raw.model_uncertainty_rel, key)
+        && let Some(rel) = c.positive_number(&raw.model_uncertainty_rel, key)
     {
         out.model_uncertainty_rel = rel;
     }
@@ -53,7 +53,7 @@ pub(super) fn calibration(
             &mut out.angle_tolerance_deg,
         ),
     ] {
-        *out = c.positive(raw, key).unwrap_or(0.0);
+        *out = c.positive_number(raw, key).unwrap_or(0.0);
     }
     out.line = c.line(section);
     out

@@ -97,7 +97,7 @@ pub fn check_names(job: &Job, faults: &mut FaultList) {
     for correction in &job.corrections {
         let named = std::iter::once(&correction.gauge).chain(&correction.exchanged_with);
         for name in named.filter(|n| !channels.is_empty() && !channels.contains(n)) {
-            faults.push(Fault::at(
+            faults.push(Fault::with_line(
                 &*job.file,
                 correction.line,
                 "correction.gauge",
@@ -106,7 +106,7 @@ pub fn check_names(job: &Job, faults: &mut FaultList) {
             ));
         }
         if correction.angle_deg.is_some() && job.model.is_none() {
-            faults.push(Fault::at(
+            faults.push(Fault::with_line(
                 &*job.file,
                 correction.line,
                 "correction.angle_deg",
@@ -124,7 +124,7 @@ pub fn check_names(job: &Job, faults: &mut FaultList) {
     let loads: Vec<&str> = job.loads.iter().map(|l| l.name.as_str()).collect();
     for combination in &job.combinations {
         for (name, _) in combination.terms.iter().filter(|t| !loads.contains(&&*t.0)) {
-            faults.push(Fault::at(
+            faults.push(Fault::with_line(
                 &*job.file,
                 combination.line,
                 "combination.terms",
@@ -133,7 +133,7 @@ pub fn check_names(job: &Job, faults: &mut FaultList) {
             ));
         }
         if loads.contains(&&*combination.name) {
-            faults.push(Fault::at(
+            faults.push(Fault::with_line(
                 &*job.file,
                 combination.line,
                 "combination.name",

@@ -39,7 +39,7 @@ pub(super) fn compare(
     let columns = raw.columns.iter();
     Some(Compare {
         recorded: Runs {
-            file: c.named(&raw.file, "compare.file")?,
+            file: c.named_file(&raw.file, "compare.file")?,
             section: "compare",
             columns: columns
                 .map(|(load, column)| (load.value().clone(), column.value().clone()))

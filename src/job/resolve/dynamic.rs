@@ -11,7 +11,10 @@ const FREQUENCY: f64 = 0.02;
 /// One standard deviation of a damping that was not measured, relative to the damping.
 const DAMPING: f64 = 0.5;
 
-pub(super) fn dynamic(c: &mut Collector, raw: Option<&Spanned<RawDynamic>>) -> Option<Dynamic> {
+pub(super) fn resolve_dynamic(
+    c: &mut Collector,
+    raw: Option<&Spanned<RawDynamic>>,
+) -> Option<Dynamic> {
     let section = raw?;
     let raw = section.value();
     let up_to = c.require(
@@ -21,7 +24,7 @@ pub(super) fn dynamic(c: &mut Collector, raw: Option<&Spanned<RawDynamic>>) -> O
         "up_to_hz = 30.0",
     );
     let damping = c.require(&raw.damping, section, "dynamic.damping", "damping = 0.02");
-    c.positive(&raw.up_to_hz, "dynamic.up_to_hz");
+    c.positive_number(&raw.up_to_hz, "dynamic.up_to_hz");
     c.number(
         &raw.damping,
         "dynamic.damping",

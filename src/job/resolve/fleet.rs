@@ -51,9 +51,9 @@ pub(super) fn fleet(c: &mut Collector, raw: Option<&Spanned<RawFleet>>) -> Optio
             "add `knee_range`, or delete this key",
         );
     }
-    let hours = c.positive(&raw.mission_hours, "fleet.mission_hours");
+    let hours = c.positive_number(&raw.mission_hours, "fleet.mission_hours");
     Some(Fleet {
-        file_name: c.named(&raw.file_name, "fleet.file_name")?,
+        file_name: c.named_file(&raw.file_name, "fleet.file_name")?,
         knee_range: c.number(
             &raw.knee_range,
             "fleet.knee_range",

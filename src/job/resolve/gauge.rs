@@ -29,7 +29,7 @@ pub(super) fn bridges() -> [(&'static str, Bridge); 4] {
     Bridge::ALL.map(|b| (b.name(), b))
 }
 
-fn from<T: Copy>(word: &str, choices: &[(&str, T)]) -> Option<T> {
+fn find_choice<T: Copy>(word: &str, choices: &[(&str, T)]) -> Option<T> {
     choices
         .iter()
         .find(|c| c.0.eq_ignore_ascii_case(word))
@@ -38,7 +38,7 @@ fn from<T: Copy>(word: &str, choices: &[(&str, T)]) -> Option<T> {
 
 /// `top` or `bottom`.
 pub(crate) fn surface_from(word: &str) -> Option<Surface> {
-    from(word, &SURFACES)
+    find_choice(word, &SURFACES)
 }
 
 /// Returns a wiring by its name; `full` and `half` mean bending.
@@ -52,17 +52,17 @@ pub(crate) fn bridge_from(name: &str) -> Option<Bridge> {
 
 /// `rectangular` or `delta`.
 pub(crate) fn rosette_from(word: &str) -> Option<Rosette> {
-    from(word, &ROSETTES)
+    find_choice(word, &ROSETTES)
 }
 
 /// Returns a role by its word: `estimate`, `validation` or `reserve`.
 pub(crate) fn role_from(word: &str) -> Option<Role> {
-    from(word, &ROLES)
+    find_choice(word, &ROLES)
 }
 
 /// C, D, E, F as 0 to 3.
 pub(crate) fn point_from(word: &str) -> Option<u8> {
-    from(word, &POINTS)
+    find_choice(word, &POINTS)
 }
 
 pub(super) fn gauge_file(c: &mut Collector, raw: Option<&Spanned<RawGauges>>) -> Option<NamedFile> {
@@ -73,7 +73,7 @@ pub(super) fn gauge_file(c: &mut Collector, raw: Option<&Spanned<RawGauges>>) ->
         "gauges.file",
         "file = \"gauges.csv\"",
     )?;
-    c.named(&section.value().file, "gauges.file")
+    c.named_file(&section.value().file, "gauges.file")
 }
 
 pub(super) fn gauges(c: &mut Collector, raw: &[Spanned<RawGauge>]) -> Vec<JobGauge> {
@@ -92,7 +92,7 @@ fn gauge(c: &mut Collector, section: &Spanned<RawGauge>) -> Option<JobGauge> {
     let station = c.number(&raw.station, "gauge.station", STATION, is_station);
     if let (Some(stated), None) = (&raw.station, &raw.point) {
         let line = c.line(stated);
-        c.faults.push(Fault::at(
+        c.faults.push(Fault::with_line(
             c.file,
             line,
             "gauge.station",
@@ -103,7 +103,7 @@ fn gauge(c: &mut Collector, section: &Spanned<RawGauge>) -> Option<JobGauge> {
     let position = raw.position.as_ref().map(|p| *p.value());
     if let (Some(stated), None, Some(_)) = (&raw.point, &raw.element, position) {
         let line = c.line(stated);
-        c.faults.push(Fault::at(
+        c.faults.push(Fault::with_line(
             c.file,
             line,
             "gauge.point",
@@ -199,7 +199,7 @@ pub(crate) fn with_pair(
     };
     let mut fault = |wrong: &str, remedy: &str| {
         let wrong = format!("gauge `{}`: {wrong}", gauge.name);
-        faults.push(Fault::at(
+        faults.push(Fault::with_line(
             &*gauge.file,
             gauge.line,
             "surface2",
@@ -252,7 +252,7 @@ fn is_kt(x: f64) -> bool {
 /// Checks the values of a gauge, wherever it is written, and adds the faults.
 pub(crate) fn check_gauge(g: &JobGauge, faults: &mut FaultList) {
     let mut fault = |field: &str, wrong: &str, remedy: &str| {
-        faults.push(Fault::at(
+        faults.push(Fault::with_line(
             &*g.file,
             g.line,
             field,

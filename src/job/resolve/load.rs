@@ -19,7 +19,7 @@ pub(super) fn model(c: &mut Collector, raw: Option<&Spanned<RawModel>>) -> Optio
         .map(|r| c.named_at(r, "model.results"))
         .collect();
     Some(ModelFiles {
-        deck: c.named(&raw.deck, "model.deck")?,
+        deck: c.named_file(&raw.deck, "model.deck")?,
         results,
         support: support(c, &raw.support),
         support_line: match &raw.support {
@@ -109,17 +109,17 @@ fn load(
         ],
         LoadRole::Wanted,
     );
-    let expected = c.positive(&raw.expected, "load.expected");
+    let expected = c.positive_number(&raw.expected, "load.expected");
     Some(JobLoad {
         name: name?,
         acts: acts?,
         applied: applied.unwrap_or(1.0),
-        result: c.named(&raw.result, "load.result"),
+        result: c.named_file(&raw.result, "load.result"),
         subcase: raw.subcase.as_ref().map(|s| *s.value()),
         number,
         role,
         expected,
-        weight: c.positive(&raw.weight, "load.weight").unwrap_or(1.0),
+        weight: c.positive_number(&raw.weight, "load.weight").unwrap_or(1.0),
         line: c.line(section),
     })
 }
@@ -198,8 +198,13 @@ pub(super) fn check_results(c: &mut Collector, model: Option<&ModelFiles>, loads
             } else {
                 suggest::remedy(&result.given, names)
             };
-            c.faults
-                .push(Fault::at(c.file, result.line, "load.result", wrong, remedy));
+            c.faults.push(Fault::with_line(
+                c.file,
+                result.line,
+                "load.result",
+                wrong,
+                remedy,
+            ));
         }
     }
 }

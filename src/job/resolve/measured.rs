@@ -62,7 +62,7 @@ pub(super) fn resolve_measured(
                 "measured.strain",
                 "strain = \"strain.csv\"",
             )?;
-            c.named(&raw.strain, "measured.strain")?
+            c.named_file(&raw.strain, "measured.strain")?
         }
     };
     if let (Some(at), Some(_)) = (&raw.zero_runs, &raw.zero) {
@@ -70,7 +70,7 @@ pub(super) fn resolve_measured(
         c.fault(at, "measured.zero_runs", wrong, "state one of the two");
     }
     let own = |other: &NamedFile| other.given == strain.given;
-    let zero = c.named(&raw.zero, "measured.zero");
+    let zero = c.named_file(&raw.zero, "measured.zero");
     if let (Some(at), Some(_)) = (&raw.zero, zero.as_ref().filter(|z| own(z))) {
         let wrong = "this is the strain file itself: loads would be differences from their mean";
         let remedy = "name a file measured without load, or delete this key";
@@ -121,7 +121,7 @@ fn noise(c: &mut Collector, raw: &S<NumberOrNumbers>) -> (f64, Vec<(String, f64)
     };
     let mut check = |x: f64| {
         let one = Some(Spanned::new(raw.span(), x));
-        c.positive(&one, "measured.noise_microstrain")
+        c.positive_number(&one, "measured.noise_microstrain")
     };
     match raw.value() {
         NumberOrNumbers::One(x) => (check(*x).unwrap_or(DEFAULT_NOISE_MICROSTRAIN), by_gauge),
@@ -181,7 +181,7 @@ pub(super) fn runs(
         );
     }
     Some(Runs {
-        file: c.named(&raw.file, "runs.file")?,
+        file: c.named_file(&raw.file, "runs.file")?,
         section: "runs",
         columns: raw
             .columns
@@ -192,7 +192,7 @@ pub(super) fn runs(
         stated_units: stated_quantities(raw.units.as_ref()),
         noise,
         wheel_forces,
-        ground: c.positive(&raw.ground, "runs.ground"),
+        ground: c.positive_number(&raw.ground, "runs.ground"),
         line: c.line(section),
     })
 }
@@ -228,7 +228,7 @@ pub(super) fn ballast(c: &mut Collector, raw: Option<&Spanned<RawBallast>>) -> O
         masses: c.count(&raw.masses, "ballast.masses").unwrap_or(1),
         region: region(c, &raw.region, "ballast.region"),
         properties: raw.properties.as_ref().map(|p| p.value().clone()),
-        max_mass: c.positive(&raw.max_mass, "ballast.max_mass"),
+        max_mass: c.positive_number(&raw.max_mass, "ballast.max_mass"),
         run: raw.run.as_ref().map(|r| r.value().clone()),
         gravity_m_s2: gravity(c, &raw.gravity, "ballast.gravity"),
         line: c.line(section),
@@ -284,7 +284,9 @@ const NOT_GRAVITY: f64 = 100.0;
 
 /// Gravity, m/s^2 whatever the unit system of the job.
 fn gravity(c: &mut Collector, given: &Option<Spanned<f64>>, key: &str) -> f64 {
-    let stated = c.positive(given, key).unwrap_or(STANDARD_GRAVITY_M_S2);
+    let stated = c
+        .positive_number(given, key)
+        .unwrap_or(STANDARD_GRAVITY_M_S2);
     let off = stated / STANDARD_GRAVITY_M_S2;
     if let Some(value) = given
         && !(1.0 / NOT_GRAVITY..NOT_GRAVITY).contains(&off)
@@ -313,7 +315,7 @@ pub(super) fn respond(c: &mut Collector, raw: Option<&Spanned<RawRespond>>) -> R
     out.hottest = c
         .count(&raw.hottest, "respond.hottest")
         .unwrap_or(DEFAULT_HOTTEST);
-    out.loads = c.named(&raw.loads, "respond.loads");
+    out.loads = c.named_file(&raw.loads, "respond.loads");
     out.slope = slope_of(c, &raw.slope, "respond.slope");
     out.line = c.line(section);
     out

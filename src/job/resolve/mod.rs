@@ -43,7 +43,7 @@ pub(super) fn resolve_job(
     let report_units = units::units(
         &mut c,
         raw.report_units.as_ref(),
-        crate::units::ReportUnits::of(units),
+        crate::units::ReportUnits::from_system(units),
         "report_units",
     );
     let stem = Path::new(file)
@@ -88,7 +88,7 @@ pub(super) fn resolve_job(
         ballast: measured::ballast(&mut c, raw.ballast.as_ref()),
         payload: measured::payload(&mut c, raw.payload.as_ref()),
         fleet: fleet::fleet(&mut c, raw.fleet.as_ref()),
-        dynamic: dynamic::dynamic(&mut c, raw.dynamic.as_ref()),
+        dynamic: dynamic::resolve_dynamic(&mut c, raw.dynamic.as_ref()),
         recover: measured::recover(&mut c, raw.recover.as_ref()),
         respond: measured::respond(&mut c, raw.respond.as_ref()),
         study: placement::study(&mut c, raw.study.as_ref()),
@@ -160,6 +160,6 @@ fn check_names_of<'a>(gauges: impl Iterator<Item = &'a JobGauge>, faults: &mut F
                 "rename one of them. Names must differ by more than case and spaces, and a rosette `G` has the channels `G.a`, `G.b`, `G.c`",
             ),
         };
-        faults.push(Fault::at(&*g.file, g.line, "name", wrong, remedy));
+        faults.push(Fault::with_line(&*g.file, g.line, "name", wrong, remedy));
     }
 }

@@ -118,7 +118,7 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
     out.exclude_properties = raw.exclude_properties.as_ref().map(|p| p.value().clone());
     out.exclude_elements = ids(&raw.exclude_elements);
     out.wanted_elements = ids(&raw.wanted_elements);
-    out.file = c.named(&raw.file, "candidates.file");
+    out.file = c.named_file(&raw.file, "candidates.file");
     if out.file.as_ref().is_some_and(|f| !f.is_toml()) {
         refuse_search_keys(c, section);
     }
@@ -142,26 +142,26 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
 /// Refuses the keys that describe where a search may put gauges: a table of spots states every place, side and direction.
 fn refuse_search_keys(c: &mut Collector, section: &Spanned<RawCandidates>) {
     let raw = section.value();
-    fn at<T>(
+    fn key_and_span<T>(
         key: &'static str,
         value: &Option<Spanned<T>>,
     ) -> Option<(&'static str, Range<usize>)> {
         value.as_ref().map(|v| (key, v.span()))
     }
     let stated = [
-        at("properties", &raw.properties),
-        at("elements", &raw.elements),
-        at("surfaces", &raw.surfaces),
-        at("angle_step_deg", &raw.angle_step_deg),
-        at("grid_length", &raw.grid_length),
-        at("bridge", &raw.bridge),
-        at("rosette", &raw.rosette),
-        at("sets", &raw.sets),
-        at("exclude_properties", &raw.exclude_properties),
-        at("exclude_elements", &raw.exclude_elements),
-        at("wanted_elements", &raw.wanted_elements),
-        at("boxes", &raw.boxes),
-        at("exclude_boxes", &raw.exclude_boxes),
+        key_and_span("properties", &raw.properties),
+        key_and_span("elements", &raw.elements),
+        key_and_span("surfaces", &raw.surfaces),
+        key_and_span("angle_step_deg", &raw.angle_step_deg),
+        key_and_span("grid_length", &raw.grid_length),
+        key_and_span("bridge", &raw.bridge),
+        key_and_span("rosette", &raw.rosette),
+        key_and_span("sets", &raw.sets),
+        key_and_span("exclude_properties", &raw.exclude_properties),
+        key_and_span("exclude_elements", &raw.exclude_elements),
+        key_and_span("wanted_elements", &raw.wanted_elements),
+        key_and_span("boxes", &raw.boxes),
+        key_and_span("exclude_boxes", &raw.exclude_boxes),
         (raw.clear_of.is_some()).then(|| ("clear_of", section.span())),
     ];
     for (key, span) in stated.into_iter().flatten() {
@@ -250,7 +250,7 @@ pub(super) fn placement(
         .at_least_zero(&raw.spacing, "placement.spacing")
         .unwrap_or(0.0);
     out.noise_microstrain = c
-        .positive(&raw.noise_microstrain, "placement.noise_microstrain")
+        .positive_number(&raw.noise_microstrain, "placement.noise_microstrain")
         .unwrap_or(noise);
     out.angle_tolerance_deg = c
         .at_least_zero(&raw.angle_tolerance_deg, "placement.angle_tolerance_deg")
@@ -272,7 +272,7 @@ pub(super) fn placement(
     for (name, noise) in &raw.noise_by_bridge {
         let key = "placement.noise_by_bridge";
         let bridge = c.choose_at(name, key, &bridges);
-        let noise = c.positive(&Some(noise.clone()), key);
+        let noise = c.positive_number(&Some(noise.clone()), key);
         out.noise_by_bridge.extend(bridge.zip(noise));
     }
     let kinds: Vec<(&str, &str)> = Bridge::ALL
@@ -282,10 +282,10 @@ pub(super) fn placement(
         .collect();
     for (name, cost) in &raw.costs {
         let kind = c.choose_at(name, "placement.costs", &kinds);
-        let cost = c.positive(&Some(cost.clone()), "placement.costs");
+        let cost = c.positive_number(&Some(cost.clone()), "placement.costs");
         out.costs.extend(kind.map(str::to_owned).zip(cost));
     }
-    out.budget = c.positive(&raw.budget, "placement.budget");
+    out.budget = c.positive_number(&raw.budget, "placement.budget");
     out.loss = c.choose(
         &raw.loss,
         "placement.loss",

@@ -12,7 +12,7 @@ pub(super) fn system(c: &mut Collector, raw: &S<String>, parsed: bool) -> UnitSy
         UnitSystem::ALL.into_iter().map(|s| (s.name(), s)).collect();
     if raw.is_none() && parsed {
         let wrong = "this key is missing; units are never guessed";
-        c.faults.push(Fault::at(
+        c.faults.push(Fault::with_line(
             c.file,
             1,
             "units",

@@ -72,7 +72,7 @@ fn correction(c: &mut Collector, channel: &str, r: &RawCorrection) -> ChannelCor
         clock_ppm,
         slip,
         lag: time_s.map(|time_s| Lag { order, time_s }),
-        line_hz: c.positive(&r.line_hz, &key("line_hz")),
+        line_hz: c.positive_number(&r.line_hz, &key("line_hz")),
     }
 }
 
@@ -109,7 +109,7 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
         gain = c.fraction(&t.gain, "vehicle.tolerance.gain");
         sync = c.at_least_zero(&t.sync, "vehicle.tolerance.sync");
     }
-    let sample_rate = c.positive(&raw.sample_rate, "vehicle.sample_rate");
+    let sample_rate = c.positive_number(&raw.sample_rate, "vehicle.sample_rate");
     let corrections = (raw.corrections.iter())
         .map(|(channel, r)| (channel.clone(), correction(c, channel, r)))
         .collect();
@@ -144,8 +144,8 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
         terms: raw.terms.as_ref().map_or_else(Vec::new, |t| {
             t.value().iter().map(|w| w.value().clone()).collect()
         }),
-        data: c.named(&raw.data, "vehicle.data")?,
-        hold_out: c.named(&raw.hold_out, "vehicle.hold_out"),
+        data: c.named_file(&raw.data, "vehicle.data")?,
+        hold_out: c.named_file(&raw.hold_out, "vehicle.hold_out"),
         sample_rate,
         known: raw.known.clone(),
         noise_acc,
@@ -176,10 +176,10 @@ fn seats(c: &mut Collector, section: &Spanned<RawVehicle>) -> BTreeMap<String, L
         }
         let seat = LeafSeat {
             hanger_to_axle: c
-                .positive(&r.hanger_to_axle, &key("hanger_to_axle"))
+                .positive_number(&r.hanger_to_axle, &key("hanger_to_axle"))
                 .unwrap_or(1.0),
             axle_to_shackle: c
-                .positive(&r.axle_to_shackle, &key("axle_to_shackle"))
+                .positive_number(&r.axle_to_shackle, &key("axle_to_shackle"))
                 .unwrap_or(1.0),
             shackle_angle_rad: c
                 .number(
@@ -288,13 +288,17 @@ pub(super) fn reconcile(
         causes: raw.causes.clone(),
         angle_tolerance_deg: angle,
         position_tolerance_mm: place,
-        described: raw.effect.iter().filter_map(|e| described(c, e)).collect(),
+        described: raw
+            .effect
+            .iter()
+            .filter_map(|e| resolve_effect(c, e))
+            .collect(),
         line: c.line(section),
     })
 }
 
 /// A hypothesis of the user's own: by a table or by an edit of the deck.
-fn described(c: &mut Collector, entry: &Spanned<RawEffect>) -> Option<DescribedEffect> {
+fn resolve_effect(c: &mut Collector, entry: &Spanned<RawEffect>) -> Option<DescribedEffect> {
     let raw = entry.value();
     c.require(
         &raw.id,
@@ -304,7 +308,7 @@ fn described(c: &mut Collector, entry: &Spanned<RawEffect>) -> Option<DescribedE
     )?;
     let source = match (&raw.signature, &raw.edit) {
         (Some(_), None) => {
-            EffectSource::Signature(c.named(&raw.signature, "reconcile.effect.signature")?)
+            EffectSource::Signature(c.named_file(&raw.signature, "reconcile.effect.signature")?)
         }
         (
             None,
@@ -341,7 +345,7 @@ fn described(c: &mut Collector, entry: &Spanned<RawEffect>) -> Option<DescribedE
         }
     };
     let prior = if raw.prior.is_some() {
-        c.positive(&raw.prior, "reconcile.effect.prior")?
+        c.positive_number(&raw.prior, "reconcile.effect.prior")?
     } else {
         1.0
     };
@@ -371,17 +375,17 @@ pub(super) fn sensitivity(
         .signatures
         .as_ref()
         .map_or_else(Signatures::default, |s| Signatures {
-            lateral_wheel_loads: c.named(
+            lateral_wheel_loads: c.named_file(
                 &s.lateral_wheel_loads,
                 "sensitivity.signatures.lateral_wheel_loads",
             ),
-            thermal: c.named(&s.thermal, "sensitivity.signatures.thermal"),
-            payload: c.named(&s.payload, "sensitivity.signatures.payload"),
-            unaccounted_mass: c.named(
+            thermal: c.named_file(&s.thermal, "sensitivity.signatures.thermal"),
+            payload: c.named_file(&s.payload, "sensitivity.signatures.payload"),
+            unaccounted_mass: c.named_file(
                 &s.unaccounted_mass,
                 "sensitivity.signatures.unaccounted_mass",
             ),
-            gauge_angle: c.named(&s.gauge_angle, "sensitivity.signatures.gauge_angle"),
+            gauge_angle: c.named_file(&s.gauge_angle, "sensitivity.signatures.gauge_angle"),
             rail_stiffness: s
                 .rail_stiffness
                 .iter()
@@ -396,11 +400,11 @@ pub(super) fn sensitivity(
     let mut columns: Vec<_> = raw.columns.iter().collect();
     columns.sort_by_key(|(k, _)| k.span().start);
     Some(GivenSensitivity {
-        file: c.named(&raw.file, "sensitivity.file")?,
+        file: c.named_file(&raw.file, "sensitivity.file")?,
         per: units(
             c,
             raw.per.as_ref(),
-            ReportUnits::of(system),
+            ReportUnits::from_system(system),
             "sensitivity.per",
         ),
         columns: columns
@@ -408,8 +412,8 @@ pub(super) fn sensitivity(
             .map(|(k, v)| (k.value().clone(), v.value().clone()))
             .collect(),
         signatures,
-        covariance: c.named(&raw.covariance, "sensitivity.covariance"),
-        common_zero: c.named(&raw.common_zero, "sensitivity.common_zero"),
+        covariance: c.named_file(&raw.covariance, "sensitivity.covariance"),
+        common_zero: c.named_file(&raw.common_zero, "sensitivity.common_zero"),
         range: ranges(c, &raw.range, "sensitivity.range"),
         strain_range: ranges(c, &raw.strain_range, "sensitivity.strain_range"),
         line: c.line(section),

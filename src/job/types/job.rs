@@ -73,7 +73,7 @@ pub struct Job {
     pub corrections: Vec<StrainCorrection>,
     /// `[[gauge]]`, then those of `[gauges] file`.
     pub gauges: Vec<JobGauge>,
-    /// Names of the readings of gauges that were left out of this job ([`Job::estimating`]).
+    /// Names of the readings of gauges that were left out of this job ([`Job::without_validation_gauges`]).
     pub reserved: Vec<String>,
     /// `[gauges] file`.
     pub gauge_file: Option<NamedFile>,

@@ -14,7 +14,7 @@ fn walk(n: usize) -> Vec<f64> {
 #[test]
 fn the_factor_of_a_random_walk_is_that_of_the_closed_form() {
     for n in ORDERS {
-        let c = Cholesky::of(&walk(n), n).expect("positive definite");
+        let c = Cholesky::from_covariance(&walk(n), n).expect("positive definite");
         let log_det = n as f64 * 4f64.ln();
         assert!((c.log_det() / log_det - 1.0).abs() < 1e-12, "{n}");
         let x: Vec<f64> = (0..n).map(|i| ((i * 7 + 3) % 11) as f64).collect();
@@ -52,9 +52,9 @@ fn what_is_not_positive_definite_or_no_number_has_no_factor() {
         for spoilt in [-1.0, f64::NAN] {
             let mut c = walk(n);
             c[n * n - 1] = spoilt;
-            assert!(Cholesky::of(&c, n).is_none(), "{n} {spoilt}");
+            assert!(Cholesky::from_covariance(&c, n).is_none(), "{n} {spoilt}");
         }
-        assert!(Cholesky::of(&walk(n), n + 1).is_none());
+        assert!(Cholesky::from_covariance(&walk(n), n + 1).is_none());
     }
 }
 
@@ -66,7 +66,7 @@ fn columns_do_for_orders_for_which_there_are_blocks() {
     factor_by_columns(&mut columns, n);
     let below = (0..n).flat_map(|j| (j..n).map(move |i| j * n + i));
     assert!(below.into_iter().all(|at| columns[at] == 2.0));
-    let c = Cholesky::of(&walk(n), n).expect("positive definite");
+    let c = Cholesky::from_covariance(&walk(n), n).expect("positive definite");
     let pairs = c.inverse().into_iter().zip(c.inverse_by_columns());
     for (blocks, columns) in pairs {
         assert!((blocks - columns).abs() < 1e-9);

@@ -23,7 +23,7 @@ impl BlockMatrix {
     ///
     /// # Errors
     /// Every error of `term`, in the order of the terms.
-    pub fn assembled<E: Send>(
+    pub fn assemble_terms<E: Send>(
         symbolic: &Symbolic,
         graph: &BlockGraph,
         groups: &[Vec<u32>],

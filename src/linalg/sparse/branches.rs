@@ -41,7 +41,7 @@ pub(super) const OUTSIDE: u32 = u32::MAX;
 
 impl Branches {
     /// `start` is the first unknown of each group.
-    pub(super) fn of(nodes: &Supernodes, start: &[usize]) -> Self {
+    pub(super) fn from_supernodes(nodes: &Supernodes, start: &[usize]) -> Self {
         let n = nodes.len();
         let groups = |s: &Range<usize>| nodes.first[s.start] as usize..nodes.first[s.end] as usize;
         let unknowns = |s: &Range<usize>| start[groups(s).start]..start[groups(s).end];

@@ -96,7 +96,7 @@ struct Found {
 }
 
 impl Found {
-    fn nothing() -> Self {
+    fn new() -> Self {
         Self {
             lost: Vec::new(),
             smallest_pivot: f64::INFINITY,
@@ -121,7 +121,7 @@ impl Pass<'_> {
     fn factor(&self, values: &mut [f64]) -> Result<Found, FactorError> {
         let branches = &self.symbolic.branches;
         let (of_branch, of_top) = self.shared_out(values);
-        let mut all = Found::nothing();
+        let mut all = Found::new();
         let mut left: Vec<Option<Update>> = Vec::new();
         left.resize_with(self.symbolic.nodes.len(), || None);
         // The heaviest begin first; results are taken in elimination order.
@@ -158,7 +158,12 @@ impl Pass<'_> {
                 .with_max_len(1)
                 .map(|(s, children, panel)| {
                     let front = Front::new(self.symbolic, self.matrix, s);
-                    front.eliminated(panel, &children, &mut Spare::default(), Tiles::Shared)
+                    front.eliminate_supernode(
+                        panel,
+                        &children,
+                        &mut Spare::default(),
+                        Tiles::Shared,
+                    )
                 })
                 .collect();
             for result in done {
@@ -179,7 +184,7 @@ impl Pass<'_> {
     ) -> Result<(Update, Found), FactorError> {
         let nodes = &self.symbolic.nodes;
         let (mut waiting, mut spare, mut found) =
-            (Vec::<Update>::new(), Spare::default(), Found::nothing());
+            (Vec::<Update>::new(), Spare::default(), Found::new());
         for s in branch.supernodes.clone() {
             let (panel, rest) = values.split_at_mut(nodes.values(s..s + 1).len());
             values = rest;
@@ -187,7 +192,7 @@ impl Pass<'_> {
             let child = |u: &Update| nodes.parent[u.node] as usize == s;
             let first = waiting.len() - waiting.iter().rev().take_while(|u| child(u)).count();
             let front = Front::new(self.symbolic, self.matrix, s);
-            let e = front.eliminated(panel, &waiting[first..], &mut spare, Tiles::Own)?;
+            let e = front.eliminate_supernode(panel, &waiting[first..], &mut spare, Tiles::Own)?;
             waiting.drain(first..).for_each(|u| spare.take_back(u));
             waiting.push(e.update);
             found.note(e.lost, e.smallest_pivot);

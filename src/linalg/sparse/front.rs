@@ -107,7 +107,7 @@ impl<'a> Front<'a> {
     ///
     /// # Errors
     /// A pivot that is not a number, or stays negative though a spring holds it.
-    pub(super) fn eliminated(
+    pub(super) fn eliminate_supernode(
         &self,
         packed: &mut [f64],
         children: &[Update],

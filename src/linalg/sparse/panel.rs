@@ -78,7 +78,7 @@ impl Panel<'_> {
 
     /// Returns the part of these columns below the rows of all `N`.
     #[inline(always)]
-    fn lower<'a, const N: usize>(columns: &[&'a [f64]; N], below: usize) -> [&'a [f64]; N] {
+    fn lower_part<'a, const N: usize>(columns: &[&'a [f64]; N], below: usize) -> [&'a [f64]; N] {
         std::array::from_fn(|a| &columns[a][N - a..][..below])
     }
 
@@ -100,7 +100,7 @@ impl Panel<'_> {
             }
         }
         own.copy_from_slice(&x);
-        let lower = Self::lower(&columns, below.len());
+        let lower = Self::lower_part(&columns, below.len());
         for i in 0..below.len() {
             let mut sum = below[i];
             for a in 0..N {
@@ -117,7 +117,7 @@ impl Panel<'_> {
     fn backward_columns<const N: usize, const K: usize>(&self, j: usize, work: &mut [[f64; K]]) {
         let columns = self.columns::<N>(j);
         let (own, below) = work[j..self.rows].split_at_mut(N);
-        let lower = Self::lower(&columns, below.len());
+        let lower = Self::lower_part(&columns, below.len());
         let mut sums = [[0.0; K]; N];
         for i in 0..below.len() {
             let y = below[i];

@@ -33,7 +33,7 @@ impl Factor<'_> {
     /// Replaces right-hand sides by solutions: `x` contains columns of `n_unknowns` each, caller's numbering.
     pub fn solve(&self, x: &mut [f64]) {
         self.each_part(x, |part, k| {
-            let mut y = self.scaled(part, k);
+            let mut y = self.scale_columns(part, k);
             self.substitute(&mut y, k);
             self.unscale(&y, part, k);
         });
@@ -47,7 +47,7 @@ impl Factor<'_> {
     pub fn solve_refined(&self, x: &mut [f64], limit: f64) -> Vec<Refined> {
         let mut told = Vec::new();
         self.each_part(x, |part, k| {
-            let mut y = self.scaled(part, k);
+            let mut y = self.scale_columns(part, k);
             self.substitute(&mut y, k);
             told.extend(self.refine(&mut y, part, k, limit));
             self.unscale(&y, part, k);
@@ -156,7 +156,7 @@ impl Factor<'_> {
     }
 
     /// Columns in elimination order, row by row, scaled as the right-hand side of the scaled matrix.
-    fn scaled(&self, x: &[f64], k: usize) -> Vec<f64> {
+    fn scale_columns(&self, x: &[f64], k: usize) -> Vec<f64> {
         let (n, symbolic) = (x.len() / k, self.symbolic);
         let mut y = vec![0.0; x.len()];
         // Groups of a task.

@@ -27,7 +27,7 @@ struct Rows<'a> {
 
 impl Rows<'_> {
     /// The rows from a group's unknowns on.
-    fn from(&mut self, symbolic: &Symbolic, g: u32) -> &mut [f64] {
+    fn rows_from_group(&mut self, symbolic: &Symbolic, g: u32) -> &mut [f64] {
         let first = symbolic.start[g as usize];
         if self.unknowns.contains(&first) {
             &mut self.branch[(first - self.unknowns.start) * self.k..]
@@ -41,14 +41,14 @@ impl Factor<'_> {
     /// Replaces `k` right-hand sides of L L' by solutions.
     pub(super) fn substitute(&self, y: &mut [f64], k: usize) {
         let branches = &self.symbolic.branches;
-        let mut above = self.taken(y, k);
+        let mut above = self.take_top_rows(y, k);
         let mut bins = slices(branches, y, k);
         let sums: Vec<Vec<f64>> = bins
             .par_iter_mut()
             .with_max_len(1)
             .map(|bin| {
                 let mut sum = vec![0.0; above.len()];
-                self.through(bin, Way::Forward, &mut sum, k);
+                self.substitute_branches(bin, Way::Forward, &mut sum, k);
                 sum
             })
             .collect();
@@ -60,14 +60,14 @@ impl Factor<'_> {
         self.through_top(&mut above, k);
         bins.par_iter_mut().with_max_len(1).for_each(|bin| {
             let mut above = above.clone();
-            self.through(bin, Way::Backward, &mut above, k);
+            self.substitute_branches(bin, Way::Backward, &mut above, k);
         });
         drop(bins);
         self.give_back(&above, y, k);
     }
 
     /// The rows of the top.
-    fn taken(&self, y: &[f64], k: usize) -> Vec<f64> {
+    fn take_top_rows(&self, y: &[f64], k: usize) -> Vec<f64> {
         let branches = &self.symbolic.branches;
         let mut rows = Vec::with_capacity(branches.n_top * k);
         for &s in &branches.top {
@@ -87,7 +87,13 @@ impl Factor<'_> {
     }
 
     /// Substitutes in branches with all their supernodes.
-    fn through(&self, bin: &mut [(&Branch, &mut [f64])], way: Way, top: &mut [f64], k: usize) {
+    fn substitute_branches(
+        &self,
+        bin: &mut [(&Branch, &mut [f64])],
+        way: Way,
+        top: &mut [f64],
+        k: usize,
+    ) {
         let mut work = Vec::new();
         for (branch, rows) in bin {
             let mut rows = Rows {
@@ -158,7 +164,7 @@ impl Factor<'_> {
         let (work, _) = work.as_chunks_mut::<K>();
         let (mine, below) = work.split_at_mut(own);
         let first = nodes.first[s];
-        let from = rows.from(symbolic, first).chunks_exact(k);
+        let from = rows.rows_from_group(symbolic, first).chunks_exact(k);
         mine.iter_mut()
             .zip(from)
             .for_each(|(to, from)| to[..n].copy_from_slice(&from[c..c + n]));
@@ -166,7 +172,7 @@ impl Factor<'_> {
             let mut below = below.iter_mut();
             for &g in nodes.rows(s) {
                 let size = symbolic.of_group(g).len();
-                let from = rows.from(symbolic, g).chunks_exact(k).take(size);
+                let from = rows.rows_from_group(symbolic, g).chunks_exact(k).take(size);
                 for (from, to) in from.zip(&mut below) {
                     to[..n].copy_from_slice(&from[c..c + n]);
                 }
@@ -177,14 +183,17 @@ impl Factor<'_> {
             let mut below = work[own..].iter();
             for &g in nodes.rows(s) {
                 let size = symbolic.of_group(g).len();
-                let to = rows.from(symbolic, g).chunks_exact_mut(k).take(size);
+                let to = rows
+                    .rows_from_group(symbolic, g)
+                    .chunks_exact_mut(k)
+                    .take(size);
                 for (to, from) in to.zip(&mut below) {
                     let to = to[c..c + n].iter_mut();
                     to.zip(from).for_each(|(t, f)| *t += f);
                 }
             }
         }
-        let to = rows.from(symbolic, first).chunks_exact_mut(k);
+        let to = rows.rows_from_group(symbolic, first).chunks_exact_mut(k);
         work[..own]
             .iter()
             .zip(to)

@@ -38,9 +38,9 @@ impl Supernodes {
         forest: &EliminationForest,
         sizes: &[u8],
     ) -> (Self, Vec<u32>) {
-        let mut merged = Merged::fundamental(forest, sizes);
+        let mut merged = Merged::from_forest(forest, sizes);
         merged.merge();
-        let (mut nodes, order) = merged.numbered(&forest.order);
+        let (mut nodes, order) = merged.number_supernodes(&forest.order);
         nodes.find_rows(graph, &order, sizes);
         (nodes, order)
     }
@@ -130,7 +130,7 @@ struct Merged {
 
 impl Merged {
     /// Groups joined to the next where that has the same rows below.
-    fn fundamental(forest: &EliminationForest, sizes: &[u8]) -> Self {
+    fn from_forest(forest: &EliminationForest, sizes: &[u8]) -> Self {
         let n = forest.order.len();
         let size = |g: usize| u32::from(sizes[forest.order[g] as usize]);
         let mut all = Self {
@@ -199,7 +199,7 @@ impl Merged {
     }
 
     /// Supernodes in postorder without rows, and the order of groups. Of children, those come first that need much memory and leave little.
-    fn numbered(mut self, order: &[u32]) -> (Supernodes, Vec<u32>) {
+    fn number_supernodes(mut self, order: &[u32]) -> (Supernodes, Vec<u32>) {
         let n = self.groups.len();
         let mut peak = vec![0_usize; n];
         for p in 0..n {

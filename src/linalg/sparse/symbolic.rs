@@ -38,12 +38,12 @@ impl Symbolic {
         let (method, forest) = best.ok_or(FactorError::TooLarge)?;
         let (nodes, order) = Supernodes::new(graph, &forest, sizes);
         drop(forest);
-        let start = running(order.iter().map(|&v| sizes[v as usize]));
-        let old_start = running(sizes.iter().copied());
+        let start = running_sums(order.iter().map(|&v| sizes[v as usize]));
+        let old_start = running_sums(sizes.iter().copied());
         u32::try_from(old_start.last().copied().unwrap_or(0)).map_err(|_| FactorError::TooLarge)?;
         Ok(Self {
             position: inverse(&order),
-            branches: Branches::of(&nodes, &start),
+            branches: Branches::from_supernodes(&nodes, &start),
             order,
             start,
             old_start,
@@ -91,7 +91,7 @@ impl Symbolic {
 }
 
 /// Sums before each entry, and the total.
-fn running(sizes: impl Iterator<Item = u8>) -> Vec<usize> {
+fn running_sums(sizes: impl Iterator<Item = u8>) -> Vec<usize> {
     let mut start = vec![0];
     let mut total = 0;
     for size in sizes {

@@ -62,7 +62,7 @@ fn assemble(
             matrix,
         })
     };
-    BlockMatrix::assembled(symbolic, graph, &groups, term).unwrap()
+    BlockMatrix::assemble_terms(symbolic, graph, &groups, term).unwrap()
 }
 
 #[test]

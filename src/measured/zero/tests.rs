@@ -1,12 +1,12 @@
 //! A zero that is followed through runs without load, of known drift.
 
-use super::{Between, Drift, between};
+use super::{Between, Drift, zero_run_weights};
 use crate::measured::strain_table::{StrainRows, StrainTable};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 /// Variance of a sum of three uniform numbers is 1 in these units: near enough to a Gaussian for second moments.
-fn normal(random: &mut ChaCha8Rng) -> f64 {
+fn draw_normal(random: &mut ChaCha8Rng) -> f64 {
     (0..3).map(|_| random.random_range(-1.0..1.0)).sum()
 }
 
@@ -18,20 +18,22 @@ fn ratios(steady: f64, walk: f64) -> [f64; 2] {
     let mut random = ChaCha8Rng::seed_from_u64(4);
     let mut errors = [(0.0, 0.0); 2];
     for _ in 0..300 {
-        let slopes: Vec<f64> = (0..GAUGES).map(|_| steady * normal(&mut random)).collect();
+        let slopes: Vec<f64> = (0..GAUGES)
+            .map(|_| steady * draw_normal(&mut random))
+            .collect();
         let mut zero = vec![vec![0.0; GAUGES]];
         for i in 1..24 {
             let before: &Vec<f64> = &zero[i - 1];
             let next = before.iter().zip(&slopes);
             zero.push(
-                next.map(|(z, s)| z + s + walk * normal(&mut random))
+                next.map(|(z, s)| z + s + walk * draw_normal(&mut random))
                     .collect(),
             );
         }
         let read: Vec<f64> = zero
             .iter()
             .flatten()
-            .map(|z| z + NOISE * normal(&mut random))
+            .map(|z| z + NOISE * draw_normal(&mut random))
             .collect();
         let table = StrainTable {
             file: "strain.csv".into(),
@@ -39,13 +41,13 @@ fn ratios(steady: f64, walk: f64) -> [f64; 2] {
             rows: StrainRows::Runs((0..24).map(|i| format!("R{i}")).collect()),
             microstrain: read,
         };
-        let drift = Drift::of(&table, &at, NOISE);
+        let drift = Drift::from_zero_runs(&table, &at, NOISE);
         for i in (0..24).filter(|i| !at.contains(i)) {
             let Between {
                 weights,
                 wander,
                 outside,
-            } = between(&at, i);
+            } = zero_run_weights(&at, i);
             let place = usize::from(i > 20);
             let of_zero: f64 = weights.iter().map(|w| w.1 * w.1).sum();
             let variance =

@@ -69,7 +69,7 @@ impl Builder<'_> {
             });
         }
         let point = self.connector_point((c.gs, c.xs), name, c.at);
-        let grids = self.piercing(c.grids, name, c.at);
+        let grids = self.find_piercing_grids(c.grids, name, c.at);
         let on: Option<Vec<Where>> = on.into_iter().collect();
         let stated = Stated {
             name,

@@ -154,11 +154,16 @@ impl Patches {
             .iter()
             .filter(|(_, c, r)| (p - c).norm() <= nearest + r)
             .map(|l| l.0);
-        best(model, near, p)
+        find_nearest_foot(model, near, p)
     }
 
     /// Where `p` meets shell `i` or one that shares a grid with it.
-    pub(super) fn around(&mut self, model: &Model, i: usize, p: Vec3) -> Option<(Patch, Foot)> {
+    pub(super) fn find_foot_near_shell(
+        &mut self,
+        model: &Model,
+        i: usize,
+        p: Vec3,
+    ) -> Option<(Patch, Foot)> {
         let of_grid = self.by_grid.get_or_insert_with(|| {
             let mut all: HashMap<GridIx, Vec<usize>> = HashMap::new();
             for (i, s) in model.shells.iter().enumerate() {
@@ -177,12 +182,16 @@ impl Patches {
             .collect();
         near.sort_unstable();
         near.dedup();
-        best(model, near.into_iter(), p)
+        find_nearest_foot(model, near.into_iter(), p)
     }
 }
 
 /// The nearest foot of `p` on one of the shells.
-fn best(model: &Model, shells: impl Iterator<Item = usize>, p: Vec3) -> Option<(Patch, Foot)> {
+fn find_nearest_foot(
+    model: &Model,
+    shells: impl Iterator<Item = usize>,
+    p: Vec3,
+) -> Option<(Patch, Foot)> {
     let mut found: Option<(f64, Patch, Foot)> = None;
     for shell in shells.filter_map(|i| model.shells.get(i)) {
         let Some(patch) = Patch::of_shell(model, shell) else {

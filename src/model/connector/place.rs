@@ -97,7 +97,7 @@ impl Builder<'_> {
     }
 
     /// Grids GA and GB where they are stated; `None`, with a fault each, where one is missing.
-    pub(super) fn piercing(
+    pub(super) fn find_piercing_grids(
         &mut self,
         grids: [Option<u32>; 2],
         name: &str,
@@ -123,7 +123,7 @@ impl Builder<'_> {
                 let foot = patch.foot(p)?;
                 Some((patch, foot))
             }
-            Where::Around(i) => patches.around(&self.model, i, p),
+            Where::Around(i) => patches.find_foot_near_shell(&self.model, i, p),
             Where::Property(pid) => patches.on_property(&self.model, pid, p),
         }
     }

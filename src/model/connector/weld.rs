@@ -120,7 +120,7 @@ impl Builder<'_> {
         name: &str,
     ) -> Option<Pierced> {
         let point = self.connector_point((w.gs, w.xs), name, w.at);
-        let grids = self.piercing(w.grids, name, w.at);
+        let grids = self.find_piercing_grids(w.grids, name, w.at);
         let (point, grids) = (point?, grids?);
         let mut on_shells = |b: &mut Self, patches_of: [Where; 2]| {
             let stated = Stated {

@@ -77,9 +77,12 @@ impl Builder<'_> {
         table.sort_by(|a, b| a.0.total_cmp(&b.0));
         let along = frame.axes.row(axis).transpose();
         let grids = (0..).map(GridIx).zip(&self.model.grids);
-        let grids = grids
-            .filter(|(_, g)| !g.is_scalar())
-            .map(|(ix, g)| (ix, between(&table, along.dot(&(g.x - frame.origin)))));
+        let grids = grids.filter(|(_, g)| !g.is_scalar()).map(|(ix, g)| {
+            (
+                ix,
+                interpolate_table(&table, along.dot(&(g.x - frame.origin))),
+            )
+        });
         Some(Load::Acceleration {
             a,
             grids: grids.collect(),
@@ -177,7 +180,7 @@ impl Builder<'_> {
 }
 
 /// Returns the value of an ascending table: linear between its points, constant beyond the first and last.
-fn between(table: &[(f64, f64)], x: f64) -> f64 {
+fn interpolate_table(table: &[(f64, f64)], x: f64) -> f64 {
     let after = table.partition_point(|p| p.0 < x);
     match (
         after.checked_sub(1).and_then(|i| table.get(i)),

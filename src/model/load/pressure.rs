@@ -157,7 +157,7 @@ impl Builder<'_> {
 
 impl Direction {
     /// The unit vector at the basic location `x`; zero where it has no length.
-    pub fn at(&self, model: &Model, x: Vec3) -> Vec3 {
+    pub fn vector_at(&self, model: &Model, x: Vec3) -> Vec3 {
         let frame = model.frames.get(self.frame.us());
         frame
             .and_then(|f| unit(f.vector_to_basic(self.components, x)))

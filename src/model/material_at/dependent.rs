@@ -111,7 +111,7 @@ impl Dependent<'_> {
     ///
     /// # Errors
     /// A table that multiplies a blank field; invalid moduli at this temperature.
-    pub(super) fn at(&self, t: f64) -> Result<Material, ModelFault> {
+    pub(super) fn material_at(&self, t: f64) -> Result<Material, ModelFault> {
         let mut card = self.base.card;
         let [e, g, nu, rho, alpha] = self.tables;
         let value = |table: Option<&MaterialTable>, z: Option<f64>, field: &'static str| match table

@@ -36,7 +36,7 @@ pub(super) fn heat_materials(model: &mut Model, deck: &Deck) -> Found {
     }
     model.material_temperature = Some(set.sid);
     refuse_others(model, deck, &set, &dependent, &mut found);
-    let uses = Uses::of(model, &set, &dependent, &mut found);
+    let uses = Uses::from_temperatures(model, &set, &dependent, &mut found);
     let pairs: Vec<(u32, u64)> = uses.materials(model, &dependent).into_iter().collect();
     let mut heated: BTreeMap<(u32, u64), Material> = BTreeMap::new();
     let mut reported = BTreeSet::new();
@@ -44,7 +44,7 @@ pub(super) fn heat_materials(model: &mut Model, deck: &Deck) -> Found {
         let Some(one) = dependent.get(&pair.0) else {
             continue;
         };
-        match one.at(f64::from_bits(pair.1)) {
+        match one.material_at(f64::from_bits(pair.1)) {
             Ok(material) => {
                 heated.insert(*pair, material);
             }

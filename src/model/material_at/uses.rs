@@ -20,7 +20,7 @@ pub(super) struct Uses {
 
 impl Uses {
     /// Returns the temperatures of the elements with a material of `dependent`. A grid without a temperature is a fault.
-    pub(super) fn of(
+    pub(super) fn from_temperatures(
         model: &Model,
         set: &TemperatureSet,
         dependent: &BTreeMap<u32, Dependent<'_>>,
@@ -104,7 +104,7 @@ impl Uses {
                 *material = *hot;
             }
         };
-        let keys = paired(model.shells.iter().map(|s| s.property.0), &self.shells);
+        let keys = pair_with_temperatures(model.shells.iter().map(|s| s.property.0), &self.shells);
         let new = change_properties(&mut model.shell_properties, &keys, |p, t| {
             if let ShellKind::Homogeneous {
                 membrane,
@@ -121,14 +121,14 @@ impl Uses {
         for (s, property) in model.shells.iter_mut().zip(new) {
             s.property = ShellPropertyIx(property);
         }
-        let keys = paired(model.beams.iter().map(|b| b.property.0), &self.beams);
+        let keys = pair_with_temperatures(model.beams.iter().map(|b| b.property.0), &self.beams);
         let new = change_properties(&mut model.beam_properties, &keys, |p, t| {
             heat(&mut p.material, t);
         });
         for (b, property) in model.beams.iter_mut().zip(new) {
             b.property = BeamPropertyIx(property);
         }
-        let keys = paired(model.solids.iter().map(|s| s.property), &self.solids);
+        let keys = pair_with_temperatures(model.solids.iter().map(|s| s.property), &self.solids);
         let new = change_properties(&mut model.solid_properties, &keys, |p, t| {
             heat(&mut p.material, t);
         });
@@ -144,7 +144,7 @@ impl Uses {
     }
 }
 
-fn paired(
+fn pair_with_temperatures(
     properties: impl Iterator<Item = u32>,
     temperatures: &[Option<u64>],
 ) -> Vec<(u32, Option<u64>)> {

@@ -1,7 +1,7 @@
 use super::thin::{Wall, shear_centre};
 use super::*;
 
-fn close(a: f64, b: f64, tolerance: f64) -> bool {
+fn is_close(a: f64, b: f64, tolerance: f64) -> bool {
     (a - b).abs() <= tolerance * b.abs().max(1e-12)
 }
 
@@ -45,7 +45,7 @@ fn areas_agree_with_the_manuals_formulas() {
     for (kind, dims, area) in cases {
         let s = bar_section(kind, dims).unwrap_or_else(|e| panic!("{kind}: {e:?}"));
         assert!(
-            close(s.section.area, area, 1e-12),
+            is_close(s.section.area, area, 1e-12),
             "{kind}: {} against {area}",
             s.section.area
         );
@@ -61,11 +61,11 @@ fn a_channels_shear_centre_is_outside_its_web_by_the_textbook_distance() {
     let s = bar_section("CHAN", &[w, h, tw, tf]).unwrap().section;
     // E is the lower left corner: tw/2 + ... left of the web's midline, so its z is e - tw/2 from the shear centre.
     assert!(
-        close(s.recovery[2][1], e - tw / 2.0, 1e-12),
+        is_close(s.recovery[2][1], e - tw / 2.0, 1e-12),
         "{:?} {e}",
         s.recovery
     );
-    assert!(close(s.recovery[2][0], -h / 2.0, 1e-12));
+    assert!(is_close(s.recovery[2][0], -h / 2.0, 1e-12));
     assert!(s.neutral[1] > 0.0 && s.neutral[0].abs() < 1e-12);
 }
 
@@ -77,7 +77,7 @@ fn an_i_sections_shear_centre_divides_the_flanges_by_their_inertia() {
     let (top, bottom) = (0.5 * 64.0, 0.6 * 216.0);
     let from_bottom_midline = (10.0 - 0.55) * top / (top + bottom);
     assert!(
-        close(s.recovery[1][0], -(from_bottom_midline + 0.3), 1e-12),
+        is_close(s.recovery[1][0], -(from_bottom_midline + 0.3), 1e-12),
         "{:?}",
         s.recovery
     );
@@ -98,7 +98,7 @@ fn a_hat_with_equal_walls_has_the_published_shear_centre() {
     .unwrap();
     let e = 3.0 * h * h * t / (w * t + 6.0 * h * t);
     assert!(
-        close(midline[0], h + e, 1e-12) && midline[1].abs() < 1e-12,
+        is_close(midline[0], h + e, 1e-12) && midline[1].abs() < 1e-12,
         "{midline:?} {e}"
     );
 }
@@ -109,7 +109,7 @@ fn an_angle_and_a_tee_have_theirs_where_the_walls_meet() {
     assert_eq!(s.recovery[2], [-0.35, -0.2]);
     let s = bar_section("T", &[6.0, 5.0, 0.7, 0.4]).unwrap().section;
     assert!(
-        close(s.recovery[0][0], 0.35, 1e-12),
+        is_close(s.recovery[0][0], 0.35, 1e-12),
         "C is on top of the flange"
     );
 }
@@ -117,18 +117,18 @@ fn an_angle_and_a_tee_have_theirs_where_the_walls_meet() {
 #[test]
 fn torsion_of_a_bar_and_a_box_agree_with_tables() {
     // Timoshenko and Goodier: J = beta a b^3 with beta = 0.1406 (square) and 0.229 (2 : 1).
-    assert!(close(
+    assert!(is_close(
         bar_section("BAR", &[1.0, 1.0]).unwrap().section.j,
         0.1406,
         2e-3
     ));
-    assert!(close(
+    assert!(is_close(
         bar_section("BAR", &[2.0, 1.0]).unwrap().section.j,
         0.229 * 2.0,
         3e-3
     ));
     // Bredt: square tube with wall t = 0.1, midline 2: J = a^3 t = 0.8.
-    assert!(close(
+    assert!(is_close(
         bar_section("BOX", &[2.1, 2.1, 0.1, 0.1]).unwrap().section.j,
         0.8,
         1e-12
@@ -142,7 +142,7 @@ fn a_z_section_has_a_negative_product_of_inertia() {
     let s = bar_section("Z", &[f, w, inner, h]).unwrap().section;
     let t = (h - inner) / 2.0;
     let expected = -2.0 * (f + w) * t * (f / 2.0) * (inner / 2.0 + t / 2.0);
-    assert!(close(s.i12, expected, 1e-12), "{} {expected}", s.i12);
+    assert!(is_close(s.i12, expected, 1e-12), "{} {expected}", s.i12);
 }
 
 #[test]

@@ -102,7 +102,7 @@ impl RigidKind {
     }
 
     /// Returns the dependent dofs.
-    pub fn dependent(&self) -> Vec<(GridIx, Dofs)> {
+    pub fn dependent_dofs(&self) -> Vec<(GridIx, Dofs)> {
         match self {
             Self::Body { dependent, .. } => dependent.clone(),
             Self::Mean {

@@ -19,7 +19,7 @@ fn spec(masses: usize, sigma: f64) -> BallastSpec {
     }
 }
 
-fn measured(masses: &[(f64, [f64; 2])], before: &[f64]) -> Vec<f64> {
+fn add_mass_reactions(masses: &[(f64, [f64; 2])], before: &[f64]) -> Vec<f64> {
     let mut r = before.to_vec();
     for (w, at) in masses {
         for (r, u) in r.iter_mut().zip(unit(*at)) {
@@ -32,7 +32,7 @@ fn measured(masses: &[(f64, [f64; 2])], before: &[f64]) -> Vec<f64> {
 #[test]
 fn one_mass_is_found_with_its_place_and_a_range_that_holds_the_truth() {
     let before = [10.0, 12.0, 20.0, 18.0];
-    let m = measured(&[(40.0, [7.0, 0.3])], &before);
+    let m = add_mass_reactions(&[(40.0, [7.0, 0.3])], &before);
     let fit = size_ballast(&before, &m, unit, &spec(1, 0.05));
     let b = fit.masses[0];
     assert!((b.weight - 40.0).abs() < 1e-3, "{b:?}");
@@ -50,7 +50,7 @@ fn one_mass_is_found_with_its_place_and_a_range_that_holds_the_truth() {
 fn two_masses_match_every_reaction_and_only_total_and_centre_count_as_fixed() {
     let before = [10.0, 12.0, 20.0, 18.0];
     let truth = [(30.0, [2.0, 0.2]), (50.0, [8.0, -0.4])];
-    let m = measured(&truth, &before);
+    let m = add_mass_reactions(&truth, &before);
     let fit = size_ballast(&before, &m, unit, &spec(2, 0.05));
     for (r, m) in fit.reactions.iter().zip(&m) {
         assert!((r - m).abs() < 1e-3 * m, "{fit:?}");
@@ -77,7 +77,7 @@ fn two_masses_match_every_reaction_and_only_total_and_centre_count_as_fixed() {
 #[test]
 fn bounds_are_kept_where_the_data_ask_for_more() {
     let before = [10.0, 12.0, 20.0, 18.0];
-    let m = measured(&[(40.0, [14.0, 0.0])], &before);
+    let m = add_mass_reactions(&[(40.0, [14.0, 0.0])], &before);
     let fit = size_ballast(&before, &m, unit, &spec(1, 0.05));
     let b = fit.masses[0];
     assert!(

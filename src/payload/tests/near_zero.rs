@@ -44,7 +44,7 @@ fn spec() -> WeighSpec {
     }
 }
 
-fn reading(force: f64, random: &mut ChaCha8Rng) -> PayloadRun {
+fn simulate_run(force: f64, random: &mut ChaCha8Rng) -> PayloadRun {
     let mut normal = || {
         let u: f64 = random.random_range(1e-12..1.0);
         let v: f64 = random.random_range(0.0..1.0);
@@ -67,7 +67,7 @@ fn intervals_hold_the_truth_of_an_empty_structure_and_of_small_payloads() {
         let truth = at * sigma();
         let one = |seed: u64| -> Option<(bool, f64)> {
             let mut random = ChaCha8Rng::seed_from_u64(7000 + seed);
-            let found = weigh(&plate(), &[reading(truth, &mut random)], &spec());
+            let found = weigh(&plate(), &[simulate_run(truth, &mut random)], &spec());
             let w = &found.runs[0];
             if w.refused.is_some() {
                 return None;
@@ -107,11 +107,11 @@ fn a_run_without_an_answer_changes_nothing_of_the_others() {
     let mut random = ChaCha8Rng::seed_from_u64(3);
     let good: Vec<PayloadRun> = [50.0, 80.0, 0.0]
         .iter()
-        .map(|f| reading(*f, &mut random))
+        .map(|f| simulate_run(*f, &mut random))
         .collect();
-    let pulled = reading(-20.0, &mut random);
-    let little = reading(-2.0, &mut random);
-    let mut blank = reading(30.0, &mut random);
+    let pulled = simulate_run(-20.0, &mut random);
+    let little = simulate_run(-2.0, &mut random);
+    let mut blank = simulate_run(30.0, &mut random);
     blank.strain.fill(f64::NAN);
     let alone = weigh(&plate(), &good, &spec());
     let mut all = good.clone();

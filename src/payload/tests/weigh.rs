@@ -19,14 +19,14 @@ const ARMS: [[f64; 2]; 6] = [
 struct Lot(ChaCha8Rng);
 
 impl Lot {
-    fn normal(&mut self) -> f64 {
+    fn draw_normal(&mut self) -> f64 {
         let (u, v): (f64, f64) = (
             self.0.random_range(1e-12..1.0),
             self.0.random_range(0.0..1.0),
         );
         (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
     }
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    fn draw_uniform(&mut self, low: f64, high: f64) -> f64 {
         self.0.random_range(low..high)
     }
 }
@@ -40,9 +40,9 @@ fn floor() -> Matrix {
 
 /// Gauges that read 1 to 10 microstrain a kN of each wheel and of the payload.
 fn truck(lot: &mut Lot, gauges: usize) -> PayloadModel {
-    let wheels = Matrix::from_fn(gauges, 6, |_, _| MICROSTRAIN * lot.between(-5.0, 5.0));
+    let wheels = Matrix::from_fn(gauges, 6, |_, _| MICROSTRAIN * lot.draw_uniform(-5.0, 5.0));
     let payload = Matrix::from_fn(gauges, 3, |_, k| {
-        MICROSTRAIN * lot.between(-5.0, 5.0) * if k == 0 { 1.0 } else { 0.5 }
+        MICROSTRAIN * lot.draw_uniform(-5.0, 5.0) * if k == 0 { 1.0 } else { 0.5 }
     });
     PayloadModel {
         gauges: (0..gauges).map(|g| format!("G{g}")).collect(),
@@ -66,7 +66,7 @@ fn spec(place: Place) -> WeighSpec {
 }
 
 /// A run without errors.
-fn clean(model: &PayloadModel, force: f64, shift: [f64; 2]) -> PayloadRun {
+fn exact_run(model: &PayloadModel, force: f64, shift: [f64; 2]) -> PayloadRun {
     let p = [force, force * shift[0], force * shift[1]];
     let floor = model.floor.as_ref().expect("the truck has a floor");
     let reactions: Vec<f64> = (0..6)
@@ -89,13 +89,13 @@ fn clean(model: &PayloadModel, force: f64, shift: [f64; 2]) -> PayloadRun {
     }
 }
 
-fn noisy(lot: &mut Lot, mut run: PayloadRun) -> PayloadRun {
+fn add_noise(lot: &mut Lot, mut run: PayloadRun) -> PayloadRun {
     run.strain
         .iter_mut()
-        .for_each(|v| *v += MICROSTRAIN * lot.normal());
+        .for_each(|v| *v += MICROSTRAIN * lot.draw_normal());
     run.reactions
         .iter_mut()
-        .for_each(|v| *v += 0.1 * lot.normal());
+        .for_each(|v| *v += 0.1 * lot.draw_normal());
     run
 }
 
@@ -103,7 +103,7 @@ fn noisy(lot: &mut Lot, mut run: PayloadRun) -> PayloadRun {
 fn readings_without_error_give_weight_and_place_back_from_each_source() {
     let mut lot = Lot(ChaCha8Rng::seed_from_u64(3));
     let model = truck(&mut lot, 20);
-    let run = clean(&model, 54.414, [-0.3, 0.12]);
+    let run = exact_run(&model, 54.414, [-0.3, 0.12]);
     let strain_alone = PayloadRun {
         reactions: Vec::new(),
         ..run.clone()
@@ -133,10 +133,10 @@ fn intervals_and_regions_cover_as_stated_whatever_the_source() {
         for _ in 0..trials {
             let model = truck(&mut lot, 14);
             let truth = (
-                lot.between(20.0, 90.0),
-                [lot.between(-1.0, 1.0), lot.between(-0.3, 0.3)],
+                lot.draw_uniform(20.0, 90.0),
+                [lot.draw_uniform(-1.0, 1.0), lot.draw_uniform(-0.3, 0.3)],
             );
-            let mut run = noisy(&mut lot, clean(&model, truth.0, truth.1));
+            let mut run = add_noise(&mut lot, exact_run(&model, truth.0, truth.1));
             match source {
                 0 => run.reactions.clear(),
                 1 => run.strain.clear(),
@@ -172,7 +172,7 @@ fn with_a_third_of_the_gauges_bad_weight_and_place_stay_and_the_bad_ones_are_nam
         let runs: Vec<PayloadRun> = truth
             .iter()
             .map(|(f, at)| {
-                let mut run = noisy(&mut lot, clean(&model, *f, *at));
+                let mut run = add_noise(&mut lot, exact_run(&model, *f, *at));
                 for g in (0..21).filter(|g| (g + trial) % 3 == 0) {
                     run.strain[g] = match g % 4 {
                         0 => -run.strain[g],
@@ -215,7 +215,7 @@ fn with_a_third_of_the_gauges_bad_weight_and_place_stay_and_the_bad_ones_are_nam
 fn a_payload_that_pulls_up_is_refused_with_the_reason() {
     let mut lot = Lot(ChaCha8Rng::seed_from_u64(6));
     let model = truck(&mut lot, 12);
-    let mut run = clean(&model, -40.0, [0.0, 0.0]);
+    let mut run = exact_run(&model, -40.0, [0.0, 0.0]);
     for place in [Place::Known, Place::Free] {
         let answer = weigh(&model, std::slice::from_ref(&run), &spec(place));
         assert!(
@@ -237,7 +237,7 @@ fn a_payload_that_pulls_up_is_refused_with_the_reason() {
 fn strain_and_wheels_that_disagree_break_equilibrium() {
     let mut lot = Lot(ChaCha8Rng::seed_from_u64(7));
     let model = truck(&mut lot, 15);
-    let mut run = noisy(&mut lot, clean(&model, 50.0, [0.2, 0.0]));
+    let mut run = add_noise(&mut lot, exact_run(&model, 50.0, [0.2, 0.0]));
     run.strain.iter_mut().for_each(|v| *v *= 1.4);
     let w = &weigh(&model, &[run], &spec(Place::Known)).runs[0];
     assert!(
@@ -250,7 +250,7 @@ fn strain_and_wheels_that_disagree_break_equilibrium() {
 fn a_place_outside_the_region_is_refused() {
     let mut lot = Lot(ChaCha8Rng::seed_from_u64(8));
     let model = truck(&mut lot, 15);
-    let run = noisy(&mut lot, clean(&model, 50.0, [0.2, 0.9]));
+    let run = add_noise(&mut lot, exact_run(&model, 50.0, [0.2, 0.9]));
     let w = &weigh(&model, &[run], &spec(Place::Free)).runs[0];
     assert!(
         matches!(w.refused, Some(Refusal::OutsideRegion { .. })),

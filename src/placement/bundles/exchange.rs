@@ -23,7 +23,7 @@ pub(super) fn improve(
     };
     let value = |chosen: &[usize], base: &[f64]| {
         spec.criterion
-            .at(&information(chosen, base), bundles.k)
+            .evaluate_at(&information(chosen, base), bundles.k)
             .map(|p| p.value)
     };
     let spent = |chosen: &[usize]| -> f64 { chosen.iter().map(|&u| bundles.cost[u]).sum() };
@@ -42,7 +42,7 @@ pub(super) fn improve(
             let mut rest = chosen.clone();
             rest.swap_remove(slot);
             let cost = spent(&rest);
-            for u in promising(bundles, spec, list, &relaxed.ridge, &rest, cost) {
+            for u in rank_bundles(bundles, spec, list, &relaxed.ridge, &rest, cost) {
                 let mut trial = rest.clone();
                 trial.push(u);
                 if let Some(v) = value(&trial, base)
@@ -76,7 +76,7 @@ pub(super) fn improve(
 }
 
 /// Returns the bundles that fit with `rest`, the most promising first: by `ln det(1 + R M^-1 R')`, or its first term if the criterion is not D.
-fn promising(
+fn rank_bundles(
     bundles: &Bundles,
     spec: &BundleSpec,
     list: &[usize],
@@ -87,7 +87,7 @@ fn promising(
     let k = bundles.k;
     let mut m = ridge.to_vec();
     rest.iter().for_each(|&u| bundles.add_to(&mut m, u, 1.0));
-    let Some(here) = spec.criterion.at(&m, k) else {
+    let Some(here) = spec.criterion.evaluate_at(&m, k) else {
         return Vec::new();
     };
     let slope = here.slope(k);
@@ -126,7 +126,7 @@ fn fill(
     chosen.iter().for_each(|&u| bundles.add_to(&mut m, u, 1.0));
     let mut spent: f64 = chosen.iter().map(|&u| bundles.cost[u]).sum();
     let mut work = vec![0.0; k];
-    while let Some(here) = spec.criterion.at(&m, k) {
+    while let Some(here) = spec.criterion.evaluate_at(&m, k) {
         let slope = here.slope(k);
         let best = list
             .iter()

@@ -74,7 +74,7 @@ fn point(bundles: &Bundles, spec: &BundleSpec, active: &[usize], weights: &[f64]
             bundles.add_to(&mut m, u, w);
         }
     }
-    spec.criterion.at(&m, bundles.k)
+    spec.criterion.evaluate_at(&m, bundles.k)
 }
 
 /// Weights that spend the budget, over as many bundles as the bound needs; `None` where all of them together are singular.

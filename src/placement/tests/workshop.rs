@@ -6,7 +6,7 @@ use crate::placement::quality::{influence, judge_rows, reserve};
 use crate::placement::relaxed::Active;
 use crate::placement::{Loss, robust};
 
-fn at(place: usize) -> Choice {
+fn choice_at(place: usize) -> Choice {
     Choice {
         place: place as u32,
         step: 0,
@@ -23,12 +23,12 @@ fn layouts_optimised_for_the_worst_loss_are_the_best_of_all_subsets_nearly_alway
         let s = k + 2 + trial % 2;
         let c = rows_of(&random_rows(&mut rng, n, k));
         let after = |places: &[usize]| {
-            let rows: Vec<Vec<f64>> = places.iter().map(|&p| c.row(at(p))).collect();
+            let rows: Vec<Vec<f64>> = places.iter().map(|&p| c.row(choice_at(p))).collect();
             (0..rows.len())
                 .map(|out| {
                     let rest: Vec<Choice> = (0..places.len())
                         .filter(|i| *i != out)
-                        .map(|i| at(places[i]))
+                        .map(|i| choice_at(places[i]))
                         .collect();
                     log_det(&c, &rest, &vec![0.0; k * k])
                 })
@@ -144,7 +144,7 @@ fn a_turning_variance_adds_its_quadratic_form_and_lowers_the_row() {
     ];
     let scatter = Scatter {
         forms: vec![form],
-        ..Scatter::uniform(2.0)
+        ..Scatter::with_uniform_noise(2.0)
     };
     let fill = |_: usize, out: &mut [f64]| out.copy_from_slice(&t);
     let c = Candidates::from_tensors(2, 1, Angles::Continuous, scatter, fill);
@@ -180,7 +180,7 @@ fn fewer_gauges_than_loads_are_placed_where_load_sizes_are_known() {
             .map(|p| {
                 log_det(
                     &c,
-                    &p.iter().map(|&i| at(i)).collect::<Vec<_>>(),
+                    &p.iter().map(|&i| choice_at(i)).collect::<Vec<_>>(),
                     &spec.prior,
                 )
             })
@@ -205,7 +205,7 @@ fn in_the_noise_of_two_degrees_a_layout_that_ignores_it_keeps_a_quarter_and_one_
     let made = |angle_sd: f64| {
         let scatter = Scatter {
             angle_sd,
-            ..Scatter::uniform(1.0)
+            ..Scatter::with_uniform_noise(1.0)
         };
         Candidates::from_tensors(6, n, grid15(), scatter, |p, out| {
             for (o, v) in out.iter_mut().zip(&t[18 * p..]) {

@@ -11,7 +11,7 @@ pub struct CardGain;
 
 impl CardGain {
     /// Every stretch of two or more channels in file order, up to half of them (a wrong gain of more is one of the rest, or of all).
-    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         /// Amplifier cards hold at most this many channels.
         const MOST: usize = 16;
         let n = frame.n_gauges();

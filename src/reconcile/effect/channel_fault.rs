@@ -95,7 +95,7 @@ impl<F> OnGauges<F> {
     }
 
     /// Returns `fault` on one gauge.
-    pub fn one(frame: &StrainFrame, gauge: usize, fault: F) -> Self {
+    pub fn with_gauge(frame: &StrainFrame, gauge: usize, fault: F) -> Self {
         Self::new(frame, vec![gauge], fault, |names| names.join("+"))
     }
 }
@@ -161,6 +161,6 @@ impl<F: ChannelFault> StrainEffect for OnGauges<F> {
 /// Returns `fault` on each gauge separately.
 pub fn on_every_gauge<F: Clone>(frame: &StrainFrame, fault: &F) -> Vec<OnGauges<F>> {
     (0..frame.n_gauges())
-        .map(|g| OnGauges::one(frame, g, fault.clone()))
+        .map(|g| OnGauges::with_gauge(frame, g, fault.clone()))
         .collect()
 }

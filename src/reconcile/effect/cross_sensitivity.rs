@@ -13,14 +13,14 @@ pub struct CrossSensitivity {
 
 impl CrossSensitivity {
     /// Every gauge with the one before and the one after it.
-    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         let n = frame.n_gauges();
         let mut out = Vec::new();
         for g in 0..n {
             let before = g.checked_sub(1);
             let after = Some(g + 1).filter(|h| *h < n);
             let each = before.into_iter().chain(after);
-            out.extend(each.map(|neighbour| OnGauges::one(frame, g, Self { neighbour })));
+            out.extend(each.map(|neighbour| OnGauges::with_gauge(frame, g, Self { neighbour })));
         }
         out
     }

@@ -10,11 +10,11 @@ pub struct GainDrift;
 
 impl GainDrift {
     /// Returns one drift of all channels together, then one drift of each gauge separately.
-    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         let n = frame.n_gauges();
         let all = OnGauges::new(frame, (0..n).collect(), Self, |_| "all".into());
         std::iter::once(all)
-            .chain((0..n).map(|g| OnGauges::one(frame, g, Self)))
+            .chain((0..n).map(|g| OnGauges::with_gauge(frame, g, Self)))
             .collect()
     }
 }

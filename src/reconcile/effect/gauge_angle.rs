@@ -10,17 +10,17 @@ pub struct GaugeAngle;
 
 impl GaugeAngle {
     /// Returns one effect for every gauge whose in-plane strain is known.
-    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         let known = |g: &usize| frame.tensors.get(*g).is_some_and(|t| !t.is_empty());
         (0..frame.n_gauges())
             .filter(known)
-            .map(|g| OnGauges::one(frame, g, Self))
+            .map(|g| OnGauges::with_gauge(frame, g, Self))
             .collect()
     }
 }
 
 /// Returns the reading of a gauge at `angle_rad` from the x axis of the in-plane strain.
-fn reading([exx, eyy, gxy]: [f64; 3], angle_rad: f64, wiring: Wiring) -> f64 {
+fn gauge_reading([exx, eyy, gxy]: [f64; 3], angle_rad: f64, wiring: Wiring) -> f64 {
     let (s, c) = angle_rad.sin_cos();
     match wiring {
         Wiring::Quarter => exx * c * c + eyy * s * s + gxy * s * c,
@@ -38,7 +38,9 @@ pub fn angle_change(frame: &StrainFrame, gauge: usize, degrees: f64) -> Vec<f64>
         facts.angle_deg.to_radians(),
         (facts.angle_deg + degrees).to_radians(),
     );
-    let change = |&t: &[f64; 3]| reading(t, glued, facts.wiring) - reading(t, drawn, facts.wiring);
+    let change = |&t: &[f64; 3]| {
+        gauge_reading(t, glued, facts.wiring) - gauge_reading(t, drawn, facts.wiring)
+    };
     tensors.iter().map(change).collect()
 }
 

@@ -10,7 +10,7 @@ pub struct GaugeGain;
 
 impl GaugeGain {
     /// One on every gauge.
-    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         on_every_gauge(frame, &Self)
     }
 }

@@ -10,11 +10,11 @@ pub struct GaugePosition;
 
 impl GaugePosition {
     /// Returns one effect for every gauge whose gradient is known.
-    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         let known = |g: &usize| gradient(frame, *g).iter().any(|v| *v != 0.0);
         (0..frame.n_gauges())
             .filter(known)
-            .map(|g| OnGauges::one(frame, g, Self))
+            .map(|g| OnGauges::with_gauge(frame, g, Self))
             .collect()
     }
 }

@@ -10,7 +10,7 @@ pub struct GaugeSwap;
 
 impl GaugeSwap {
     /// Every pair that is no pair of legs of one rosette.
-    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         let n = frame.n_gauges();
         let mut out = Vec::new();
         for a in 0..n {

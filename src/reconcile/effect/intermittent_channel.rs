@@ -13,7 +13,7 @@ pub struct IntermittentChannel {
 
 impl IntermittentChannel {
     /// Every gauge that reads nothing but noise in a run where the model has it read clearly more, and something in another.
-    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         /// In units of the noise: what is no reading, and what is one.
         const NOTHING: f64 = 3.0;
         const CLEAR: f64 = 6.0;
@@ -37,7 +37,7 @@ impl IntermittentChannel {
                 .clone()
                 .any(|r| matches!(at(r), (y, Some(_)) if y.abs() > CLEAR * noise));
             if reads && lost {
-                out.push(OnGauges::one(frame, g, Self { open }));
+                out.push(OnGauges::with_gauge(frame, g, Self { open }));
             }
         }
         out

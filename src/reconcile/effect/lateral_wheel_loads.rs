@@ -19,7 +19,7 @@ const USUAL: [(&str, f64); 5] = [
 ];
 
 /// Usual size of each component in `frame`, kN and kN m.
-fn usual(frame: &StrainFrame) -> Vec<f64> {
+fn usual_sizes(frame: &StrainFrame) -> Vec<f64> {
     USUAL.iter().map(|u| u.1 * frame.usual_load()).collect()
 }
 
@@ -30,7 +30,7 @@ fn component(name: &str) -> Option<usize> {
 
 impl LateralWheelLoads {
     /// Itself where the frame knows such loads.
-    pub fn all(frame: &StrainFrame) -> Vec<Self> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<Self> {
         if frame
             .other_loads
             .iter()
@@ -60,18 +60,18 @@ impl StrainEffect for LateralWheelLoads {
         Some(Amplitudes {
             patterns: known().map(|(_, p)| p.clone()).collect(),
             kinds: known().map(|(k, _)| k).collect(),
-            usual: usual(frame),
-            steady: usual(frame),
+            usual: usual_sizes(frame),
+            steady: usual_sizes(frame),
             correlation: 0.0,
             unit: "kN",
-            plausible: usual(frame)
+            plausible: usual_sizes(frame)
                 .iter()
                 .map(|u| frame.rules.side_load * u)
                 .collect(),
         })
     }
     fn extension(&self, frame: &StrainFrame, _parameters: &[f64]) -> Extension {
-        let usual = usual(frame);
+        let usual = usual_sizes(frame);
         let sized = |n: &String| {
             component(n)
                 .and_then(|k| usual.get(k))

@@ -41,7 +41,7 @@ pub struct Candidate {
 /// An effect at every place where it could be.
 type Everywhere = fn(&StrainFrame) -> Vec<Box<dyn StrainEffect>>;
 
-fn boxed<E: StrainEffect + 'static>(effects: Vec<E>) -> Vec<Box<dyn StrainEffect>> {
+fn box_effects<E: StrainEffect + 'static>(effects: Vec<E>) -> Vec<Box<dyn StrainEffect>> {
     effects
         .into_iter()
         .map(|e| Box::new(e) as Box<dyn StrainEffect>)
@@ -49,33 +49,33 @@ fn boxed<E: StrainEffect + 'static>(effects: Vec<E>) -> Vec<Box<dyn StrainEffect
 }
 
 const LIBRARY: [Everywhere; 27] = [
-    |f| boxed(ZeroDrift::all(f)),
-    |f| boxed(SignFlip::all(f)),
-    |f| boxed(GaugeGain::all(f)),
-    |f| boxed(GaugeSwap::all(f)),
-    |f| boxed(RosetteLegs::all(f)),
-    |f| boxed(GaugeAngle::all(f)),
-    |f| boxed(GaugePosition::all(f)),
-    |f| boxed(DeadChannel::all(f)),
-    |f| boxed(SaturatedChannel::all(f)),
-    |f| boxed(IntermittentChannel::all(f)),
-    |f| boxed(CardGain::all(f)),
-    |f| boxed(GainDrift::all(f)),
-    |f| boxed(CrossSensitivity::all(f)),
-    |f| boxed(WheelScale::all(f)),
-    |f| boxed(RunExchange::all(f)),
-    |f| boxed(RunRecord::all(f)),
-    |f| boxed(PayloadGravityMissing::all(f)),
-    |f| boxed(PayloadOffset::all(f)),
-    |f| boxed(UnaccountedMass::all(f)),
-    |f| boxed(UnevenGround::all(f)),
-    |f| boxed(Thermal::uniform(f)),
-    |f| boxed(Thermal::gradient(f)),
-    |f| boxed(LateralWheelLoads::all(f)),
-    |f| boxed(Stiffness::all(f)),
-    |f| boxed(Stiffness::described(f)),
-    |_| boxed(vec![GlobalScale]),
-    |_| boxed(ModelDiscrepancy::all()),
+    |f| box_effects(ZeroDrift::list_effects(f)),
+    |f| box_effects(SignFlip::list_effects(f)),
+    |f| box_effects(GaugeGain::list_effects(f)),
+    |f| box_effects(GaugeSwap::list_effects(f)),
+    |f| box_effects(RosetteLegs::list_effects(f)),
+    |f| box_effects(GaugeAngle::list_effects(f)),
+    |f| box_effects(GaugePosition::list_effects(f)),
+    |f| box_effects(DeadChannel::list_effects(f)),
+    |f| box_effects(SaturatedChannel::list_effects(f)),
+    |f| box_effects(IntermittentChannel::list_effects(f)),
+    |f| box_effects(CardGain::list_effects(f)),
+    |f| box_effects(GainDrift::list_effects(f)),
+    |f| box_effects(CrossSensitivity::list_effects(f)),
+    |f| box_effects(WheelScale::list_effects(f)),
+    |f| box_effects(RunExchange::list_effects(f)),
+    |f| box_effects(RunRecord::list_effects(f)),
+    |f| box_effects(PayloadGravityMissing::list_effects(f)),
+    |f| box_effects(PayloadOffset::list_effects(f)),
+    |f| box_effects(UnaccountedMass::list_effects(f)),
+    |f| box_effects(UnevenGround::list_effects(f)),
+    |f| box_effects(Thermal::list_uniform_effects(f)),
+    |f| box_effects(Thermal::gradient(f)),
+    |f| box_effects(LateralWheelLoads::list_effects(f)),
+    |f| box_effects(Stiffness::list_effects(f)),
+    |f| box_effects(Stiffness::list_described_effects(f)),
+    |_| box_effects(vec![GlobalScale]),
+    |_| box_effects(ModelDiscrepancy::list_effects()),
 ];
 
 /// Returns the candidates of `frame`. If `only` is not empty, these are the effects whose id (or id with place) it lists, and the general forms of
@@ -106,7 +106,7 @@ pub fn library(frame: &StrainFrame, only: &[String]) -> Vec<Candidate> {
     }
     let n = out.len();
     // One more hypothesis, shared by its lengths and amplitudes; that it competes costs no name a part of its weight.
-    let smooth = boxed(SmoothError::all(frame));
+    let smooth = box_effects(SmoothError::list_effects(frame));
     let log_prior = -((n_groups + 1.0) * smooth.len().max(1) as f64).ln();
     let smooth = smooth.into_iter();
     out.extend(smooth.map(|effect| Candidate { effect, log_prior }));

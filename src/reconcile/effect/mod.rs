@@ -67,7 +67,7 @@ pub enum FaultKind {
 
 impl FaultKind {
     /// Returns whether faults of the two kinds can be distinguished at one gauge.
-    pub fn besides(self, other: Self) -> bool {
+    pub fn is_distinguishable_from(self, other: Self) -> bool {
         matches!(
             (self, other),
             (Self::Zero, Self::Whole) | (Self::Whole, Self::Zero)
@@ -125,7 +125,7 @@ pub trait StrainEffect: Send + Sync {
         None
     }
     /// Returns the effect if it is a smooth error of the model.
-    fn smooth(&self) -> Option<&SmoothError> {
+    fn as_smooth_error(&self) -> Option<&SmoothError> {
         None
     }
     /// Returns the stage at which the effect acts.

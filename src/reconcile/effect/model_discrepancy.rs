@@ -31,7 +31,7 @@ pub enum ModelDiscrepancy {
 
 impl ModelDiscrepancy {
     /// Returns all general forms.
-    pub fn all() -> Vec<Self> {
+    pub fn list_effects() -> Vec<Self> {
         vec![
             Self::LoadDependent,
             Self::StrainDependent,

@@ -9,7 +9,7 @@ pub struct PayloadGravityMissing;
 
 impl PayloadGravityMissing {
     /// Itself where the analyst's model lacks the weight.
-    pub fn all(frame: &StrainFrame) -> Vec<Self> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<Self> {
         let carries = frame.payload.iter().any(|p| p[0] > 0.0);
         if frame.payload_weight == PayloadWeight::Missing && carries {
             vec![Self]

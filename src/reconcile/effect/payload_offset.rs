@@ -23,7 +23,7 @@ pub struct PayloadOffset {
 
 impl PayloadOffset {
     /// Returns one effect for each direction; none if the model lacks the payload or no run carries one.
-    pub fn all(frame: &StrainFrame) -> Vec<Self> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<Self> {
         let carries = frame.payload.iter().any(|p| p[0] > 0.0);
         if frame.payload_weight == PayloadWeight::Missing || !carries {
             return Vec::new();

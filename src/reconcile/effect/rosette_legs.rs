@@ -13,7 +13,7 @@ pub struct RosetteLegs {
 
 impl RosetteLegs {
     /// Every other order of two or three legs at one place; the rosette is named by its first leg.
-    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         const ORDERS: [&[usize]; 6] = [
             &[1, 0],
             &[1, 0, 2],

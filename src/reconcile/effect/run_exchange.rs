@@ -14,7 +14,7 @@ pub struct RunExchange {
 
 impl RunExchange {
     /// Returns one effect for every pair with a run that is used for fitting.
-    pub fn all(frame: &StrainFrame) -> Vec<Self> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<Self> {
         let fit = frame.observations.fit_runs();
         let name = |r: usize| frame.observations.runs.get(r).cloned().unwrap_or_default();
         let mut out = Vec::new();

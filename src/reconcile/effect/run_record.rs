@@ -18,7 +18,7 @@ pub struct RunRecord {
 
 impl RunRecord {
     /// Returns one effect for each load, for all loads together and for the mass, in every fit run.
-    pub fn all(frame: &StrainFrame) -> Vec<Self> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<Self> {
         /// A slip is of the order of what is noted: its usual size is a third of the root mean square over all runs.
         const SHARE: f64 = 0.3;
         let rms = |v: &mut dyn Iterator<Item = f64>| {

@@ -13,7 +13,7 @@ pub struct SaturatedChannel {
 
 impl SaturatedChannel {
     /// One on every gauge with two or more readings at its largest size, where the model predicts more.
-    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         /// Readings held at a limit differ by noise only: five standard deviations.
         const ALIKE: f64 = 5.0;
         let predicted = predict(frame, &[]);
@@ -30,7 +30,7 @@ impl SaturatedChannel {
                 (0..frame.n_runs()).filter_map(|r| predicted.get(r * frame.n_gauges() + gauge));
             let beyond = expected.filter(|p| p.abs() > largest + near).count();
             if largest > near && at_limit >= 2 && beyond >= 1 {
-                out.push(OnGauges::one(frame, gauge, Self { largest }));
+                out.push(OnGauges::with_gauge(frame, gauge, Self { largest }));
             }
         }
         out

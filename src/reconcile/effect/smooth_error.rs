@@ -39,7 +39,7 @@ const LEAST: f64 = 1e-3;
 
 impl SmoothError {
     /// Every length and amplitude, for all loads and for each; none where the place of a gauge isn't known.
-    pub fn all(frame: &StrainFrame) -> Vec<Self> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<Self> {
         let places: Option<Vec<[f64; 3]>> = frame.gauges.iter().map(|g| g.position).collect();
         let Some(places) = places.filter(|p| p.len() >= FEWEST) else {
             return Vec::new();
@@ -164,7 +164,7 @@ impl StrainEffect for SmoothError {
             "the model is wrong by a factor that changes smoothly with position (`smooth`), and no single effect of the library explains it",
         ))
     }
-    fn smooth(&self) -> Option<&SmoothError> {
+    fn as_smooth_error(&self) -> Option<&SmoothError> {
         Some(self)
     }
     fn stage(&self) -> Stage {

@@ -19,12 +19,12 @@ pub struct Stiffness {
 
 impl Stiffness {
     /// One for every signature of zones, joints and regions.
-    pub fn all(frame: &StrainFrame) -> Vec<Self> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<Self> {
         Self::where_it(frame, |of| of != StiffnessOf::Described)
     }
 
     /// One for every change that the user described.
-    pub fn described(frame: &StrainFrame) -> Vec<Self> {
+    pub fn list_described_effects(frame: &StrainFrame) -> Vec<Self> {
         Self::where_it(frame, |of| of == StiffnessOf::Described)
     }
 

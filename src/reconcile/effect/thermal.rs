@@ -21,16 +21,16 @@ pub struct Thermal {
 
 impl Thermal {
     /// An even temperature, where the frame knows its strain.
-    pub fn uniform(frame: &StrainFrame) -> Vec<Self> {
-        Self::known(frame, Pattern::Uniform)
+    pub fn list_uniform_effects(frame: &StrainFrame) -> Vec<Self> {
+        Self::list_pattern_effects(frame, Pattern::Uniform)
     }
 
     /// A gradient, where the frame knows its strain.
     pub fn gradient(frame: &StrainFrame) -> Vec<Self> {
-        Self::known(frame, Pattern::Gradient)
+        Self::list_pattern_effects(frame, Pattern::Gradient)
     }
 
-    fn known(frame: &StrainFrame, pattern: Pattern) -> Vec<Self> {
+    fn list_pattern_effects(frame: &StrainFrame, pattern: Pattern) -> Vec<Self> {
         let one = Self { pattern };
         let strains = one
             .signature(frame)

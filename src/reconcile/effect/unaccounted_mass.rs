@@ -14,7 +14,7 @@ pub struct UnaccountedMass {
 
 impl UnaccountedMass {
     /// One at every place.
-    pub fn all(frame: &StrainFrame) -> Vec<Self> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<Self> {
         frame
             .masses
             .iter()

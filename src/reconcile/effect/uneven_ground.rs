@@ -12,7 +12,7 @@ const USUAL: f64 = 0.25;
 
 impl UnevenGround {
     /// Returns the effect if the wheel forces are computed, not measured, and the job does not state uneven ground; otherwise an empty list.
-    pub fn all(frame: &StrainFrame) -> Vec<Self> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<Self> {
         let warps = !ground_patterns(frame).is_empty();
         let missing = frame.wheel_forces == WheelForces::FlatGroundModel && frame.ground == 0.0;
         if missing && warps {

@@ -16,7 +16,7 @@ pub struct WheelScale {
 
 impl WheelScale {
     /// Returns one effect for every measured load, and one for all loads together (a wrong unit, scales calibrated against one weight).
-    pub fn all(frame: &StrainFrame) -> Vec<Self> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<Self> {
         if frame.wheel_forces != WheelForces::Measured {
             return Vec::new();
         }

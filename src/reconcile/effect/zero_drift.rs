@@ -26,10 +26,10 @@ const PLAUSIBLE: f64 = 1000.0;
 
 impl ZeroDrift {
     /// All kinds on every gauge.
-    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
+    pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         let kinds = [Self::Step, Self::Creep, Self::Line, Self::Wander];
         (0..frame.n_gauges())
-            .flat_map(|g| kinds.map(|k| OnGauges::one(frame, g, k)))
+            .flat_map(|g| kinds.map(|k| OnGauges::with_gauge(frame, g, k)))
             .collect()
     }
 

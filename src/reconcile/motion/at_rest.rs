@@ -103,7 +103,7 @@ fn stays_above_nothing(frame: &MotionFrame, v: &Vehicle) -> bool {
 fn step_share(frame: &MotionFrame, step: &crate::vehicle::layout::MassStep) -> f64 {
     let n = frame.data.n_samples().max(1);
     let at = |i: usize| frame.data.start_s + i as f64 / frame.data.rate_hz;
-    (0..n).map(|i| step.done(at(i))).sum::<f64>() / n as f64
+    (0..n).map(|i| step.share_at(at(i))).sum::<f64>() / n as f64
 }
 
 /// Returns the RMS of a body's vertical velocity in the band.

@@ -28,7 +28,7 @@ pub enum Sign {
 
 impl Candidate {
     /// Returns the candidate for an effect at a place.
-    pub fn of(family: &str, place: Option<&str>, shapes: Vec<Change>) -> Self {
+    pub fn new(family: &str, place: Option<&str>, shapes: Vec<Change>) -> Self {
         Self {
             id: place.map_or_else(|| family.to_owned(), |p| format!("{family}:{p}")),
             place: place.map(str::to_owned),
@@ -39,13 +39,13 @@ impl Candidate {
     }
 
     /// Returns the candidate with its first parameter limited to positive values.
-    pub fn positive(mut self) -> Self {
+    pub fn with_positive_parameter(mut self) -> Self {
         self.sign = Sign::Positive;
         self
     }
 
     /// Returns the candidate with the log prior odds `by` against it.
-    pub fn handicapped(mut self, by: f64) -> Self {
+    pub fn with_handicap(mut self, by: f64) -> Self {
         self.handicap = by;
         self
     }

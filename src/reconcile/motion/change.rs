@@ -264,7 +264,7 @@ impl Change {
     }
 
     /// Returns the factor from a fault's parameter to its stated size: 1e6 for the rate of a clock, stated in millionths, and otherwise 1.
-    pub fn stated(&self) -> f64 {
+    pub fn stated_size_factor(&self) -> f64 {
         match self {
             Self::Clock { .. } => 1e6,
             _ => 1.0,

@@ -11,7 +11,11 @@ use rustfft::num_complex::Complex64;
 use std::f64::consts::{PI, SQRT_2};
 
 /// Returns the contribution of a signal in one channel to every equation.
-fn heard(responses: &[Vec<Vec<Complex64>>], channel: usize, signal: &[Complex64]) -> Vec<Bins> {
+fn apply_responses(
+    responses: &[Vec<Vec<Complex64>>],
+    channel: usize,
+    signal: &[Complex64],
+) -> Vec<Bins> {
     let one = |r: &Vec<Vec<Complex64>>| -> Bins {
         r[channel].iter().zip(signal).map(|(h, a)| h * a).collect()
     };
@@ -29,7 +33,7 @@ fn channel_column(
     let signal: Bins = (own.iter().zip(&design.f_hz))
         .map(|(a, f)| a * factor(2.0 * PI * f))
         .collect();
-    heard(responses, channel, &signal)
+    apply_responses(responses, channel, &signal)
 }
 
 /// The column of one channel's rate of change times a function of the record's time, s.
@@ -48,8 +52,8 @@ fn rate_column(
     let shared: Vec<f64> = (fourier.samples(&rate, 1).iter().enumerate())
         .map(|(i, v)| v * share(m.start_s + i as f64 / m.rate_hz))
         .collect();
-    let mut window = Windowed::of(m.n_samples(), m.rate_hz, design.band);
-    Some(heard(responses, channel, &window.bins(&shared)))
+    let mut window = Windowed::new(m.n_samples(), m.rate_hz, design.band);
+    Some(apply_responses(responses, channel, &window.bins(&shared)))
 }
 
 /// Cosine and sine of a line in one channel, of amplitude one in its readings.
@@ -60,14 +64,14 @@ fn line_columns(
     hz: f64,
 ) -> Vec<Vec<Bins>> {
     let m = &design.motion;
-    let mut window = Windowed::of(m.n_samples(), m.rate_hz, design.band);
+    let mut window = Windowed::new(m.n_samples(), m.rate_hz, design.band);
     let gain = design.band.gain(hz);
     [0.0, 0.5 * PI]
         .map(|phase| {
             let wave: Vec<f64> = (0..m.n_samples())
                 .map(|i| gain * (2.0 * PI * hz * i as f64 / m.rate_hz - phase).cos())
                 .collect();
-            heard(responses, channel, &window.bins(&wave))
+            apply_responses(responses, channel, &window.bins(&wave))
         })
         .into()
 }
@@ -99,7 +103,7 @@ pub fn fault_columns(
                     1 => Complex64::new(0.0, w),
                     _ => Complex64::new(-2.0 * w * w * fault, SQRT_2 * w),
                 };
-                slope / lag.undone(w)
+                slope / lag.inverse_response(w)
             })]
         }
         Change::Clock { .. } => {

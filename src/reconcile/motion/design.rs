@@ -105,7 +105,7 @@ fn of_motion(
     motion: Motion,
     adjust: &[Adjustment],
 ) -> Result<Design, VehicleError> {
-    let mut window = Windowed::of(motion.n_samples(), motion.rate_hz, frame.band);
+    let mut window = Windowed::new(motion.n_samples(), motion.rate_hz, frame.band);
     let mut out = Vec::new();
     for e in equations(vehicle, &motion) {
         let Some((body, index)) = body_of(vehicle, &e.name) else {
@@ -212,11 +212,11 @@ impl Design {
     }
 
     /// Returns the design with zeros in all bins within two and a half bins of the lines: the width over which a window spreads a line.
-    pub fn silenced(&self, lines_hz: &[f64]) -> Self {
+    pub fn without_lines(&self, lines_hz: &[f64]) -> Self {
         const BINS: f64 = 2.5;
         let mut out = self.clone();
         let length =
-            Windowed::of(self.motion.n_samples(), self.motion.rate_hz, self.band).step_hz();
+            Windowed::new(self.motion.n_samples(), self.motion.rate_hz, self.band).step_hz();
         let near = |f: f64| lines_hz.iter().any(|l| (f - l).abs() <= BINS * length);
         let quiet: Vec<usize> = (0..out.f_hz.len()).filter(|&k| near(out.f_hz[k])).collect();
         let silence = |bins: &mut Bins| {

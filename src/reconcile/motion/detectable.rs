@@ -14,7 +14,7 @@ use crate::estimate::columns::Basis;
 ///
 /// An effect of size x whose column's coefficient has the standard deviation s gains (x / s)^2 / 2 less its price.
 pub fn smallest_sizes(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Smallest> {
-    let basis = Basis::of(&null.columns);
+    let basis = Basis::from_columns(&null.columns);
     let tolerances = null
         .column_of
         .iter()
@@ -51,7 +51,7 @@ pub fn smallest_sizes(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Smalle
         if out[c].as_ref().is_none_or(|s| size < s.size) {
             out[c] = Some(Smallest {
                 id: candidate.id.clone(),
-                size: size * shape.stated(),
+                size: size * shape.stated_size_factor(),
                 unit: unit_of_change(scorer.frame, shape, null),
             });
         }

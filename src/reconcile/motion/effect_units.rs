@@ -25,7 +25,7 @@ pub fn unit_of_change(frame: &MotionFrame, change: &Change, fit: &MotionFit) -> 
     let Some(quantity) = quantity else {
         return String::new();
     };
-    let unit = frame.units.of(quantity);
+    let unit = frame.units.unit_name(quantity);
     let driven = fit
         .design
         .equations

@@ -41,16 +41,16 @@ pub fn evidence(frame: &MotionFrame, candidates: &[Candidate], fit: &MotionFit) 
         - fit.log_det
         - at_rest
         - cost
-        - unusual(frame, fit)
+        - channel_fault_cost(frame, fit)
 }
 
 /// Returns the log evidence from data other than the shaken part of the record: means of accelerometers, sizes of channel faults.
 pub fn beside_shaking(frame: &MotionFrame, fit: &MotionFit) -> f64 {
-    -0.5 * zeros(frame, fit) - unusual(frame, fit)
+    -0.5 * zeros(frame, fit) - channel_fault_cost(frame, fit)
 }
 
 /// Returns the cost of the sizes of channel faults.
-fn unusual(frame: &MotionFrame, fit: &MotionFit) -> f64 {
+fn channel_fault_cost(frame: &MotionFrame, fit: &MotionFit) -> f64 {
     fit.parts
         .iter()
         .map(|p| match &p.shape {

@@ -51,7 +51,7 @@ pub fn examine(frame: &MotionFrame, only: &[String]) -> Result<MotionOutcome, Ve
         vec![],
     )?;
     if let Some(record) = &frame.hold_out {
-        let adjust = Adjustment::elsewhere(&frame.corrections);
+        let adjust = Adjustment::without_slips(&frame.corrections);
         design(frame, &frame.vehicle, record, &adjust, vec![])
             .map_err(|e| VehicleError::HeldOut(Box::new(e)))?;
     }
@@ -76,12 +76,16 @@ pub fn examine(frame: &MotionFrame, only: &[String]) -> Result<MotionOutcome, Ve
         background: none,
         forms: vec![],
     };
-    let found = searched(&mut scorer, null, broken);
+    let found = search_effect_sets(&mut scorer, null, broken);
     conclude(&mut scorer, found)
 }
 
 /// Sets of effects by evidence, the background found with them.
-fn searched(scorer: &mut MotionScorer, null: MotionFit, broken: Vec<BrokenChannel>) -> Found {
+fn search_effect_sets(
+    scorer: &mut MotionScorer,
+    null: MotionFit,
+    broken: Vec<BrokenChannel>,
+) -> Found {
     let empty = Scored {
         set: vec![],
         log_evidence: -0.5 * null.chi2,

@@ -6,7 +6,7 @@ use super::change::{Assembled, Change, assemble};
 use super::columns::{fault_columns, nuisance, parameter_column, slices};
 use super::corrections::adjustments;
 use super::design::{Bins, Design, design};
-use super::fitted::{MotionFit, whitened};
+use super::fitted::{MotionFit, whiten_column};
 use super::frame::MotionFrame;
 use super::limits::{has_plausible_sizes, within_tolerance};
 use super::noise::{Background, Whitener, covariance, log_determinant};
@@ -85,7 +85,7 @@ pub fn fit(
     let shapes: Vec<&Change> = parts.iter().map(|p| &p.shape).collect();
     let assembled = assemble(&frame.vehicle, &shapes);
     let v = &assembled.vehicle;
-    let mut values: Option<Vec<f64>> = from.map(|f| inherited(&assembled, &parts, f));
+    let mut values: Option<Vec<f64>> = from.map(|f| inherit_values(&assembled, &parts, f));
     let nonlinear = v
         .links
         .iter()
@@ -107,8 +107,8 @@ pub fn fit(
             current = Some((Arc::new(d), adjust));
         }
         let (d, _) = current.as_ref()?;
-        let problem = Problem::of(frame, d, values.as_deref(), &parts, background);
-        let (s, problem) = problem.solved(frame)?;
+        let problem = Problem::new(frame, d, values.as_deref(), &parts, background);
+        let (s, problem) = problem.solve_unknowns(frame)?;
         let new = problem.values(&s);
         let was_even = values.is_none();
         let moved = advance(&mut parts, &problem, &s);
@@ -119,7 +119,7 @@ pub fn fit(
             });
         values = Some(new.clone());
         if !was_even {
-            last = Some(problem.fitted(&assembled, &parts, new, s));
+            last = Some(problem.into_fit(&assembled, &parts, new, s));
         }
         if done {
             break;
@@ -149,7 +149,7 @@ struct Problem {
 }
 
 impl Problem {
-    fn of(
+    fn new(
         frame: &MotionFrame,
         d: &Arc<Design>,
         values: Option<&[f64]>,
@@ -163,9 +163,9 @@ impl Problem {
                 let h = responses(d, x);
                 let s = covariance(frame, d, &h, background);
                 let log_det = log_determinant(frame, d, &h, background, &s);
-                (h, Whitener::of(&s, n), log_det)
+                (h, Whitener::from_covariance(&s, n), log_det)
             }
-            None => (vec![], Whitener::of(&even(d), n), 0.0),
+            None => (vec![], Whitener::from_covariance(&even(d), n), 0.0),
         };
         let rest = values.and_then(|x| rest_row(frame, d, x));
         let free: Vec<usize> = (0..held.len())
@@ -212,18 +212,18 @@ impl Problem {
             .map(|r| r.into_iter().map(|v| -v).collect())
             .collect();
         let at_rest = out.rest.as_ref().map_or(0.0, |r| r.target(&fixed));
-        out.rows = whitened(&out.whitener, out.rest.as_ref(), &slices(&target), at_rest);
+        out.rows = whiten_column(&out.whitener, out.rest.as_ref(), &slices(&target), at_rest);
         out
     }
 
     fn push(&mut self, of: ColumnOf, bins: &[&[Complex64]], prior: Option<f64>) {
         let at_rest = self.rest.as_ref().map_or(0.0, |r| r.entry(&of));
-        let rows = whitened(&self.whitener, self.rest.as_ref(), bins, at_rest);
+        let rows = whiten_column(&self.whitener, self.rest.as_ref(), bins, at_rest);
         self.column_of.push(of);
         self.columns.push(PriorColumn { rows, prior });
     }
 
-    fn solved(mut self, frame: &MotionFrame) -> Option<(Solved, Self)> {
+    fn solve_unknowns(mut self, frame: &MotionFrame) -> Option<(Solved, Self)> {
         let s = within_tolerance(&frame.rules, &mut self.columns, &self.rows);
         s.x.iter().all(|x| x.is_finite()).then_some((s, self))
     }
@@ -235,7 +235,7 @@ impl Problem {
         new
     }
 
-    fn fitted(
+    fn into_fit(
         self,
         assembled: &Assembled,
         parts: &[Part],
@@ -264,7 +264,7 @@ impl Problem {
                 | Change::Clock { .. }
                 | Change::Slip { .. }
                 | Change::Lag { .. } => {
-                    let unit = part.shape.stated();
+                    let unit = part.shape.stated_size_factor();
                     vec![[unit * part.fault, unit * fault_sd(p)]]
                 }
                 Change::Line { .. } => {
@@ -338,7 +338,7 @@ impl Problem {
                 Change::Delay { .. }
                 | Change::Clock { .. }
                 | Change::Slip { .. }
-                | Change::Lag { .. } => fault(part.shape.stated()),
+                | Change::Lag { .. } => fault(part.shape.stated_size_factor()),
                 Change::Line { .. } => {
                     let squares = columns_of(ColumnOf::Line(p)).map(|k| s.x[k] * s.x[k]);
                     let size = squares.sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
@@ -408,7 +408,7 @@ fn even(d: &Design) -> Vec<Vec<Complex64>> {
 }
 
 /// Values of a neighbour for the parameters that both have; 0 for new ones.
-fn inherited(assembled: &Assembled, parts: &[Part], from: &MotionFit) -> Vec<f64> {
+fn inherit_values(assembled: &Assembled, parts: &[Part], from: &MotionFit) -> Vec<f64> {
     let mut out = vec![0.0; assembled.vehicle.parameters().len()];
     for (&to, &old) in assembled.base.iter().zip(&from.assembled.base) {
         out[to] = from.values[old];

@@ -57,7 +57,7 @@ pub struct MotionFit {
 impl MotionFit {
     /// Returns the rows of a further column, `[equation][bin]` and its entry in the balance of weight, whitened as the fit's own.
     pub fn rows(&self, bins: &[&[Complex64]], at_rest: f64) -> Vec<f64> {
-        whitened(&self.whitener, self.rest.as_ref(), bins, at_rest)
+        whiten_column(&self.whitener, self.rest.as_ref(), bins, at_rest)
     }
 
     /// Returns the criterion by which a form is chosen, -2 log likelihood except for constants: squared residual, squared nuisance, log-determinants.
@@ -73,7 +73,7 @@ impl MotionFit {
 }
 
 /// Returns the whitened rows of a column; its entry in the balance of weight is at the end, if there is a balance.
-pub fn whitened(
+pub fn whiten_column(
     whitener: &Whitener,
     rest: Option<&RestRow>,
     bins: &[&[Complex64]],

@@ -24,7 +24,7 @@ pub struct Floor {
 
 impl Floor {
     /// Returns the expected residual, as a share of the measured quantity.
-    pub fn expected(&self) -> f64 {
+    pub fn expected_residual(&self) -> f64 {
         (self.noise + self.tolerance).sqrt()
     }
 
@@ -74,7 +74,7 @@ fn even(d: &Design) -> Whitener {
     for i in 0..n {
         s[i * n + i] = Complex64::new(1.0, 0.0);
     }
-    Whitener::of(&vec![s; d.f_hz.len()], n)
+    Whitener::from_covariance(&vec![s; d.f_hz.len()], n)
 }
 
 /// Floors by equation of a design `tested`, its parameters `values` found by [`fit_without_nuisance`] on the designs `fitted` in the `free` ones,

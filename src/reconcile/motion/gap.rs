@@ -120,16 +120,16 @@ pub fn proof_gap(frame: &MotionFrame, fit: &MotionFit) -> Option<RecordGap> {
 
 /// Returns the gap on the fitted record.
 pub fn fitted_gap(frame: &MotionFrame, fit: &MotionFit) -> Option<RecordGap> {
-    let quiet = quiet(fit);
+    let quiet = design_without_lines(fit);
     let d = quiet.as_ref().unwrap_or(&fit.design);
     let values = plain_values(frame, fit, &[d]);
     Some(gap_of(frame, fit, &[d], d, values))
 }
 
 /// Returns the design of a fit without its mains lines; `None` if the fit has no mains lines.
-fn quiet(fit: &MotionFit) -> Option<Design> {
+fn design_without_lines(fit: &MotionFit) -> Option<Design> {
     let lines = lines(&fit.parts);
-    (!lines.is_empty()).then(|| fit.design.silenced(&lines))
+    (!lines.is_empty()).then(|| fit.design.without_lines(&lines))
 }
 
 /// Returns the gap of a record with the model of a fit. The parameters are estimated again on the fitted record, without nuisance. The gap is then
@@ -137,7 +137,7 @@ fn quiet(fit: &MotionFit) -> Option<Design> {
 ///
 /// If a mass or spring changed during the fitted record, another record has its former or its later value. The value with the smaller gap is used.
 pub fn record_gap(frame: &MotionFrame, fit: &MotionFit, record: &Channels) -> Option<RecordGap> {
-    let quiet = quiet(fit);
+    let quiet = design_without_lines(fit);
     let learnt = quiet.as_ref().unwrap_or(&fit.design);
     let lines = lines(&fit.parts);
     let values = plain_values(frame, fit, &[learnt]);
@@ -157,11 +157,11 @@ pub fn record_gap(frame: &MotionFrame, fit: &MotionFit, record: &Channels) -> Op
     vehicles
         .into_iter()
         .filter_map(|v| {
-            let adjust = Adjustment::elsewhere(&adjustments(frame, &fit.parts));
+            let adjust = Adjustment::without_slips(&adjustments(frame, &fit.parts));
             let slow = slow_stretches(&v, &values, record, &adjust);
             let mut d = design(frame, &v, record, &adjust, slow).ok()?;
             if !lines.is_empty() {
-                d = d.silenced(&lines);
+                d = d.without_lines(&lines);
             }
             Some(gap_of(frame, fit, &[learnt], &d, values.clone()))
         })
@@ -175,7 +175,9 @@ fn cross_validated_gap(frame: &MotionFrame, fit: &MotionFit) -> Option<RecordGap
     let mut segments = fit.design.segments(frame, &adjust, n);
     let lines = lines(&fit.parts);
     if !lines.is_empty() {
-        segments.iter_mut().for_each(|d| *d = d.silenced(&lines));
+        segments
+            .iter_mut()
+            .for_each(|d| *d = d.without_lines(&lines));
     }
     let gaps: Vec<RecordGap> = (0..segments.len())
         .map(|k| {
@@ -187,11 +189,11 @@ fn cross_validated_gap(frame: &MotionFrame, fit: &MotionFit) -> Option<RecordGap
             gap_of(frame, fit, &others, &segments[k], values)
         })
         .collect();
-    together(frame, fit, &gaps)
+    combine_gaps(frame, fit, &gaps)
 }
 
 /// Combines the gaps of segments into one gap. Values, bands and profile are computed on the whole record.
-fn together(frame: &MotionFrame, fit: &MotionFit, gaps: &[RecordGap]) -> Option<RecordGap> {
+fn combine_gaps(frame: &MotionFrame, fit: &MotionFit, gaps: &[RecordGap]) -> Option<RecordGap> {
     let mut whole = fitted_gap(frame, fit)?;
     let rms = |of: &dyn Fn(&RecordGap) -> f64| {
         (gaps.iter().map(|g| of(g).powi(2)).sum::<f64>() / gaps.len().max(1) as f64).sqrt()
@@ -222,7 +224,7 @@ fn gap_of(
     let equations: Vec<EquationGap> = left
         .iter()
         .enumerate()
-        .map(|(i, l)| equation_gap(frame, d, i, l, &values, floor[i].expected()))
+        .map(|(i, l)| equation_gap(frame, d, i, l, &values, floor[i].expected_residual()))
         .collect();
     let mean = equations.iter().map(|e| e.gap.powi(2)).sum::<f64>() / equations.len().max(1) as f64;
     let (mut sum, mut squares) = (0.0, 0.0);

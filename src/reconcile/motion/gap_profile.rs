@@ -103,7 +103,7 @@ mod tests {
             high_hz: 20.0,
         };
         let n = 8000;
-        let mut window = Windowed::of(n, RATE, band);
+        let mut window = Windowed::new(n, RATE, band);
         // A wave whose size swells and falls every 16 s.
         let wave = |i: usize| {
             let t = i as f64 / RATE;

@@ -29,7 +29,7 @@ pub fn fit_of_clock(
     let mut length = ((BEGIN_S * frame.data.rate_hz) as usize).max(1);
     let mut rates = RATES.to_vec();
     loop {
-        let begin = beginning(&frame.data, length);
+        let begin = truncate_record(&frame.data, length);
         let fitted = |rate: &f64| {
             let part = Part {
                 candidate,
@@ -61,7 +61,7 @@ pub fn fit_of_clock(
 }
 
 /// The first `n` samples.
-fn beginning(record: &Channels, n: usize) -> Channels {
+fn truncate_record(record: &Channels, n: usize) -> Channels {
     let cut = |c: &Channel| Channel {
         name: c.name.clone(),
         unit: c.unit.clone(),

@@ -16,7 +16,7 @@ use super::outcome::{MotionEffect, MotionOutcome};
 use super::proven::remove_unproven;
 use super::scorer::MotionScorer;
 use super::sentences::remains;
-use crate::reconcile::checks::{Check, ahead, reasons, verdict};
+use crate::reconcile::checks::{Check, describe_better_alternative, reasons, verdict};
 use crate::reconcile::outcome::{Gap, GapBasis, Rival, Verdict};
 use crate::reconcile::rules::MotionRules;
 use crate::reconcile::search::{Scored, settle};
@@ -31,7 +31,7 @@ struct Gaps {
 }
 
 impl Gaps {
-    fn of(scorer: &MotionScorer, f: &MotionFit) -> Self {
+    fn from_fit(scorer: &MotionScorer, f: &MotionFit) -> Self {
         let alone = refit_under_noise(scorer, f);
         Self {
             fitted: fitted_gap(scorer.frame, f),
@@ -83,13 +83,13 @@ pub(super) fn conclude(
     let rules = &frame.rules;
     let empty = all.iter().find(|s| s.set.is_empty()).cloned();
     let null_under_background = empty.as_ref().map_or(&null, |s| &s.fit);
-    let best = nameable(scorer, &all, best);
+    let best = find_nameable_set(scorer, &all, best);
     let (best, mut remarks) = remove_unproven(scorer, &all, best);
-    let before = Gaps::of(scorer, &null);
+    let before = Gaps::from_fit(scorer, &null);
     let after = if best.set.is_empty() {
-        Gaps::of(scorer, null_under_background)
+        Gaps::from_fit(scorer, null_under_background)
     } else {
-        Gaps::of(scorer, &best.fit)
+        Gaps::from_fit(scorer, &best.fit)
     };
     let null_evidence = empty.as_ref().map_or(best.log_evidence, |s| s.log_evidence);
     let evidence = best.log_evidence - null_evidence;
@@ -98,19 +98,19 @@ pub(super) fn conclude(
     let gap = gap_of(&before.proof, &after.proof, proof(frame, &best.fit));
     let rivals = rivals(scorer, &best, &all);
     let checks = [
-        Check::of(evidence > rules.decisive, || {
+        Check::from_condition(evidence > rules.decisive, || {
             "its evidence is not decisive".into()
         }),
-        Check::of(stands_out(rules, &best.fit), || {
+        Check::from_condition(stands_out(rules, &best.fit), || {
             "the size of one of its effects does not exceed its own scatter".into()
         }),
-        Check::of(after.at_floor(rules, excess), || {
+        Check::from_condition(after.at_floor(rules, excess), || {
             "the residual with this effect exceeds the noise floor".into()
         }),
-        Check::of(gap.falls && gap.is_above_floor(), || {
+        Check::from_condition(gap.falls && gap.is_above_floor(), || {
             "with this effect, the gap of the proof does not fall from above the noise floor by more than its sampling error".into()
         }),
-        Check::unless(ahead(
+        Check::unless(describe_better_alternative(
             (best.set.len(), best.log_evidence),
             [rules.indistinguishable, rules.decisive],
             (rivals.iter()).map(|r| (r.ids.as_slice(), best.log_evidence - r.evidence_difference)),
@@ -191,7 +191,7 @@ pub(super) fn shares_left(before: &Option<RecordGap>, after: &Option<RecordGap>)
     [
         share(before, |g| g.gap),
         share(after, |g| g.gap),
-        share(after, |g| g.floor.expected()),
+        share(after, |g| g.floor.expected_residual()),
     ]
 }
 
@@ -201,7 +201,7 @@ pub(super) fn gap_of(before: &Option<RecordGap>, after: &Option<RecordGap>, by: 
     Gap {
         before: of(before),
         after: of(after),
-        floor: floor.map_or(f64::NAN, |g| g.floor.expected()),
+        floor: floor.map_or(f64::NAN, |g| g.floor.expected_residual()),
         mesh: None,
         basis: match by {
             Proof::HeldOut => GapBasis::HeldOut,
@@ -220,7 +220,7 @@ pub(super) fn gap_of(before: &Option<RecordGap>, after: &Option<RecordGap>, by: 
 /// is known only to hide the weight on the wheels makes any channel fit. Each channel fault exceeds its tolerance. Each vehicle effect
 /// reduces the squared gap by more than declared tolerances leave on average. Each member next to a vehicle effect reduces it by more than
 /// the error in the form of that effect leaves.
-fn nameable(
+fn find_nameable_set(
     scorer: &MotionScorer,
     all: &[Scored<MotionFit>],
     best: Scored<MotionFit>,

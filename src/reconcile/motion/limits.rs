@@ -104,7 +104,7 @@ pub fn beyond_tolerance(frame: &MotionFrame, fit: &MotionFit) -> bool {
             Change::Gain { .. } => beyond(size - 1.0, frame.gain_tolerance, *sigma),
             Change::Delay { .. } => beyond(*size, frame.sync_tolerance_s, *sigma),
             Change::Clock { .. } | Change::Slip { .. } | Change::Lag { .. } => {
-                let late = late_on_average(&p.shape, fit) / p.shape.stated();
+                let late = late_on_average(&p.shape, fit) / p.shape.stated_size_factor();
                 beyond(late * size, frame.sync_tolerance_s, late * *sigma)
             }
             _ => true,
@@ -167,7 +167,7 @@ pub fn has_plausible_sizes(rules: &MotionRules, candidates: &[Candidate], fit: &
             // What comes may be any mass; what leaves is less than what was there.
             Change::Step(s) => {
                 let m = fit.values[fit.assembled.vehicle.inertia_index(s.body, 0, 0)];
-                m > 0.0 && *x > -m && is_seen(fit, |t_s| s.done(t_s))
+                m > 0.0 && *x > -m && is_seen(fit, |t_s| s.share_at(t_s))
             }
             shape => {
                 let signed = candidates

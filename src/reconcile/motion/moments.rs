@@ -29,7 +29,7 @@ pub fn best_steps(frame: &MotionFrame, d: &Design, bodies: &[usize]) -> Vec<Vec<
             prior: None,
         })
         .collect();
-    let basis = Basis::of(&columns);
+    let basis = Basis::from_columns(&columns);
     let values: Vec<f64> = fixed.iter().map(|v| v.unwrap_or(0.0)).collect();
     let mut left = rows(&slices(&d.residual(&values)), bins);
     for q in basis.columns() {
@@ -49,15 +49,18 @@ pub fn best_steps(frame: &MotionFrame, d: &Design, bodies: &[usize]) -> Vec<Vec<
             return vec![];
         };
         let own = 2 * bins * equation..2 * bins * (equation + 1);
-        let own: Vec<Bins> = all.iter().map(|r| complex(&r[own.clone()])).collect();
+        let own: Vec<Bins> = all
+            .iter()
+            .map(|r| complex_from_rows(&r[own.clone()]))
+            .collect();
         let m = &d.motion;
-        let window = Windowed::of(m.n_samples(), m.rate_hz, d.band);
+        let window = Windowed::new(m.n_samples(), m.rate_hz, d.band);
         let gain: Vec<f64> = d.f_hz.iter().map(|f| d.band.gain(*f)).collect();
-        let look = Look::of(window.taper(), acceleration, &gain, window.first());
+        let look = Look::new(window.taper(), acceleration, &gain, window.first_bin());
         let mut best: Vec<(MassStep, f64)> = [frame.gravity, 0.0]
             .into_iter()
             .filter_map(|gravity| {
-                let (i, fall) = look.best(&own, gravity)?;
+                let (i, fall) = look.find_best_step(&own, gravity)?;
                 let step = MassStep {
                     body,
                     at_s: m.start_s + i as f64 / m.rate_hz,
@@ -83,7 +86,7 @@ fn rows(column: &[&[Complex64]], bins: usize) -> Vec<f64> {
     out
 }
 
-fn complex(rows: &[f64]) -> Bins {
+fn complex_from_rows(rows: &[f64]) -> Bins {
     let pairs = rows.chunks_exact(2);
     pairs.map(|p| Complex64::new(p[0], p[1])).collect()
 }
@@ -107,7 +110,7 @@ struct Look<'a> {
 }
 
 impl<'a> Look<'a> {
-    fn of(taper: &[f64], acceleration: &[f64], gain: &'a [f64], first: usize) -> Self {
+    fn new(taper: &[f64], acceleration: &[f64], gain: &'a [f64], first: usize) -> Self {
         let u: Vec<f64> = taper.iter().zip(acceleration).map(|(w, a)| w * a).collect();
         let v = taper[..u.len()].to_vec();
         let n = u.len();
@@ -134,7 +137,7 @@ impl<'a> Look<'a> {
 
     /// Returns the sample at which a step with `gravity` explains most of the first of `own` (r) given the others (q, orthonormal), and how much:
     /// `(r . c)^2 / (c . c - sum (q . c)^2)`.
-    fn best(&self, own: &[Bins], gravity: f64) -> Option<(usize, f64)> {
+    fn find_best_step(&self, own: &[Bins], gravity: f64) -> Option<(usize, f64)> {
         let n = self.products.len();
         let margin = (END * n as f64) as usize;
         let dots: Vec<Vec<f64>> = own.iter().map(|p| self.dots(p, gravity)).collect();
@@ -235,7 +238,7 @@ mod tests {
         };
         // Small ones, which leave most of the column its own.
         let own: Vec<Bins> = vec![row(0.9), row(1.7).iter().map(|c| c * 1e-2).collect()];
-        let look = Look::of(&taper, &acceleration, &gain, first);
+        let look = Look::new(&taper, &acceleration, &gain, first);
         let margin = (END * n as f64) as usize;
         let mut best = (0, f64::NEG_INFINITY);
         for t in margin..n - margin {
@@ -265,7 +268,7 @@ mod tests {
                 best = (t, fall);
             }
         }
-        let (at, fall) = look.best(&own, gravity).unwrap();
+        let (at, fall) = look.find_best_step(&own, gravity).unwrap();
         assert_eq!(at, best.0);
         assert!((fall - best.1).abs() < 1e-9 * best.1);
     }

@@ -66,7 +66,7 @@ pub fn covariance(
                             let lags = &design.channels[c].lags;
                             let louder: f64 = lags
                                 .iter()
-                                .map(|l| l.undone(2.0 * PI * f).norm_sqr())
+                                .map(|l| l.inverse_response(2.0 * PI * f).norm_sqr())
                                 .product();
                             responses[i][c][k] * responses[j][c][k].conj() * powers[c] * louder
                         })
@@ -118,7 +118,7 @@ pub fn log_determinant(
 
 impl Whitener {
     /// Factors of covariances.
-    pub fn of(covariance: &[Vec<Complex64>], n: usize) -> Self {
+    pub fn from_covariance(covariance: &[Vec<Complex64>], n: usize) -> Self {
         Self {
             n,
             factors: covariance.iter().map(|s| cholesky(s, n)).collect(),
@@ -148,7 +148,7 @@ impl Whitener {
 
 impl Whitener {
     /// Residuals `[equation][bin]` from unit-variance rows: the inverse of [`Whitener::rows`].
-    pub fn coloured(&self, rows: &[f64]) -> Vec<Bins> {
+    pub fn colour_rows(&self, rows: &[f64]) -> Vec<Bins> {
         let n = self.n;
         let mut out = vec![Vec::with_capacity(self.factors.len()); n];
         for (k, l) in self.factors.iter().enumerate() {

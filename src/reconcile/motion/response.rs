@@ -120,7 +120,7 @@ fn changed_masses(design: &Design, values: &[f64]) -> Vec<f64> {
     for (s, step) in v.steps.iter().enumerate() {
         let value = values.get(v.step_index(s)).filter(|x| x.is_finite());
         if let (Some(value), Some(out)) = (value, out.get_mut(step.body)) {
-            *out += value * design.mean_done(|t_s| step.done(t_s));
+            *out += value * design.mean_done(|t_s| step.share_at(t_s));
         }
     }
     out

@@ -74,7 +74,7 @@ impl MotionScorer<'_> {
     }
 
     /// Finds the constants of the forms in a fit, but for candidates that are settled.
-    fn refined(&self, mut best: MotionFit, settled: &[usize]) -> MotionFit {
+    fn refine_constants(&self, mut best: MotionFit, settled: &[usize]) -> MotionFit {
         for step in &REFINE {
             for i in 0..best.parts.len() {
                 if settled.contains(&best.parts[i].candidate) {
@@ -113,7 +113,7 @@ impl MotionScorer<'_> {
         }
         let others = of.fit.parts.iter().filter(|p| !varies(p));
         let settled: Vec<usize> = others.map(|p| p.candidate).collect();
-        let fit = self.refined(of.fit, &settled);
+        let fit = self.refine_constants(of.fit, &settled);
         Scored {
             log_evidence: evidence(self.frame, self.candidates, &fit),
             set: of.set,
@@ -187,7 +187,7 @@ impl MotionScorer<'_> {
             return None;
         };
         let by_s = now.parts[part].fault;
-        let basis = Basis::of(&now.columns);
+        let basis = Basis::from_columns(&now.columns);
         let gain = |shape: &Change| {
             let Change::Slip { at_s: other, .. } = shape else {
                 return 0.0;
@@ -248,7 +248,7 @@ impl MotionScorer<'_> {
             .filter(|(k, _)| !skip.contains(k))
             .map(|(_, c)| c.clone())
             .collect();
-        let basis = Basis::of(&kept);
+        let basis = Basis::from_columns(&kept);
         // The residual without the part: what it took is given back.
         let mut residual = now.residual.to_vec();
         for &k in &skip {
@@ -400,7 +400,7 @@ impl Scorer for MotionScorer<'_> {
         let fit = if before - first.chi2 > WORTH_REFINING {
             let known = from.map_or(&[][..], |(f, _)| &f.set);
             let settled: Vec<usize> = neighbour.map_or(vec![], |f| f.set.clone());
-            self.refined(self.settled_from_afar(first, known), &settled)
+            self.refine_constants(self.settled_from_afar(first, known), &settled)
         } else {
             first
         };
@@ -412,7 +412,7 @@ impl Scorer for MotionScorer<'_> {
     }
 
     fn screen(&mut self, base: &Scored<MotionFit>) -> Vec<Addition> {
-        let basis = Basis::of(&base.fit.columns);
+        let basis = Basis::from_columns(&base.fit.columns);
         let mut best: Vec<Option<Addition>> = vec![None; self.candidates.len()];
         for (c, k, columns) in self.form_columns(&base.fit) {
             let (fall, first) = basis.gain(&base.fit.residual, &columns);
@@ -439,7 +439,7 @@ impl Scorer for MotionScorer<'_> {
         self.frame.stop.is_asked()
     }
 
-    fn compatible(&self, a: usize, b: usize) -> bool {
+    fn is_compatible_pair(&self, a: usize, b: usize) -> bool {
         let whole = |c: usize| self.candidates[c].is_upheaval();
         // A filter is late by itself; with a delay of its own, of either sign, it would stand for filters that are not in the library.
         let filtered_and_late = |a: usize, b: usize| {

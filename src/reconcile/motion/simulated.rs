@@ -54,8 +54,8 @@ pub fn simulated_gap(frame: &MotionFrame, outcome: &MotionOutcome) -> Result<Sim
     let (Some(before), Some(after)) = (&outcome.before, &outcome.after) else {
         return Err("there is no model to simulate".into());
     };
-    let one = simulated(frame, before, &frame.corrections)?;
-    let two = simulated(frame, after, &outcome.corrections)?;
+    let one = validate_by_simulation(frame, before, &frame.corrections)?;
+    let two = validate_by_simulation(frame, after, &outcome.corrections)?;
     let channels = two.errors.iter().filter_map(|(channel, measured, error)| {
         let plain = one.errors.iter().find(|e| e.0 == *channel)?;
         Some(SimulatedChannel {
@@ -86,7 +86,7 @@ struct Judged {
 }
 
 /// A model fitted to the one record by simulation and held against the other.
-fn simulated(
+fn validate_by_simulation(
     frame: &MotionFrame,
     model: &RecordGap,
     adjust: &[Adjustment],
@@ -99,19 +99,19 @@ fn simulated(
     if !v.steps.is_empty() || of_time {
         return Err("a mass or spring that changes cannot be simulated".into());
     }
-    let fitted = first(&corrected(&frame.data, adjust), FITTED);
+    let fitted = truncate_record(&correct_record(&frame.data, adjust), FITTED);
     if adjust.iter().any(|a| !a.lines_hz.is_empty()) {
         return Err("a record with mains interference cannot be simulated".into());
     }
     let judging = match &frame.hold_out {
-        Some(record) => corrected(record, &Adjustment::elsewhere(adjust)),
-        None => corrected(&frame.data, adjust),
+        Some(record) => correct_record(record, &Adjustment::without_slips(adjust)),
+        None => correct_record(&frame.data, adjust),
     };
-    let free = free(frame, v, &model.values);
+    let free = find_free_parameters(frame, v, &model.values);
     let mut last = SimulationError::Diverged { at_s: 0.0 };
     for steps in STEPS {
-        let learn = prepared(frame, v, &fitted, steps)?;
-        let judge = prepared(frame, v, &judging, steps)?;
+        let learn = prepare_comparison(frame, v, &fitted, steps)?;
+        let judge = prepare_comparison(frame, v, &judging, steps)?;
         let tried = refine(v, &model.values, &free, &learn).and_then(|r| {
             let errors = judge.errors(v, &r.values, &r.constant)?;
             Ok((r.values, errors))
@@ -136,7 +136,7 @@ fn simulated(
     Err(last.to_string())
 }
 
-fn prepared(
+fn prepare_comparison(
     frame: &MotionFrame,
     v: &Vehicle,
     record: &Channels,
@@ -165,7 +165,7 @@ fn band(frame: &MotionFrame) -> Band {
 }
 
 /// Returns the parameters that the equations determine, without those measured elsewhere and the mass that sets the scale if no force does.
-fn free(frame: &MotionFrame, v: &Vehicle, values: &[f64]) -> Vec<usize> {
+fn find_free_parameters(frame: &MotionFrame, v: &Vehicle, values: &[f64]) -> Vec<usize> {
     let names = v.parameters();
     let is_known = |i: usize| frame.known.contains_key(&names[i].name);
     let driven = v.wheels.iter().any(|w| frame.data.has(&w.channel));
@@ -182,17 +182,17 @@ fn free(frame: &MotionFrame, v: &Vehicle, values: &[f64]) -> Vec<usize> {
         .collect()
 }
 
-fn corrected(record: &Channels, adjust: &[Adjustment]) -> Channels {
+fn correct_record(record: &Channels, adjust: &[Adjustment]) -> Channels {
     let (mut record, _) = record.with_gaps_filled();
     for a in adjust {
         for c in record.list.iter_mut().filter(|c| c.name == a.channel) {
-            c.samples = a.applied(&c.samples, record.start_s, record.rate_hz);
+            c.samples = a.correct_samples(&c.samples, record.start_s, record.rate_hz);
         }
     }
     record
 }
 
-fn first(record: &Channels, samples: usize) -> Channels {
+fn truncate_record(record: &Channels, samples: usize) -> Channels {
     let mut out = record.clone();
     for c in &mut out.list {
         c.samples.truncate(samples);

@@ -52,14 +52,14 @@ fn sits(e: &EquationGap) -> GapSits {
         equation: e.name.clone(),
         gap: e.gap,
         floor: e.floor,
-        band_hz: largest(&e.by_band, 0.0),
-        time_s: largest(times, begin),
-        size_over_rms: largest(&e.profile.by_amplitude, 0.0),
+        band_hz: find_largest_gap(&e.by_band, 0.0),
+        time_s: find_largest_gap(times, begin),
+        size_over_rms: find_largest_gap(&e.profile.by_amplitude, 0.0),
     }
 }
 
 /// Returns the stretch with the largest gap; `stretches` are upper edges with gaps, ascending from `begin`.
-fn largest(stretches: &[[f64; 2]], begin: f64) -> Option<Stretch> {
+fn find_largest_gap(stretches: &[[f64; 2]], begin: f64) -> Option<Stretch> {
     let edges = stretches.iter().map(|s| s[0]);
     let from = std::iter::once(begin).chain(edges);
     let least = stretches.iter().map(|s| s[1]).fold(f64::INFINITY, f64::min);
@@ -115,11 +115,11 @@ impl GapSits {
 
 #[cfg(test)]
 mod tests {
-    use super::{Stretch, largest};
+    use super::{Stretch, find_largest_gap};
 
     #[test]
     fn the_largest_stretch_begins_where_the_one_before_ends() {
-        let found = largest(&[[4.0, 0.1], [6.0, 0.5], [8.0, 0.2]], 2.0);
+        let found = find_largest_gap(&[[4.0, 0.1], [6.0, 0.5], [8.0, 0.2]], 2.0);
         let expected = Stretch {
             from: 4.0,
             to: 6.0,
@@ -127,12 +127,12 @@ mod tests {
             least: 0.1,
         };
         assert_eq!(found, Some(expected));
-        assert_eq!(largest(&[], 0.0), None);
+        assert_eq!(find_largest_gap(&[], 0.0), None);
     }
 
     #[test]
     fn the_first_stretch_begins_at_the_beginning() {
-        let found = largest(&[[4.0, 0.9], [6.0, 0.5]], 2.0).map(|s| [s.from, s.to]);
+        let found = find_largest_gap(&[[4.0, 0.9], [6.0, 0.5]], 2.0).map(|s| [s.from, s.to]);
         assert_eq!(found, Some([2.0, 4.0]));
     }
 }

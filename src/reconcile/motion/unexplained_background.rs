@@ -25,7 +25,7 @@ pub fn unexplained_background(scorer: &mut MotionScorer, null: &MotionFit) -> Ba
     let mut left = null.residual.to_vec();
     let mut used = vec![false; forms.len()];
     for _ in 0..MOST {
-        let basis = Basis::of(&columns);
+        let basis = Basis::from_columns(&columns);
         let best = forms
             .iter()
             .enumerate()
@@ -55,7 +55,7 @@ pub fn of_fit(frame: &MotionFrame, fit: &MotionFit) -> Background {
 
 /// Returns the background of whitened rows, coloured with the whitening that made them.
 fn of_rows(frame: &MotionFrame, null: &MotionFit, rows: &[f64]) -> Background {
-    let colour = null.whitener.coloured(rows);
+    let colour = null.whitener.colour_rows(rows);
     let h = responses(&null.design, &null.values);
     let sensor: Vec<Vec<Complex64>> = covariance(frame, &null.design, &h, &Background::default());
     background(frame, &null.design, &colour, &sensor)

@@ -57,7 +57,7 @@ impl Scorer for Counting {
         .collect()
     }
 
-    fn compatible(&self, _: usize, _: usize) -> bool {
+    fn is_compatible_pair(&self, _: usize, _: usize) -> bool {
         true
     }
 

@@ -66,7 +66,7 @@ fn residual(frame: &StrainFrame, members: &[Member<'_>], selection: &Selection) 
 }
 
 fn chi2(cov: &[f64], r: &[f64]) -> f64 {
-    Cholesky::of(cov, r.len()).map_or(f64::NAN, |c| c.chi2(r))
+    Cholesky::from_covariance(cov, r.len()).map_or(f64::NAN, |c| c.chi2(r))
 }
 
 /// Computes the chi-squares of `members` with amplitudes of the sizes in `unknown`, after `n_parameters` were fitted.

@@ -30,7 +30,7 @@ pub(super) fn without_companions(
             break;
         }
         let level = own_evidence(frame, candidates, &best);
-        let fewer = |c: &usize| Some((*c, without(frame, candidates, &best, (*c, level))?));
+        let fewer = |c: &usize| Some((*c, remove_effect(frame, candidates, &best, (*c, level))?));
         let fewer: Vec<(usize, Scored<Fit>)> = names.par_iter().filter_map(fewer).collect();
         let least = fewer
             .into_iter()
@@ -53,7 +53,7 @@ pub(super) fn without_companions(
 }
 
 /// Returns `set` of log evidence `level` without one effect, alone or with the form of noise that fits best in its place.
-fn without(
+fn remove_effect(
     frame: &StrainFrame,
     candidates: &[Candidate],
     set: &Scored<Fit>,

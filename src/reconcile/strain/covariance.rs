@@ -1,7 +1,7 @@
 //! Covariance of the residual from noise and stated model uncertainty, over runs and gauges.
 
 use super::frame::{Scatter, StrainFrame};
-use super::learnt::{Shares, learnt, shares};
+use super::learnt::{Shares, calibration_covariance, shares};
 use super::prediction::read_all;
 use super::state::{Part, StrainState};
 use crate::reconcile::effect::{Member, SizedAmplitudes};
@@ -75,7 +75,7 @@ pub fn covariance(
     selection: &Selection,
     unknown: &[SizedAmplitudes],
 ) -> Vec<f64> {
-    let state = StrainState::with(frame, members);
+    let state = StrainState::from_members(frame, members);
     let [n_g, n_r, n_c] = state.shape;
     let column =
         |c: usize| -> Vec<f64> { (0..n_g).map(|g| state.influence[g * n_c + c]).collect() };
@@ -125,7 +125,7 @@ pub fn covariance(
     }
     let any_repeats = repeats.iter().any(|v| *v != 0.0);
     let model = frame.model_rel * frame.model_rel;
-    let errors = scattered(frame, members, &state);
+    let errors = scatter_strains(frame, members, &state);
     let across = |g: usize, r: usize, s: usize| {
         let common = model * predicted[r * n_g + g] * predicted[s * n_g + g];
         common
@@ -147,7 +147,8 @@ pub fn covariance(
         mine.iter().map(one).sum()
     };
     let n = selection.len();
-    let mut out = learnt(frame, members, &selection.0, &state).unwrap_or_else(|| vec![0.0; n * n]);
+    let mut out = calibration_covariance(frame, members, &selection.0, &state)
+        .unwrap_or_else(|| vec![0.0; n * n]);
     for (i, &(r, g)) in selection.0.iter().enumerate() {
         for (j, &(s, h)) in selection.0.iter().enumerate().take(i + 1) {
             let within = match r == s {
@@ -199,7 +200,11 @@ pub(super) fn add_outer(block: &mut [f64], pattern: &[f64], variance: f64) {
 }
 
 /// Strain, `n_runs x n_gauges`, that each independent error of the influence makes, as read with `members` on.
-fn scattered(frame: &StrainFrame, members: &[Member<'_>], state: &StrainState) -> Vec<Vec<f64>> {
+fn scatter_strains(
+    frame: &StrainFrame,
+    members: &[Member<'_>],
+    state: &StrainState,
+) -> Vec<Vec<f64>> {
     let [n_g, n_r, n_c] = state.shape;
     let strain = |error: &[f64], columns: std::ops::Range<usize>| {
         let mut out = Vec::with_capacity(n_r * n_g);

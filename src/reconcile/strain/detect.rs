@@ -9,13 +9,14 @@ use crate::reconcile::outcome::Detectable;
 
 /// Returns the sizes at which the expected gain of evidence covers the effect's prior weight, its width and the evidence for a name. Of effects at
 /// many overlapping places (stretches of a card, records of a run), only the effects of `also` are listed.
-pub fn detectable(
+pub fn find_detectable_sizes(
     frame: &StrainFrame,
     candidates: &[Candidate],
     also: &[usize],
 ) -> Vec<Detectable> {
     let fit = Selection::of_runs(frame, &frame.observations.fit_runs());
-    let Some(precision) = Precision::of(&covariance(frame, &[], &fit, &[]), fit.len()) else {
+    let Some(precision) = Precision::from_covariance(&covariance(frame, &[], &fit, &[]), fit.len())
+    else {
         return Vec::new();
     };
     let n_g = frame.n_gauges();
@@ -79,7 +80,7 @@ pub fn detectable(
                 unit: a.unit,
             });
         } else if let [p] = effect.parameters().as_slice() {
-            let size = smallest(
+            let size = smallest_detectable_size(
                 frame, c, &fit, &nominal, &precision, p.neutral, p.step, p.prior_sd,
             );
             out.push(Detectable {
@@ -97,7 +98,7 @@ pub fn detectable(
     clippy::too_many_arguments,
     reason = "one call site, all of it the state of a loop"
 )]
-fn smallest(
+fn smallest_detectable_size(
     frame: &StrainFrame,
     c: &Candidate,
     fit: &Selection,

@@ -52,7 +52,7 @@ impl Likelihood<'_> {
         let mut joint = Vec::new();
         let mut sigma: Vec<Vec<f64>> = best.theta.iter().map(|t| vec![0.0; t.len()]).collect();
         if n > 0 {
-            let posterior = Precision::of(&best.hessian, n)?;
+            let posterior = Precision::from_covariance(&best.hessian, n)?;
             log_evidence -= 0.5 * posterior.log_det();
             let mut i = 0;
             for (m, ps) in self.parameters_of(set).iter().enumerate() {

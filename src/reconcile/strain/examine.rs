@@ -52,7 +52,7 @@ pub fn outcome_of_wrong_inputs(frame: &StrainFrame, wrong: Vec<Finding>) -> Outc
 /// The stated uncertainty of the model is first an error of the strain predicted at a gauge. If no effect explains the gap beyond it, each influence
 /// coefficient may have an error of this size as well. Errors of coefficients do not cancel if the strains of loads do.
 pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
-    let outcome = examined(frame, candidates);
+    let outcome = examine_candidates(frame, candidates);
     let is_open = outcome.verdict == Verdict::Unknown && !frame.stop.is_asked();
     if !is_open || frame.model_rel <= frame.coefficient_rel {
         return outcome;
@@ -61,14 +61,14 @@ pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
         coefficient_rel: frame.model_rel,
         ..frame.clone()
     };
-    let second = examined(&by_coefficient, candidates);
+    let second = examine_candidates(&by_coefficient, candidates);
     match second.verdict {
         Verdict::Unknown => outcome,
         _ => second,
     }
 }
 
-fn examined(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
+fn examine_candidates(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
     let fit_runs = frame.observations.fit_runs();
     let mut reference: Vec<(usize, Vec<f64>)> = Vec::new();
     let mut all: Vec<Scored<Fit>> = Vec::new();
@@ -115,7 +115,7 @@ fn examined(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
         fit: Fit::default(),
     };
     let best = best.unwrap_or(empty);
-    let proofs = Proofs::of(frame);
+    let proofs = Proofs::from_frame(frame);
     if is_unmodelled(candidates, &best.set).is_some() && !frame.stop.is_asked() {
         // A general form is called upon only where no names come to the floor.
         let likelihood = Likelihood::new(frame, candidates, &fit_runs, &reference);

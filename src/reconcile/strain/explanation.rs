@@ -15,7 +15,11 @@ pub struct Explanation<'a> {
 
 impl<'a> Explanation<'a> {
     /// Returns the explanation of a fit.
-    pub fn of(frame: &StrainFrame, candidates: &'a [Candidate], scored: &'a Scored<Fit>) -> Self {
+    pub fn from_fit(
+        frame: &StrainFrame,
+        candidates: &'a [Candidate],
+        scored: &'a Scored<Fit>,
+    ) -> Self {
         let member = |(&c, p): (&usize, &'a Vec<f64>)| {
             candidates.get(c).map(|c| Member {
                 effect: c.effect.as_ref(),

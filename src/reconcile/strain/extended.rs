@@ -8,7 +8,7 @@ use crate::reconcile::outcome::NamedEffect;
 /// Returns the model with the effects of structure and loads included: influence, and the loads of every run.
 pub fn extended_state(frame: &StrainFrame, effects: &[NamedEffect]) -> StrainState {
     let candidates = candidates(frame, effects);
-    StrainState::with(frame, &members(frame, effects, &candidates))
+    StrainState::from_members(frame, &members(frame, effects, &candidates))
 }
 
 fn candidates(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<Candidate> {

@@ -211,7 +211,7 @@ impl StrainFrame {
     /// Returns the covariance of the noise of two gauges in a run, microstrain^2.
     pub fn noise_between(&self, g: usize, h: usize) -> f64 {
         let relative = match &self.gauge_noise {
-            Some(noise) => noise.between(g, h),
+            Some(noise) => noise.covariance_between(g, h),
             None => f64::from(u8::from(g == h)),
         };
         self.noise * self.noise * relative

@@ -75,7 +75,7 @@ impl Judged {
 
     /// Returns the fall of the squared residual by the effects.
     fn fall(&self) -> Fall {
-        Fall::between(&self.before, &self.after, &self.floor)
+        Fall::from_residuals(&self.before, &self.after, &self.floor)
     }
 
     /// Returns the RMS residual over the RMS reading: before, after and floor.
@@ -162,13 +162,13 @@ struct Patterns {
 
 impl Patterns {
     /// Returns the reading of a gauge in a run that the mean amplitudes cause.
-    fn expected(&self, run: usize, gauge: usize) -> f64 {
+    fn expected_reading(&self, run: usize, gauge: usize) -> f64 {
         let read = self.values[run].iter().zip(&self.mean);
         read.map(|(p, m)| p[gauge] * m).sum()
     }
 
     /// Returns the covariance of the readings of two gauges in a run that the amplitudes cause.
-    fn between(&self, run: usize, g: usize, h: usize) -> f64 {
+    fn reading_covariance(&self, run: usize, g: usize, h: usize) -> f64 {
         let (n, values) = (self.mean.len(), &self.values[run]);
         let rows = self.covariance.chunks_exact(n.max(1)).zip(values);
         rows.map(|(row, p)| p[g] * row.iter().zip(values).map(|(c, q)| c * q[h]).sum::<f64>())
@@ -192,7 +192,7 @@ struct Told<'a> {
 }
 
 impl<'a> Told<'a> {
-    fn of(
+    fn new(
         frame: &'a StrainFrame,
         members: &'a [Member<'a>],
         unknown: &'a [SizedAmplitudes],
@@ -203,7 +203,7 @@ impl<'a> Told<'a> {
         let joint = covariance(frame, members, &both, unknown);
         let rows = joint.chunks_exact(both.len().max(1)).take(fit.len());
         let of_fit: Vec<f64> = rows.flat_map(|row| &row[..fit.len()]).copied().collect();
-        let factor = Cholesky::of(&of_fit, fit.len())?;
+        let factor = Cholesky::from_covariance(&of_fit, fit.len())?;
         let weighted = factor.solve(&residual(frame, members, &fit));
         Some(Self {
             frame,
@@ -230,7 +230,7 @@ impl<'a> Told<'a> {
             scatter.extend(u.amplitudes.kinds.iter().map(|&k| u.scatter_variance(k)));
         }
         if anew == FoundAnew::AmplitudesAndLoads {
-            let state = StrainState::with(self.frame, self.members);
+            let state = StrainState::from_members(self.frame, self.members);
             let [n_g, _, n_c] = state.shape;
             let column = |l: usize| {
                 (0..n_g)
@@ -316,7 +316,7 @@ struct ProofRun<'a> {
 }
 
 impl<'a> Proof<'a> {
-    fn of(told: &'a Told<'a>, anew: FoundAnew) -> Self {
+    fn new(told: &'a Told<'a>, anew: FoundAnew) -> Self {
         Self {
             patterns: told.patterns(anew),
             told,
@@ -333,7 +333,7 @@ impl<'a> Proof<'a> {
         let offset = all.0.iter().zip(mean.iter().zip(&mesh));
         ProofRun {
             offset: offset
-                .map(|(e, (m, d))| m - self.patterns.expected(run, e.1) + d)
+                .map(|(e, (m, d))| m - self.patterns.expected_reading(run, e.1) + d)
                 .collect(),
             innovation: on_finer.iter().zip(&mean).map(|(r, m)| r - m).collect(),
             residual: on_own,
@@ -347,14 +347,16 @@ impl<'a> Proof<'a> {
 
 impl ProofRun<'_> {
     /// Returns, by reading, the residual with the patterns estimated from the other half of the gauges, and the floor of this residual.
-    fn judged(&self) -> (Vec<f64>, Vec<f64>) {
+    fn residual_and_floor(&self) -> (Vec<f64>, Vec<f64>) {
         /// Limit, in standard deviations, of the load errors that the other half of the gauges shows. A larger value is not a load error.
         const BELIEVED: f64 = 3.0;
         let n = self.all.len();
         let gauge = |i: usize| self.all.0[i].1;
         let run = self.all.0.first().map_or(0, |e| e.0);
         let patterns = &self.proof.patterns;
-        let expected: Vec<f64> = (0..n).map(|i| patterns.expected(run, gauge(i))).collect();
+        let expected: Vec<f64> = (0..n)
+            .map(|i| patterns.expected_reading(run, gauge(i)))
+            .collect();
         let mut left: Vec<f64> = self
             .residual
             .iter()
@@ -374,12 +376,12 @@ impl ProofRun<'_> {
                 .flat_map(|&i| used.iter().map(move |&j| (i, j)))
                 .map(|(i, j)| self.spread[i * n + j])
                 .collect();
-            let factor = Cholesky::of(&block, used.len());
+            let factor = Cholesky::from_covariance(&block, used.len());
             let innovation: Vec<f64> = used.iter().map(|&i| self.innovation[i]).collect();
             for &i in &seen {
                 let shared: Vec<f64> = used
                     .iter()
-                    .map(|&j| patterns.between(run, gauge(i), gauge(j)))
+                    .map(|&j| patterns.reading_covariance(run, gauge(i), gauge(j)))
                     .collect();
                 let whole: Vec<f64> = used.iter().map(|&j| self.spread[i * n + j]).collect();
                 let Some(c) = &factor else {
@@ -416,7 +418,7 @@ pub fn proof_residuals(
     anew: FoundAnew,
 ) -> Option<Judged> {
     let before = proof_residuals_before(finer, &[anew])?.pop()?;
-    judged_after(finer, members, unknown, &[(anew, before)])?.pop()
+    verdict_after_removal(finer, members, unknown, &[(anew, before)])?.pop()
 }
 
 /// Returns the residuals of the proof runs by the analyst's model, for each of `anew`. They do not depend on the active effects.
@@ -425,31 +427,31 @@ pub(super) fn proof_residuals_before(
     anew: &[FoundAnew],
 ) -> Option<Vec<Vec<f64>>> {
     let own = finer.as_modelled();
-    let told = Told::of(finer, &[], &[])?;
+    let told = Told::new(finer, &[], &[])?;
     let of = |anew: &FoundAnew| {
-        let without = Proof::of(&told, *anew);
+        let without = Proof::new(&told, *anew);
         let runs = finer.observations.proof_runs().into_iter();
-        runs.flat_map(|run| without.run(&own, run).judged().0)
+        runs.flat_map(|run| without.run(&own, run).residual_and_floor().0)
             .collect()
     };
     Some(anew.iter().map(of).collect())
 }
 
 /// Returns the residuals of [`proof_residuals`] for each of `ways`: the unknowns to estimate, with the residuals of [`proof_residuals_before`].
-pub(super) fn judged_after(
+pub(super) fn verdict_after_removal(
     finer: &StrainFrame,
     members: &[Member<'_>],
     unknown: &[SizedAmplitudes],
     ways: &[(FoundAnew, Vec<f64>)],
 ) -> Option<Vec<Judged>> {
     let own = finer.as_modelled();
-    let told = Told::of(finer, members, unknown)?;
+    let told = Told::new(finer, members, unknown)?;
     let of = |(anew, before): &(FoundAnew, Vec<f64>)| {
-        let with = Proof::of(&told, *anew);
+        let with = Proof::new(&told, *anew);
         let mut out = Judged::default();
         for run in finer.observations.proof_runs() {
             let now = with.run(&own, run);
-            let (after, floor) = now.judged();
+            let (after, floor) = now.residual_and_floor();
             let from = out.after.len();
             out.extend(Judged {
                 gauges: now.all.0.iter().map(|e| e.1).collect(),

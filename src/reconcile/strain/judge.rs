@@ -2,7 +2,7 @@
 
 use super::adequacy::{Adequacy, adequacy, deviate_estimated};
 use super::companions::without_companions;
-use super::detect::detectable;
+use super::detect::find_detectable_sizes;
 use super::explanation::{Explanation, discrepancy, is_unmodelled, named_part};
 use super::frame::StrainFrame;
 use super::likelihood::Fit;
@@ -21,7 +21,7 @@ use super::sizes_found::effects_with_sizes;
 use super::smooth::{curve, is_smooth};
 use super::standing::Standing;
 use super::validation::{Proofs, validate_set};
-use crate::reconcile::checks::{Check, ahead, reasons, verdict};
+use crate::reconcile::checks::{Check, describe_better_alternative, reasons, verdict};
 use crate::reconcile::effect::{Candidate, Discrepancy};
 use crate::reconcile::outcome::{Gap, Misfit, NamedEffect, Outcome, Verdict};
 use crate::reconcile::search::Scored;
@@ -66,7 +66,7 @@ pub(super) fn adequacy_of(
     candidates: &[Candidate],
     scored: &Scored<Fit>,
 ) -> Adequacy {
-    let e = Explanation::of(frame, candidates, scored);
+    let e = Explanation::from_fit(frame, candidates, scored);
     let n_parameters: usize = scored.fit.parameters.iter().map(Vec::len).sum();
     adequacy(frame, &e.members, &e.unknown, n_parameters)
 }
@@ -133,8 +133,8 @@ pub(super) fn judge(
         log_evidence: level(best),
         ..best.clone()
     };
-    let standing = Standing::of(frame, candidates, all, &alike, &rivals);
-    let stands = standing.fewer(frame, candidates, best);
+    let standing = Standing::compare(frame, candidates, all, &alike, &rivals);
+    let stands = standing.keep_recurring_effects(frame, candidates, best);
     let proven = remove_unproven(proofs, candidates, stands.as_ref().unwrap_or(best));
     let few = standing.doubt.clone().filter(|_| stands.is_some());
     let (taken_out, fewer) = match proven {
@@ -145,7 +145,7 @@ pub(super) fn judge(
         .map_or((fewer, None), |(set, told)| (Some(set), Some(told)));
     let best = fewer.as_ref().unwrap_or(best);
     let level = fewer.as_ref().map_or(alike.log_evidence, level);
-    let explained = Explanation::of(frame, candidates, best);
+    let explained = Explanation::from_fit(frame, candidates, best);
     let (after, noise) = reach(frame, candidates, best, &before);
     let (reached, alone) = reaches_floor(frame, candidates, best, &after, noise);
     let unsure: Vec<String> = [needless, few, taken_out.clone(), no_zero, alone]
@@ -185,7 +185,11 @@ pub(super) fn judge(
         false => reasons(&checks),
     });
     let next = match rivals.first().map(|r| &r.1).or(hint) {
-        Some(s) => next_measurement(frame, &explained, &Explanation::of(frame, candidates, s)),
+        Some(s) => next_measurement(
+            frame,
+            &explained,
+            &Explanation::from_fit(frame, candidates, s),
+        ),
         None if verdict == Verdict::Unknown => look_again(&after),
         None => "none needed".into(),
     };
@@ -222,7 +226,11 @@ pub(super) fn judge(
         remains: [vec![left], unsure].concat().join("; "),
         predicted: predict(frame, &explained.members),
         next_measurement: next,
-        detectable: detectable(frame, candidates, hint.map_or(&[], |h| h.set.as_slice())),
+        detectable: find_detectable_sizes(
+            frame,
+            candidates,
+            hint.map_or(&[], |h| h.set.as_slice()),
+        ),
         input_faults: Vec::new(),
     }
 }
@@ -268,20 +276,23 @@ fn checks_of(set: &Judged<'_>) -> [Check; 10] {
         Check::unless(no_drift(frame, set.candidates, set.best).map(|n| n.words)),
         // What explains the fitted runs that much better and runs to come no better is a form that is in no name.
         Check::unless(set.taken_out.clone().filter(|_| set.lost > WORTH_NAMING)),
-        Check::of(wins as f64 >= rules.drawings * DRAWINGS as f64, || {
+        Check::from_condition(wins as f64 >= rules.drawings * DRAWINGS as f64, || {
             set.standing.doubt.clone().unwrap_or_else(|| {
                 format!("{wins} of {DRAWINGS} resampled run sets contain every effect of it")
             })
         }),
-        Check::unless(ahead(
+        Check::unless(describe_better_alternative(
             (set.attempt.len(), set.level),
             [rules.indistinguishable, rules.decisive],
             (set.rivals.iter()).map(|r| (r.0.as_slice(), r.1.log_evidence)),
         )),
-        Check::of(set.attempt.iter().all(|e| e.plausible), || {
-            format!("the size of {} is not plausible", implausible(set.attempt))
+        Check::from_condition(set.attempt.iter().all(|e| e.plausible), || {
+            format!(
+                "the size of {} is not plausible",
+                list_implausible_sizes(set.attempt)
+            )
         }),
-        Check::of(gap.falls && gap.is_above_floor(), || {
+        Check::from_condition(gap.falls && gap.is_above_floor(), || {
             format!(
                 "on runs that were not fitted, the gap does not fall significantly from above its floor ({:.2} % before, {:.2} % after, floor {:.2} %)",
                 100.0 * gap.before,
@@ -289,21 +300,21 @@ fn checks_of(set: &Judged<'_>) -> [Check; 10] {
                 100.0 * gap.floor
             )
         }),
-        Check::of(noise <= rules.noise, || {
+        Check::from_condition(noise <= rules.noise, || {
             format!("it requires noise of {noise:.2} times the stated noise")
         }),
-        Check::of(
+        Check::from_condition(
             is_unmodelled(set.candidates, &set.best.set).is_none(),
             || "the pattern that closes the gap is not an effect of the library".into(),
         ),
-        Check::of(set.reached, || {
+        Check::from_condition(set.reached, || {
             "gauges or runs are above their floor".into()
         }),
     ]
 }
 
 /// Returns the effects whose size is not plausible, with their sizes, in words.
-fn implausible(attempt: &[NamedEffect]) -> String {
+fn list_implausible_sizes(attempt: &[NamedEffect]) -> String {
     let far = attempt.iter().filter(|e| !e.plausible);
     let words = far.map(|e| match e.size.first() {
         Some(_) => {

@@ -14,7 +14,7 @@ pub(super) type Shares = Vec<(usize, f64)>;
 ///
 /// `Cov(y_rg, y_sh) = scale^2 (sum_jk f_rj f_sk Cov(S_gj, S_hk) + [r = s] q(f_r)^2 C_gh)`, with gauges as read under `members`. A channel with
 /// reversed polarity reverses the sign of its share.
-pub(super) fn learnt(
+pub(super) fn calibration_covariance(
     frame: &StrainFrame,
     members: &[Member<'_>],
     selection: &[(usize, usize)],
@@ -29,10 +29,10 @@ pub(super) fn learnt(
     let acts = |run: usize| &state.columns[run * n_c..run * n_c + n_l];
     let scale2 = uncertainty.scale * uncertainty.scale;
     for (a, one) in runs.iter().enumerate() {
-        let half = carried(uncertainty, n_g, acts(one.run));
+        let half = contract_rows(uncertainty, n_g, acts(one.run));
         for other in &runs[..=a] {
             let same = (one.run == other.run).then(|| uncertainty.mean_square_of(acts(one.run)));
-            let mut block = contracted(&half, n_g, acts(other.run));
+            let mut block = contract_columns(&half, n_g, acts(other.run));
             if let Some(q2) = same {
                 let scatter = block.iter_mut().zip(&uncertainty.scatter);
                 scatter.for_each(|(cell, c)| *cell += q2 * c);
@@ -125,7 +125,7 @@ pub(super) fn shares(
 }
 
 /// `sum_j f_j Cov(S_gj, S_hk)`, `n x n k` by rows.
-fn carried(uncertainty: &Uncertainty, n: usize, f: &[f64]) -> Vec<f64> {
+fn contract_rows(uncertainty: &Uncertainty, n: usize, f: &[f64]) -> Vec<f64> {
     let width = n * f.len();
     let mut out = vec![0.0; n * width];
     for (g, row) in out.chunks_exact_mut(width.max(1)).enumerate() {
@@ -142,7 +142,7 @@ fn carried(uncertainty: &Uncertainty, n: usize, f: &[f64]) -> Vec<f64> {
 }
 
 /// `sum_k f_k half_g,hk`, `n x n` by rows.
-fn contracted(half: &[f64], n: usize, f: &[f64]) -> Vec<f64> {
+fn contract_columns(half: &[f64], n: usize, f: &[f64]) -> Vec<f64> {
     let k = f.len().max(1);
     let out: Vec<f64> = half.chunks_exact(k).map(|e| dot(e, f)).collect();
     if out.len() == n * n {

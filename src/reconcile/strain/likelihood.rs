@@ -74,7 +74,7 @@ impl<'a> Likelihood<'a> {
             })
         };
         let members: Vec<Member<'_>> = reference.iter().filter_map(member).collect();
-        let blocks = RunBlocks::of(frame, &members, &selection);
+        let blocks = RunBlocks::from_selection(frame, &members, &selection);
         Self {
             frame,
             candidates,
@@ -147,7 +147,7 @@ impl<'a> Likelihood<'a> {
         let parameters: Vec<Vec<f64>> = self.reference.iter().map(|r| r.1.clone()).collect();
         let members = self.members(&reference, &parameters);
         let cov = covariance(self.frame, &members, &self.selection, &unknown);
-        let made = Precision::of(&cov, self.selection.len()).map(Arc::new);
+        let made = Precision::from_covariance(&cov, self.selection.len()).map(Arc::new);
         self.cache.insert(key, made.clone());
         made
     }
@@ -197,7 +197,7 @@ impl<'a> Likelihood<'a> {
     }
 
     /// Amplitudes of candidates with their sizes, as `members` let the gauges read them.
-    pub(super) fn sized(
+    pub(super) fn sized_amplitudes(
         &self,
         sizes: &[(usize, Vec<f64>)],
         members: &[Member<'_>],

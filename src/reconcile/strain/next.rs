@@ -80,7 +80,7 @@ pub fn next_measurement(
         let b = predict(&trial, &second.members);
         let difference: Vec<f64> = a.iter().zip(&b).map(|(x, y)| x - y).collect();
         let power = |e: &Explanation<'_>| {
-            let p = Precision::of(
+            let p = Precision::from_covariance(
                 &covariance(&trial, &e.members, &selection, &e.unknown),
                 selection.len(),
             )?;

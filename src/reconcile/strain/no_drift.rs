@@ -129,7 +129,7 @@ fn of_amplitudes(
     gauge: usize,
 ) -> Vec<f64> {
     let mut out = vec![0.0; frame.n_runs()];
-    let e = Explanation::of(frame, candidates, scored);
+    let e = Explanation::from_fit(frame, candidates, scored);
     let read = |u: &SizedAmplitudes| {
         let mut read = u.clone();
         read.amplitudes.patterns = patterns_read(frame, &e.members, &u.amplitudes.patterns);
@@ -145,7 +145,7 @@ fn of_amplitudes(
     let readings = selection.pick(&frame.observations.values, n_g);
     let predicted = selection.pick(&predict(frame, &e.members), n_g);
     let residual: Vec<f64> = readings.iter().zip(predicted).map(|(y, p)| y - p).collect();
-    let blocks = RunBlocks::of(frame, &e.members, &selection);
+    let blocks = RunBlocks::from_selection(frame, &e.members, &selection);
     let mut read: Vec<usize> = selection.0.iter().map(|e| e.0).collect();
     read.dedup();
     // By pattern: what the gauge reads of it, nothing of the zero itself.
@@ -166,14 +166,14 @@ fn of_amplitudes(
 
 impl Besides {
     /// Returns the predicted strain over its largest magnitude; `None` if all predictions are zero.
-    fn strained(&self) -> Option<Vec<f64>> {
+    fn scale_strain(&self) -> Option<Vec<f64>> {
         let scale = self.model.iter().fold(0.0f64, |m, v| m.max(v.abs()));
         (scale > 0.0).then(|| self.model.iter().map(|v| v / scale).collect())
     }
 
     /// Returns whether `rest` follows `p |p|` beyond a straight line in `p`.
     fn bends(&self) -> bool {
-        self.strained().is_some_and(|p| {
+        self.scale_strain().is_some_and(|p| {
             let column = |i: usize, j: usize| [1.0, p[i], p[i] * p[i].abs()][j];
             chance(&self.rest, column, 2, 3) < CHANCE
         })
@@ -181,7 +181,7 @@ impl Besides {
 
     /// Returns whether `rest` follows `p` beyond a constant, with a slope above `doubt`.
     fn goes_with_load(&self, doubt: f64) -> bool {
-        self.strained().is_some_and(|p| {
+        self.scale_strain().is_some_and(|p| {
             let column = |i: usize, j: usize| [1.0, p[i]][j];
             chance(&self.rest, column, 1, 2) < CHANCE
                 && slope(&self.model, &self.rest).abs() > doubt
@@ -204,7 +204,7 @@ fn chance(r: &[f64], column: impl Fn(usize, usize) -> f64, few: usize, more: usi
         return 1.0;
     }
     let freedom = (r.len() - more) as f64;
-    let left = |n: usize| left(&Matrix::from_fn(r.len(), n, &column), r);
+    let left = |n: usize| residual_sum_of_squares(&Matrix::from_fn(r.len(), n, &column), r);
     let (before, after) = (left(few), left(more));
     let ratio = (before - after) / (more - few) as f64 / (after / freedom);
     if ratio.is_nan() {
@@ -226,7 +226,7 @@ fn slope(x: &[f64], y: &[f64]) -> f64 {
 }
 
 /// Returns the sum of squares of `r` after a least squares fit of the columns of `x`.
-fn left(x: &Matrix, r: &[f64]) -> f64 {
+fn residual_sum_of_squares(x: &Matrix, r: &[f64]) -> f64 {
     let whole: f64 = r.iter().map(|v| v * v).sum();
     if x.ncols() == 0 {
         return whole;

@@ -77,7 +77,7 @@ impl Likelihood<'_> {
             if n == 0 {
                 break;
             }
-            let step = Precision::of(&hessian, n)?.apply(&gradient);
+            let step = Precision::from_covariance(&hessian, n)?.apply(&gradient);
             let mut scale = 1.0;
             let mut improved = false;
             for _ in 0..6 {

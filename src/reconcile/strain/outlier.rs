@@ -19,14 +19,14 @@ pub(super) fn but_for_one(
     scored: &Scored<Fit>,
     at_floor: impl FnOnce(&StrainFrame) -> bool,
 ) -> Option<String> {
-    let e = Explanation::of(frame, candidates, scored);
+    let e = Explanation::from_fit(frame, candidates, scored);
     let readings = Selection::of_runs(frame, &frame.observations.fit_runs());
     let n_g = frame.n_gauges();
     let predicted = readings.pick(&predict(frame, &e.members), n_g);
     let read = readings.pick(&frame.observations.values, n_g);
     let residual: Vec<f64> = read.iter().zip(predicted).map(|(y, p)| y - p).collect();
     let covariance = covariance(frame, &e.members, &readings, &e.unknown);
-    let precision = Precision::of(&covariance, readings.len())?;
+    let precision = Precision::from_covariance(&covariance, readings.len())?;
     let weighted = precision.apply(&residual).into_iter().enumerate();
     let (at, off) = weighted
         .map(|(i, v)| (i, v / precision.entry(i, i).sqrt()))

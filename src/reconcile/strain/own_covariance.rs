@@ -101,7 +101,10 @@ fn at_same_gauges(
         let covered = own
             .iter()
             .all(|g| replaced.iter().any(|&m| gauges(m).contains(g)));
-        if covered && !replaced.contains(&c) && kept.iter().all(|&m| likelihood.compatible(m, c)) {
+        if covered
+            && !replaced.contains(&c)
+            && kept.iter().all(|&m| likelihood.is_compatible_pair(m, c))
+        {
             let mut new = [kept.as_slice(), &[c]].concat();
             new.sort_unstable();
             out.push(new);

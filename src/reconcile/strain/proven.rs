@@ -40,7 +40,7 @@ pub(super) fn remove_unproven(
             let [without, _] = residuals_on(proofs, candidates, &fit, &set.set);
             Some(Without {
                 gap: without.numbers().after,
-                fall: Fall::between(&without.after, &with.after, &with.floor),
+                fall: Fall::from_residuals(&without.after, &with.after, &with.floor),
                 fit,
             })
         };

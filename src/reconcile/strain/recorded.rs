@@ -16,7 +16,7 @@ const PAYLOAD: &str = "payload";
 /// Returns the findings on recorded loads and payloads of the other sign, in another unit, or exchanged; empty where an effect of the model
 /// may be looked for.
 pub(super) fn wrong_records(frame: &StrainFrame) -> Vec<Finding> {
-    let state = StrainState::nominal(frame);
+    let state = StrainState::from_nominal_model(frame);
     let [n_gauges, n_runs, n_columns] = state.shape;
     let n_loads = frame.n_loads();
     let strain_of = |g: usize, r: usize, load: usize, from: usize| -> f64 {
@@ -80,7 +80,7 @@ pub fn gauges_installed_otherwise(
     frame: &StrainFrame,
     alternatives: &mut dyn FnMut() -> Vec<AlternativeRows>,
 ) -> Vec<Finding> {
-    let state = StrainState::nominal(frame);
+    let state = StrainState::from_nominal_model(frame);
     let [n_gauges, n_runs, n_columns] = state.shape;
     let readings = (0..n_runs).map(|r| {
         let channels = 0..n_gauges;
@@ -107,7 +107,7 @@ pub fn gauges_installed_otherwise(
             .collect(),
         model_rel: frame.model_rel,
     };
-    if misfit.unexplained() < FAR_OFF {
+    if misfit.unexplained_share() < FAR_OFF {
         return Vec::new();
     }
     let names: Vec<String> = frame.gauges.iter().map(|g| g.name.clone()).collect();

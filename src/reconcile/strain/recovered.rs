@@ -49,7 +49,7 @@ fn recover(
     run: usize,
 ) -> Option<Vec<(f64, f64)>> {
     let (n_l, n_g) = (frame.n_loads(), frame.n_gauges());
-    let mut state = StrainState::with(frame, members);
+    let mut state = StrainState::from_members(frame, members);
     let [_, _, n_c] = state.shape;
     let column = |l: usize| {
         (0..n_g)

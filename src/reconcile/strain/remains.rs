@@ -17,7 +17,7 @@ pub fn remains(
     strange: Option<&str>,
     withheld: Option<&[String]>,
 ) -> String {
-    let rest = beyond(frame, members, after, withheld);
+    let rest = describe_excess_residual(frame, members, after, withheld);
     match (strange, strange.and_then(|_| model_bias(frame))) {
         (Some(words), Some(bias)) => format!("{bias}; or {words}; then: {rest}"),
         (Some(words), None) => format!("{words}; then: {rest}"),
@@ -77,7 +77,7 @@ fn none_alone(reduced_chi2: f64, withheld: Option<&[String]>) -> String {
 }
 
 /// Returns a text on the residual above the floor: its gauges, its runs and its growth with the load.
-fn beyond(
+fn describe_excess_residual(
     frame: &StrainFrame,
     members: &[Member<'_>],
     after: &Adequacy,

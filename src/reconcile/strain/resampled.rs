@@ -64,7 +64,7 @@ pub(super) fn drawings_won(
             .map(|k| usize::from(touched.contains(&k)))
             .collect();
         for _ in 0..free.len() {
-            let drawn = free.get(numbers.below(free.len()));
+            let drawn = free.get(numbers.draw_below(free.len()));
             if let Some(n) = drawn.and_then(|k| counts.get_mut(*k)) {
                 *n += 1;
             }
@@ -84,9 +84,9 @@ fn densities(
     scored: &Scored<Fit>,
     runs: &[usize],
 ) -> Vec<f64> {
-    let e = Explanation::of(frame, candidates, scored);
+    let e = Explanation::from_fit(frame, candidates, scored);
     let selection = Selection::of_runs(frame, runs);
-    let blocks = RunBlocks::of(frame, &e.members, &selection);
+    let blocks = RunBlocks::from_selection(frame, &e.members, &selection);
     let predicted = predict(frame, &e.members);
     let n_g = frame.n_gauges();
     let residual =
@@ -108,7 +108,7 @@ fn densities(
 struct Numbers(u64);
 
 impl Numbers {
-    fn below(&mut self, n: usize) -> usize {
+    fn draw_below(&mut self, n: usize) -> usize {
         self.0 = self
             .0
             .wrapping_mul(6_364_136_223_846_793_005)

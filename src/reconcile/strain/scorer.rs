@@ -23,7 +23,7 @@ impl Scorer for Likelihood<'_> {
         self.frame.stop.is_asked()
     }
 
-    fn compatible(&self, a: usize, b: usize) -> bool {
+    fn is_compatible_pair(&self, a: usize, b: usize) -> bool {
         let (Some(a), Some(b)) = (self.candidates.get(a), self.candidates.get(b)) else {
             return false;
         };
@@ -34,7 +34,10 @@ impl Scorer for Likelihood<'_> {
         let (at_a, at_b) = (a.gauges(), b.gauges());
         let shared = at_a.iter().any(|g| at_b.contains(g));
         let n = self.frame.n_gauges();
-        !shared || a.kind().besides(b.kind()) || inside(&at_a, &at_b, n) || inside(&at_b, &at_a, n)
+        !shared
+            || a.kind().is_distinguishable_from(b.kind())
+            || is_distinguishable(&at_a, &at_b, n)
+            || is_distinguishable(&at_b, &at_a, n)
     }
 
     fn kin(&self, candidate: usize) -> usize {
@@ -72,7 +75,7 @@ impl Scorer for Likelihood<'_> {
 
 /// Returns whether other gauges distinguish a fault at the gauge of `one` from a fault at `many`, in file order, of `n` gauges in all. They do if
 /// `many` is all gauges, or a stretch that contains the gauge away from its ends. At an end, a shorter stretch explains as much.
-fn inside(one: &[usize], many: &[usize], n: usize) -> bool {
+fn is_distinguishable(one: &[usize], many: &[usize], n: usize) -> bool {
     let &[gauge] = one else {
         return false;
     };
@@ -82,14 +85,16 @@ fn inside(one: &[usize], many: &[usize], n: usize) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::inside;
+    use super::is_distinguishable;
 
     #[test]
     fn a_fault_of_one_gauge_is_told_beside_one_of_all_or_within_a_stretch_and_not_at_its_end() {
         let all: Vec<usize> = (0..9).collect();
-        assert!(inside(&[0], &all, 9) && inside(&[4], &all, 9));
-        assert!(inside(&[4], &all[2..7], 9));
-        assert!(!inside(&[2], &all[2..7], 9) && !inside(&[6], &all[2..7], 9));
-        assert!(!inside(&[3], &[3, 7], 9) && !inside(&[3, 4], &all, 9));
+        assert!(is_distinguishable(&[0], &all, 9) && is_distinguishable(&[4], &all, 9));
+        assert!(is_distinguishable(&[4], &all[2..7], 9));
+        assert!(
+            !is_distinguishable(&[2], &all[2..7], 9) && !is_distinguishable(&[6], &all[2..7], 9)
+        );
+        assert!(!is_distinguishable(&[3], &[3, 7], 9) && !is_distinguishable(&[3, 4], &all, 9));
     }
 }

@@ -42,11 +42,11 @@ impl Likelihood<'_> {
         };
         let alone = self
             .blocks
-            .precisions(&self.sized(&base.fit.sizes, &now.members));
+            .precisions(&self.sized_amplitudes(&base.fit.sizes, &now.members));
         let without = run_by_run_log_likelihood(
             &self.blocks,
             &base.fit.residual,
-            &self.sized(&base.fit.sizes, &now.members),
+            &self.sized_amplitudes(&base.fit.sizes, &now.members),
         );
         let (this, now, alone) = (&*self, &now, &alone);
         let tried = this
@@ -180,7 +180,7 @@ impl Likelihood<'_> {
         let described = candidate.effect.parameters();
         let gain = |change: &[(usize, f64)]| {
             let along: f64 = change.iter().map(|&(i, v)| v * base.weighted[i]).sum();
-            along - 0.5 * quadratic(base.precision, change)
+            along - 0.5 * quadratic_form(base.precision, change)
         };
         match described.as_slice() {
             [] => (gain(&self.change(c, base, &[])), Vec::new()),
@@ -203,7 +203,7 @@ impl Likelihood<'_> {
         let mut slope = self.change(c, base, &[p.neutral + p.step]);
         slope.iter_mut().for_each(|e| e.1 /= p.step);
         let variance = p.prior_sd * p.prior_sd;
-        let curvature = quadratic(base.precision, &slope) + 1.0 / variance;
+        let curvature = quadratic_form(base.precision, &slope) + 1.0 / variance;
         let pull: f64 = slope.iter().map(|&(i, v)| v * base.weighted[i]).sum();
         let gain = 0.5 * pull * pull / curvature - 0.5 * (curvature * variance).ln();
         (gain, p.neutral + pull / curvature, slope)
@@ -338,7 +338,7 @@ impl Likelihood<'_> {
     fn run_by_run(&self, c: usize, base: &Base<'_>) -> (f64, Vec<f64>) {
         let families = [base.families.as_slice(), &[c]].concat();
         let sizes = self.sizes_from(&families, &base.members, &base.scored.fit.residual);
-        let unknown = self.sized(&sizes, &base.members);
+        let unknown = self.sized_amplitudes(&sizes, &base.members);
         let value = run_by_run_log_likelihood(&self.blocks, &base.scored.fit.residual, &unknown);
         (value, sizes.last().map(|s| s.1.clone()).unwrap_or_default())
     }
@@ -362,6 +362,6 @@ fn products(precision: &Precision, x: &[(usize, f64)], y: &[(usize, f64)]) -> (f
     )
 }
 
-fn quadratic(precision: &Precision, x: &[(usize, f64)]) -> f64 {
+fn quadratic_form(precision: &Precision, x: &[(usize, f64)]) -> f64 {
     products(precision, x, x).0
 }

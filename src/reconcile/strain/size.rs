@@ -33,7 +33,11 @@ pub struct RunPrecision<'a> {
 
 impl RunBlocks {
     /// Computes the blocks of `selection` with the prediction of `members`.
-    pub fn of(frame: &StrainFrame, members: &[Member<'_>], selection: &Selection) -> Self {
+    pub fn from_selection(
+        frame: &StrainFrame,
+        members: &[Member<'_>],
+        selection: &Selection,
+    ) -> Self {
         let mut runs: Vec<usize> = selection.0.iter().map(|e| e.0).collect();
         runs.dedup();
         let block = |&run: &usize| {
@@ -55,7 +59,7 @@ impl RunBlocks {
 
     /// Returns the precision of each run with the scatter of `unknown`. Runs without a valid factor are omitted.
     pub fn precisions(&self, unknown: &[SizedAmplitudes]) -> Vec<RunPrecision<'_>> {
-        let added = self.added(unknown);
+        let added = self.added_covariance(unknown);
         let one = |b: &'_ RunBlock| b.precision(&added, self.n_gauges);
         let made = self.blocks.iter().filter_map(|b| Some((b, one(b)?)));
         made.map(|(b, precision)| RunPrecision {
@@ -67,7 +71,7 @@ impl RunBlocks {
     }
 
     /// Returns the covariance that unknown amplitudes add to a run, `n_gauges x n_gauges`: their scatter, and the uncertainty of their patterns.
-    fn added(&self, unknown: &[SizedAmplitudes]) -> Vec<f64> {
+    fn added_covariance(&self, unknown: &[SizedAmplitudes]) -> Vec<f64> {
         let n = self.n_gauges;
         let mut out = vec![0.0; n * n];
         for u in unknown {
@@ -93,7 +97,7 @@ impl RunBlock {
                 k[i * n + j] += added[g * n_gauges + h];
             }
         }
-        Precision::of(&k, n)
+        Precision::from_covariance(&k, n)
     }
 }
 
@@ -137,7 +141,11 @@ struct Steady {
 }
 
 /// m = (H + T^-1)^-1 sum of A' P r, H = sum of A' P A over runs; gain = (m' (H + T^-1) m - ln det(I + T H)) / 2.
-fn steady(runs: &[RunPrecision<'_>], residual: &[f64], patterns: &[Pattern<'_>]) -> Steady {
+fn estimate_steady_amplitudes(
+    runs: &[RunPrecision<'_>],
+    residual: &[f64],
+    patterns: &[Pattern<'_>],
+) -> Steady {
     let which: Vec<usize> = (0..patterns.len())
         .filter(|p| patterns[*p].steady > 0.0)
         .collect();
@@ -175,7 +183,7 @@ fn steady(runs: &[RunPrecision<'_>], residual: &[f64], patterns: &[Pattern<'_>])
         h[i * n + i] += 1.0 / patterns[p].steady;
         log_prior += patterns[p].steady.ln();
     }
-    let Some(posterior) = Precision::of(&h, n) else {
+    let Some(posterior) = Precision::from_covariance(&h, n) else {
         return nothing;
     };
     let mean = posterior.apply(&s);
@@ -199,7 +207,7 @@ pub fn run_by_run_log_likelihood(
     if runs.len() < blocks.blocks.len() {
         return f64::NEG_INFINITY;
     }
-    let mut sum = steady(&runs, residual, &patterns_of(unknown)).gain;
+    let mut sum = estimate_steady_amplitudes(&runs, residual, &patterns_of(unknown)).gain;
     for run in &runs {
         let r: Vec<f64> = run.at.iter().map(|&i| residual[i]).collect();
         sum -= 0.5 * (run.precision.log_det() + dot(&r, &run.precision.apply(&r)));
@@ -260,7 +268,7 @@ impl Squares {
 }
 
 /// Amplitudes of one run given its residual: by pattern the mean of the part that differs from run to run, and its remaining variance.
-fn scattered(
+fn estimate_scattered_amplitudes(
     run: &RunPrecision<'_>,
     residual: &[f64],
     unknown: &[SizedAmplitudes],
@@ -293,14 +301,14 @@ pub fn amplitudes_by_run(
 ) -> Vec<Vec<[f64; 2]>> {
     let patterns = patterns_of(unknown);
     let runs = blocks.precisions(unknown);
-    let repeated = steady(&runs, residual, &patterns);
+    let repeated = estimate_steady_amplitudes(&runs, residual, &patterns);
     let mut constant = vec![[0.0; 2]; patterns.len()];
     for (i, (&p, mean)) in repeated.which.iter().zip(&repeated.mean).enumerate() {
         let left = repeated.posterior.as_ref().map_or(0.0, |q| q.entry(i, i));
         constant[p] = [*mean, left];
     }
     let of_run = |run: &RunPrecision<'_>| -> Vec<[f64; 2]> {
-        let own = scattered(run, residual, unknown, &patterns, &repeated);
+        let own = estimate_scattered_amplitudes(run, residual, unknown, &patterns, &repeated);
         let both = own.into_iter().zip(&constant);
         both.map(|(own, c)| [own[0] + c[0], own[1] + c[1]])
             .collect()
@@ -354,7 +362,7 @@ pub fn usual_sizes(blocks: &RunBlocks, residual: &[f64], families: &[Amplitudes]
     for _ in 0..STEPS {
         let patterns = patterns_of(&unknown);
         let runs = blocks.precisions(&unknown);
-        let repeated = steady(&runs, residual, &patterns);
+        let repeated = estimate_steady_amplitudes(&runs, residual, &patterns);
         let mut scatter: Vec<Squares> = families.iter().map(|f| Squares::prior(&f.usual)).collect();
         let mut steady: Vec<Squares> = families.iter().map(|f| Squares::prior(&f.steady)).collect();
         for (i, &p) in repeated.which.iter().enumerate() {
@@ -362,7 +370,7 @@ pub fn usual_sizes(blocks: &RunBlocks, residual: &[f64], families: &[Amplitudes]
             steady[patterns[p].family].add(patterns[p].kind, repeated.mean[i].powi(2) + known);
         }
         for run in &runs {
-            let own = scattered(run, residual, &unknown, &patterns, &repeated);
+            let own = estimate_scattered_amplitudes(run, residual, &unknown, &patterns, &repeated);
             for (p, [mean, left]) in patterns.iter().zip(own) {
                 scatter[p.family].add(p.kind, mean * mean + left);
             }

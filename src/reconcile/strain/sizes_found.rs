@@ -27,7 +27,7 @@ pub(super) fn effects_with_sizes(
             continue;
         };
         let effect = candidate.effect.as_ref();
-        if effect.smooth().is_some() {
+        if effect.as_smooth_error().is_some() {
             out.push(smooth_found(frame, candidates, scored, effect));
             continue;
         }
@@ -73,7 +73,7 @@ fn found_amplitudes(
     if scored.fit.sizes.is_empty() {
         return Vec::new();
     }
-    let e = Explanation::of(frame, candidates, scored);
+    let e = Explanation::from_fit(frame, candidates, scored);
     let read = |u: &SizedAmplitudes| {
         let mut read = u.clone();
         read.amplitudes.patterns = patterns_read(frame, &e.members, &u.amplitudes.patterns);
@@ -81,7 +81,7 @@ fn found_amplitudes(
     };
     let unknown: Vec<SizedAmplitudes> = e.unknown.iter().map(read).collect();
     let selection = Selection::of_runs(frame, &frame.observations.fit_runs());
-    let blocks = RunBlocks::of(frame, &e.members, &selection);
+    let blocks = RunBlocks::from_selection(frame, &e.members, &selection);
     amplitudes_found(&blocks, &scored.fit.residual, &unknown)
 }
 

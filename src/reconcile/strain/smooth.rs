@@ -113,7 +113,7 @@ pub(super) fn curve(
 ) -> Vec<SmoothAt> {
     let mut first = 0;
     for (&c, parameters) in scored.set.iter().zip(&scored.fit.parameters) {
-        let Some(smooth) = candidates.get(c).and_then(|c| c.effect.smooth()) else {
+        let Some(smooth) = candidates.get(c).and_then(|c| c.effect.as_smooth_error()) else {
             first += parameters.len();
             continue;
         };

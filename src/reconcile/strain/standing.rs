@@ -20,7 +20,7 @@ pub(super) struct Standing {
 
 impl Standing {
     /// Compares `best` in resampled run sets with its alternatives, with no effect at all, and with `best` without its identified effects.
-    pub fn of(
+    pub fn compare(
         frame: &StrainFrame,
         candidates: &[Candidate],
         all: &[Scored<Fit>],
@@ -72,7 +72,7 @@ impl Standing {
     }
 
     /// Returns `best` without the effects that do not recur. `None` if all effects or no effect recurs, or if `best` contains a general form.
-    pub fn fewer(
+    pub fn keep_recurring_effects(
         &self,
         frame: &StrainFrame,
         candidates: &[Candidate],

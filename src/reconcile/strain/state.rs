@@ -17,7 +17,7 @@ pub struct StrainState {
 
 impl StrainState {
     /// Returns the analyst's own model.
-    pub fn nominal(frame: &StrainFrame) -> Self {
+    pub fn from_nominal_model(frame: &StrainFrame) -> Self {
         let (n_g, n_r, n_c, n_l) = (
             frame.n_gauges(),
             frame.n_runs(),

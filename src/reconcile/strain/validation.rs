@@ -2,7 +2,7 @@
 
 use super::explanation::Explanation;
 use super::frame::StrainFrame;
-use super::gap::{FoundAnew, Judged, judged_after, proof_residuals_before};
+use super::gap::{FoundAnew, Judged, proof_residuals_before, verdict_after_removal};
 use super::likelihood::{Fit, Likelihood};
 use crate::reconcile::effect::Candidate;
 use crate::reconcile::outcome::{ChannelGap, Gap, GapBasis};
@@ -23,7 +23,7 @@ struct Proven {
 }
 
 impl Proven {
-    fn of(frame: StrainFrame) -> Self {
+    fn from_frame(frame: StrainFrame) -> Self {
         let ways = [FoundAnew::Amplitudes, FoundAnew::AmplitudesAndLoads];
         let before = proof_residuals_before(&frame, &ways).unwrap_or_default();
         Self {
@@ -32,9 +32,9 @@ impl Proven {
         }
     }
 
-    fn judged(&self, candidates: &[Candidate], scored: &Scored<Fit>) -> Both {
-        let e = Explanation::of(&self.frame, candidates, scored);
-        let both = judged_after(&self.frame, &e.members, &e.unknown, &self.ways);
+    fn validation_residuals(&self, candidates: &[Candidate], scored: &Scored<Fit>) -> Both {
+        let e = Explanation::from_fit(&self.frame, candidates, scored);
+        let both = verdict_after_removal(&self.frame, &e.members, &e.unknown, &self.ways);
         both.and_then(|b| b.try_into().ok()).unwrap_or_default()
     }
 }
@@ -49,10 +49,10 @@ pub struct Proofs<'a> {
 
 impl<'a> Proofs<'a> {
     /// Prepares the validation runs of `frame`.
-    pub fn of(frame: &'a StrainFrame) -> Self {
+    pub fn from_frame(frame: &'a StrainFrame) -> Self {
         let going = |_: &usize| !frame.stop.is_asked();
         if frame.observations.held_out.iter().any(|h| *h) {
-            let whole = (!frame.stop.is_asked()).then(|| Proven::of(frame.clone()));
+            let whole = (!frame.stop.is_asked()).then(|| Proven::from_frame(frame.clone()));
             return Self {
                 frame,
                 parts: whole.into_iter().collect(),
@@ -63,7 +63,7 @@ impl<'a> Proofs<'a> {
         let part = |fold: usize| {
             let mut part = frame.clone();
             part.observations.held_out = (0..n).map(|r| r % folds == fold).collect();
-            Proven::of(part)
+            Proven::from_frame(part)
         };
         Self {
             frame,
@@ -72,7 +72,7 @@ impl<'a> Proofs<'a> {
     }
 }
 
-fn refitted(
+fn refit_set(
     frame: &StrainFrame,
     candidates: &[Candidate],
     scored: &Scored<Fit>,
@@ -113,7 +113,7 @@ pub(super) fn residuals_on(
     let frame = proofs.frame;
     let held_out = frame.observations.held_out.iter().any(|h| *h);
     let [mut plain, mut loads_found] = match proofs.parts.as_slice() {
-        [one] if held_out => one.judged(candidates, scored),
+        [one] if held_out => one.validation_residuals(candidates, scored),
         parts => in_turn(parts, candidates, scored),
     };
     let effects = of.iter().filter_map(|&c| candidates.get(c));
@@ -130,7 +130,7 @@ pub(super) fn residuals_on(
     });
     if !touched.is_empty() && !frame.stop.is_asked() {
         for half in [0, 1] {
-            let [a, b] = judged_by_halves(frame, candidates, scored, &touched, half);
+            let [a, b] = test_by_halves(frame, candidates, scored, &touched, half);
             plain.extend(a);
             loads_found.extend(b);
         }
@@ -143,8 +143,8 @@ fn in_turn(parts: &[Proven], candidates: &[Candidate], scored: &Scored<Fit>) -> 
         if part.frame.stop.is_asked() {
             return None;
         }
-        let fitted = refitted(&part.frame, candidates, scored)?;
-        Some(part.judged(candidates, &fitted))
+        let fitted = refit_set(&part.frame, candidates, scored)?;
+        Some(part.validation_residuals(candidates, &fitted))
     };
     let judged: Vec<Option<Both>> = parts.par_iter().map(one).collect();
     let mut out = Both::default();
@@ -157,7 +157,7 @@ fn in_turn(parts: &[Proven], candidates: &[Candidate], scored: &Scored<Fit>) -> 
 }
 
 /// Returns the residuals of one half of the gauges in the runs `touched`, with `scored` refitted to all other readings.
-fn judged_by_halves(
+fn test_by_halves(
     frame: &StrainFrame,
     candidates: &[Candidate],
     scored: &Scored<Fit>,
@@ -177,12 +177,12 @@ fn judged_by_halves(
             .filter(|(g, _)| touched.contains(&run) && g % 2 == half);
         masked.for_each(|(_, v)| *v = f64::NAN);
     }
-    let Some(fitted) = refitted(&hidden, candidates, scored) else {
+    let Some(fitted) = refit_set(&hidden, candidates, scored) else {
         return Both::default();
     };
     let mut proof = frame.clone();
     proof.observations.held_out = (0..frame.n_runs()).map(|r| touched.contains(&r)).collect();
-    Proven::of(proof)
-        .judged(candidates, &fitted)
+    Proven::from_frame(proof)
+        .validation_residuals(candidates, &fitted)
         .map(|j| j.half(half))
 }

@@ -58,7 +58,7 @@ impl Kernel {
             .map(|channel| spectrum(self.length, |i| channel[(begin + i).min(last)]))
             .collect();
         let loads = self.loads_of(&spectra);
-        let at_rest = self.rested(&spectra, &loads);
+        let at_rest = self.remove_dynamic_strain(&spectra, &loads);
         let back = |bins: &[Complex<f64>], length: usize| course(bins, length, self.length);
         let kept = self.reach..self.reach + wanted.len();
         let whole = |bins: &Spectrum| back(bins, self.length)[kept.clone()].to_vec();
@@ -104,7 +104,7 @@ impl Kernel {
     }
 
     /// `T eps = B eps - B Psi a C G eps` by gauge.
-    fn rested(&self, spectra: &[Spectrum], loads: &[Spectrum]) -> Vec<Spectrum> {
+    fn remove_dynamic_strain(&self, spectra: &[Spectrum], loads: &[Spectrum]) -> Vec<Spectrum> {
         let of_gauge = |(g, own): (usize, &Spectrum)| -> Spectrum {
             let bins = self.bins.iter().enumerate();
             let of_bin = |(b, bin): (usize, &Bin)| -> Complex<f64> {

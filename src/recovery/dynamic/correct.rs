@@ -67,7 +67,7 @@ pub fn readings_at_rest(
     rate_hz: f64,
 ) -> Result<AtRest, Unfit> {
     let samples = readings.first().map_or(0, Vec::len);
-    let stretches = Stretches::of(readings, samples);
+    let stretches = Stretches::from_readings(readings, samples);
     let mut left = MOST_NUMBERS;
     let mut kernel_of = |used: &[usize]| -> Result<Kernel, Unfit> {
         let kernel = Kernel::new(&Plant::new(s, used, dynamics, noise), rate_hz, left)?;
@@ -131,7 +131,7 @@ pub fn window(dynamics: &Dynamics, rate_hz: f64) -> usize {
 
 impl Stretches {
     /// Stretches in which the same gauges read.
-    fn of(readings: &[Vec<f64>], samples: usize) -> Self {
+    fn from_readings(readings: &[Vec<f64>], samples: usize) -> Self {
         let reads = |i: usize| readings.iter().map(move |c| c[i].is_finite());
         let mut numbers: BTreeMap<Vec<bool>, usize> = BTreeMap::new();
         numbers.insert(vec![true; readings.len()], 0);

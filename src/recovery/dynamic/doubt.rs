@@ -35,7 +35,7 @@ pub struct Beyond {
 
 impl Beyond {
     /// Returns the total covariance of the gauges `used`.
-    pub fn of(&self, used: &[usize]) -> Matrix {
+    pub fn total_covariance(&self, used: &[usize]) -> Matrix {
         let n = used.len();
         let at = |a: usize, b: usize| (used[a], used[b]);
         Matrix::from_fn(n, n, |a, b| self.noise[at(a, b)] + self.shared[at(a, b)])
@@ -143,7 +143,7 @@ impl Doubt {
     }
 
     /// Both parts at a sample in which the gauges `used` read.
-    pub fn beyond(&self, sample: usize, used: &[usize]) -> Beyond {
+    pub fn covariances_at(&self, sample: usize, used: &[usize]) -> Beyond {
         let own = self.of_noise(used);
         let mut noise = Matrix::zeros(self.n, self.n);
         let mut shared = Matrix::zeros(self.n, self.n);

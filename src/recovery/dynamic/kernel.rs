@@ -57,7 +57,7 @@ pub(super) struct Bin {
 
 impl Bin {
     /// `T x` of strain `x`, columns by columns.
-    fn rested(&self, x: &ComplexMatrix) -> ComplexMatrix {
+    fn remove_dynamic_strain(&self, x: &ComplexMatrix) -> ComplexMatrix {
         x * Complex::new(self.band, 0.0) - &self.added * (&self.gain * x)
     }
 }
@@ -126,7 +126,7 @@ impl Kernel {
         let of_group = |(group, bins): (usize, &[Bin])| {
             let mut sum = Matrix::zeros(n, n);
             for (b, bin) in (group * TOGETHER..).zip(bins) {
-                let t = bin.rested(&ComplexMatrix::identity(n, n));
+                let t = bin.remove_dynamic_strain(&ComplexMatrix::identity(n, n));
                 sum += (&t * t.adjoint()).map(|v| v.re * sides(b));
             }
             sum
@@ -138,13 +138,13 @@ impl Kernel {
 
     /// Adds the errors of quasi-static readings from uncertain frequencies and damping, and from modes outside the model.
     fn err(&mut self, plant: &Plant<'_>, hz: impl Fn(usize) -> f64 + Sync) {
-        let erring = erring(plant, &self.bins, &hz);
+        let erring = find_uncertain_modes(plant, &self.bins, &hz);
         let d = plant.dynamics();
         let shapes = ComplexMatrix::from_fn(plant.n_gauges(), erring.len(), |g, j| {
             plant.shapes[(g, erring[j])]
         });
         self.bins.par_iter_mut().enumerate().for_each(|(b, bin)| {
-            let spread = bin.rested(&shapes);
+            let spread = bin.remove_dynamic_strain(&shapes);
             bin.spread = spread
                 .column_iter()
                 .map(|c| c.iter().copied().collect())
@@ -153,10 +153,14 @@ impl Kernel {
                 .iter()
                 .map(|j| errors_of(plant, *j, hz(b), d))
                 .collect();
-            let rest = || bin.rested(&plant.rest) * plant.further(hz(b));
+            let rest =
+                || bin.remove_dynamic_strain(&plant.rest) * plant.omitted_mode_response(hz(b));
             bin.further = d.further_hz.map(|_| rest());
         });
-        self.moved = erring.iter().map(|j| plant.moved(*j)).collect();
+        self.moved = erring
+            .iter()
+            .map(|j| plant.modal_displacement(*j))
+            .collect();
     }
 }
 
@@ -167,10 +171,16 @@ fn errors_of(plant: &Plant<'_>, j: usize, hz: f64, d: &Dynamics) -> [Complex<f64
 }
 
 /// Returns the modes whose errors are large enough to compute.
-fn erring(plant: &Plant<'_>, bins: &[Bin], hz: &(impl Fn(usize) -> f64 + Sync)) -> Vec<usize> {
-    let moved: Vec<Vec<f64>> = (0..plant.n_modes()).map(|j| plant.moved(j)).collect();
+fn find_uncertain_modes(
+    plant: &Plant<'_>,
+    bins: &[Bin],
+    hz: &(impl Fn(usize) -> f64 + Sync),
+) -> Vec<usize> {
+    let moved: Vec<Vec<f64>> = (0..plant.n_modes())
+        .map(|j| plant.modal_displacement(j))
+        .collect();
     let of_bin = |(b, bin): (usize, &Bin)| -> Vec<bool> {
-        let spread = bin.rested(&plant.shapes);
+        let spread = bin.remove_dynamic_strain(&plant.shapes);
         let of_mode = |(j, c): (usize, &Vec<f64>)| {
             let by = ComplexMatrix::from_fn(1, c.len(), |_, l| Complex::new(c[l], 0.0)) * &bin.gain;
             let [f, z] = errors_of(plant, j, hz(b), plant.dynamics());
@@ -215,7 +225,7 @@ fn is_narrow(plant: &Plant<'_>, at_rest: &Matrix, length: usize, rate_hz: f64) -
 
 fn bin(plant: &Plant<'_>, hz: f64) -> Result<Bin, Unfit> {
     let band = plant.band(hz);
-    let added = plant.added(hz);
+    let added = plant.added_strain(hz);
     let gain = plant.gain(&added).ok_or(Unfit::Untold { hz })?;
     Ok(Bin {
         band,

@@ -77,13 +77,13 @@ impl<'a> Plant<'a> {
     }
 
     /// Returns the upper limit of the added response of modes outside the model: the response of the first of them; 0 without such modes.
-    pub fn further(&self, hz: f64) -> Complex<f64> {
+    pub fn omitted_mode_response(&self, hz: f64) -> Complex<f64> {
         let first = self.dynamics.further_hz;
         first.map_or(Complex::default(), |own| self.answer_of(own, hz).added)
     }
 
     /// Returns the strain that the modes add to the static strain of unit loads, `Psi a C`, `n x k`.
-    pub fn added(&self, hz: f64) -> ComplexMatrix {
+    pub fn added_strain(&self, hz: f64) -> ComplexMatrix {
         let mut by_load = self.moved.clone();
         for (j, mut row) in by_load.row_iter_mut().enumerate() {
             let added = self.answer(j, hz).added;
@@ -98,7 +98,7 @@ impl<'a> Plant<'a> {
     }
 
     /// Returns the static displacement of mode `j` by a unit of each load.
-    pub fn moved(&self, j: usize) -> Vec<f64> {
+    pub fn modal_displacement(&self, j: usize) -> Vec<f64> {
         self.moved.row(j).iter().map(|v| v.re).collect()
     }
 

@@ -79,7 +79,7 @@ struct Parameters {
 
 impl Parameters {
     /// Returns equal and independent noise of the size that the sample has.
-    fn alike(r: &Sample) -> Self {
+    fn with_equal_noise(r: &Sample) -> Self {
         let (m, n) = r.t.shape();
         let mean = r.covariance.diagonal().sum() / m as f64;
         Self {
@@ -129,7 +129,7 @@ impl Form {
 
     /// Returns Rao's score statistic of equal and independent noise against this form: about what a fit gains in twice the log likelihood.
     pub fn score_statistic(self, r: &Sample) -> Option<f64> {
-        let (score, information) = self.score(r, &Parameters::alike(r), 0.0)?;
+        let (score, information) = self.score(r, &Parameters::with_equal_noise(r), 0.0)?;
         let step = solve(&information, &score)?;
         Some(spd::dot(&step, &score))
     }
@@ -147,7 +147,7 @@ impl Form {
             let off = p.deviations();
             Some((l, l - 0.5 * precision * spd::dot(&off, &off)))
         };
-        let mut at = Parameters::alike(r);
+        let mut at = Parameters::with_equal_noise(r);
         let (mut likelihood, mut now) = value(&at)?;
         let mut damping = 1e-3;
         let least = -0.5 / n.saturating_sub(1).max(1) as f64;

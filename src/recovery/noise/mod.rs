@@ -78,7 +78,7 @@ pub fn noise_without_load(
     rows: &[Vec<f64>],
     errors: ErrorModel,
 ) -> (Option<GaugeNoise>, Option<Finding>) {
-    let residuals = Parts::without_load(s, rows, errors).and_then(Residuals::of);
+    let residuals = Parts::without_load(s, rows, errors).and_then(Residuals::from_parts);
     let unloaded = residuals.map(|r| Residuals {
         is_unloaded: true,
         ..r
@@ -101,7 +101,7 @@ pub(super) fn shown_noise(
     if is_learnt || s.noise.is_some() || errors.noise <= 0.0 {
         return ShownNoise::default();
     }
-    let residuals = Parts::of(s, readings, errors).and_then(Residuals::of);
+    let residuals = Parts::from_readings(s, readings, errors).and_then(Residuals::from_parts);
     let shown = residuals.and_then(|r| r.noise(s, errors));
     shown.unwrap_or_default()
 }
@@ -109,7 +109,7 @@ pub(super) fn shown_noise(
 /// Returns the share of independent samples in samples of a record, by the correlation in time of the noise in their residuals. A steady drift,
 /// as of the zero of one gauge, is a fault and no noise.
 pub(super) fn share_of_samples(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> f64 {
-    let parts = Parts::of(s, readings, errors);
+    let parts = Parts::from_readings(s, readings, errors);
     let noise = parts.and_then(|mut p| {
         let plain = p.of_noise()?;
         let (runs, columns) = p.with.shape();
@@ -198,7 +198,7 @@ struct Parts {
 
 impl Parts {
     /// Parts of runs in which the same gauges read; `None` where no reading is spare.
-    fn of(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Option<Self> {
+    fn from_readings(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Option<Self> {
         let mut sets: BTreeMap<Vec<usize>, Vec<&Readings>> = BTreeMap::new();
         for r in readings {
             let reads = |g: &usize| r.strain.get(*g).is_some_and(|v| v.is_finite());
@@ -255,7 +255,7 @@ impl Parts {
 
 impl Residuals {
     /// `None` where there are too few for a test.
-    fn of(parts: Parts) -> Option<Self> {
+    fn from_parts(parts: Parts) -> Option<Self> {
         let (m, n) = parts.t.shape();
         let runs = parts.z.nrows();
         let least = RULES.runs_per_dimension * m as f64;
@@ -355,7 +355,7 @@ impl Residuals {
             let is_wrong = !self.is_unloaded && chance < BEYOND_DOUBT && self.can_be_too_narrow();
             return is_wrong.then(|| ShownNoise {
                 noise: None,
-                finding: Some(self.undetermined(errors)),
+                finding: Some(self.report_undetermined_noise(errors)),
             });
         };
         let variances = found.covariance.diagonal();
@@ -367,7 +367,7 @@ impl Residuals {
             return None;
         }
         Some(ShownNoise {
-            finding: Some(self.shown(&noise, errors)),
+            finding: Some(self.report_estimated_noise(&noise, errors)),
             noise: Some(self.of_all(s.gauges.len(), &noise)),
         })
     }
@@ -422,7 +422,7 @@ impl Residuals {
         GaugeNoise::of_covariance(all)
     }
 
-    fn shown(&self, noise: &GaugeNoise, errors: ErrorModel) -> Finding {
+    fn report_estimated_noise(&self, noise: &GaugeNoise, errors: ErrorModel) -> Finding {
         let unit = errors.noise / MICROSTRAIN;
         let sd = noise.sd();
         let least = sd.iter().copied().fold(f64::INFINITY, f64::min);
@@ -445,7 +445,7 @@ impl Residuals {
         .with_numbers(most, 1.0)
     }
 
-    fn undetermined(&self, errors: ErrorModel) -> Finding {
+    fn report_undetermined_noise(&self, errors: ErrorModel) -> Finding {
         Finding::new(
             Severity::Error,
             NOISE_ASSUMED,

@@ -16,7 +16,7 @@ const NOISE: ErrorModel = ErrorModel {
 };
 
 /// Standard normal number (Box and Muller).
-fn normal(rng: &mut ChaCha8Rng) -> f64 {
+fn draw_normal(rng: &mut ChaCha8Rng) -> f64 {
     let [u, v]: [f64; 2] = [rng.random(), rng.random()];
     (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
 }
@@ -35,16 +35,16 @@ struct Trial {
 impl Trial {
     fn new(seed: u64, runs: usize, noise: Matrix) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let values = Matrix::from_fn(GAUGES, LOADS, |_, _| 3e-6 * normal(&mut rng));
+        let values = Matrix::from_fn(GAUGES, LOADS, |_, _| 3e-6 * draw_normal(&mut rng));
         let root = spd::cholesky(noise.as_slice(), GAUGES).unwrap();
         let errors = |rng: &mut ChaCha8Rng| -> Vec<f64> {
-            let white: Vec<f64> = (0..GAUGES).map(|_| normal(rng)).collect();
+            let white: Vec<f64> = (0..GAUGES).map(|_| draw_normal(rng)).collect();
             let of = |g: usize| spd::dot(&root[g * GAUGES..(g + 1) * GAUGES], &white);
             (0..GAUGES).map(|g| NOISE.noise * of(g)).collect()
         };
         let (mut readings, mut truth) = (Vec::new(), Vec::new());
         for i in 0..runs {
-            let f: Vec<f64> = (0..LOADS).map(|_| 30.0 * normal(&mut rng)).collect();
+            let f: Vec<f64> = (0..LOADS).map(|_| 30.0 * draw_normal(&mut rng)).collect();
             let errors = errors(&mut rng);
             let of = |g: usize| spd::dot(values.row(g).transpose().as_slice(), &f) + errors[g];
             readings.push(Readings {
@@ -57,7 +57,9 @@ impl Trial {
         let unloaded = (0..400).map(|_| errors(&mut rng)).collect();
         let s = Sensitivity {
             gauges: (0..GAUGES).map(|g| format!("G{g:02}")).collect(),
-            loads: (0..LOADS).map(|l| Load::named(format!("L{l}"))).collect(),
+            loads: (0..LOADS)
+                .map(|l| Load::from_name(format!("L{l}")))
+                .collect(),
             values,
             uncertainty: None,
             noise: None,
@@ -76,7 +78,7 @@ impl Trial {
     }
 
     /// Share of the intervals that contain the truth, and the smallest of the loads.
-    fn held(&self, recovery: &Recovery) -> (f64, f64) {
+    fn interval_coverage(&self, recovery: &Recovery) -> (f64, f64) {
         let by_load = (0..LOADS).map(|l| {
             let inside = |(r, f): (&super::super::RunEstimate, &Vec<f64>)| {
                 let [low, high] = r.estimate.interval(l);
@@ -116,7 +118,7 @@ fn by_gauge(correlation: f64) -> Matrix {
         .clone()
 }
 
-fn common(correlation: f64) -> Matrix {
+fn correlated_covariance(correlation: f64) -> Matrix {
     GaugeNoise::with_correlation(&[1.0; GAUGES], correlation)
         .covariance()
         .clone()
@@ -135,13 +137,13 @@ fn severity(recovery: &Recovery) -> Option<Severity> {
 #[test]
 fn intervals_hold_with_noise_that_residuals_show() {
     const RUNS: usize = 600;
-    for (seed, noise) in [common(0.9), by_gauge(0.0), by_gauge(0.8)]
+    for (seed, noise) in [correlated_covariance(0.9), by_gauge(0.0), by_gauge(0.8)]
         .into_iter()
         .enumerate()
     {
         let trial = Trial::new(seed as u64, RUNS, noise);
         let got = trial.recover();
-        let ((held, least), width) = (trial.held(&got), trial.width(&got));
+        let ((held, least), width) = (trial.interval_coverage(&got), trial.width(&got));
         println!("held {held:.3}, least {least:.3}, width {width:.2}");
         assert_eq!(severity(&got), Some(Severity::Info), "{:?}", got.findings);
         // Noise that is estimated below the stated one is taken as stated: intervals may be too wide by the error of the estimate.
@@ -154,7 +156,7 @@ fn intervals_hold_with_noise_that_residuals_show() {
 #[test]
 fn noise_as_stated_changes_nothing() {
     for (seed, runs) in [(1, 12), (2, 60), (3, 600)] {
-        let trial = Trial::new(seed, runs, common(0.0));
+        let trial = Trial::new(seed, runs, correlated_covariance(0.0));
         let got = trial.recover();
         assert_eq!(severity(&got), None, "{:?}", got.findings);
         assert_eq!(got.noise, None);
@@ -179,19 +181,19 @@ fn noise_that_no_form_explains_is_an_error() {
 fn a_zero_record_shows_noise_of_any_form() {
     let place = |g: usize| 8.0 * g as f64 / (GAUGES - 1) as f64;
     let beam = Matrix::from_fn(GAUGES, GAUGES, |g, h| (-(place(g) - place(h)).abs()).exp());
-    for noise in [common(0.9), by_gauge(0.0), beam] {
+    for noise in [correlated_covariance(0.9), by_gauge(0.0), beam] {
         let mut trial = Trial::new(9, 600, noise);
         let (found, finding) = noise_without_load(&trial.s, &trial.unloaded, NOISE);
         assert_eq!(finding.map(|f| f.severity), Some(Severity::Info));
         trial.s.noise = found;
         let got = trial.recover();
-        let (held, least) = trial.held(&got);
+        let (held, least) = trial.interval_coverage(&got);
         println!("held {held:.3}, least {least:.3}");
         // Weights from 400 samples of 16 gauges: errors are 4 % larger than they say.
         assert!((0.93..0.97).contains(&held), "{held}");
         assert!(least > 0.9, "{least}");
     }
-    let white = Trial::new(9, 1, common(0.0));
+    let white = Trial::new(9, 1, correlated_covariance(0.0));
     let (found, finding) = noise_without_load(&white.s, &white.unloaded, NOISE);
     assert!(found.is_none() && finding.is_none());
 }
@@ -210,7 +212,7 @@ fn coverage_over_structures() {
         if severity(&got) == Some(Severity::Error) {
             continue;
         }
-        sum += trial.held(&got).0;
+        sum += trial.interval_coverage(&got).0;
         of += 1;
     }
     assert!(of as u64 * 10 >= trials * 9, "{of} of {trials}");
@@ -236,7 +238,7 @@ fn case(name: &str) -> Option<(Sensitivity, Vec<Vec<f64>>, Vec<Vec<f64>>)> {
     let (n, k) = (s.len(), s[0].len());
     let s = Sensitivity {
         gauges: (0..n).map(|g| format!("G{g:02}")).collect(),
-        loads: (0..k).map(|l| Load::named(format!("L{l}"))).collect(),
+        loads: (0..k).map(|l| Load::from_name(format!("L{l}"))).collect(),
         values: Matrix::from_fn(n, k, |g, l| 1e-6 * s[g][l]),
         uncertainty: None,
         noise: None,
@@ -294,16 +296,16 @@ fn coloured_noise_names_no_gauge_more_often_than_white_noise() {
     for seed in 0..trials {
         for (i, corner_hz) in [5.0, 0.2, 0.05].into_iter().enumerate() {
             let mut rng = ChaCha8Rng::seed_from_u64(1000 + seed);
-            let trial = Trial::new(2000 + seed, 1500, common(0.0));
+            let trial = Trial::new(2000 + seed, 1500, correlated_covariance(0.0));
             let keep = (-std::f64::consts::TAU * corner_hz * 0.01_f64).exp();
-            let mut state: Vec<f64> = (0..GAUGES).map(|_| normal(&mut rng)).collect();
+            let mut state: Vec<f64> = (0..GAUGES).map(|_| draw_normal(&mut rng)).collect();
             let samples = trial.truth.iter().enumerate().map(|(i, f)| {
                 let row = |g: usize, e: f64| {
                     spd::dot(trial.s.values.row(g).transpose().as_slice(), f) + NOISE.noise * e
                 };
                 let strain = state.iter().enumerate().map(|(g, e)| row(g, *e)).collect();
                 for e in &mut state {
-                    *e = keep * *e + (1.0 - keep * keep).sqrt() * normal(&mut rng);
+                    *e = keep * *e + (1.0 - keep * keep).sqrt() * draw_normal(&mut rng);
                 }
                 Readings::of_sample(0.01 * i as f64, strain, 1.0)
             });

@@ -5,7 +5,7 @@
 use super::super::history::{Filter, SampleLoads};
 use super::super::*;
 use super::records::many_nuisances;
-use super::{KN, NOISE, frame, gaussian};
+use super::{KN, NOISE, draw_normal, frame};
 use crate::sensitivity::Sensitivity;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -16,13 +16,14 @@ const TRIALS: u64 = 2000;
 fn draw(s: &Sensitivity, seed: u64, size: impl Fn(usize) -> f64) -> (Vec<f64>, Vec<f64>) {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let f: Vec<f64> = (0..s.loads.len())
-        .map(|l| size(l) * gaussian(&mut rng))
+        .map(|l| size(l) * draw_normal(&mut rng))
         .collect();
     let strain = s
         .values
         .row_iter()
         .map(|row| {
-            row.iter().zip(&f).map(|(s, f)| s * f).sum::<f64>() + NOISE.noise * gaussian(&mut rng)
+            row.iter().zip(&f).map(|(s, f)| s * f).sum::<f64>()
+                + NOISE.noise * draw_normal(&mut rng)
         })
         .collect();
     (f, strain)

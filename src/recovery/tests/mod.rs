@@ -56,7 +56,7 @@ fn frame(loads: usize) -> Option<Frame> {
         uncertainty: None,
         noise: None,
         gauges,
-        loads: names.iter().take(loads).map(Load::named).collect(),
+        loads: names.iter().take(loads).map(Load::from_name).collect(),
     };
     let readings = runs
         .into_iter()
@@ -154,7 +154,7 @@ fn a_gauge_wired_backwards_and_a_dead_one_are_named_and_no_other() {
     assert_eq!(dead, ["G08"], "{:?}", got.findings);
 }
 
-fn gaussian(rng: &mut ChaCha8Rng) -> f64 {
+fn draw_normal(rng: &mut ChaCha8Rng) -> f64 {
     let (u, v): (f64, f64) = (
         rng.random_range(f64::MIN_POSITIVE..1.0),
         rng.random_range(0.0..1.0),
@@ -179,7 +179,7 @@ fn coverage(
                 (0..9)
                     .map(|l| frame.s.values[(g, l)] * (1.0 + relative[(g, l)]) * truth[l] * KN)
                     .sum::<f64>()
-                    + 1e-6 * gaussian(&mut rng)
+                    + 1e-6 * draw_normal(&mut rng)
             })
             .collect();
         let got = recover(
@@ -215,18 +215,19 @@ fn intervals_cover_when_the_model_errs_by_coefficient_by_gauge_by_column_or_as_a
         model_rel: 0.02,
     };
     let own = |rng: &mut ChaCha8Rng, n: usize, k: usize| {
-        Matrix::from_fn(n, k, |_, _| 0.02 * gaussian(rng))
+        Matrix::from_fn(n, k, |_, _| 0.02 * draw_normal(rng))
     };
     let gauge = |rng: &mut ChaCha8Rng, n: usize, k: usize| {
-        let e: Vec<f64> = (0..n).map(|_| 0.02 * gaussian(rng)).collect();
+        let e: Vec<f64> = (0..n).map(|_| 0.02 * draw_normal(rng)).collect();
         Matrix::from_fn(n, k, |g, _| e[g])
     };
     let column = |rng: &mut ChaCha8Rng, n: usize, k: usize| {
-        let e: Vec<f64> = (0..k).map(|_| 0.02 * gaussian(rng)).collect();
+        let e: Vec<f64> = (0..k).map(|_| 0.02 * draw_normal(rng)).collect();
         Matrix::from_fn(n, k, |_, l| e[l])
     };
-    let whole =
-        |rng: &mut ChaCha8Rng, n: usize, k: usize| Matrix::from_element(n, k, 0.02 * gaussian(rng));
+    let whole = |rng: &mut ChaCha8Rng, n: usize, k: usize| {
+        Matrix::from_element(n, k, 0.02 * draw_normal(rng))
+    };
     let results = [
         coverage(400, stated, own),
         coverage(400, stated, gauge),

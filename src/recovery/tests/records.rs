@@ -2,7 +2,7 @@
 
 use super::super::history::{Filter, SampleLoads};
 use super::super::*;
-use super::{NOISE, frame, gaussian};
+use super::{NOISE, draw_normal, frame};
 use crate::linalg::Matrix;
 use crate::sensitivity::{Load, Sensitivity, Uncertainty};
 use rand::SeedableRng;
@@ -27,7 +27,7 @@ pub(super) fn many_nuisances() -> Sensitivity {
     Sensitivity {
         gauges: (0..14).map(|g| format!("G{g}")).collect(),
         loads,
-        values: Matrix::from_fn(14, 16, |_, _| 10e-6 * gaussian(&mut rng)),
+        values: Matrix::from_fn(14, 16, |_, _| 10e-6 * draw_normal(&mut rng)),
         uncertainty: None,
         noise: None,
     }
@@ -75,14 +75,14 @@ fn the_same_rows_as_runs_and_as_samples_have_the_same_sigma_nuisance_loads_of_st
                 let f: Vec<f64> = s
                     .loads
                     .iter()
-                    .map(|l| l.expected.unwrap() * gaussian(&mut rng))
+                    .map(|l| l.expected.unwrap() * draw_normal(&mut rng))
                     .collect();
                 Readings {
                     run: format!("R{i}"),
                     strain: (0..14)
                         .map(|g| {
                             (0..16).map(|l| s.values[(g, l)] * f[l]).sum::<f64>()
-                                + 1e-6 * gaussian(&mut rng)
+                                + 1e-6 * draw_normal(&mut rng)
                         })
                         .collect(),
                     noise_factor: 1.0,
@@ -135,7 +135,7 @@ fn a_nuisance_load_with_a_stated_size_widens_the_interval_of_a_sample_as_that_of
 fn whole_blocks_give_what_single_samples_give_and_a_gap_spoils_its_sample_alone() {
     let s = Sensitivity {
         gauges: ["1", "2", "3"].map(String::from).to_vec(),
-        loads: ["A", "B"].map(Load::named).to_vec(),
+        loads: ["A", "B"].map(Load::from_name).to_vec(),
         values: Matrix::from_row_slice(3, 2, &[1e-3, 2e-4, -3e-4, 1e-3, 5e-4, 7e-4]),
         uncertainty: None,
         noise: None,
@@ -186,7 +186,7 @@ fn whole_blocks_give_what_single_samples_give_and_a_gap_spoils_its_sample_alone(
 fn a_load_that_the_other_gauges_do_not_tell_is_blank_and_the_rest_is_not() {
     let s = Sensitivity {
         gauges: ["1", "2", "3"].map(String::from).to_vec(),
-        loads: ["A", "B"].map(Load::named).to_vec(),
+        loads: ["A", "B"].map(Load::from_name).to_vec(),
         values: Matrix::from_row_slice(3, 2, &[1e-3, 0.0, 1e-3, 0.0, 0.0, 1e-3]),
         uncertainty: None,
         noise: None,
@@ -208,7 +208,7 @@ fn a_load_that_the_other_gauges_do_not_tell_is_blank_and_the_rest_is_not() {
         ),
         (1, 2, 1)
     );
-    assert_eq!((sums.known(0), sums.known(1)), (3, 1));
+    assert_eq!((sums.known_samples(0), sums.known_samples(1)), (3, 1));
 }
 
 /// Returns samples of loads A = 1, B = 2, every second one without the only gauge that determines B.
@@ -230,7 +230,7 @@ fn half_without_b(s: &Sensitivity) -> Vec<Readings> {
 fn the_typical_size_of_a_load_is_that_in_the_samples_that_tell_it() {
     let plain = Sensitivity {
         gauges: ["1", "2", "3"].map(String::from).to_vec(),
-        loads: ["A", "B"].map(Load::named).to_vec(),
+        loads: ["A", "B"].map(Load::from_name).to_vec(),
         values: Matrix::from_row_slice(3, 2, &[1e-3, 0.0, 1e-3, 0.0, 0.0, 1e-3]),
         uncertainty: None,
         noise: None,
@@ -266,7 +266,7 @@ fn the_typical_size_of_a_load_is_that_in_the_samples_that_tell_it() {
 fn samples_whose_gauges_never_tell_a_load_leave_that_to_the_record_unless_no_gauge_would() {
     let mut s = Sensitivity {
         gauges: ["1", "2", "3"].map(String::from).to_vec(),
-        loads: ["A", "B"].map(Load::named).to_vec(),
+        loads: ["A", "B"].map(Load::from_name).to_vec(),
         values: Matrix::from_row_slice(3, 2, &[1e-3, 0.0, 1e-3, 0.0, 0.0, 1e-3]),
         uncertainty: None,
         noise: None,
@@ -299,7 +299,7 @@ fn by_a_calibrated_s_a_record_has_the_intervals_of_a_run_with_and_without_sums()
     };
     let s = Sensitivity {
         gauges: ["1", "2", "3", "4"].map(String::from).to_vec(),
-        loads: ["A", "B"].map(Load::named).to_vec(),
+        loads: ["A", "B"].map(Load::from_name).to_vec(),
         noise: None,
         uncertainty: Some(Uncertainty {
             covariance: alike(2e-7, 1e-7, 8),

@@ -1,7 +1,7 @@
 //! Tests findings on residuals: right jobs and wrong gauges.
 
 use super::super::*;
-use super::{KN, frame, gaussian};
+use super::{KN, draw_normal, frame};
 use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix;
 use crate::sensitivity::{Load, Sensitivity};
@@ -13,8 +13,8 @@ fn job(seed: u64) -> (Sensitivity, ChaCha8Rng) {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let s = Sensitivity {
         gauges: (0..20).map(|g| format!("G{g}")).collect(),
-        loads: (0..6).map(|l| Load::named(format!("L{l}"))).collect(),
-        values: Matrix::from_fn(20, 6, |_, _| 10e-6 * gaussian(&mut rng)),
+        loads: (0..6).map(|l| Load::from_name(format!("L{l}"))).collect(),
+        values: Matrix::from_fn(20, 6, |_, _| 10e-6 * draw_normal(&mut rng)),
         uncertainty: None,
         noise: None,
     };
@@ -24,16 +24,16 @@ fn job(seed: u64) -> (Sensitivity, ChaCha8Rng) {
 /// 12 similar runs of that job, S in error by `model_rel` of every coefficient, the same in all runs; noise of 1 microstrain.
 fn right_runs(s: &Sensitivity, rng: &mut ChaCha8Rng, model_rel: f64) -> Vec<Readings> {
     let wrong = Matrix::from_fn(20, 6, |g, l| {
-        s.values[(g, l)] * (1.0 + model_rel * gaussian(rng))
+        s.values[(g, l)] * (1.0 + model_rel * draw_normal(rng))
     });
     (0..12)
         .map(|i| {
-            let f: Vec<f64> = (0..6).map(|_| 20.0 + 4.0 * gaussian(rng)).collect();
+            let f: Vec<f64> = (0..6).map(|_| 20.0 + 4.0 * draw_normal(rng)).collect();
             Readings {
                 run: format!("R{i}"),
                 strain: (0..20)
                     .map(|g| {
-                        (0..6).map(|l| wrong[(g, l)] * f[l]).sum::<f64>() + 1e-6 * gaussian(rng)
+                        (0..6).map(|l| wrong[(g, l)] * f[l]).sum::<f64>() + 1e-6 * draw_normal(rng)
                     })
                     .collect(),
                 noise_factor: 1.0,
@@ -137,7 +137,7 @@ fn a_gauge_off_by_a_tenth_stops_the_job_or_leaves_intervals_that_cover() {
             for seed in 0..12 {
                 let mut rng = ChaCha8Rng::seed_from_u64(seed);
                 let wrong = Matrix::from_fn(20, 9, |g, l| {
-                    frame.s.values[(g, l)] * (1.0 + model_rel * gaussian(&mut rng))
+                    frame.s.values[(g, l)] * (1.0 + model_rel * draw_normal(&mut rng))
                 });
                 let readings: Vec<Readings> = frame
                     .truth
@@ -149,7 +149,7 @@ fn a_gauge_off_by_a_tenth_stops_the_job_or_leaves_intervals_that_cover() {
                             .map(|h| {
                                 let own: f64 =
                                     (0..9).map(|l| wrong[(h, l)] * f[l] * KN).sum::<f64>();
-                                own * if h == g { 1.1 } else { 1.0 } + 1e-6 * gaussian(&mut rng)
+                                own * if h == g { 1.1 } else { 1.0 } + 1e-6 * draw_normal(&mut rng)
                             })
                             .collect(),
                         noise_factor: 1.0,
@@ -197,14 +197,14 @@ fn the_gain_that_is_stated_of_a_suspect_is_that_against_the_others_and_its_inter
         for seed in 0..300 {
             let (s, mut rng) = job(seed);
             let wrong = Matrix::from_fn(20, 6, |g, l| {
-                s.values[(g, l)] * (1.0 + model_rel * gaussian(&mut rng))
+                s.values[(g, l)] * (1.0 + model_rel * draw_normal(&mut rng))
             });
             let readings: Vec<Readings> = (0..12)
                 .map(|i| {
-                    let f: Vec<f64> = (0..6).map(|_| 20.0 * gaussian(&mut rng)).collect();
+                    let f: Vec<f64> = (0..6).map(|_| 20.0 * draw_normal(&mut rng)).collect();
                     let strain = (0..20).map(|g| {
                         let own: f64 = (0..6).map(|l| wrong[(g, l)] * f[l]).sum();
-                        own * if g == 3 { 0.7 } else { 1.0 } + noise * gaussian(&mut rng)
+                        own * if g == 3 { 0.7 } else { 1.0 } + noise * draw_normal(&mut rng)
                     });
                     Readings {
                         run: format!("R{i}"),

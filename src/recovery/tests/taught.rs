@@ -8,7 +8,7 @@ use crate::linalg::Matrix;
 use crate::sensitivity::Uncertainty;
 
 /// Returns a run of independent loads with a sigma of one each.
-fn told(run: &str, loads: [f64; 3]) -> RunEstimate {
+fn run_with_loads(run: &str, loads: [f64; 3]) -> RunEstimate {
     let one = |i: usize| if i.is_multiple_of(4) { 1.0 } else { 0.0 };
     RunEstimate {
         estimate: LoadEstimate {
@@ -29,7 +29,7 @@ fn told(run: &str, loads: [f64; 3]) -> RunEstimate {
     }
 }
 
-fn taught(one_by_one: bool) -> Uncertainty {
+fn calibrated_uncertainty(one_by_one: bool) -> Uncertainty {
     Uncertainty {
         dof: 20.0,
         one_by_one,
@@ -43,10 +43,10 @@ fn taught(one_by_one: bool) -> Uncertainty {
 /// strains are at right angles and equal, the two nearest single loads are the two largest estimates.
 #[test]
 fn a_run_with_several_loads_is_widened_until_either_of_two_alone_is_a_sigma_away() {
-    let within = told("one", [10.0, 3.5, 1.5]);
-    let beyond = told("two", [10.0, -4.0, 3.0]);
+    let within = run_with_loads("one", [10.0, 3.5, 1.5]);
+    let beyond = run_with_loads("two", [10.0, -4.0, 3.0]);
     let mut runs = [within.clone(), beyond];
-    let found = check(&mut runs, &taught(true));
+    let found = check(&mut runs, &calibrated_uncertainty(true));
     let named: Vec<_> = found
         .iter()
         .map(|f| (f.subject.as_str(), f.code, f.severity))
@@ -62,15 +62,15 @@ fn a_run_with_several_loads_is_widened_until_either_of_two_alone_is_a_sigma_away
 
 #[test]
 fn several_loads_are_no_surprise_where_known_runs_had_them_or_most_runs_do() {
-    let several = || told("two", [10.0, 9.0, 8.0]);
-    assert!(check(&mut [several()], &taught(false)).is_empty());
+    let several = || run_with_loads("two", [10.0, 9.0, 8.0]);
+    assert!(check(&mut [several()], &calibrated_uncertainty(false)).is_empty());
     let mut runs = [
         several(),
         several(),
         several(),
-        told("one", [0.0, 9.0, 0.0]),
+        run_with_loads("one", [0.0, 9.0, 0.0]),
     ];
-    let found = check(&mut runs, &taught(true));
+    let found = check(&mut runs, &calibrated_uncertainty(true));
     assert_eq!(found.len(), 1);
     assert_eq!((found[0].code, found[0].severity), (CODE, Severity::Info));
     assert_eq!(runs[0].estimate.covariance, several().estimate.covariance);

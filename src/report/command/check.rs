@@ -72,7 +72,7 @@ fn page(found: &Outcome<Checked>) -> Page {
             let places = found
                 .candidates
                 .as_ref()
-                .map_or_else(Places::default, Places::of);
+                .map_or_else(Places::default, Places::from_candidates);
             sections.push(scene_section("Model", &scene_of_model(model, places)));
         }
     }

@@ -54,7 +54,7 @@ impl Report for Outcome<Fleet> {
             .any(|(_, l)| l.to_reference.is_some() || l.to_target.is_some())
         {
             out.declare("fleet_relative.csv", RELATIVE.map(|(c, u)| unit(c, u)));
-            out.write_bytes("fleet_relative.csv", relative(self).as_bytes())?;
+            out.write_bytes("fleet_relative.csv", relative_damage_csv(self).as_bytes())?;
         }
         if let Some(m) = &self.mission {
             out.declare("fleet_mission.csv", MISSION.map(|(c, u)| unit(c, u)));
@@ -294,7 +294,7 @@ const RELATIVE: [(&str, &str); 8] = [
     ("to_target_high", ""),
 ];
 
-fn relative(fleet: &Fleet) -> String {
+fn relative_damage_csv(fleet: &Fleet) -> String {
     let mut text = RELATIVE.map(|f| f.0).join(",") + "\n";
     let cells = |r: Option<Ratio>| {
         let ends = r.map_or([f64::NAN; 3], |r| [r.value, r.low, r.high]);

@@ -54,7 +54,7 @@ pub(super) fn damage_section(o: &Outcome<Fleet>) -> Option<Section> {
     let found: Vec<&str> = with_findings.map(|v| v.name.as_str()).collect();
     figure.choices = choices
         .into_iter()
-        .map(|(name, rows)| (name, marked(&rows, &found)))
+        .map(|(name, rows)| (name, mark_found_vehicles(&rows, &found)))
         .collect();
     let note = match n > MOST_ROWS {
         true => format!("The {MOST_ROWS} largest of {n}; all are in fleet.csv."),
@@ -71,7 +71,7 @@ fn sort(rows: &mut [Row]) {
 }
 
 /// The rows in their order, those of the vehicles in `found` in a trace of their own.
-fn marked(rows: &[Row], found: &[&str]) -> Vec<Value> {
+fn mark_found_vehicles(rows: &[Row], found: &[&str]) -> Vec<Value> {
     let trace = |is_found: bool, name: &str| {
         let of_kind = rows
             .iter()
@@ -118,14 +118,14 @@ mod tests {
         };
         let mut rows = [row("A", 1.0), row("B", 3.0), row("C", 2.0)];
         sort(&mut rows);
-        let traces = marked(&rows, &["B"]);
+        let traces = mark_found_vehicles(&rows, &["B"]);
         assert_eq!(traces[0]["y"], json!(["B FZ", "C FZ", "A FZ"]));
         assert_eq!(traces[1]["y"], json!(["C FZ", "A FZ"]));
         assert_eq!(traces[2]["y"], json!(["B FZ"]));
         assert_eq!(traces[2]["marker"]["color"], "#c0392b");
         assert_eq!(traces[2]["name"], "with a finding");
         // Without findings there is nothing to name.
-        assert_eq!(marked(&rows, &[]).len(), 2);
-        assert!(marked(&rows, &[])[1]["name"].is_null());
+        assert_eq!(mark_found_vehicles(&rows, &[]).len(), 2);
+        assert!(mark_found_vehicles(&rows, &[])[1]["name"].is_null());
     }
 }

@@ -29,7 +29,7 @@ pub(super) fn page(o: &Outcome<Fleet>) -> Page {
     );
     let mut sections: Vec<Section> = damage_section(o).into_iter().collect();
     sections.push(vehicles(o));
-    sections.extend(compared(o));
+    sections.extend(damage_comparison_section(o));
     sections.extend(o.mission.as_ref().map(mission));
     for v in o.vehicles.iter().take(DRAWN) {
         sections.extend([days(v, o.slope), health(v)]);
@@ -96,7 +96,7 @@ fn health(v: &VehicleAnswer) -> Section {
             vec![g.name.clone(), dead, m0, m1, n0, g0, g1]
         })
         .collect();
-    let mut blocks = vec![Block::table(&head, rows).linked(health_links(v))];
+    let mut blocks = vec![Block::table(&head, rows).with_links(health_links(v))];
     if x.len() > 1 && !drawn.is_empty() {
         blocks.push(Block::Figure(lines(
             &drawn,
@@ -183,7 +183,7 @@ fn ratio(r: Option<Ratio>) -> String {
 }
 
 /// Damage against the reference day and the targets; `None` where the job states neither.
-fn compared(o: &Outcome<Fleet>) -> Option<Section> {
+fn damage_comparison_section(o: &Outcome<Fleet>) -> Option<Section> {
     if o.rows()
         .all(|(_, l)| l.to_reference.is_none() && l.to_target.is_none())
     {
@@ -206,11 +206,11 @@ fn compared(o: &Outcome<Fleet>) -> Option<Section> {
             r.vehicle.clone(),
             r.day.clone(),
             r.path.clone(),
-            short(&r.sha256),
+            shorten_digest(&r.sha256),
         ];
         let head = ["reference", "day", "record", "sha256 begins"];
         let links = vec![link(0, 2, &r.path, &r.sha256)];
-        blocks.push(Block::table(&head, vec![row]).linked(links));
+        blocks.push(Block::table(&head, vec![row]).with_links(links));
     }
     blocks.push(Block::Note(
         "95 % intervals. The part of the error of S that is common to the reference is left out."
@@ -219,7 +219,7 @@ fn compared(o: &Outcome<Fleet>) -> Option<Section> {
     Some(Section::new("Damage against reference and target", blocks))
 }
 
-fn short(sha256: &str) -> String {
+fn shorten_digest(sha256: &str) -> String {
     sha256.get(..SHORT).unwrap_or_default().to_owned()
 }
 
@@ -274,7 +274,7 @@ fn days(v: &VehicleAnswer, slope: f64) -> Section {
     let listed = v.days.iter().zip(&v.records).take(LISTED).enumerate();
     let (mut all, mut links) = (Vec::new(), Vec::new());
     for (row, (day, record)) in listed {
-        let (path, sha256) = (record.path.clone(), short(&record.sha256));
+        let (path, sha256) = (record.path.clone(), shorten_digest(&record.sha256));
         let mut cells = vec![day.clone(), path, sha256, number(record.hours)];
         let of_day =
             |l: &VehicleLoadAnswer| l.by_day.get(row).map_or(String::new(), |d| number(*d));
@@ -283,7 +283,7 @@ fn days(v: &VehicleAnswer, slope: f64) -> Section {
         links.extend([1, 2].map(|column| link(row, column, &record.path, &record.sha256)));
     }
     let head: Vec<&str> = head.iter().map(String::as_str).collect();
-    let mut blocks = vec![Block::table(&head, all).linked(links)];
+    let mut blocks = vec![Block::table(&head, all).with_links(links)];
     if v.days.len() > LISTED {
         blocks.push(Block::Note("All days are in result.json.".to_owned()));
     }
@@ -343,7 +343,7 @@ fn vehicles(o: &Outcome<Fleet>) -> Section {
             Some(link(row, column, &at.path, &at.sha256))
         })
     });
-    let table = Block::table(&head, all).linked(links.collect());
+    let table = Block::table(&head, all).with_links(links.collect());
     Section::new("Vehicles", vec![table, Block::Note(note.to_owned())])
 }
 
@@ -379,7 +379,7 @@ fn files(o: &Outcome<Fleet>) -> Section {
     };
     let links = o.files.iter().take(LISTED).enumerate();
     let links = links.map(|(row, f)| link(row, 0, &f.path, &f.sha256));
-    let table = Block::table(&head, listed).linked(links.collect());
+    let table = Block::table(&head, listed).with_links(links.collect());
     let blocks = vec![table, Block::Note(note.to_owned())];
     Section::new("Files", blocks)
 }

@@ -28,10 +28,10 @@ const SCHEMA: &str = "message fleet {
 /// # Errors
 /// What the writer refuses.
 pub(super) fn bytes(fleet: &Fleet) -> Result<Vec<u8>, Faults> {
-    written(fleet).map_err(|e| mistake("fleet.parquet", &e).into())
+    encode_fleet(fleet).map_err(|e| mistake("fleet.parquet", &e).into())
 }
 
-fn written(fleet: &Fleet) -> Result<Vec<u8>, ParquetError> {
+fn encode_fleet(fleet: &Fleet) -> Result<Vec<u8>, ParquetError> {
     let schema = Arc::new(parse_message_type(SCHEMA)?);
     let properties = WriterProperties::builder()
         .set_created_by("strainbridge".into())

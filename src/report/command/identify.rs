@@ -147,14 +147,14 @@ fn declare(out: &mut Output, units: &UnitNames) -> Result<(), Faults> {
 /// Seconds of wheel force that the page shows.
 const SHOWN_S: f64 = 8.0;
 
-fn known(history: &LoadHistory) -> impl Iterator<Item = usize> + '_ {
+fn loads_with_values(history: &LoadHistory) -> impl Iterator<Item = usize> + '_ {
     (0..history.names.len()).filter(|&i| history.values[i].iter().any(|v| v.is_finite()))
 }
 
 fn history_curves(history: &LoadHistory, motion: &Motion) -> Vec<Curve> {
     let n = ((SHOWN_S * history.rate_hz) as usize).min(motion.n_samples());
     let cut = |x: &[f64]| x.iter().take(n).copied().collect::<Vec<f64>>();
-    known(history)
+    loads_with_values(history)
         .map(|i| Curve {
             name: history.names[i].clone(),
             x: (0..n)
@@ -168,7 +168,7 @@ fn history_curves(history: &LoadHistory, motion: &Motion) -> Vec<Curve> {
 
 fn spectrum_curves(history: &LoadHistory, motion: &Motion) -> Vec<Curve> {
     let segment = (4.0 * history.rate_hz) as usize;
-    known(history)
+    loads_with_values(history)
         .map(|i| {
             let measured = motion.forces[i].as_ref();
             let s = cross_spectra(

@@ -121,7 +121,7 @@ pub fn result_text<A: Answer>(outcome: &Outcome<A>) -> Result<String, Faults> {
 
 /// A file that a library refuses to make.
 fn mistake(file: &str, e: &impl ToString) -> Fault {
-    Fault::of(
+    Fault::new(
         file,
         "file",
         e.to_string(),

@@ -28,7 +28,7 @@ enum In {
 impl In {
     /// Returns the name of the unit in the job's units; in the deck's units if `names` is `None`.
     fn unit(self, names: Option<&UnitNames>) -> String {
-        let of = |q: Quantity, otherwise: &str| names.map_or(otherwise.into(), |n| n.of(q));
+        let of = |q: Quantity, otherwise: &str| names.map_or(otherwise.into(), |n| n.unit_name(q));
         match self {
             Self::Numbers => String::new(),
             Self::Hertz => "Hz".to_owned(),

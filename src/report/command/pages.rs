@@ -24,7 +24,9 @@ where
     let Some(page) = outcome.page() else {
         return Ok(());
     };
-    let page = page.with_summary(outcome.summary()).beside(out.folder());
+    let page = page
+        .with_summary(outcome.summary())
+        .with_links_from(out.folder());
     let others = other_results(out.folder(), A::COMMAND);
     if !others.is_empty() {
         let index = index_of(&page, A::COMMAND, &others);

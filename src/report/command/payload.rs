@@ -92,7 +92,8 @@ impl Report for Outcome<Weighed> {
     fn key_numbers(&self) -> Vec<KeyNumber> {
         let units = &self.job.report_units;
         let weighed = || self.payload.iter().filter(|p| p.refused.is_none());
-        let heaviest = weighed().max_by(|a, b| plain(a.force).total_cmp(&plain(b.force)));
+        let heaviest =
+            weighed().max_by(|a, b| value_or_nan(a.force).total_cmp(&value_or_nan(b.force)));
         let mut numbers = Vec::new();
         if let Some(p) = heaviest {
             let run = &p.run;
@@ -101,8 +102,12 @@ impl Report for Outcome<Weighed> {
                 weight,
                 format!("weight of the heaviest payload, run {run}"),
             ));
-            let half = NORMAL_95 * plain(p.mass_sigma);
-            let mass = format!("{} {}", plus_minus(plain(p.mass), half), units.mass.name);
+            let half = NORMAL_95 * value_or_nan(p.mass_sigma);
+            let mass = format!(
+                "{} {}",
+                plus_minus(value_or_nan(p.mass), half),
+                units.mass.name
+            );
             numbers.push(KeyNumber::new(mass, format!("its mass, run {run}")));
         }
         let of = self.payload.len();
@@ -126,7 +131,7 @@ impl Report for Outcome<Weighed> {
         let row = |p: &WeighedPayload| {
             let place = match &p.refused {
                 Some(why) => format!("refused: {why}"),
-                None => place_in_plan(p.position.map(plain)),
+                None => place_in_plan(p.position.map(value_or_nan)),
             };
             vec![
                 p.run.clone(),
@@ -162,8 +167,8 @@ fn payload_arrows(found: &Outcome<Weighed>, model: &Model) -> Vec<ArrowSet> {
     let top = || model.grids.iter().map(|g| g.x.z).fold(f64::NAN, f64::max);
     let height = grid.map_or_else(top, |g| g.x.z);
     let arrow = |p: &WeighedPayload| {
-        let [x, y] = p.position.map(plain);
-        let value = plain(p.force);
+        let [x, y] = p.position.map(value_or_nan);
+        let value = value_or_nan(p.force);
         let known = x.is_finite() && y.is_finite() && value.is_finite();
         let place = place_in_plan([x, y]);
         known.then(|| Arrow {
@@ -214,7 +219,7 @@ fn place_in_plan(place: [f64; 2]) -> String {
     }
 }
 
-fn plain(x: Option<f64>) -> f64 {
+fn value_or_nan(x: Option<f64>) -> f64 {
     x.unwrap_or(f64::NAN)
 }
 
@@ -278,7 +283,7 @@ fn row(p: &WeighedPayload) -> Vec<String> {
         let cells = [p.run.clone(), "refused".into()].into_iter();
         return cells.chain(nothing).collect();
     };
-    let interval = [p.force_low, p.force_high].map(|v| number(plain(v)));
+    let interval = [p.force_low, p.force_high].map(|v| number(value_or_nan(v)));
     vec![
         p.run.clone(),
         number(force),

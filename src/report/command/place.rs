@@ -67,7 +67,7 @@ impl Report for Outcome<Placed> {
     fn page(&self) -> Option<Page> {
         let (s, job) = (&self.sensitivity, &self.job);
         let mut scene = scene(self);
-        scene.pointing = Pointing::Places(Places::of(&job.candidates));
+        scene.pointing = Pointing::Places(Places::from_candidates(&job.candidates));
         let page = place_page(
             &job.title,
             &scene,
@@ -204,7 +204,7 @@ fn unit<'a>(word: &'a str, length: &'a str) -> &'a str {
     if word == "L" { length } else { word }
 }
 
-fn installed(placed: &Placed) -> Option<&InstalledQuality> {
+fn installed_quality(placed: &Placed) -> Option<&InstalledQuality> {
     let installed: Option<&Installed> = placed.installed.as_ref();
     installed?.quality.as_ref()
 }
@@ -242,7 +242,7 @@ fn numbers(placed: &Placed) -> Vec<(String, String)> {
         placed.least_condition_number_scaled,
         2,
     );
-    let own = installed(placed);
+    let own = installed_quality(placed);
     row(
         "Installed: condition number, scaled",
         own.and_then(|q| q.condition_number_scaled),

@@ -86,7 +86,7 @@ pub(super) fn motion_page(outcome: &Outcome<Reconciled>, found: &MotionPart) -> 
 }
 
 fn simulation(found: &MotionPart) -> Option<&SimulationFound> {
-    found.simulation.as_ref()?.done()
+    found.simulation.as_ref()?.result()
 }
 
 /// Equations before, each with itself after.

@@ -148,7 +148,7 @@ fn gap_csv(found: &StrainPart) -> String {
 fn loads_csv(found: &StrainPart) -> String {
     let mut text = String::from("run,load,unit,stated,before,after,sigma,moved\n");
     for l in &found.outcome.loads {
-        let moved = if l.moved() { "yes" } else { "no" };
+        let moved = if l.is_significant() { "yes" } else { "no" };
         let _ = writeln!(
             text,
             "{},{},{},{:.4},{:.4},{:.4},{:.4},{moved}",

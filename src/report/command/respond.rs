@@ -71,7 +71,7 @@ impl Report for Outcome<Responded> {
             write_cells_vtu(model, &arrays(model, &f.rows, &f.peaks, u, unit), w)
         })?;
         if !self.check.rows.is_empty() {
-            out.write("predicted.csv", |w| predicted(w, self))?;
+            out.write("predicted.csv", |w| write_predicted_strain(w, self))?;
             declare_written(out, "predicted.csv", |c| match c {
                 "state" => String::new(),
                 _ => "microstrain".to_owned(),
@@ -211,7 +211,7 @@ fn history_unit(column: &str, stress: &str) -> String {
 }
 
 /// A row a state: predicted and measured microstrain of every gauge.
-fn predicted(w: &mut dyn std::io::Write, r: &Responded) -> std::io::Result<()> {
+fn write_predicted_strain(w: &mut dyn std::io::Write, r: &Responded) -> std::io::Result<()> {
     write!(w, "state")?;
     for g in &r.check.gauges {
         let measured = format!("{g}.measured");
@@ -238,13 +238,13 @@ fn sections(r: &Responded) -> Vec<Section> {
         table_section(
             "Largest von Mises stress",
             &header,
-            &shown(&r.elements),
+            &element_rows(&r.elements),
             "From the loads by superposition; the interval is the interval of the loads.",
         ),
         table_section(
             "Hot spots",
             &header,
-            &shown(&r.hot_spots),
+            &element_rows(&r.hot_spots),
             "Elements with a higher stress than all elements that share a grid with them.",
         ),
     ];
@@ -267,7 +267,7 @@ fn sections(r: &Responded) -> Vec<Section> {
     out
 }
 
-fn shown(list: &[Element]) -> Vec<Vec<String>> {
+fn element_rows(list: &[Element]) -> Vec<Vec<String>> {
     list.iter()
         .take(MOST_ROWS)
         .map(|e| {

@@ -2,7 +2,7 @@
 
 use super::{Report, write_page};
 use crate::fe::CaseResult;
-use crate::fe::strain_rows::{StrainRow, hottest, largest_strain};
+use crate::fe::strain_rows::{StrainRow, largest_strain, largest_strain_rows};
 use crate::finding::list_few;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
@@ -42,7 +42,7 @@ impl Report for Outcome<Strains> {
     /// Returns a row for each subcase: its element of the largest strain.
     fn result_table(&self) -> ConsoleTable {
         let row = |case: &CaseResult| {
-            let largest = hottest(&self.model, case, 1);
+            let largest = largest_strain_rows(&self.model, case, 1);
             let of = |of: &dyn Fn(&StrainRow) -> String| {
                 largest.first().map_or_else(|| "-".to_owned(), of)
             };

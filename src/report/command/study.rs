@@ -78,15 +78,15 @@ impl Report for Outcome<Studied> {
 
     fn console(&self) -> Console {
         let loads = self.study.first().map_or(&[][..], |row| &row.loads);
-        let half = |l: &StudiedLoad| NORMAL_95 * plain(l.sigma);
+        let half = |l: &StudiedLoad| NORMAL_95 * value_or_nan(l.sigma);
         let row = |r: &StudiedLayout| {
             let mut cells = vec![
                 r.layout.clone(),
                 r.gauges.to_string(),
                 r.error.clone(),
-                number(100.0 * plain(r.mean_relative_rms)),
+                number(100.0 * value_or_nan(r.mean_relative_rms)),
             ];
-            cells.extend(wanted(r).map(|l| plus_minus(plain(l.bias), half(l))));
+            cells.extend(wanted_loads(r).map(|l| plus_minus(value_or_nan(l.bias), half(l))));
             cells
         };
         let mut head = ["layout", "gauges", "error", "mean error, %"]
@@ -173,7 +173,7 @@ fn gauge_line(layout: &LayoutGauges, gauge: &LayoutGauge) -> String {
     format!("{},{},{name},{place}", layout.layout, layout.gauges)
 }
 
-fn plain(x: Option<f64>) -> f64 {
+fn value_or_nan(x: Option<f64>) -> f64 {
     x.unwrap_or(f64::NAN)
 }
 
@@ -215,12 +215,12 @@ fn page(found: &Outcome<Studied>) -> Page {
                 row.layout.clone(),
                 row.gauges.to_string(),
                 row.error.clone(),
-                number(plain(row.condition_number)),
-                number(100.0 * plain(row.mean_relative_rms)),
+                number(value_or_nan(row.condition_number)),
+                number(100.0 * value_or_nan(row.mean_relative_rms)),
             ];
-            cells.extend(wanted(row).map(|l| {
-                let width = NORMAL_95 * plain(l.sigma);
-                format!("{} ± {}", number(plain(l.bias)), number(width))
+            cells.extend(wanted_loads(row).map(|l| {
+                let width = NORMAL_95 * value_or_nan(l.sigma);
+                format!("{} ± {}", number(value_or_nan(l.bias)), number(width))
             }));
             cells
         })
@@ -297,6 +297,6 @@ fn errors_by_layout(found: &Studied) -> Section {
 }
 
 /// Returns the loads of a layout that the job wants.
-fn wanted(row: &StudiedLayout) -> impl Iterator<Item = &StudiedLoad> {
+fn wanted_loads(row: &StudiedLayout) -> impl Iterator<Item = &StudiedLoad> {
     row.loads.iter().filter(|l| l.wanted)
 }

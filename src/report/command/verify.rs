@@ -8,7 +8,7 @@ use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::{KeyNumber, Page, table_section};
 use crate::workflow::verify::{Difference, Verified};
 
-fn same(file: &str) -> Vec<String> {
+fn equal_file_row(file: &str) -> Vec<String> {
     vec![file.to_owned(), "the same".to_owned()]
 }
 
@@ -31,7 +31,7 @@ impl Report for Outcome<Verified> {
         sections.push(table_section(
             "Files that are the same",
             &["file", "check"],
-            &self.same.iter().map(|f| same(f)).collect::<Vec<_>>(),
+            &self.same.iter().map(|f| equal_file_row(f)).collect::<Vec<_>>(),
             "An input has the digest that the folder states. A table or page has the bytes, and `result.json` the numbers, that its inputs give now.",
         ));
         let page = Page::new(
@@ -56,7 +56,7 @@ impl Report for Outcome<Verified> {
             let place = format!("{} {}", d.file, d.at).trim().to_owned();
             vec![place, "differs".to_owned()]
         });
-        let same = self.same.iter().map(|f| same(f));
+        let same = self.same.iter().map(|f| equal_file_row(f));
         ConsoleTable::new(
             "Checks of inputs and files",
             &["file", "check"],

@@ -64,7 +64,7 @@ pub(super) fn lines(
         })
     }));
     match limit {
-        Some(limit) => within(all, limit, width),
+        Some(limit) => limit_lines(all, limit, width),
         None => all,
     }
 }
@@ -75,7 +75,7 @@ fn severity(f: &FindingLines) -> Severity {
 }
 
 /// Leaves out what does not fit, and states how many findings that are.
-fn within(all: Vec<FindingLines>, limit: usize, width: usize) -> Vec<FindingLines> {
+fn limit_lines(all: Vec<FindingLines>, limit: usize, width: usize) -> Vec<FindingLines> {
     let n_lines = |mildest: Severity, most: usize| -> usize {
         let shown = all.iter().filter(|f| severity(f) >= mildest);
         let left_out = all.iter().any(|f| severity(f) < mildest);

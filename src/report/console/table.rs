@@ -21,7 +21,7 @@ pub(super) fn least_lines(tables: &[ConsoleTable], width: usize) -> usize {
     }
     let fits = |lines: &usize| {
         let mut few = tables.iter().filter(|t| t.rows.len() <= KEPT * width);
-        few.any(|t| laid(t, width, Some(*lines)).is_some())
+        few.any(|t| format_whole_table(t, width, Some(*lines)).is_some())
     };
     (2..KEPT).find(fits).unwrap_or(KEPT)
 }
@@ -32,8 +32,8 @@ pub(super) fn lines(console: &Console, width: usize, limit: Option<usize>) -> Ve
     let Some(last) = tables().next_back() else {
         return Vec::new();
     };
-    let laid = tables().find_map(|t| laid(t, width, limit));
-    laid.unwrap_or_else(|| shortened(last, console.file, width, limit))
+    let laid = tables().find_map(|t| format_whole_table(t, width, limit));
+    laid.unwrap_or_else(|| format_first_rows(last, console.file, width, limit))
 }
 
 /// Columns of a table: width, and whether they end at the right.
@@ -43,7 +43,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(table: &ConsoleTable) -> Self {
+    fn from_table(table: &ConsoleTable) -> Self {
         let n = table.rows.iter().map(Vec::len).max().unwrap_or(0);
         let n = n.max(table.head.len());
         let cells = |c: usize| table.rows.iter().filter_map(move |r| r.get(c));
@@ -92,10 +92,14 @@ fn is_number(text: &str) -> bool {
 }
 
 /// Returns the lines of a table with all its rows; `None` where they do not fit.
-fn laid(table: &ConsoleTable, width: usize, limit: Option<usize>) -> Option<Vec<String>> {
+fn format_whole_table(
+    table: &ConsoleTable,
+    width: usize,
+    limit: Option<usize>,
+) -> Option<Vec<String>> {
     let mut lines = headline(table, width);
     let head = usize::from(!table.head.is_empty());
-    let columns = Columns::of(table);
+    let columns = Columns::from_table(table);
     let n = table.rows.len();
     let room = match limit {
         None => n,
@@ -174,14 +178,14 @@ fn wrapped_last(table: &ConsoleTable, columns: &Columns, width: usize) -> Option
 }
 
 /// The first rows of a table and the number of the others, in columns that are cut to the width.
-fn shortened(
+fn format_first_rows(
     table: &ConsoleTable,
     file: Option<&str>,
     width: usize,
     limit: Option<usize>,
 ) -> Vec<String> {
     let mut lines = headline(table, width);
-    let mut columns = Columns::of(table);
+    let mut columns = Columns::from_table(table);
     while columns.total() > width {
         match columns.widths.iter_mut().max_by_key(|w| **w) {
             Some(widest) if *widest > CELL => *widest -= 1,

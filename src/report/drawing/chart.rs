@@ -88,7 +88,7 @@ enum Axis {
 }
 
 impl Axis {
-    fn of(series: &[Series], k: usize, layout: &Value, place: [f64; 2]) -> Self {
+    fn from_series(series: &[Series], k: usize, layout: &Value, place: [f64; 2]) -> Self {
         if let Some(names) = names_of(series, k) {
             return Self::Names(names, place);
         }
@@ -100,17 +100,21 @@ impl Axis {
         };
         let values = axes.flat_map(|k| series.iter().flat_map(move |s| s.reach(k)));
         let values = values.chain(from_zero.then_some(0.0));
-        Self::Values(Scale::over(values, place, layout[AXES[k]]["type"] == "log"))
+        Self::Values(Scale::from_values(
+            values,
+            place,
+            layout[AXES[k]]["type"] == "log",
+        ))
     }
 
-    fn at(&self, series: &Series, k: usize, i: usize) -> Option<f64> {
+    fn point_position(&self, series: &Series, k: usize, i: usize) -> Option<f64> {
         match self {
             Self::Names(names, [from, to]) => {
                 let name = series.name_at(k, i)?;
                 let n = names.iter().position(|x| x == name)?;
                 Some(from + (to - from) * (n as f64 + 0.5) / names.len() as f64)
             }
-            Self::Values(scale) => scale.at(series.value_at(k, i)?),
+            Self::Values(scale) => scale.position_of_value(series.value_at(k, i)?),
         }
     }
 
@@ -127,7 +131,7 @@ impl Axis {
             Self::Values(scale) => {
                 let ticks = scale.ticks().into_iter();
                 ticks
-                    .filter_map(|(v, word)| Some((scale.at(v)?, word)))
+                    .filter_map(|(v, word)| Some((scale.position_of_value(v)?, word)))
                     .collect()
             }
         }
@@ -167,15 +171,15 @@ fn chart(traces: &[Value], layout: &Value, sheet: Sheet) -> Picture {
         false => sheet.width - 4.0,
     };
     picture.size = [sheet.width, bottom + below + 5.5];
-    let x = Axis::of(&series, 0, layout, [left, right]);
+    let x = Axis::from_series(&series, 0, layout, [left, right]);
     // Names read downwards, values grow upwards.
     let upwards = match names_of(&series, 1) {
         Some(_) => [top, bottom],
         None => [bottom, top],
     };
-    let y = Axis::of(&series, 1, layout, upwards);
+    let y = Axis::from_series(&series, 1, layout, upwards);
     if let (Some((_, colour)), Axis::Values(scale)) = (band, &x) {
-        let ends = [0, 1].map(|i| scale.at(layout["band"]["ends"][i].as_f64()?));
+        let ends = [0, 1].map(|i| scale.position_of_value(layout["band"]["ends"][i].as_f64()?));
         if let [Some(from), Some(to)] = ends.map(|e| e.map(|v| v.clamp(left, right))) {
             let area = [from, top, to - from, inner];
             picture.shapes.push(Shape::Area(area, colour));
@@ -206,7 +210,7 @@ fn chart(traces: &[Value], layout: &Value, sheet: Sheet) -> Picture {
     let mut bar = 0;
     for s in &series {
         let points: Vec<Option<[f64; 2]>> = (0..s.len())
-            .map(|i| Some([x.at(s, 0, i)?, y.at(s, 1, i)?]))
+            .map(|i| Some([x.point_position(s, 0, i)?, y.point_position(s, 1, i)?]))
             .collect();
         match s.kind {
             Kind::Bars => {
@@ -238,7 +242,7 @@ fn chart(traces: &[Value], layout: &Value, sheet: Sheet) -> Picture {
 fn fill(picture: &mut Picture, s: &Series, points: &[Option<[f64; 2]>], y: &Axis) {
     let Axis::Values(scale) = y else { return };
     let edge = |(i, p): (usize, &Option<[f64; 2]>)| {
-        let foot = scale.at(s.foot.get(i).copied().flatten()?)?;
+        let foot = scale.position_of_value(s.foot.get(i).copied().flatten()?)?;
         p.map(|[x, head]| (x, head, foot))
     };
     let edges: Vec<Option<(f64, f64, f64)>> = points.iter().enumerate().map(edge).collect();
@@ -275,7 +279,7 @@ fn draw(picture: &mut Picture, s: &Series, points: &[Option<[f64; 2]>], x: &Axis
         picture.strokes(lines, &s.colour, 0.35);
     }
     if let Axis::Values(scale) = x {
-        let ends = |i: usize| Some(s.interval_at(i)?.map(|v| scale.at(v)));
+        let ends = |i: usize| Some(s.interval_at(i)?.map(|v| scale.position_of_value(v)));
         let mut bars = Vec::new();
         for (i, p) in points.iter().enumerate() {
             if let (Some([_, py]), Some([Some(a), Some(b)])) = (p, ends(i)) {

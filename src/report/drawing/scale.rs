@@ -12,7 +12,7 @@ pub(in crate::report) struct Scale {
 
 impl Scale {
     /// A scale on which all `values` are between the places; with a little room at both ends where they are `roomy`.
-    pub(in crate::report) fn over(
+    pub(in crate::report) fn from_values(
         values: impl Iterator<Item = f64>,
         place: [f64; 2],
         by_powers: bool,
@@ -41,7 +41,7 @@ impl Scale {
     }
 
     /// Position of a value; `None` if it has no place.
-    pub(in crate::report) fn at(&self, value: f64) -> Option<f64> {
+    pub(in crate::report) fn position_of_value(&self, value: f64) -> Option<f64> {
         let v = if self.by_powers { value.log10() } else { value };
         let share = (v - self.ends[0]) / (self.ends[1] - self.ends[0]);
         let place = self.place[0] + share * (self.place[1] - self.place[0]);

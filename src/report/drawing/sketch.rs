@@ -80,17 +80,17 @@ pub(in crate::report) fn views(scene: &SceneView) -> Vec<Picture> {
     let mut out: Vec<Picture> = chosen
         .iter()
         .take(2)
-        .map(|v| drawing(scene, v, bounds))
+        .map(|v| draw_view(scene, v, bounds))
         .collect();
     if out.is_empty() {
         // Everything on one line.
         let view = &VIEWS[usize::from(turned)];
-        out.push(drawing(scene, view, bounds));
+        out.push(draw_view(scene, view, bounds));
     }
     out
 }
 
-fn drawing(scene: &SceneView, view: &View, [low, high]: [Vec3; 2]) -> Picture {
+fn draw_view(scene: &SceneView, view: &View, [low, high]: [Vec3; 2]) -> Picture {
     let flat = |v: Vec3| [view.right.1 * v[view.right.0], view.up.1 * v[view.up.0]];
     let (a, b) = (flat(low), flat(high));
     let [left, bottom] = [0, 1].map(|k| a[k].min(b[k]));

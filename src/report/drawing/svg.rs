@@ -11,13 +11,13 @@ const CAPITAL: f64 = 0.7;
 
 /// The drawing; `label` is what it is called where it can't be seen.
 pub(in crate::report) fn to_svg(picture: &Picture, label: &str) -> Markup {
-    let [wide, high] = picture.size.map(tenths);
+    let [wide, high] = picture.size.map(round_to_tenths);
     let mut body = String::new();
     let mut shapes = picture.shapes.as_slice();
     while let Some(first) = shapes.first() {
         let alike = shapes.iter().take_while(|s| same_pen(first, s)).count();
         let (group, rest) = shapes.split_at(alike.max(1));
-        body.push_str(&drawn(group));
+        body.push_str(&format_shapes(group));
         shapes = rest;
     }
     html! {
@@ -27,12 +27,12 @@ pub(in crate::report) fn to_svg(picture: &Picture, label: &str) -> Markup {
     }
 }
 
-fn tenths(mm: f64) -> i64 {
+fn round_to_tenths(mm: f64) -> i64 {
     (10.0 * mm).round() as i64
 }
 
 /// A length that needs finer steps, such as the width of a pen.
-fn fine(mm: f64) -> f64 {
+fn round_pen_width(mm: f64) -> f64 {
     (100.0 * mm).round() / 10.0
 }
 
@@ -67,7 +67,7 @@ fn same_pen(a: &Shape, b: &Shape) -> bool {
 }
 
 /// Shapes of one pen, one at least.
-fn drawn(group: &[Shape]) -> String {
+fn format_shapes(group: &[Shape]) -> String {
     let Some(first) = group.first() else {
         return String::new();
     };
@@ -77,14 +77,16 @@ fn drawn(group: &[Shape]) -> String {
                 Shape::Strokes { lines, .. } => lines.as_slice(),
                 _ => &[],
             });
-            let lines = lines.map(|l| l.iter().map(|p| p.map(tenths)).collect());
+            let lines = lines.map(|l| l.iter().map(|p| p.map(round_to_tenths)).collect());
             let d = path(&trails(lines.collect()));
-            html! { path d=(d) stroke=(colour) stroke-width=(fine(*pen)) {} }
+            html! { path d=(d) stroke=(colour) stroke-width=(round_pen_width(*pen)) {} }
         }
         // A pen of its own colour closes the seams between neighbours.
         Shape::Face { colour, .. } => {
             let lines = group.iter().filter_map(|s| match s {
-                Shape::Face { corners, .. } => Some(corners.map(|p| p.map(tenths)).to_vec()),
+                Shape::Face { corners, .. } => {
+                    Some(corners.map(|p| p.map(round_to_tenths)).to_vec())
+                }
                 _ => None,
             });
             let d = path(&lines.collect::<Vec<_>>());
@@ -100,11 +102,11 @@ fn drawn(group: &[Shape]) -> String {
             let mut d = String::new();
             for shape in group {
                 if let Shape::Circle { at, .. } = shape {
-                    let [x, y] = at.map(tenths);
+                    let [x, y] = at.map(round_to_tenths);
                     let _ = write!(d, "M{x} {y}h0");
                 }
             }
-            html! { path d=(d) stroke=(colour) stroke-width=(fine(2.0 * radius)) {} }
+            html! { path d=(d) stroke=(colour) stroke-width=(round_pen_width(2.0 * radius)) {} }
         }
         Shape::Circle {
             at,
@@ -112,16 +114,16 @@ fn drawn(group: &[Shape]) -> String {
             colour,
             pen,
         } => {
-            let [x, y] = at.map(tenths);
-            html! { circle cx=(x) cy=(y) r=(fine(*radius)) stroke=(colour) stroke-width=(fine(*pen)) {} }
+            let [x, y] = at.map(round_to_tenths);
+            html! { circle cx=(x) cy=(y) r=(round_pen_width(*radius)) stroke=(colour) stroke-width=(round_pen_width(*pen)) {} }
         }
         Shape::Region(corners, colour) => {
-            let d = path(&[corners.iter().map(|p| p.map(tenths)).collect()]);
+            let d = path(&[corners.iter().map(|p| p.map(round_to_tenths)).collect()]);
             html! { path d=(d) fill=(colour) {} }
         }
         Shape::Area([x, y, w, h], colour) => {
-            let (x, y) = (fine(*x), fine(*y));
-            html! { rect x=(x) y=(y) width=(fine(w.max(0.0))) height=(fine(h.max(0.0))) fill=(colour) {} }
+            let (x, y) = (round_pen_width(*x), round_pen_width(*y));
+            html! { rect x=(x) y=(y) width=(round_pen_width(w.max(0.0))) height=(round_pen_width(h.max(0.0))) fill=(colour) {} }
         }
         Shape::Word(w) => word(w),
     };
@@ -164,9 +166,9 @@ fn word(w: &Word) -> Markup {
         false => [w.at[0], w.at[1] + base],
         true => [w.at[0] + base, w.at[1]],
     };
-    let (x, y) = (tenths(x), tenths(y));
+    let (x, y) = (round_to_tenths(x), round_to_tenths(y));
     let turn = w.upwards.then(|| format!("rotate(-90 {x} {y})"));
     html! {
-        text x=(x) y=(y) font-size=(fine(size)) text-anchor=(anchor) transform=[turn] fill="#1c2530" { (w.text) }
+        text x=(x) y=(y) font-size=(round_pen_width(size)) text-anchor=(anchor) transform=[turn] fill="#1c2530" { (w.text) }
     }
 }

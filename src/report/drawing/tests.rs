@@ -2,7 +2,7 @@ use super::picture::{Picture, Shape};
 use super::scale::Scale;
 use super::trails::trails;
 use super::{pictures, to_svg};
-use crate::report::figure::{CrossPlot, Ends, Figure, LoadTrace, cross, history, intervals};
+use crate::report::figure::{CrossPlot, Ends, Figure, LoadTrace, cross_plot, history, intervals};
 use std::collections::BTreeSet;
 
 type Point = [i64; 2];
@@ -80,16 +80,16 @@ fn a_drawing_keeps_its_places_and_its_words_are_no_markup() {
 
 #[test]
 fn ticks_are_round_and_inside() {
-    let scale = Scale::over([0.0, 9.3].into_iter(), [0.0, 100.0], false);
+    let scale = Scale::from_values([0.0, 9.3].into_iter(), [0.0, 100.0], false);
     let words: Vec<String> = scale.ticks().into_iter().map(|t| t.1).collect();
     assert_eq!(words, ["0", "2", "4", "6", "8"]);
-    let powers = Scale::over([2e-3, 60.0].into_iter(), [0.0, 100.0], true);
+    let powers = Scale::from_values([2e-3, 60.0].into_iter(), [0.0, 100.0], true);
     let words: Vec<String> = powers.ticks().into_iter().map(|t| t.1).collect();
     assert_eq!(words, ["1e-2", "1e-1", "1e0", "1e1"]);
 }
 
 /// Shapes of the picture of a figure.
-fn drawn(figure: &Figure) -> Picture {
+fn first_picture(figure: &Figure) -> Picture {
     pictures(figure).remove(0)
 }
 
@@ -97,7 +97,7 @@ fn drawn(figure: &Figure) -> Picture {
 fn a_range_is_a_wide_bar_and_an_interval_a_line_with_caps() {
     let rows = [("A".to_owned(), [1.0, 2.0, 4.0])];
     let groups = [("run".to_owned(), rows.to_vec())];
-    let picture = |ends| drawn(&intervals(&groups, "kN", ends, "shorter is better"));
+    let picture = |ends| first_picture(&intervals(&groups, "kN", ends, "shorter is better"));
     let bars = |p: &Picture| {
         p.shapes
             .iter()
@@ -134,7 +134,7 @@ fn axes_of_a_scatter_plot_are_equal() {
         unit: "kN",
         points: &[[0.0, 0.1], [100.0, 101.0], [50.0, 49.0]],
     };
-    let picture = drawn(&cross(&[load]));
+    let picture = first_picture(&cross_plot(&[load]));
     // The line of equality rises as far as it goes to the right.
     let line = picture.shapes.iter().find_map(|s| match s {
         // Thinner than in the legend.
@@ -161,7 +161,7 @@ fn a_band_of_a_history_is_drawn_without_a_script() {
             .map(|i| [f64::from(i), f64::from(i) + 1.0, f64::from(i) + 2.0])
             .collect(),
     };
-    let picture = drawn(&history(&[trace]));
+    let picture = first_picture(&history(&[trace]));
     let regions: Vec<&Vec<[f64; 2]>> = picture
         .shapes
         .iter()

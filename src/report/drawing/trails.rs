@@ -23,7 +23,7 @@ pub(super) fn trails(lines: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
         // Onward, and then from the beginning the other way.
         for _ in 0..2 {
             while let [.., before, end] = trail[..]
-                && let Some((k, next)) = following(&ends, &at, &used, before, end)
+                && let Some((k, next)) = next_line(&ends, &at, &used, before, end)
             {
                 used[k] = true;
                 if is_straight(before, end, next) {
@@ -39,7 +39,7 @@ pub(super) fn trails(lines: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
 }
 
 /// A line not yet drawn that begins at `end`, and where it leads: straight on from `before` if there is one.
-fn following(
+fn next_line(
     ends: &[[Point; 2]],
     at: &BTreeMap<Point, Vec<usize>>,
     used: &[bool],

@@ -1,7 +1,7 @@
 //! Measured against predicted strain.
 
 use super::chart::Figure;
-use super::packed::{short, shorts};
+use super::packed::{round_number, round_numbers};
 use serde_json::{Value, json};
 
 /// Gauges that can be looked at one by one; all of them are in the first picture.
@@ -57,8 +57,8 @@ fn picture(gauges: &[&GaugePoints], kinds: [&str; 2], runs: [&[String]; 2]) -> V
         let (mut x, mut y, mut text) = (Vec::new(), Vec::new(), Vec::new());
         for g in gauges {
             for (i, p) in g.points[k].iter().enumerate().filter(|(_, p)| known(p)) {
-                x.push(short(p.0));
-                y.push(short(p.1));
+                x.push(round_number(p.0));
+                y.push(round_number(p.1));
                 let run = runs[k].get(i).map_or("", String::as_str);
                 text.push(format!("{} {run}", g.name));
                 ends = [ends[0].min(p.0).min(p.1), ends[1].max(p.0).max(p.1)];
@@ -76,7 +76,7 @@ fn picture(gauges: &[&GaugePoints], kinds: [&str; 2], runs: [&[String]; 2]) -> V
         out.insert(
             0,
             json!({
-                "type": "scatter", "mode": "lines", "name": "equal", "x": shorts(ends), "y": shorts(ends),
+                "type": "scatter", "mode": "lines", "name": "equal", "x": round_numbers(ends), "y": round_numbers(ends),
                 "line": { "color": "#9aa7b5", "width": 1 }, "hoverinfo": "skip",
             }),
         );

@@ -1,7 +1,7 @@
 //! Recovered against recorded loads.
 
 use super::chart::Figure;
-use super::packed::shorts;
+use super::packed::round_numbers;
 use serde_json::json;
 
 /// A load of a cross plot: (recorded, recovered) of each point.
@@ -16,17 +16,17 @@ pub struct CrossPlot<'a> {
 }
 
 /// Recovered (up) against recorded (right) values of one load at a time, with the line of equality, which spans both axes alike.
-pub fn cross(loads: &[CrossPlot]) -> Figure {
+pub fn cross_plot(loads: &[CrossPlot]) -> Figure {
     let picture = |load: &CrossPlot| {
         let all = load.points.iter().flatten();
         let ends = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
             [low.min(*v), high.max(*v)]
         });
-        let [x, y] = [0, 1].map(|c| shorts(load.points.iter().map(|p| p[c])));
+        let [x, y] = [0, 1].map(|c| round_numbers(load.points.iter().map(|p| p[c])));
         let titles = ["recorded", "recovered"].map(|word| format!("{word}, {}", load.unit));
         vec![
             json!({
-                "type": "scatter", "mode": "lines", "name": "equal", "x": shorts(ends), "y": shorts(ends),
+                "type": "scatter", "mode": "lines", "name": "equal", "x": round_numbers(ends), "y": round_numbers(ends),
                 "xtitle": titles[0], "ytitle": titles[1],
                 "line": { "color": "#9aa7b5", "width": 1 }, "hoverinfo": "skip",
             }),
@@ -59,7 +59,7 @@ mod tests {
             unit: "kN",
             points: &[[1.0, 3.0], [-2.0, 2.5]],
         };
-        let figure = cross(&[load]);
+        let figure = cross_plot(&[load]);
         let equal = &figure.choices[0].1[0];
         assert_eq!(equal["x"], equal["y"]);
         assert_eq!(equal["x"], json!([-2.0, 3.0]));

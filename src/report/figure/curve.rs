@@ -1,7 +1,7 @@
 //! Figure of efficiency and load sigmas against the number of gauges.
 
 use super::chart::Figure;
-use super::packed::{short, shorts};
+use super::packed::{round_number, round_numbers};
 use serde_json::{Value, json};
 
 /// Results with one number of gauges.
@@ -42,14 +42,15 @@ pub fn curve(points: &[CountPoint], loads: &[(String, String)]) -> Figure {
             let axis = format!("sigma of the loads, {name}");
             let of_unit = (0..loads.len()).filter(|l| loads[*l].1 == *unit);
             let traces = of_unit.map(|l| {
-                let y = points.iter().map(|p| short(p.sigma[l])).collect();
+                let y = points.iter().map(|p| round_number(p.sigma[l])).collect();
                 line(&loads[l].0, y, &format!("%{{y:.4}} {unit}"), &axis)
             });
             let traces = traces.collect();
             (axis, traces)
         })
         .collect();
-    let percent = |of: &dyn Fn(&CountPoint) -> f64| shorts(points.iter().map(|p| 100.0 * of(p)));
+    let percent =
+        |of: &dyn Fn(&CountPoint) -> f64| round_numbers(points.iter().map(|p| 100.0 * of(p)));
     choices.push((
         EFFICIENCY.into(),
         vec![

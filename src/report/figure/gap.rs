@@ -1,13 +1,13 @@
 //! The gap by channel.
 
 use super::chart::Figure;
-use super::packed::shorts;
+use super::packed::round_numbers;
 use serde_json::json;
 
 /// Draws the gap of each channel before and after, with its noise floor if known: name and numbers in `unit`, on what was held out.
 pub fn gap_by_channel(channels: &[(String, [f64; 3])], unit: &str) -> Figure {
     let names: Vec<&String> = channels.iter().map(|c| &c.0).collect();
-    let of = |k: usize| shorts(channels.iter().map(|c| c.1[k]));
+    let of = |k: usize| round_numbers(channels.iter().map(|c| c.1[k]));
     let bar = |name: &str, k: usize, colour: &str| {
         json!({
             "type": "bar", "name": name, "x": names, "y": of(k), "marker": { "color": colour },

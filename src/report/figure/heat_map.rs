@@ -1,7 +1,7 @@
 //! A matrix as colours.
 
 use super::chart::Figure;
-use super::packed::short;
+use super::packed::round_number;
 use serde_json::{Value, json};
 
 /// Rows and columns coloured by their share of the largest in their column: blue negative, red positive; the value itself on pointing.
@@ -34,8 +34,8 @@ pub fn heat_map(
         "type": "heatmap",
         "x": columns,
         "y": rows,
-        "z": table(&|r, c| short((share(r, c) * 1e4).round() / 1e4)),
-        "customdata": table(&|r, c| short(value(r, c))),
+        "z": table(&|r, c| round_number((share(r, c) * 1e4).round() / 1e4)),
+        "customdata": table(&|r, c| round_number(value(r, c))),
         "hovertemplate": format!("%{{y}}, %{{x}}<br>%{{customdata:.4}} {unit}<extra></extra>"),
     });
     Figure {

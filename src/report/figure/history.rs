@@ -1,7 +1,7 @@
 //! A load over time.
 
 use super::chart::Figure;
-use super::packed::shorts;
+use super::packed::round_numbers;
 use serde_json::{Value, json};
 
 /// One load over time, thinned: by span of time the smallest, mean and largest sample, report unit.
@@ -30,7 +30,7 @@ pub fn history(traces: &[LoadTrace]) -> Figure {
         caption: "Dark: smallest to largest sample of a span of time. Light: the 95 % interval of a sample around it; a narrower light band is better.".into(),
         choices: traces.iter().map(|t| (t.name.clone(), bands(t))).collect(),
         layout: json!({
-            "xaxis": { "title": { "text": "time, s" }, "range": shorts(ends) },
+            "xaxis": { "title": { "text": "time, s" }, "range": round_numbers(ends) },
             "yaxis": {},
         }),
         height: 380,
@@ -39,7 +39,7 @@ pub fn history(traces: &[LoadTrace]) -> Figure {
 }
 
 fn bands(trace: &LoadTrace) -> Vec<Value> {
-    let time = shorts(trace.times.iter().map(|[from, to]| (from + to) / 2.0));
+    let time = round_numbers(trace.times.iter().map(|[from, to]| (from + to) / 2.0));
     let half = if trace.half.is_finite() {
         trace.half
     } else {
@@ -48,7 +48,7 @@ fn bands(trace: &LoadTrace) -> Vec<Value> {
     let line = |name: &str, of: &dyn Fn(&[f64; 3]) -> f64, fill: Value| {
         let mut trace = json!({
             "type": "scatter", "mode": "lines", "name": name, "x": time,
-            "y": shorts(trace.spans.iter().map(of)),
+            "y": round_numbers(trace.spans.iter().map(of)),
             "line": { "width": 0 }, "showlegend": false, "hoverinfo": "skip",
         });
         if let (Some(t), Some(more)) = (trace.as_object_mut(), fill.as_object()) {

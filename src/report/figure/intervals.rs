@@ -1,7 +1,7 @@
 //! Values with their intervals.
 
 use super::chart::Figure;
-use super::packed::shorts;
+use super::packed::round_numbers;
 use serde_json::{Value, json};
 
 /// Ratio of two values above which one linear axis does not show the smaller one.
@@ -58,12 +58,12 @@ pub fn interval_trace(rows: &[IntervalRow], unit: &str, ends: Ends) -> Value {
     json!({
         "type": "scatter",
         "mode": "markers",
-        "x": shorts(rows.iter().map(|r| r.1[1])),
+        "x": round_numbers(rows.iter().map(|r| r.1[1])),
         "y": names,
-        "customdata": rows.iter().map(|r| shorts([r.1[0], r.1[2]])).collect::<Vec<_>>(),
+        "customdata": rows.iter().map(|r| round_numbers([r.1[0], r.1[2]])).collect::<Vec<_>>(),
         "error_x": {
-            "array": shorts(rows.iter().map(|r| r.1[2] - r.1[1])),
-            "arrayminus": shorts(rows.iter().map(|r| r.1[1] - r.1[0])),
+            "array": round_numbers(rows.iter().map(|r| r.1[2] - r.1[1])),
+            "arrayminus": round_numbers(rows.iter().map(|r| r.1[1] - r.1[0])),
             "span": ends == Ends::Span,
         },
         "marker": { "size": 9, "color": "#1f618d" },

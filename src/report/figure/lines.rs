@@ -1,7 +1,7 @@
 //! Curves over a common axis.
 
 use super::chart::Figure;
-use super::packed::shorts;
+use super::packed::round_numbers;
 use serde_json::{Value, json};
 
 /// Points drawn at most for one curve; longer ones are thinned evenly.
@@ -38,7 +38,7 @@ pub fn lines(
 ) -> Figure {
     let trace = |i: usize, l: &Line| -> Value {
         let step = l.x.len().div_ceil(MOST_POINTS).max(1);
-        let thin = |v: &[f64]| shorts(v.iter().step_by(step).copied());
+        let thin = |v: &[f64]| round_numbers(v.iter().step_by(step).copied());
         json!({
             "type": "scatter", "mode": "lines", "name": l.name, "x": thin(l.x), "y": thin(l.y),
             "line": { "width": 1.4, "color": COLOURS[i % COLOURS.len()] },

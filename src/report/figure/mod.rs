@@ -15,14 +15,14 @@ mod script;
 pub use agreement::{GaugePoints, agreement};
 pub use chart::Figure;
 pub(in crate::report) use chart::embed_data;
-pub use cross::{CrossPlot, cross};
+pub use cross::{CrossPlot, cross_plot};
 pub use curve::{CountPoint, curve};
 pub use gap::gap_by_channel;
 pub use heat_map::heat_map;
 pub use history::{LoadTrace, history};
 pub use intervals::{Ends, IntervalRow, MOST_RATIO, interval_trace, intervals};
 pub use lines::{Line, Scale, lines};
-pub(in crate::report) use packed::{STEPS, packed_deltas, short, shorts, steps_of};
+pub(in crate::report) use packed::{STEPS, packed_deltas, round_number, round_numbers, steps_of};
 pub(in crate::report) use script::scripts;
 
 #[cfg(test)]

@@ -55,7 +55,7 @@ pub fn steps_of(values: impl Iterator<Item = f64>, most: f64) -> Vec<i64> {
 }
 
 /// Rounds a number to six significant digits; null for a number that is not finite.
-pub fn short(x: f64) -> Value {
+pub fn round_number(x: f64) -> Value {
     if !x.is_finite() {
         return Value::Null;
     }
@@ -65,6 +65,6 @@ pub fn short(x: f64) -> Value {
 }
 
 /// Rounds a list of numbers to six significant digits each; null for numbers that are not finite.
-pub fn shorts(values: impl IntoIterator<Item = f64>) -> Vec<Value> {
-    values.into_iter().map(short).collect()
+pub fn round_numbers(values: impl IntoIterator<Item = f64>) -> Vec<Value> {
+    values.into_iter().map(round_number).collect()
 }

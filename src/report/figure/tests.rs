@@ -1,4 +1,4 @@
-use super::packed::{packed_deltas, short, steps_of};
+use super::packed::{packed_deltas, round_number, steps_of};
 use super::*;
 use maud::Render;
 use serde_json::json;
@@ -18,8 +18,8 @@ fn packed_numbers_are_the_base64_of_their_steps_in_variable_length() {
 
 #[test]
 fn numbers_keep_six_digits_and_what_is_none_is_null() {
-    assert_eq!(short(123_456_789.0), json!(123_457_000.0));
-    assert_eq!(short(f64::NAN), json!(null));
+    assert_eq!(round_number(123_456_789.0), json!(123_457_000.0));
+    assert_eq!(round_number(f64::NAN), json!(null));
 }
 
 #[test]

@@ -97,7 +97,7 @@ impl Room {
                 @if i == 0 { (svg) } @else { details { summary { (drawn[i].title) } (svg) } }
             }
             @if !f.caption.is_empty() { p.muted { (f.caption) } }
-            @if left_out { (elsewhere("More of this figure")) }
+            @if left_out { (refer_to_report("More of this figure")) }
         }
     }
 
@@ -109,7 +109,7 @@ impl Room {
         html! {
             @match &svg {
                 Some(svg) => (svg),
-                None => (elsewhere("The model in three dimensions")),
+                None => (refer_to_report("The model in three dimensions")),
             }
             p.muted { (s.caption) @if strokes { " " (STROKES) } }
         }
@@ -138,7 +138,7 @@ fn table(t: &Table) -> Markup {
     let n = t.rows.len();
     html! {
         (block_html(&Block::Table(shown)))
-        @if n > MOST_ROWS { (elsewhere(&format!("{} more rows", n - MOST_ROWS))) }
+        @if n > MOST_ROWS { (refer_to_report(&format!("{} more rows", n - MOST_ROWS))) }
     }
 }
 
@@ -147,11 +147,11 @@ fn lines(text: &str) -> Markup {
     let left = text.lines().count() - shown.len();
     html! {
         pre { (shown.join("\n")) }
-        @if left > 0 { (elsewhere(&format!("{left} more lines"))) }
+        @if left > 0 { (refer_to_report(&format!("{left} more lines"))) }
     }
 }
 
-fn elsewhere(what: &str) -> Markup {
+fn refer_to_report(what: &str) -> Markup {
     html! { p.muted { (what) ": in report.html, among the files of the command." } }
 }
 

@@ -69,7 +69,7 @@ impl Page {
     }
 
     /// The page as it lies in `folder`: paths of linked files lead from there.
-    pub fn beside(mut self, folder: &Path) -> Self {
+    pub fn with_links_from(mut self, folder: &Path) -> Self {
         for block in self.sections.iter_mut().flat_map(|s| &mut s.blocks) {
             if let Block::Table(t) = block {
                 for link in &mut t.links {
@@ -169,7 +169,7 @@ impl Block {
     }
 
     /// Adds links to files to the cells of a table; returns any other block unchanged.
-    pub fn linked(self, links: Vec<CellLink>) -> Self {
+    pub fn with_links(self, links: Vec<CellLink>) -> Self {
         match self {
             Self::Table(t) => Self::Table(Table { links, ..t }),
             other => other,
@@ -266,7 +266,7 @@ pub struct CellLink {
     pub row: usize,
     /// Column, from 0.
     pub column: usize,
-    /// Path of the file, from the working folder; [`Page::beside`] converts it to a path from the folder of the page.
+    /// Path of the file, from the working folder; [`Page::with_links_from`] converts it to a path from the folder of the page.
     pub path: String,
     /// Text shown when the pointer is on the cell.
     pub title: String,
@@ -274,15 +274,15 @@ pub struct CellLink {
 
 /// A part that is a table with a note under it.
 pub fn table_section(title: &str, head: &[&str], rows: &[Vec<String>], note: &str) -> Section {
-    noted(title, Block::table(head, rows.to_vec()), note)
+    section_with_note(title, Block::table(head, rows.to_vec()), note)
 }
 
 /// A part that is a figure with a note under it.
 pub fn figure_section(title: &str, figure: Figure, note: &str) -> Section {
-    noted(title, Block::Figure(figure), note)
+    section_with_note(title, Block::Figure(figure), note)
 }
 
-fn noted(title: &str, block: Block, note: &str) -> Section {
+fn section_with_note(title: &str, block: Block, note: &str) -> Section {
     let mut blocks = vec![block];
     if !note.is_empty() {
         blocks.push(Block::Note(note.to_owned()));

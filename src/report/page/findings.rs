@@ -2,7 +2,7 @@
 
 use crate::finding::explain::{Code, codes};
 use crate::finding::{Finding, Severity};
-use crate::host::words::{capital, numbers_in_words};
+use crate::host::words::{capitalize, numbers_in_words};
 use maud::{Markup, html};
 
 /// Findings by severity.
@@ -17,7 +17,7 @@ pub(super) struct Sorted<'a> {
 
 impl<'a> Sorted<'a> {
     /// Sorts findings by severity; those of one severity keep their order.
-    pub(super) fn of(findings: &'a [Finding]) -> Self {
+    pub(super) fn from_findings(findings: &'a [Finding]) -> Self {
         let of = |severity| findings.iter().filter(|f| f.severity == severity).collect();
         Self {
             errors: of(Severity::Error),
@@ -76,7 +76,7 @@ fn finding(f: &Finding) -> Markup {
     html! {
         div class=(class) {
             b { (f.severity.word()) } " · " (subjects(&f.subject)) ": " (f.message)
-            @if let Some(words) = numbers_in_words(f) { small { " " (capital(&words)) "." } }
+            @if let Some(words) = numbers_in_words(f) { small { " " (capitalize(&words)) "." } }
             @if !f.remedy.is_empty() { div { small { "What to do: " (f.remedy) } } }
         }
     }

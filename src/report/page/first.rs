@@ -39,7 +39,7 @@ pub(super) fn first_screen(page: &Page, findings: &Sorted) -> Markup {
                 p.summary { b { (page.summary) } }
             }
             @for g in errors.iter().take(OPEN_ERRORS) { (group(g)) }
-            @if !findings.warnings.is_empty() { (folded("warning", &findings.warnings)) }
+            @if !findings.warnings.is_empty() { (fold_findings("warning", &findings.warnings)) }
             @if !page.first.numbers.is_empty() {
                 dl.tiles { @for n in &page.first.numbers {
                     div.tile { dt { (n.meaning) } dd { (n.value) } }
@@ -66,7 +66,7 @@ fn mark(findings: &Sorted) -> (&'static str, &'static str, &'static str) {
 }
 
 /// Findings of one severity, folded under their number and the words of their codes.
-fn folded(what: &str, findings: &[&Finding]) -> Markup {
+fn fold_findings(what: &str, findings: &[&Finding]) -> Markup {
     let groups = groups_of(findings);
     html! {
         details.folded {
@@ -90,7 +90,7 @@ pub(super) fn notes_and_tests(page: &Page, findings: &Sorted) -> Markup {
         @if !(notes.is_empty() && passed.is_empty()) {
             section {
                 h2 { "Notes and tests" }
-                @if !notes.is_empty() { (folded("note", &findings.notes)) }
+                @if !notes.is_empty() { (fold_findings("note", &findings.notes)) }
                 @if !passed.is_empty() {
                     details.folded {
                         summary { (count_of(passed.len(), "condition")) " tested and not found" }

@@ -14,7 +14,7 @@ const STYLE: &str = include_str!("page.css");
 impl Page {
     /// `report.html`: works from the file, without a network.
     pub fn to_html(&self) -> String {
-        let findings = Sorted::of(&self.findings);
+        let findings = Sorted::from_findings(&self.findings);
         let sections = html! {
             @for (i, s) in self.sections.iter().enumerate() {
                 section.pair[is_pair(&s.blocks)] id=(format!("s{}", i + 1)) { h2 { (s.title) } @for b in &s.blocks { (block(b)) } }
@@ -68,7 +68,7 @@ pub(in crate::report) fn block(b: &Block) -> Markup {
         Block::Table(t) => table(t, ""),
         Block::Figure(f) => html! {
             (f)
-            noscript { @for p in pictures(f) { (still(&p, &f.label)) } }
+            noscript { @for p in pictures(f) { (picture_html(&p, &f.label)) } }
         },
         Block::Scene(s) => html! {
             (s.markup)
@@ -84,7 +84,7 @@ pub(in crate::report) fn block(b: &Block) -> Markup {
 }
 
 /// A picture that needs no script.
-fn still(picture: &Picture, label: &str) -> Markup {
+fn picture_html(picture: &Picture, label: &str) -> Markup {
     html! {
         figure.plot {
             @if !picture.title.is_empty() { b { (picture.title) } }

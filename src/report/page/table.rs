@@ -11,13 +11,13 @@ pub(super) fn table(t: &Table, caption: &str) -> Markup {
                 @if !caption.is_empty() { caption { (caption) } }
                 @if !t.head.is_empty() {
                     thead { tr { @for h in &t.head {
-                        @if h.is_empty() { td {} } @else { th scope="col" { (unbroken(h)) } }
+                        @if h.is_empty() { td {} } @else { th scope="col" { (keep_on_one_line(h)) } }
                     } } }
                 }
                 tbody { @for (r, row) in t.rows.iter().enumerate() {
                     tr { @for (c, cell) in row.iter().enumerate() {
-                        @if c == 0 && !cell.is_empty() { th scope="row" { (linked(t, r, c, cell)) } }
-                        @else { td { (linked(t, r, c, cell)) } }
+                        @if c == 0 && !cell.is_empty() { th scope="row" { (cell_html(t, r, c, cell)) } }
+                        @else { td { (cell_html(t, r, c, cell)) } }
                     } }
                 } }
             }
@@ -26,18 +26,18 @@ pub(super) fn table(t: &Table, caption: &str) -> Markup {
 }
 
 /// A cell, as a link where it leads to a file.
-fn linked(t: &Table, row: usize, column: usize, cell: &str) -> Markup {
+fn cell_html(t: &Table, row: usize, column: usize, cell: &str) -> Markup {
     // Links stand in the order of their rows.
     let first = t.links.partition_point(|l| l.row < row);
     let mut of_row = t.links.iter().skip(first).take_while(|l| l.row == row);
     match of_row.find(|l| l.column == column) {
         Some(l) => html! { a href=(reference(&l.path)) title=(l.title) { (cell) } },
-        None => html! { (unbroken(cell)) },
+        None => html! { (keep_on_one_line(cell)) },
     }
 }
 
 /// A short cell, such as a unit, stays on one line.
-fn unbroken(cell: &str) -> String {
+fn keep_on_one_line(cell: &str) -> String {
     const SHORT: usize = 8;
     match cell.chars().count() <= SHORT {
         true => cell.replace(' ', "\u{a0}"),

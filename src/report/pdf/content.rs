@@ -1,10 +1,10 @@
 //! Input of the PDF template: the page as JSON, with printable text only.
 
 use super::columns::{Fitted, LONGEST_WORD, fit_table, is_numeric};
-use super::glyphs::{breakable, printable, short_printable};
+use super::glyphs::{make_breakable, make_printable, short_printable};
 use super::shapes::picture_json;
 use crate::finding::{Finding, Severity};
-use crate::host::words::{capital, numbers_in_words};
+use crate::host::words::{capitalize, numbers_in_words};
 use crate::report::drawing::picture::Picture;
 use crate::report::drawing::{STROKES, pictures, views};
 use crate::report::page::{Block, Card, Page, Paper, Section, Table};
@@ -34,19 +34,19 @@ pub(super) fn content(page: &Page, origin: &Origin) -> Value {
     let units: Vec<[String; 2]> = origin
         .units
         .iter()
-        .map(|(q, u)| [printable(q), printable(u)])
+        .map(|(q, u)| [make_printable(q), make_printable(u)])
         .collect();
     let inputs: Vec<[String; 2]> = origin
         .inputs
         .iter()
-        .map(|(path, hash)| [breakable(path, 40), hash.clone()])
+        .map(|(path, hash)| [make_breakable(path, 40), hash.clone()])
         .collect();
     json!({
-        "title": breakable(&page.title, IN_TEXT),
-        "plain_title": printable(&page.title),
+        "title": make_breakable(&page.title, IN_TEXT),
+        "plain_title": make_printable(&page.title),
         "running": short_printable(&page.title, 80),
-        "summary": breakable(&page.summary, IN_TEXT),
-        "lead": printable(&page.lead),
+        "summary": make_breakable(&page.summary, IN_TEXT),
+        "lead": make_printable(&page.lead),
         "running_lead": short_printable(&page.lead, 50),
         "program": origin.program,
         "command": origin.command,
@@ -65,14 +65,14 @@ fn finding(f: &Finding) -> Value {
         Severity::Info => ("Note", "#5d7f9e"),
     };
     let numbers = numbers_in_words(f);
-    let numbers = numbers.map_or_else(String::new, |words| format!("{}.", capital(&words)));
+    let numbers = numbers.map_or_else(String::new, |words| format!("{}.", capitalize(&words)));
     json!({
         "word": word,
         "colour": colour,
-        "subject": breakable(&f.subject, IN_TEXT),
-        "message": breakable(&f.message, IN_TEXT),
+        "subject": make_breakable(&f.subject, IN_TEXT),
+        "message": make_breakable(&f.message, IN_TEXT),
         "numbers": numbers,
-        "remedy": breakable(&f.remedy, IN_TEXT),
+        "remedy": make_breakable(&f.remedy, IN_TEXT),
     })
 }
 
@@ -82,7 +82,7 @@ fn sheets(sections: &[Section]) -> Vec<Value> {
     for s in sections {
         let blocks = blocks(&s.blocks);
         let across = blocks.iter().any(|b| b["across"] == true);
-        let section = json!({ "title": printable(&s.title), "blocks": blocks });
+        let section = json!({ "title": make_printable(&s.title), "blocks": blocks });
         match out.last_mut() {
             Some((last, list)) if *last == across => list.push(section),
             _ => out.push((across, vec![section])),
@@ -98,17 +98,17 @@ fn blocks(list: &[Block]) -> Vec<Value> {
 }
 
 fn block(b: &Block) -> Vec<Value> {
-    let words = |kind: &str, t: &str| json!({ "kind": kind, "text": breakable(t, IN_TEXT) });
+    let words = |kind: &str, t: &str| json!({ "kind": kind, "text": make_breakable(t, IN_TEXT) });
     match b {
         Block::Text(t) => vec![words("text", t)],
         Block::Note(t) => vec![words("note", t)],
         Block::Stressed(lead, rest) => vec![json!({
-            "kind": "stressed", "lead": breakable(lead, IN_TEXT), "text": breakable(rest, IN_TEXT),
+            "kind": "stressed", "lead": make_breakable(lead, IN_TEXT), "text": make_breakable(rest, IN_TEXT),
         })],
         Block::Table(t) => table(t),
         Block::Figure(f) => {
             let left = f.choices.len().saturating_sub(f.on_paper);
-            let mut out = drawn(pictures(f));
+            let mut out = picture_blocks(pictures(f));
             out.push(words("note", &f.caption));
             if left > 0 && f.on_paper > 1 {
                 let n = f.choices.len();
@@ -118,7 +118,7 @@ fn block(b: &Block) -> Vec<Value> {
             out
         }
         Block::Scene(s) => {
-            let mut out = drawn(views(s));
+            let mut out = picture_blocks(views(s));
             out.push(words("note", &s.caption));
             if s.marks.iter().any(|m| m.axes.is_some()) {
                 out.push(words("note", STROKES));
@@ -126,7 +126,7 @@ fn block(b: &Block) -> Vec<Value> {
             out
         }
         Block::Lines(t) => {
-            let lines: Vec<String> = t.lines().take(MOST_ROWS).map(printable).collect();
+            let lines: Vec<String> = t.lines().take(MOST_ROWS).map(make_printable).collect();
             vec![json!({ "kind": "lines", "lines": lines })]
         }
         Block::Cards(cards) => cards.iter().flat_map(card).collect(),
@@ -141,15 +141,15 @@ fn block(b: &Block) -> Vec<Value> {
 }
 
 fn card(c: &Card) -> Vec<Value> {
-    let words = |kind: &str, t: &str| json!({ "kind": kind, "text": breakable(t, IN_TEXT) });
+    let words = |kind: &str, t: &str| json!({ "kind": kind, "text": make_breakable(t, IN_TEXT) });
     let mut out = vec![words("heading", &c.title), words("text", &c.text)];
-    out.extend(drawn(c.picture.iter().cloned().collect()));
+    out.extend(picture_blocks(c.picture.iter().cloned().collect()));
     let number = |(value, what): &(String, String)| words("note", &format!("{value} {what}"));
     out.extend(c.numbers.iter().map(number));
     out
 }
 
-fn drawn(pictures: Vec<Picture>) -> Vec<Value> {
+fn picture_blocks(pictures: Vec<Picture>) -> Vec<Value> {
     let value = |p: Picture| json!({ "kind": "picture", "picture": picture_json(&p) });
     pictures.into_iter().map(value).collect()
 }
@@ -168,7 +168,7 @@ fn table(t: &Table) -> Vec<Value> {
 fn piece(t: &Table, f: &Fitted) -> Value {
     let cell = |row: &Vec<String>, c: &usize| {
         let text = row.get(*c).map_or("", String::as_str);
-        breakable(text, LONGEST_WORD)
+        make_breakable(text, LONGEST_WORD)
     };
     let line =
         |row: &Vec<String>| -> Vec<String> { f.columns.iter().map(|c| cell(row, c)).collect() };

@@ -21,7 +21,7 @@ pub(super) fn fonts() -> &'static [Font] {
 
 /// The text as it can be printed: a character without a font is written as its number, `[U+4E2D]`, and so is one that would be invisible or turn the
 /// direction of reading. Nobody signs for an empty box.
-pub(super) fn printable(text: &str) -> String {
+pub(super) fn make_printable(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         if c.is_control() {
@@ -41,8 +41,8 @@ fn is_shown(c: char) -> bool {
 }
 
 /// Printable text in which words longer than `longest` characters may be broken.
-pub(super) fn breakable(text: &str, longest: usize) -> String {
-    let text = printable(text);
+pub(super) fn make_breakable(text: &str, longest: usize) -> String {
+    let text = make_printable(text);
     let mut out = String::with_capacity(text.len());
     for word in text.split_inclusive(char::is_whitespace) {
         let long = word.chars().count() > longest;
@@ -58,5 +58,5 @@ pub(super) fn breakable(text: &str, longest: usize) -> String {
 
 /// At most `most` characters of printable text, marked where some are left out.
 pub(super) fn short_printable(text: &str, most: usize) -> String {
-    shorten_to(&printable(text), most)
+    shorten_to(&make_printable(text), most)
 }

@@ -19,14 +19,14 @@ pub(super) fn picture_json(picture: &Picture) -> Value {
 fn shape(s: &Shape) -> Value {
     match s {
         Shape::Strokes { lines, colour, pen } => {
-            let lines: Vec<Vec<[f64; 2]>> = lines.iter().map(|l| rounded(l)).collect();
+            let lines: Vec<Vec<[f64; 2]>> = lines.iter().map(|l| round_points(l)).collect();
             json!({ "kind": "strokes", "lines": lines, "colour": colour, "pen": pen })
         }
         Shape::Face { corners, colour } => {
-            json!({ "kind": "face", "corners": rounded(corners), "colour": colour })
+            json!({ "kind": "face", "corners": round_points(corners), "colour": colour })
         }
         Shape::Region(corners, colour) => {
-            json!({ "kind": "face", "corners": rounded(corners), "colour": colour })
+            json!({ "kind": "face", "corners": round_points(corners), "colour": colour })
         }
         Shape::Area(area, colour) => json!({ "kind": "area", "area": area, "colour": colour }),
         Shape::Circle {
@@ -44,7 +44,7 @@ fn shape(s: &Shape) -> Value {
 }
 
 /// To the hundredth of a millimetre.
-fn rounded(line: &[[f64; 2]]) -> Vec<[f64; 2]> {
+fn round_points(line: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let near = |v: f64| (v * 100.0).round() / 100.0;
     line.iter().map(|p| p.map(near)).collect()
 }

@@ -22,7 +22,7 @@ fn page(sections: Vec<Section>) -> Page {
     Page::new(NASTY, NASTY, &findings, sections).on_paper(Paper::Signed)
 }
 
-fn drawn(sections: Vec<Section>) -> Vec<u8> {
+fn write_sections(sections: Vec<Section>) -> Vec<u8> {
     let inputs = [(NASTY.to_owned(), HASH.to_owned())];
     let units = [("force".to_owned(), "N".to_owned())];
     write_pdf(&page(sections), &origin(&inputs, &units)).unwrap()
@@ -95,10 +95,10 @@ fn text_of_users_is_no_markup_and_the_same_page_gives_the_same_bytes() {
             figure_section("", agreement(&[points], [NASTY, ""], [&names, &[]]), ""),
         ]
     };
-    let pdf = drawn(all());
+    let pdf = write_sections(all());
     assert!(pdf.starts_with(b"%PDF"));
     assert!(n_pages(&pdf) > 0);
-    assert_eq!(pdf, drawn(all()));
+    assert_eq!(pdf, write_sections(all()));
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn a_table_turns_the_sheet_before_it_is_cut_and_repeats_its_first_column_then() 
 
 #[test]
 fn a_long_table_goes_over_several_pages() {
-    let pdf = drawn(vec![table_section(
+    let pdf = write_sections(vec![table_section(
         "Long",
         &["a", "b"],
         &rows(500, 2, "x"),
@@ -159,13 +159,13 @@ fn a_long_table_goes_over_several_pages() {
 
 #[test]
 fn characters_that_no_font_has_are_written_as_numbers() {
-    assert_eq!(glyphs::printable("µε Δσ 12 ± 3 °"), "µε Δσ 12 ± 3 °");
-    assert_eq!(glyphs::printable("中"), "[U+4E2D]");
+    assert_eq!(glyphs::make_printable("µε Δσ 12 ± 3 °"), "µε Δσ 12 ± 3 °");
+    assert_eq!(glyphs::make_printable("中"), "[U+4E2D]");
     assert_eq!(
-        glyphs::printable("a\u{202e}b\u{200b}\tc"),
+        glyphs::make_printable("a\u{202e}b\u{200b}\tc"),
         "a[U+202E]b[U+200B] c"
     );
-    let broken = glyphs::breakable(&"w".repeat(50), 20);
+    let broken = glyphs::make_breakable(&"w".repeat(50), 20);
     assert_eq!(broken.replace('\u{200b}', ""), "w".repeat(50));
     assert!(
         broken
@@ -173,7 +173,7 @@ fn characters_that_no_font_has_are_written_as_numbers() {
             .all(|part| part.chars().count() <= 20)
     );
     assert_eq!(
-        glyphs::breakable("short words stay", 20),
+        glyphs::make_breakable("short words stay", 20),
         "short words stay"
     );
 }

@@ -76,7 +76,7 @@ fn file(name: &'static str) -> Result<FileId, PdfError> {
     Ok(RootedPath::new(VirtualRoot::Project, path).intern())
 }
 
-fn absent(id: FileId) -> FileError {
+fn missing_file(id: FileId) -> FileError {
     FileError::NotFound(id.get().vpath().get_without_slash().into())
 }
 
@@ -97,7 +97,7 @@ impl World for Paper {
         if id == self.template.id() {
             Ok(self.template.clone())
         } else {
-            Err(absent(id))
+            Err(missing_file(id))
         }
     }
 
@@ -105,7 +105,7 @@ impl World for Paper {
         if id == self.data.0 {
             Ok(self.data.1.clone())
         } else {
-            Err(absent(id))
+            Err(missing_file(id))
         }
     }
 

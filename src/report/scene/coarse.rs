@@ -35,10 +35,10 @@ pub(super) fn coarsen(model: &Model, part: &Part, most: usize) -> Drawn {
     let width = |s: f64| size * 0.001 * 250_f64.powf(s);
     let (mut fine, mut wide) = (0.0, 1.0);
     let rank = ranks(part, &at);
-    let mut best = gathered(part, &at, &rank, lo, width(wide));
+    let mut best = merge_grids_in_cubes(part, &at, &rank, lo, width(wide));
     for _ in 0..STEPS {
         let middle = 0.5 * (fine + wide);
-        let tried = gathered(part, &at, &rank, lo, width(middle));
+        let tried = merge_grids_in_cubes(part, &at, &rank, lo, width(middle));
         if tried.triangles.len() <= most {
             wide = middle;
             best = tried;
@@ -83,7 +83,7 @@ fn ranks(part: &Part, at: &[Vec3]) -> Vec<u8> {
 
 /// Grids in cubes of width `h`. The one nearest to the middle of its cube's grids of the highest rank represents all: borders keep their places, so
 /// that parts that meet are not torn apart.
-fn gathered(part: &Part, at: &[Vec3], rank: &[u8], lo: Vec3, h: f64) -> Drawn {
+fn merge_grids_in_cubes(part: &Part, at: &[Vec3], rank: &[u8], lo: Vec3, h: f64) -> Drawn {
     let cube = |x: &Vec3| ((x - lo) / h).map(|v| v.floor() as i64);
     let mut cubes: BTreeMap<[i64; 3], (Vec3, usize, u8)> = BTreeMap::new();
     for (x, rank) in at.iter().zip(rank) {

@@ -67,7 +67,7 @@ fn switches(scene: &Scene, parts: &[Part]) -> Markup {
     html! {
         div.controls {
             @if !scene.fields.is_empty() {
-                label { (coloured(scene)) " " select data-role="field" {
+                label { (colour_quantity(scene)) " " select data-role="field" {
                     (options(scene.fields.iter().map(|f| f.name.as_str()).collect()))
                     option value="-1" selected[plain] { "off: colour by property" }
                 } }
@@ -90,7 +90,7 @@ fn switches(scene: &Scene, parts: &[Part]) -> Markup {
             label { input type="checkbox" data-role="edges" checked; " edges" }
             span.views {
                 @for (view, word) in [("iso", "3D"), ("x", "front"), ("y", "side"), ("z", "top")] {
-                    button type="button" data-view=(view) title=(looking(view)) { (word) }
+                    button type="button" data-view=(view) title=(view_title(view)) { (word) }
                 }
             }
             @if parts.len() > 1 {
@@ -108,7 +108,7 @@ fn switches(scene: &Scene, parts: &[Part]) -> Markup {
 }
 
 /// Returns the quantity that the colours show.
-fn coloured(scene: &Scene) -> &'static str {
+fn colour_quantity(scene: &Scene) -> &'static str {
     let mut signed = scene.fields.iter().map(|f| f.values.is_signed());
     let first = signed.next();
     match (first, signed.all(|s| Some(s) == first)) {
@@ -118,7 +118,7 @@ fn coloured(scene: &Scene) -> &'static str {
     }
 }
 
-fn looking(view: &str) -> String {
+fn view_title(view: &str) -> String {
     match view {
         "iso" => "from a corner".to_owned(),
         axis => format!("look along {axis}"),

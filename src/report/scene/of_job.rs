@@ -21,7 +21,7 @@ const MOST_OF_SET: usize = 60;
 /// The scene of a job with a model: its gauges, its unit loads.
 pub fn scene_of_job<'a>(job: &Job, prepared: &'a Prepared) -> Option<Scene<'a>> {
     let fields = prepared.fields.as_ref()?;
-    let mark = |g| Mark::of(g, String::new());
+    let mark = |g| Mark::from_gauge(g, String::new());
     Some(scene_of(
         job,
         fields,
@@ -47,7 +47,7 @@ pub fn scene_of_loads<'a>(job: &Job, model: &'a Model) -> Scene<'a> {
         LoadActs::Named => Vec::new(),
         LoadActs::AtGrid { grid, .. } => {
             let label = format!("{}, grid {grid}", l.name);
-            let arrow = placed(job, model, &l.name).map(|(at, along, twist)| Arrow {
+            let arrow = locate_load(job, model, &l.name).map(|(at, along, twist)| Arrow {
                 at,
                 along,
                 twist,
@@ -61,7 +61,7 @@ pub fn scene_of_loads<'a>(job: &Job, model: &'a Model) -> Scene<'a> {
         model,
         marks: Vec::new(),
         fields: Vec::new(),
-        arrows: some(ArrowSet {
+        arrows: list_unless_empty(ArrowSet {
             name: "all unit loads".into(),
             arrows: arrows.collect(),
         }),
@@ -72,7 +72,7 @@ pub fn scene_of_loads<'a>(job: &Job, model: &'a Model) -> Scene<'a> {
     }
 }
 
-fn some(set: ArrowSet) -> Vec<ArrowSet> {
+fn list_unless_empty(set: ArrowSet) -> Vec<ArrowSet> {
     if set.arrows.is_empty() {
         Vec::new()
     } else {
@@ -103,7 +103,7 @@ pub fn fields_of<'a>(job: &Job, fields: &'a Fields) -> Vec<Field<'a>> {
 }
 
 /// Where load `name` acts, its unit vector in the basic frame, its kind; `None` for a load set.
-fn placed(job: &Job, model: &Model, name: &str) -> Option<(Vec3, Vec3, Twist)> {
+fn locate_load(job: &Job, model: &Model, name: &str) -> Option<(Vec3, Vec3, Twist)> {
     let load = job.loads.iter().find(|l| l.name == name)?;
     let LoadActs::AtGrid {
         grid,
@@ -141,7 +141,7 @@ pub fn run_arrows(job: &Job, model: &Model, runs: &[RecoveredRun], shown: Shown)
             .loads
             .iter()
             .filter_map(|(name, v, unit)| {
-                let (at, along, twist) = placed(job, model, name)?;
+                let (at, along, twist) = locate_load(job, model, name)?;
                 let value = v[k];
                 let label = match shown {
                     Shown::Interval => format!(
@@ -228,7 +228,7 @@ pub fn scene_of_solution<'a>(
             UnitLoad::Set(sid) => arrows_of_set(model, *sid),
             UnitLoad::Temperature { .. } => Vec::new(),
         });
-        some(ArrowSet {
+        list_unless_empty(ArrowSet {
             name: name(case.subcase, &case.label),
             arrows: arrows.collect(),
         })
@@ -268,7 +268,7 @@ pub fn placed_mark(p: &PlacedGauge) -> Mark {
         "{:.1}° as seen, {}{kept}, leverage {:.3}, {:.0} µε under the expected loads",
         p.angle_seen_deg, p.bridge, p.leverage, p.expected_microstrain
     );
-    Mark::of(&p.gauge, note)
+    Mark::from_gauge(&p.gauge, note)
 }
 
 /// A gauge with its gap.

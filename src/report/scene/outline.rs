@@ -33,7 +33,7 @@ pub(super) fn outline(model: &Model, faces: impl Iterator<Item = [GridIx; 4]>) -
             e.2 |= e.1.dot(&normal).abs() < 0.866;
         }
     }
-    thinned(
+    thin_edges(
         edges
             .iter()
             .filter(|(_, (n, _, fold))| n_faces <= SMALL || *n != 2 || *fold)
@@ -47,10 +47,10 @@ pub(super) fn bars(model: &Model) -> Vec<[Vec3; 2]> {
     let at = |g: GridIx| model.grids.get(g.us()).map(|g| g.x);
     let beams = model.beams.iter().map(|b| b.grids);
     let ends = beams.chain(model.rods.iter().map(|r| r.grids));
-    thinned(ends.filter_map(|[p, q]| Some([at(p)?, at(q)?])).collect())
+    thin_edges(ends.filter_map(|[p, q]| Some([at(p)?, at(q)?])).collect())
 }
 
-fn thinned(list: Vec<[Vec3; 2]>) -> Vec<[Vec3; 2]> {
+fn thin_edges(list: Vec<[Vec3; 2]>) -> Vec<[Vec3; 2]> {
     let stride = list.len().div_ceil(MOST_EDGES).max(1);
     list.into_iter().step_by(stride).collect()
 }

@@ -6,7 +6,7 @@ use super::pointing::script_data;
 use super::types::{Arrow, Field, Mark, Pointing, Scene, Twist};
 use crate::fe::strain_tensor::Surface;
 use crate::model::{Model, Vec3};
-use crate::report::figure::{STEPS, packed_deltas, short, shorts, steps_of};
+use crate::report::figure::{STEPS, packed_deltas, round_number, round_numbers, steps_of};
 use serde_json::{Value, json};
 
 /// Steps along the longest side of what is drawn: a millionth of it is finer than a pixel, and than a hand glues.
@@ -21,7 +21,7 @@ struct Raster {
 }
 
 impl Raster {
-    fn of(lo: Vec3, hi: Vec3) -> Self {
+    fn from_extent(lo: Vec3, hi: Vec3) -> Self {
         let longest = (hi - lo).max();
         Self {
             origin: lo,
@@ -29,7 +29,7 @@ impl Raster {
         }
     }
 
-    fn packed(&self, points: impl Iterator<Item = Vec3>) -> Value {
+    fn pack_points(&self, points: impl Iterator<Item = Vec3>) -> Value {
         let steps: Vec<i64> = points
             .flat_map(|p| {
                 ((p - self.origin) / self.step)
@@ -52,9 +52,9 @@ pub(super) fn packed_scene(
     let points = parts.iter().flat_map(|p| vertices(scene.model, p));
     let ends = edges.iter().chain(rods).flatten().copied();
     let (lo, hi) = extent(points.chain(ends).chain(scene.marks.iter().map(|m| m.at)));
-    let raster = Raster::of(lo, hi);
+    let raster = Raster::from_extent(lo, hi);
     json!({
-        "size": short((hi - lo).norm()),
+        "size": round_number((hi - lo).norm()),
         "box": [three(lo), three(hi)],
         "origin": [lo.x, lo.y, lo.z],
         "step": raster.step,
@@ -62,8 +62,8 @@ pub(super) fn packed_scene(
         "length": scene.length,
         "steps": STEPS,
         "parts": parts.iter().map(|p| part(scene, p, &raster)).collect::<Vec<_>>(),
-        "edges": raster.packed(edges.iter().flatten().copied()),
-        "bars": raster.packed(rods.iter().flatten().copied()),
+        "edges": raster.pack_points(edges.iter().flatten().copied()),
+        "bars": raster.pack_points(rods.iter().flatten().copied()),
         "marks": scene.marks.iter().map(mark).collect::<Vec<_>>(),
         "fields": scene.fields.iter().map(|f| field(scene.model, f, parts)).collect::<Vec<_>>(),
         "arrows": scene.arrows.iter().map(|set| {
@@ -100,7 +100,7 @@ fn part(scene: &Scene, p: &Part, raster: &Raster) -> Value {
     let grids: Vec<i64> = p.drawn.vertices.iter().map(id).collect();
     let mut out = json!({
         "name": p.name, "whole": p.drawn.whole,
-        "points": raster.packed(vertices(model, p)),
+        "points": raster.pack_points(vertices(model, p)),
         "faces": packed_deltas(&faces, 4),
         "grids": packed_deltas(&grids, 1),
     });
@@ -154,7 +154,7 @@ fn extent(points: impl Iterator<Item = Vec3>) -> (Vec3, Vec3) {
 }
 
 fn three(v: Vec3) -> Vec<Value> {
-    shorts([v.x, v.y, v.z])
+    round_numbers([v.x, v.y, v.z])
 }
 
 fn mark(m: &Mark) -> Value {
@@ -164,13 +164,13 @@ fn mark(m: &Mark) -> Value {
     };
     json!({
         "name": m.name, "at": three(m.at), "side": side, "note": m.note,
-        "along": m.axes.map(|a| three(a[0])), "out": m.axes.map(|a| three(a[1])), "gap": m.gap.map(shorts),
+        "along": m.axes.map(|a| three(a[0])), "out": m.axes.map(|a| three(a[1])), "gap": m.gap.map(round_numbers),
     })
 }
 
 fn field(model: &Model, f: &Field, parts: &[Part]) -> Value {
     let values = Values::of_field(model, &f.values);
-    let by_part: Vec<[Vec<f64>; 2]> = parts.iter().map(|p| values.on(p)).collect();
+    let by_part: Vec<[Vec<f64>; 2]> = parts.iter().map(|p| values.strain_at_vertices(p)).collect();
     let all = by_part.iter().flatten().flatten();
     let most = all
         .filter(|v| v.is_finite())
@@ -186,7 +186,7 @@ fn field(model: &Model, f: &Field, parts: &[Part]) -> Value {
         })
         .collect();
     json!({
-        "name": f.name, "unit": f.unit, "signed": f.values.is_signed(), "step": short(most * f.scale / STEPS), "values": packed,
+        "name": f.name, "unit": f.unit, "signed": f.values.is_signed(), "step": round_number(most * f.scale / STEPS), "values": packed,
     })
 }
 
@@ -199,6 +199,6 @@ fn arrow(a: &Arrow, scene: &Scene) -> Value {
     let most = of_kind.map(|b| b.value.abs()).fold(0.0, f64::max);
     let share = if most > 0.0 { a.value / most } else { 0.0 };
     json!({
-        "at": three(a.at), "along": three(a.along), "share": short(share), "label": a.label, "moment": a.twist == Twist::Moment,
+        "at": three(a.at), "along": three(a.along), "share": round_number(share), "label": a.label, "moment": a.twist == Twist::Moment,
     })
 }

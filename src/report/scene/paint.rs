@@ -16,7 +16,7 @@ impl Values {
     /// Returns the values of a field, in the order of the model's shells and solids.
     pub(super) fn of_field(model: &Model, values: &FieldValues) -> Self {
         match values {
-            FieldValues::Strain(case) => Self::of(model, case),
+            FieldValues::Strain(case) => Self::from_case(model, case),
             FieldValues::Magnitudes(of_shells) => {
                 let mut shells = of_shells.clone();
                 shells.resize(model.shells.len(), [f64::NAN; 2]);
@@ -27,7 +27,7 @@ impl Values {
     }
 
     /// Returns the strain of a load case: in the plane for shells, at the centre for solids (equal on both sides).
-    pub(super) fn of(model: &Model, case: &CaseResult) -> Self {
+    pub(super) fn from_case(model: &Model, case: &CaseResult) -> Self {
         let mut shells = vec![[f64::NAN; 2]; model.shells.len()];
         for (ix, strain) in case.shells.elements.iter().zip(&case.shells.centre) {
             if let Some(slot) = shells.get_mut(ix.us()) {
@@ -43,7 +43,7 @@ impl Values {
         Self { shells, solids }
     }
 
-    fn at(&self, owner: Owner) -> [f64; 2] {
+    fn strain_of_owner(&self, owner: Owner) -> [f64; 2] {
         match owner {
             Owner::Shell(i) => self.shells[i],
             Owner::Solid(i) => self.solids[i],
@@ -53,11 +53,11 @@ impl Values {
 
     /// At the vertices of a part, bottom and top: the mean of the elements around each grid, and of the grids that a vertex represents the one with
     /// the largest magnitude.
-    pub(super) fn on(&self, part: &Part) -> [Vec<f64>; 2] {
+    pub(super) fn strain_at_vertices(&self, part: &Part) -> [Vec<f64>; 2] {
         [0, 1].map(|side| {
             let mut sums = vec![(0.0, 0_u32); part.grids.len()];
             for (owner, corners) in &part.faces {
-                let v = self.at(*owner)[side];
+                let v = self.strain_of_owner(*owner)[side];
                 let n = if corners[2] == corners[3] { 3 } else { 4 };
                 for c in corners.iter().take(n).filter(|_| v.is_finite()) {
                     sums[*c as usize].0 += v;

@@ -2,7 +2,7 @@
 
 use super::coarse::coarsen;
 use super::part::{Owner, Part};
-use super::solids::outside;
+use super::solids::outer_faces;
 use crate::model::{GridIx, Model};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -35,7 +35,7 @@ pub(super) fn skin(model: &Model, fields: usize, finest: Finest) -> Vec<Part> {
 
 /// Faces by property, at most so many triangles in all.
 pub(super) fn skin_within(model: &Model, most: usize) -> Vec<Part> {
-    let mut parts = together(raw(model));
+    let mut parts = merge_small_parts(collect_faces(model));
     let mut order: Vec<usize> = (0..parts.len()).collect();
     order.sort_by_key(|i| parts[*i].n_triangles());
     let (mut left, mut n) = (most, parts.len());
@@ -51,7 +51,7 @@ pub(super) fn skin_within(model: &Model, most: usize) -> Vec<Part> {
 /// A face before its part numbers its grids.
 type RawFace = (Owner, [GridIx; 4]);
 
-fn raw(model: &Model) -> Vec<(String, Vec<RawFace>)> {
+fn collect_faces(model: &Model) -> Vec<(String, Vec<RawFace>)> {
     let mut by_kind: BTreeMap<(u8, u32), Vec<RawFace>> = BTreeMap::new();
     for (i, s) in model.shells.iter().enumerate() {
         let id = model
@@ -63,7 +63,7 @@ fn raw(model: &Model) -> Vec<(String, Vec<RawFace>)> {
         let faces = by_kind.entry((0, id)).or_default();
         faces.push((Owner::Shell(i), corners));
     }
-    for (i, corners) in outside(model) {
+    for (i, corners) in outer_faces(model) {
         let property = model.solids[i].property as usize;
         let id = model.solid_properties.get(property).map_or(0, |p| p.id);
         let faces = by_kind.entry((1, id)).or_default();
@@ -88,7 +88,7 @@ fn raw(model: &Model) -> Vec<(String, Vec<RawFace>)> {
 }
 
 /// Numbers the grids of every part; the smallest beyond [`MOST_PARTS`] become one of shells and one of the rest.
-fn together(mut list: Vec<(String, Vec<RawFace>)>) -> Vec<Part> {
+fn merge_small_parts(mut list: Vec<(String, Vec<RawFace>)>) -> Vec<Part> {
     if list.len() > MOST_PARTS {
         // Shells stand apart from the rest: an element of a part of shells is a face.
         let mut order: Vec<usize> = (0..list.len()).collect();

@@ -4,7 +4,7 @@ use crate::model::{GridIx, Model, solid_faces};
 use std::collections::HashMap;
 
 /// Solid index and corners of each outer face; a triangle repeats its third corner.
-pub(super) fn outside(model: &Model) -> Vec<(usize, [GridIx; 4])> {
+pub(super) fn outer_faces(model: &Model) -> Vec<(usize, [GridIx; 4])> {
     let mut seen: HashMap<[u32; 4], (usize, [GridIx; 4], usize)> = HashMap::new();
     for (i, solid) in model.solids.iter().enumerate() {
         for face in solid_faces(solid.shape) {

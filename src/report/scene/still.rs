@@ -55,11 +55,11 @@ pub(in crate::report) fn draw_still(scene: &Scene) -> Picture {
     let colours: Vec<Vec<f64>> = parts
         .iter()
         .map(|p| match &values {
-            Some(v) => larger(v.on(p)),
+            Some(v) => larger_of_sides(v.strain_at_vertices(p)),
             None => Vec::new(),
         })
         .collect();
-    let most = largest(&colours);
+    let most = colour_limit(&colours);
     let mut faces = Vec::new();
     for (part, values) in parts.iter().zip(&colours) {
         for t in &part.drawn.triangles {
@@ -81,7 +81,7 @@ pub(in crate::report) fn draw_still(scene: &Scene) -> Picture {
         .iter()
         .map(|l| l.map(flat))
         .collect();
-    let frame = Frame::about(
+    let frame = Frame::fit_points(
         (faces.iter().flat_map(|f| f.corners))
             .chain(bars.iter().flatten().copied())
             .chain(scene.marks.iter().map(|m| flat(m.at))),
@@ -125,12 +125,12 @@ fn shown_field<'a, 'b>(scene: &'b Scene<'a>) -> Option<&'b Field<'a>> {
 }
 
 /// The larger magnitude of both sides.
-fn larger([bottom, top]: [Vec<f64>; 2]) -> Vec<f64> {
+fn larger_of_sides([bottom, top]: [Vec<f64>; 2]) -> Vec<f64> {
     let of = |(a, b): (&f64, &f64)| a.abs().max(b.abs());
     bottom.iter().zip(&top).map(of).collect()
 }
 
-fn largest(colours: &[Vec<f64>]) -> f64 {
+fn colour_limit(colours: &[Vec<f64>]) -> f64 {
     let mut sizes: Vec<f64> = colours.iter().flatten().copied().collect();
     sizes.retain(|v| v.is_finite());
     sizes.sort_by(f64::total_cmp);
@@ -242,7 +242,7 @@ struct Frame {
 
 impl Frame {
     /// Holds the points, with so much space above and below them.
-    fn about(points: impl Iterator<Item = [f64; 2]>, above: f64) -> Self {
+    fn fit_points(points: impl Iterator<Item = [f64; 2]>, above: f64) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for p in points.filter(|p| p.iter().all(|v| v.is_finite())) {
             for k in 0..2 {

@@ -69,7 +69,7 @@ fn plate(n: u32, of_one: usize) -> Model {
 }
 
 /// Strain `exx` at the bottom and its negative at the top of every shell.
-fn bent(model: &Model, exx: impl Fn(usize) -> f64) -> CaseResult {
+fn bending_case(model: &Model, exx: impl Fn(usize) -> f64) -> CaseResult {
     let n = model.shells.len();
     CaseResult {
         shells: ShellField {
@@ -169,8 +169,8 @@ fn a_large_model_is_drawn_coarser_and_its_small_parts_stay_whole() {
 fn a_vertex_takes_the_mean_around_its_grid_and_of_its_grids_the_largest() {
     let model = plate(2, 9);
     let parts = skin(&model, 1, Finest::FewFields);
-    let values = Values::of(&model, &bent(&model, |i| i as f64));
-    let [bottom, top] = values.on(&parts[0]);
+    let values = Values::from_case(&model, &bending_case(&model, |i| i as f64));
+    let [bottom, top] = values.strain_at_vertices(&parts[0]);
     // The middle grid touches elements 0 to 3, the first corner element 0 alone.
     let at = |id: u32| {
         let local = parts[0].grids.iter().position(|g| g.0 + 1 == id).unwrap();
@@ -181,14 +181,14 @@ fn a_vertex_takes_the_mean_around_its_grid_and_of_its_grids_the_largest() {
     assert_eq!(bottom[at(9)], 3.0);
     // A single hot element is not lost where 313,600 become a few ten thousand: it keeps the mean of the four around its grid.
     let model = plate(560, 0);
-    let hot = Values::of(
+    let hot = Values::from_case(
         &model,
-        &bent(&model, |i| if i == 100_000 { 4.0 } else { 0.0 }),
+        &bending_case(&model, |i| if i == 100_000 { 4.0 } else { 0.0 }),
     );
     let parts = skin(&model, 1, Finest::FewFields);
     let most = parts
         .iter()
-        .flat_map(|p| hot.on(p)[0].clone())
+        .flat_map(|p| hot.strain_at_vertices(p)[0].clone())
         .fold(0.0, f64::max);
     assert_eq!(most, 1.0);
 }
@@ -199,7 +199,7 @@ fn numbers_of_shells_reach_the_vertices_without_a_strain() {
     let parts = skin(&model, 1, Finest::FewFields);
     let given = [2.0, 4.0, 6.0, 8.0].map(|v| [v, f64::NAN]);
     let values = Values::of_field(&model, &FieldValues::Magnitudes(given.to_vec()));
-    let [bottom, top] = values.on(&parts[0]);
+    let [bottom, top] = values.strain_at_vertices(&parts[0]);
     // Nine grids in rows of three: a corner has its element's number, a side the mean of two, the middle that of four.
     let at = |id: u32| {
         let local = parts[0].grids.iter().position(|g| g.0 + 1 == id).unwrap();
@@ -212,7 +212,7 @@ fn numbers_of_shells_reach_the_vertices_without_a_strain() {
 #[test]
 fn colours_of_magnitudes_begin_at_zero_and_those_of_strain_lie_about_it() {
     let model = plate(2, 9);
-    let case = bent(&model, |i| i as f64 - 1.5);
+    let case = bending_case(&model, |i| i as f64 - 1.5);
     let stress = FieldValues::Magnitudes(vec![[3.0, 5.0]; 4]);
     for (values, signed) in [(FieldValues::Strain(&case), true), (stress, false)] {
         let scene = Scene {
@@ -289,7 +289,7 @@ fn the_outline_of_a_large_plate_is_its_border() {
 #[test]
 fn a_page_of_a_large_model_stays_small() {
     let model = plate(560, 100);
-    let case = bent(&model, |i| (i as f64).sin());
+    let case = bending_case(&model, |i| (i as f64).sin());
     let field = |name: &str| Field {
         name: name.into(),
         unit: "µε".into(),

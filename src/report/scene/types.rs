@@ -61,7 +61,7 @@ impl Default for Places {
 
 impl Places {
     /// Returns the places that `[candidates]` of a job states.
-    pub fn of(candidates: &Candidates) -> Self {
+    pub fn from_candidates(candidates: &Candidates) -> Self {
         let properties = |list: &Option<PropertyIds>| list.as_ref().map(|p| p.ids.clone());
         let lists = [
             ("properties", &properties(&candidates.properties)),
@@ -107,7 +107,7 @@ pub struct Mark {
 
 impl Mark {
     /// A gauge laid onto the model.
-    pub fn of(gauge: &Gauge, note: String) -> Self {
+    pub fn from_gauge(gauge: &Gauge, note: String) -> Self {
         Self {
             name: gauge.name.clone(),
             at: gauge.position,

@@ -114,12 +114,12 @@ fn fill(out: &mut Worksheet, sheet: &Sheet) -> Result<(), XlsxError> {
         .set_border_bottom(FormatBorder::Thin);
     out.set_name(&sheet.name)?;
     for (c, name) in (0_u16..).zip(&sheet.columns) {
-        out.write_string_with_format(0, c, fitting(name), &head)?;
+        out.write_string_with_format(0, c, shorten_to_cell(name), &head)?;
     }
     for (r, row) in (1_u32..).zip(&sheet.rows) {
         for (c, cell) in (0_u16..).zip(row) {
             match cell {
-                Cell::Text(text) => out.write_string(r, c, fitting(text))?,
+                Cell::Text(text) => out.write_string(r, c, shorten_to_cell(text))?,
                 Cell::Number(x) if x.is_finite() => out.write_number(r, c, *x)?,
                 Cell::Number(_) => out,
             };
@@ -136,7 +136,7 @@ fn fill(out: &mut Worksheet, sheet: &Sheet) -> Result<(), XlsxError> {
 }
 
 /// Shortens text to the limit of a spreadsheet cell; shortened text ends in two points.
-fn fitting(text: &str) -> std::borrow::Cow<'_, str> {
+fn shorten_to_cell(text: &str) -> std::borrow::Cow<'_, str> {
     // The limit counts UTF-16 units; a character has at most two of them.
     if text.len() <= MOST_TEXT || text.encode_utf16().count() <= MOST_TEXT {
         return text.into();

@@ -17,7 +17,7 @@ pub fn gauge_sheets(
 ) -> Vec<Sheet> {
     vec![
         plan(placed),
-        gluing(placed, model),
+        gluing_sheet(placed, model),
         loads(load_sigma, worst),
         sensitivity(s),
     ]
@@ -87,7 +87,7 @@ fn plan(placed: &[PlacedGauge]) -> Sheet {
     sheet
 }
 
-fn gluing(placed: &[PlacedGauge], model: &Model) -> Sheet {
+fn gluing_sheet(placed: &[PlacedGauge], model: &Model) -> Sheet {
     let mut sheet = Sheet::new(
         "Gluing sheet",
         &[

@@ -1,7 +1,7 @@
 //! The page of `strains`: what was read, and where it is hot.
 
 use crate::fe::Solution;
-use crate::fe::strain_rows::{Location, Point, StrainRow, hottest, largest_strain};
+use crate::fe::strain_rows::{Location, Point, StrainRow, largest_strain, largest_strain_rows};
 use crate::finding::Finding;
 use crate::model::Model;
 use crate::report::page::{Block, Page, Section, number};
@@ -44,7 +44,10 @@ pub fn strains_page(title: &str, model: &Model, solution: &Solution, findings: &
         &scene_of_solution(model, &[], solution),
     ));
     for case in solution.cases.iter().take(MOST_CASES) {
-        let rows: Vec<Vec<String>> = hottest(model, case, HOTTEST).iter().map(line).collect();
+        let rows: Vec<Vec<String>> = largest_strain_rows(model, case, HOTTEST)
+            .iter()
+            .map(line)
+            .collect();
         let head = [
             "element",
             "type",

@@ -69,7 +69,7 @@ pub fn reconcile_page(report: &GapReport<'_>) -> Page {
     let moved: Vec<Vec<String>> = outcome
         .loads
         .iter()
-        .filter(|l| l.moved())
+        .filter(|l| l.is_significant())
         .map(|l| {
             let kn = [l.stated, l.before, l.after, l.sigma].map(|v| format!("{v:.2}"));
             [l.run.clone(), l.load.clone()]

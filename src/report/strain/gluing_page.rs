@@ -46,7 +46,7 @@ pub fn gluing_page(title: &str, placed: &[PlacedGauge], scene: &Scene) -> Page {
 
 fn card(model: &Model, p: &PlacedGauge, length: &str) -> Card {
     let g = &p.gauge;
-    let view = View::of(p);
+    let view = View::from_gauge(p);
     let corners = corner_distances(model, g);
     let corners = corners
         .iter()
@@ -78,7 +78,7 @@ fn card(model: &Model, p: &PlacedGauge, length: &str) -> Card {
         text,
         numbers: vec![
             (
-                [x.x, x.y, x.z].map(plain).join(", "),
+                [x.x, x.y, x.z].map(format_tenths).join(", "),
                 format!("x, y, z, {length}")
                     .trim_end_matches(", ")
                     .to_owned(),
@@ -101,7 +101,7 @@ fn card(model: &Model, p: &PlacedGauge, length: &str) -> Card {
 }
 
 /// One digit after the point; nothing is written as -0.
-fn plain(v: f64) -> String {
+fn format_tenths(v: f64) -> String {
     format!("{:.1}", (v * 10.0).round() / 10.0 + 0.0)
 }
 
@@ -112,7 +112,7 @@ struct View {
 }
 
 impl View {
-    fn of(p: &PlacedGauge) -> Self {
+    fn from_gauge(p: &PlacedGauge) -> Self {
         let out = p.gauge.outward();
         // On a level face y is up.
         let upright = match out.z.abs() > 0.9 {
@@ -208,7 +208,7 @@ fn place_in_words(model: &Model, p: &PlacedGauge, length: &str) -> String {
         words.push_str(&format!(", {way}"));
     }
     if let Some((id, v)) = &p.reference {
-        let v = v.map(plain).join(", ");
+        let v = v.map(format_tenths).join(", ");
         words.push_str(&format!(". From {id}: {v}"));
     }
     words

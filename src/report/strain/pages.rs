@@ -241,7 +241,7 @@ struct Alike<'a> {
 }
 
 /// Groups the loads of all runs by unit and size, the largest first, so that no load flattens the axis of another.
-fn alike(runs: &[RecoveredRun]) -> Vec<Alike<'_>> {
+fn group_loads_by_size(runs: &[RecoveredRun]) -> Vec<Alike<'_>> {
     let mut sizes: BTreeMap<(&str, &str), f64> = BTreeMap::new();
     for (name, values, unit) in runs.iter().flat_map(|r| &r.loads) {
         let size = sizes.entry((unit.as_str(), name.as_str())).or_default();
@@ -273,7 +273,7 @@ fn bars(runs: &[RecoveredRun], ends: Ends) -> Vec<Block> {
             "Wide bars reach from the smallest to the largest value of the record, points are means. They show the size of a load, not its uncertainty."
         }
     };
-    let groups = alike(runs);
+    let groups = group_loads_by_size(runs);
     let figure = |group: &Alike| {
         let of_run = |r: &RecoveredRun| -> (String, Vec<IntervalRow>) {
             let of_group = |l: &&(String, [f64; 3], String)| {
@@ -311,7 +311,7 @@ mod tests {
             run: "R1".to_owned(),
             loads,
         };
-        let groups = alike(std::slice::from_ref(&run));
+        let groups = group_loads_by_size(std::slice::from_ref(&run));
         let names: Vec<Vec<&str>> = groups.iter().map(|g| g.names.clone()).collect();
         assert_eq!(
             names,

@@ -16,7 +16,7 @@ pub fn solution_page(
     scene: &Scene,
     findings: &[Finding],
 ) -> Page {
-    let units = Units::of(system);
+    let units = Units::from_system(system);
     let rows = model_rows(report, &units);
     let mut sections = vec![table_section("Model", &["quantity", "value"], &rows, "")];
     sections.push(scene_section("Loads and strain", scene));
@@ -113,7 +113,7 @@ struct Units {
 
 impl Units {
     /// Returns the names of the units of a system; the deck's own units if none is stated.
-    fn of(system: Option<UnitSystem>) -> Self {
+    fn from_system(system: Option<UnitSystem>) -> Self {
         let Some(system) = system else {
             return Self {
                 mass: "deck's unit".into(),

@@ -23,6 +23,6 @@ pub fn numbers<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<f64>, D::Error>
 ///
 /// # Errors
 /// A value that is neither a number nor null.
-pub fn infinite<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+pub fn number_or_infinity<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     Ok(Option::<f64>::deserialize(from)?.unwrap_or(f64::INFINITY))
 }

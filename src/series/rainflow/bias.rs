@@ -34,7 +34,7 @@ impl Bias {
     ///
     /// # Reference
     /// J.R. Cook, L.A. Stefanski, Simulation-extrapolation estimation in parametric measurement error models, JASA 89 (1994) 1314-1328.
-    pub fn of(damage: [f64; 3]) -> Self {
+    pub fn from_damage(damage: [f64; 3]) -> Self {
         debug_assert_eq!(NOISE, [1.0, 2.0, 3.0]);
         let [once, twice, thrice] = damage;
         if !(once > 0.0 && twice > once && thrice > 0.0) {
@@ -124,12 +124,12 @@ mod tests {
     fn a_bias_that_follows_the_law_is_taken_off_to_the_last_digit_and_none_where_none_shows() {
         for x in [0.05, 0.3, 1.0, 5.0, 50.0] {
             let damage = NOISE.map(|q| 7.0 * (0.4 * rise(q * x) / rise(x)).exp());
-            let bias = Bias::of(damage);
+            let bias = Bias::from_damage(damage);
             assert!((bias.taken - 0.4).abs() < 1e-6, "{x}: {bias:?}");
             assert!(bias.line > bias.taken, "{x}: {bias:?}");
         }
         for damage in [[1.0, 1.0, 1.0], [1.0, 0.9, 1.2], [0.0, 1.0, 2.0], [0.0; 3]] {
-            assert_eq!(Bias::of(damage).taken, 0.0);
+            assert_eq!(Bias::from_damage(damage).taken, 0.0);
         }
     }
 }

@@ -82,7 +82,7 @@ pub(super) trait Listener<T> {
     /// Returns the tag of a sample that is now a reversal.
     fn tag(&mut self, point: Point) -> T;
     /// Receives a closed cycle by its two reversals, which the count then drops.
-    fn closed(&mut self, from: &Reversal<T>, to: &Reversal<T>);
+    fn add_cycle(&mut self, from: &Reversal<T>, to: &Reversal<T>);
 }
 
 /// Listener from two functions: tag of a reversal, closed cycle.
@@ -95,7 +95,7 @@ impl<T, F: FnMut(Point) -> T, G: FnMut(&Reversal<T>, &Reversal<T>)> Listener<T> 
     }
 
     #[inline(always)]
-    fn closed(&mut self, from: &Reversal<T>, to: &Reversal<T>) {
+    fn add_cycle(&mut self, from: &Reversal<T>, to: &Reversal<T>) {
         (self.1)(from, to);
     }
 }
@@ -193,7 +193,7 @@ impl<T> Rainflow<T> {
     }
 
     /// The latest sample, if it is not a reversal yet.
-    pub fn latest(&self) -> Option<Point> {
+    pub fn latest_sample(&self) -> Option<Point> {
         self.latest
     }
 
@@ -207,7 +207,7 @@ impl<T> Rainflow<T> {
             if !(if bv > av { rise } else { fall }) {
                 break;
             }
-            listener.closed(b, c);
+            listener.add_cycle(b, c);
             self.open.truncate(self.open.len() - 2);
         }
         self.open.push(d);
@@ -216,7 +216,7 @@ impl<T> Rainflow<T> {
 
 impl<T: Clone> Rainflow<T> {
     /// The residue of histories that follow each other, from theirs; `counted` gets the cycles that close across their borders.
-    pub fn joined(
+    pub fn join_residues(
         residues: &[Vec<Reversal<T>>],
         counted: &mut impl FnMut(&Reversal<T>, &Reversal<T>),
     ) -> Vec<Reversal<T>> {

@@ -161,9 +161,9 @@ impl Counter {
             for (v, row) in values.iter_mut().zip(block.chunks_exact(k)) {
                 *v = row.get(self.load).copied().unwrap_or(f64::NAN);
             }
-            let latest = self.plain.latest();
+            let latest = self.plain.latest_sample();
             self.missing += values.iter().filter(|v| !v.is_finite()).count();
-            widest(&mut self.max, &mut self.min, at, values);
+            widen_extremes(&mut self.max, &mut self.min, at, values);
             let width = listener.closed.width;
             let (classes, turns) = (&mut room.classes, &mut room.turns);
             rises(&mut self.levels, width, latest, values, classes, turns);
@@ -172,7 +172,7 @@ impl Counter {
             if self.noise > 0.0 {
                 let marks = marks.get(at - first..).unwrap_or_default();
                 for (w, mark) in room.white.iter_mut().zip(marks).take(count) {
-                    *w = white(self.seed ^ mark);
+                    *w = white_noise(self.seed ^ mark);
                 }
                 let [one, ..] = NOISE;
                 let levels = NOISE.iter().zip(&mut damage).skip(1);
@@ -196,7 +196,10 @@ impl Counter {
         for (sum, more) in listener.closed.sums.damage.iter_mut().zip(damage).skip(1) {
             *sum += more;
         }
-        let latest = self.plain.latest().and_then(|p| p.at.checked_sub(first));
+        let latest = self
+            .plain
+            .latest_sample()
+            .and_then(|p| p.at.checked_sub(first));
         if let Some(row) = latest.and_then(|i| rows.get(i * k..(i + 1) * k)) {
             self.carried.clear();
             self.carried.extend_from_slice(row);
@@ -232,12 +235,12 @@ impl Counter {
             loads: kept.row(r.tag.slot, carried.len()).to_vec(),
         };
         let [twice, thrice] = self.noisy;
-        let cycles = cycles.sorted().into_iter();
+        let cycles = cycles.sort_classes().into_iter();
         Tally {
             width,
             law,
             cycles: cycles.map(|((a, b), n)| (a, b, n)).collect(),
-            levels: self.levels.sorted().into_iter().collect(),
+            levels: self.levels.sort_classes().into_iter().collect(),
             max: self.max,
             min: self.min,
             samples: self.next,
@@ -266,7 +269,7 @@ impl Listener<Tag> for Plain<'_> {
     }
 
     #[inline(always)]
-    fn closed(&mut self, a: &Reversal<Tag>, b: &Reversal<Tag>) {
+    fn add_cycle(&mut self, a: &Reversal<Tag>, b: &Reversal<Tag>) {
         let k = self.carried.len();
         let closed = &mut *self.closed;
         closed.cycles.add((a.tag.class, b.tag.class));
@@ -285,7 +288,7 @@ impl Listener<()> for Noisy {
     fn tag(&mut self, _: Point) {}
 
     #[inline(always)]
-    fn closed(&mut self, a: &Reversal<()>, b: &Reversal<()>) {
+    fn add_cycle(&mut self, a: &Reversal<()>, b: &Reversal<()>) {
         self.damage += self.law.damage((b.point.value - a.point.value).abs());
     }
 }
@@ -318,7 +321,12 @@ impl Slots {
 
 /// Widens the extremes by samples, the first being number `first`; of equal ones the earlier stays.
 #[inline(always)]
-fn widest(max: &mut Option<Extreme>, min: &mut Option<Extreme>, first: usize, values: &[f64]) {
+fn widen_extremes(
+    max: &mut Option<Extreme>,
+    min: &mut Option<Extreme>,
+    first: usize,
+    values: &[f64],
+) {
     /// Folded side by side, none waiting for the one before.
     const LANES: usize = 16;
     let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
@@ -387,7 +395,7 @@ fn rises(
 /// A number of mean 0 and variance 1 that belongs to a sample by its loads: the sum of four even ones, much like a normal one up to three standard
 /// deviations. The result does not depend on the cuts of a record or on the samples before it.
 #[inline(always)]
-fn white(mark: u64) -> f64 {
+fn white_noise(mark: u64) -> f64 {
     let bits = mix_bits(mark);
     let sum: u32 = (0..4).map(|i| (bits >> (16 * i)) as u32 & 0xffff).sum();
     // Four whole numbers of 0 to 65535: mean 2 x 65535, variance (65536^2 - 1) / 3.

@@ -59,7 +59,7 @@ impl<K: Key> Counts<K> {
     }
 
     /// Classes in order, with how often each was met.
-    pub(super) fn sorted(mut self) -> BTreeMap<K, u64> {
+    pub(super) fn sort_classes(mut self) -> BTreeMap<K, u64> {
         for (k, n) in self.lately.into_iter().flatten() {
             *self.all.entry(k).or_insert(0) += n;
         }
@@ -77,7 +77,7 @@ mod tests {
         for i in 0..7000_i32 {
             counts.add((i % 7 * 1024, -(i % 5) * 3));
         }
-        let all = counts.sorted();
+        let all = counts.sort_classes();
         assert_eq!(all.len(), 35);
         assert!(all.values().all(|n| *n == 200));
     }

@@ -67,9 +67,9 @@ pub struct Ratio {
     pub high: f64,
 }
 
-/// Returns the damage of a tally with its interval: [`DamageParts::of`] and [`DamageParts::interval`].
+/// Returns the damage of a tally with its interval: [`DamageParts::from_tally`] and [`DamageParts::interval`].
 pub fn damage_interval(tally: &Tally, scale: &[f64], noise: f64) -> DamageInterval {
-    DamageParts::of(tally, scale, noise).interval()
+    DamageParts::from_tally(tally, scale, noise).interval()
 }
 
 /// `sum of a_l c(l, m) b_m`.
@@ -89,11 +89,11 @@ impl DamageParts {
     /// at least `OFF` of the bias. The subtracted bias was compared with counts without noise, on sines of 16 to 200 samples a period and on
     /// Gaussian loads, slopes 3 to 9. Both agree within a fifth (a third at slope 3) up to a noise of 2 % of the range. At 5 %, where noise makes up
     /// to four times the damage, they agree within two fifths.
-    pub fn of(tally: &Tally, scale: &[f64], noise: f64) -> Self {
+    pub fn from_tally(tally: &Tally, scale: &[f64], noise: f64) -> Self {
         let sums = tally.sums_with_residue();
         let [once, ..] = sums.damage;
         let bias = match noise > 0.0 {
-            true => Bias::of(sums.damage),
+            true => Bias::from_damage(sums.damage),
             false => Bias::default(),
         };
         let (value, line) = (once * (-bias.taken).exp(), once * (-bias.line).exp());
@@ -181,7 +181,7 @@ impl DamageParts {
     ///
     /// # Reference
     /// J.A. Hausman, Specification tests in econometrics, Econometrica 46 (1978) 1251-1271, lemma 2.1.
-    pub fn over(&self, other: &Self, shared: Shared) -> Option<Ratio> {
+    pub fn ratio_to(&self, other: &Self, shared: Shared) -> Option<Ratio> {
         let (d1, d2) = (self.value, other.value);
         if !(d1 > 0.0 && d2 > 0.0) {
             return None;

@@ -8,7 +8,7 @@ pub struct Knee {
     /// Range at the bend: smaller ranges do less damage than the power gives.
     pub range: f64,
     /// The power below; infinite for no damage at all.
-    #[serde(deserialize_with = "super::absent::infinite")]
+    #[serde(deserialize_with = "super::absent::number_or_infinity")]
     pub slope: f64,
 }
 
@@ -39,7 +39,7 @@ pub struct Law {
 
 impl Law {
     /// A straight line.
-    pub fn straight(slope: f64) -> Self {
+    pub fn from_slope(slope: f64) -> Self {
         Self { slope, knee: None }
     }
 

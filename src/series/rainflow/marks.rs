@@ -31,7 +31,7 @@ impl Marks {
     }
 
     /// Appends the marks of rows; each row is all loads of a sample.
-    pub fn put(&self, rows: &[f64], out: &mut Vec<u64>) {
+    pub fn append_marks(&self, rows: &[f64], out: &mut Vec<u64>) {
         pulp::Arch::new().dispatch(Put {
             marks: self,
             rows,

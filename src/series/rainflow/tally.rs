@@ -88,7 +88,7 @@ impl Sums {
 impl Tally {
     /// The tally of times that follow each other; samples are counted through. `None` without parts, or where classes or laws
     /// differ.
-    pub fn joined(parts: &[&Self]) -> Option<Self> {
+    pub fn join_parts(parts: &[&Self]) -> Option<Self> {
         let first = parts.first()?;
         let same = |t: &&&Self| {
             t.width == first.width
@@ -165,7 +165,7 @@ impl Tally {
         }
         for (level, parts) in residues.iter().enumerate() {
             let sums = &mut all.sums;
-            let residue = Rainflow::joined(parts, &mut |a, b| {
+            let residue = Rainflow::join_residues(parts, &mut |a, b| {
                 let change = b.point.value - a.point.value;
                 if level == 0 {
                     let cell = (class(a.point.value, width), class(b.point.value, width));

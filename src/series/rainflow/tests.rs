@@ -137,7 +137,7 @@ fn a_tally_counts_what_samples_taken_one_by_one_give() {
                 before = Some(value);
             }
         }
-        let mut counter = Counter::new(0, 1, 0.0, 0.25, Law::straight(5.0));
+        let mut counter = Counter::new(0, 1, 0.0, 0.25, Law::from_slope(5.0));
         counter.push(&history[..1], &[]);
         counter.push(&history[1..2300], &[]);
         counter.push(&history[2300..], &[]);

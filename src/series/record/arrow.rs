@@ -141,7 +141,7 @@ fn field(buffer: Buffer<'_>, at: usize, depth: usize) -> Option<Field> {
     let details = buffer.child(at, 3)?;
     let children = buffer.list(at, 5, 4)?.into_iter();
     let children = children.map(|c| field(buffer, buffer.follow(c)?, depth));
-    let stored = stored(buffer, kind, details)?;
+    let stored = read_storage(buffer, kind, details)?;
     let plain = Field {
         name: name.unwrap_or_default().to_owned(),
         unit: unit_in_notes(buffer, at).unwrap_or_default(),
@@ -165,7 +165,7 @@ fn field(buffer: Buffer<'_>, at: usize, depth: usize) -> Option<Field> {
     let id = buffer.field(dictionary, 0);
     let id = id.map_or(Some(0), |at| buffer.size(at))?;
     let index = match buffer.child(dictionary, 1) {
-        Some(details) => self::stored(buffer, INT, details)?,
+        Some(details) => self::read_storage(buffer, INT, details)?,
         None => integer(4, true, Meaning::Number(1.0)),
     };
     Some(Field {
@@ -215,7 +215,7 @@ fn half(buffer: Buffer<'_>, table: usize, number: usize, otherwise: u16) -> Opti
 }
 
 /// Returns how the values of a type are stored; `None` where its details are damaged.
-fn stored(buffer: Buffer<'_>, kind: u8, details: usize) -> Option<Stored> {
+fn read_storage(buffer: Buffer<'_>, kind: u8, details: usize) -> Option<Stored> {
     let bits = |number: usize, otherwise: u32| {
         let at = buffer.field(details, number);
         at.map_or(Some(otherwise), |at| buffer.word(at))

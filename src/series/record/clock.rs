@@ -46,7 +46,7 @@ impl RateChange {
     }
 
     /// From a stretch of another rate than the usual one, in a record that begins at `start_s`.
-    fn of(stretch: Stretch, start_s: f64, usual_s: f64) -> Self {
+    fn from_stretch(stretch: Stretch, start_s: f64, usual_s: f64) -> Self {
         let (usual, other) = (1.0 / usual_s, 1.0 / stretch.step_s);
         match stretch.from_s > start_s {
             true => Self {
@@ -155,7 +155,7 @@ pub(super) fn clock_of(
             epoch_s,
             ..
         } => {
-            let (mut clock, steps) = stored(reader, rounding_s, declared_hz)?;
+            let (mut clock, steps) = read_stored_clock(reader, rounding_s, declared_hz)?;
             clock.epoch_s = epoch_s;
             Ok((clock, Some(steps)))
         }
@@ -214,7 +214,7 @@ fn declared_or(found_hz: f64, declared_hz: Option<f64>) -> Result<f64, SeriesErr
     }
 }
 
-fn stored(
+fn read_stored_clock(
     reader: &dyn RecordReader,
     rounding: f64,
     declared_hz: Option<f64>,
@@ -233,21 +233,21 @@ fn stored(
                 remedy: "give two rows or more, or name the column of a single state `run`",
             })
         } else {
-            let scale = Scale::endless();
+            let scale = Scale::without_gaps();
             Ok((even(start, rate?, rows)?, Steps { spans, scale }))
         };
     };
-    let Some(stretch) = Stretch::joined(spans.iter().filter_map(|s| s.stretch)) else {
-        let clock = together(&spans, scale, declared_hz)?;
+    let Some(stretch) = Stretch::join_pieces(spans.iter().filter_map(|s| s.stretch)) else {
+        let clock = join_spans(&spans, scale, declared_hz)?;
         return Ok((clock, Steps { spans, scale }));
     };
     // Held against the steps of all rates.
-    let change = RateChange::of(stretch, start, scale.usual);
+    let change = RateChange::from_stretch(stretch, start, scale.usual);
     let scale = scale.with_rates(spans.iter().filter_map(|s| s.others).flatten());
     let (spans, _) = spans_of(reader, Some(scale))?;
     let clock = Clock {
         change: Some(change),
-        ..together(&spans, scale, declared_hz)?
+        ..join_spans(&spans, scale, declared_hz)?
     };
     Ok((clock, Steps { spans, scale }))
 }
@@ -268,7 +268,7 @@ fn spans_of(
     let (mut rows, mut before): (usize, Option<f64>) = (0, None);
     for (piece, result) in found.into_iter().enumerate() {
         let line = |row| reader.line(piece, row, rows + row);
-        let s: Span = result.map_err(|(row, wrong)| wrong.at(line(row)))?;
+        let s: Span = result.map_err(|(row, wrong)| wrong.error_at_line(line(row)))?;
         if let Some(last) = before.filter(|_| s.rows > 0)
             && !(s.first > last)
         {
@@ -288,7 +288,11 @@ fn spans_of(
 }
 
 /// Joins the spans and the steps between them.
-fn together(spans: &[Span], scale: Scale, declared_hz: Option<f64>) -> Result<Clock, SeriesError> {
+fn join_spans(
+    spans: &[Span],
+    scale: Scale,
+    declared_hz: Option<f64>,
+) -> Result<Clock, SeriesError> {
     let typical = scale.typical;
     let mut all = Walk::new(scale);
     let (mut gaps, mut n_gaps, mut missing): (Vec<Gap>, usize, f64) = (Vec::new(), 0, 0.0);

@@ -46,8 +46,8 @@ const OTHER_UNITS: &[&str] = &[
 
 impl Header {
     /// A header of a table, split at its last bracket: `SG1 (left) (um/m)` is `SG1 (left)` and `um/m`.
-    fn of(header: &str) -> Self {
-        let whole = unquoted(header.trim());
+    fn parse(header: &str) -> Self {
+        let whole = strip_quotes(header.trim());
         for (open, close) in [('[', ']'), ('(', ')')] {
             if let Some(body) = whole.strip_suffix(close)
                 && let Some((name, bracket)) = split_at_bracket(body, open, close)
@@ -59,11 +59,11 @@ impl Header {
                 };
             }
         }
-        Self::plain(whole)
+        Self::from_name(whole)
     }
 
     /// A name with any content.
-    fn plain(name: &str) -> Self {
+    fn from_name(name: &str) -> Self {
         Self {
             whole: name.to_owned(),
             name: name.to_owned(),
@@ -87,14 +87,14 @@ impl Header {
 }
 
 /// Returns a header without the quotation marks around all of it; one at its beginning alone is part of the name.
-fn unquoted(header: &str) -> &str {
+fn strip_quotes(header: &str) -> &str {
     let inside = header.strip_prefix('"').and_then(|h| h.strip_suffix('"'));
     inside.map_or(header, str::trim)
 }
 
 /// Name and unit of a header such as `P01 [um/m]` or `a_body (m/s2)`; the last bracket is the unit's: `SG1 (left) (um/m)`.
 pub fn name_and_unit(header: &str) -> Column {
-    let header = Header::of(header);
+    let header = Header::parse(header);
     let unit = match unit_of_time_name(&header.whole) {
         Some(unit) => unit.to_owned(),
         None => header.bracket.clone(),
@@ -117,7 +117,7 @@ impl Column {
         Self {
             name: name.to_owned(),
             unit: unit.to_owned(),
-            header: Header::plain(name),
+            header: Header::from_name(name),
             stated: unit.to_owned(),
         }
     }

@@ -89,8 +89,8 @@ impl Record {
     }
 
     /// Channels of the file that are not among the columns, in file order.
-    pub fn others(&self) -> &[OtherChannel] {
-        self.reader.others()
+    pub fn other_channels(&self) -> &[OtherChannel] {
+        self.reader.other_channels()
     }
 
     /// How many pieces it is read in.
@@ -169,7 +169,7 @@ impl Record {
                     self.read_gaps(steps, extent, piece, &picks, sink)
                 }
             }
-            _ => self.stored(extent, piece, &picks, &mut |block| {
+            _ => self.read_stored(extent, piece, &picks, &mut |block| {
                 sink(Block {
                     first: start + block.first,
                     ..block
@@ -179,7 +179,7 @@ impl Record {
     }
 
     /// Stored rows of a piece.
-    fn stored(
+    fn read_stored(
         &self,
         extent: Extent,
         piece: usize,
@@ -209,7 +209,7 @@ impl Record {
             .rev()
             .find(|s| s.rows > 0)
             .map_or(f64::NAN, |s| s.last);
-        self.stored(extent, piece, picks, &mut |block| {
+        self.read_stored(extent, piece, picks, &mut |block| {
             for row in block.values.chunks_exact(k + 1) {
                 let Some((&t, values)) = row.split_last() else {
                     continue;

@@ -59,7 +59,7 @@ pub fn open_source(source: Source, options: &Options) -> Result<Record, SeriesEr
             );
         }
     }
-    open_record(source.whole().map_err(unreadable)?, options)
+    open_record(source.read_all().map_err(unreadable)?, options)
 }
 
 /// A format of records other than tables of text.

@@ -18,13 +18,13 @@ pub(super) struct Pages<P> {
     has_dictionary: bool,
 }
 
-fn damaged(what: &str) -> ParquetError {
+fn damaged_page_error(what: &str) -> ParquetError {
     ParquetError::General(what.to_owned())
 }
 
 impl<P: PageReader> Pages<P> {
     /// Returns the pages of a column that is not repeated.
-    pub fn of(inner: P, column: &ColumnDescriptor) -> Self {
+    pub fn new(inner: P, column: &ColumnDescriptor) -> Self {
         let levels = column.max_def_level().max(0).cast_unsigned();
         Self {
             inner,
@@ -54,7 +54,7 @@ impl<P: PageReader> Pages<P> {
                 .map(|bits| bits.div_ceil(8))
         };
         end.filter(|end| *end <= buf.len())
-            .ok_or_else(|| damaged("a page ends within its levels"))
+            .ok_or_else(|| damaged_page_error("a page ends within its levels"))
     }
 
     /// Refuses texts that do not end within their page.
@@ -63,16 +63,16 @@ impl<P: PageReader> Pages<P> {
             let length = u32::from_le_bytes(*length) as usize;
             bytes = rest
                 .get(length..)
-                .ok_or_else(|| damaged("a text ends beyond its page"))?;
+                .ok_or_else(|| damaged_page_error("a text ends beyond its page"))?;
         }
         match self.is_text && !bytes.is_empty() {
-            true => Err(damaged("a page ends within a text")),
+            true => Err(damaged_page_error("a page ends within a text")),
             false => Ok(()),
         }
     }
 
     /// The page, or why it can't be decoded.
-    fn checked(&mut self, page: Page) -> Result<Page> {
+    fn check_page(&mut self, page: Page) -> Result<Page> {
         let (values_at, encoding) = match &page {
             Page::DictionaryPage { buf, .. } => {
                 self.check_texts(buf)?;
@@ -100,7 +100,7 @@ impl<P: PageReader> Pages<P> {
                 let at = levels
                     .map(|n| n as usize)
                     .filter(|n| *n <= buf.len())
-                    .ok_or_else(|| damaged("a page ends within its levels"))?;
+                    .ok_or_else(|| damaged_page_error("a page ends within its levels"))?;
                 (at, *encoding)
             }
         };
@@ -111,15 +111,15 @@ impl<P: PageReader> Pages<P> {
         }
         match encoding {
             Encoding::RLE_DICTIONARY | Encoding::PLAIN_DICTIONARY if !self.has_dictionary => Err(
-                damaged("a page needs a dictionary, and the column has none"),
+                damaged_page_error("a page needs a dictionary, and the column has none"),
             ),
-            Encoding::BYTE_STREAM_SPLIT => Ok(self.joined(page, values_at)),
+            Encoding::BYTE_STREAM_SPLIT => Ok(self.join_streams(page, values_at)),
             _ => Ok(page),
         }
     }
 
     /// Returns the page with its streams of bytes joined to values; missing bytes cause an error when the values are read.
-    fn joined(&self, mut page: Page, values_at: usize) -> Page {
+    fn join_streams(&self, mut page: Page, values_at: usize) -> Page {
         let (Page::DataPage { buf, encoding, .. } | Page::DataPageV2 { buf, encoding, .. }) =
             &mut page
         else {
@@ -153,7 +153,7 @@ impl<P: PageReader> Iterator for Pages<P> {
 impl<P: PageReader> PageReader for Pages<P> {
     fn get_next_page(&mut self) -> Result<Option<Page>> {
         match self.inner.get_next_page()? {
-            Some(page) => self.checked(page).map(Some),
+            Some(page) => self.check_page(page).map(Some),
             None => Ok(None),
         }
     }
@@ -186,11 +186,11 @@ mod tests {
         let properties = WriterProperties::builder()
             .set_dictionary_enabled(false)
             .set_encoding(Encoding::BYTE_STREAM_SPLIT);
-        written(n, properties)
+        write_samples(n, properties)
     }
 
     /// Writes even samples of one channel, every seventh missing, with these properties.
-    fn written(n: i16, properties: WriterPropertiesBuilder) -> Vec<u8> {
+    fn write_samples(n: i16, properties: WriterPropertiesBuilder) -> Vec<u8> {
         let schema = "message m { required double time; optional float g; }";
         let schema = Arc::new(parse_message_type(schema).unwrap());
         let properties = properties
@@ -230,7 +230,7 @@ mod tests {
     #[test]
     fn a_damaged_byte_anywhere_is_an_answer_or_an_error() {
         // The second with dictionaries, whose places may be negative in a damaged file.
-        for whole in [split(60), written(60, WriterProperties::builder())] {
+        for whole in [split(60), write_samples(60, WriterProperties::builder())] {
             for at in 0..whole.len() {
                 for flip in [0x01, 0x10, 0xff] {
                     let mut bytes = whole.clone();

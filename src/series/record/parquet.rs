@@ -70,7 +70,7 @@ impl Parquet {
     /// # Errors
     /// A file that is cut off or damaged.
     pub fn new(source: Source) -> Result<Self, SeriesError> {
-        let whole = Arc::new(Whole::of(source));
+        let whole = Arc::new(Whole::from_source(source));
         let metadata = ParquetMetaDataReader::new()
             .parse_and_finish(&*whole)
             .map_err(read_error)?;
@@ -78,8 +78,8 @@ impl Parquet {
         let notes = notes(metadata.file_metadata());
         let columns = schema.columns().iter().enumerate();
         // The name of a nested leaf is its last word; groups other than the root are no tables of channels.
-        let typed = Typed::of(columns.filter_map(|(leaf, c)| {
-            let meaning = meaning(c).filter(|_| c.max_rep_level() == 0)?;
+        let typed = Typed::from_columns(columns.filter_map(|(leaf, c)| {
+            let meaning = column_meaning(c).filter(|_| c.max_rep_level() == 0)?;
             let is_outermost = c.path().parts().len() == 1;
             let meaning = match notes.durations.get(c.name()) {
                 Some(worth) if is_outermost => Meaning::Duration(*worth),
@@ -213,7 +213,7 @@ impl Parquet {
         let pages =
             SerializedPageReader::new(self.whole.clone(), chunk, rows, None).map_err(read_error)?;
         let descriptor = self.descriptor(leaf);
-        let pages = Pages::of(pages, &descriptor);
+        let pages = Pages::new(pages, &descriptor);
         let mut reader = get_column_reader(descriptor, Box::new(pages));
         if from > 0 {
             skip(&mut reader, from)?;
@@ -248,7 +248,7 @@ impl RecordReader for Parquet {
         };
         let most = rayon::current_num_threads();
         let rows = self.shared.rows(part.unit, unit.pieces, picks, most);
-        let decoded = rows.decoded(&mut |j, strip| {
+        let decoded = rows.decode_columns(&mut |j, strip| {
             let Some(pick) = picks.get(j) else {
                 return true;
             };
@@ -289,7 +289,7 @@ impl Parquet {
     }
 
     /// The leaf of what is picked, the worth of a stored unit and what is taken off it; `None` where there is nothing to decode.
-    fn stored(&self, pick: Pick) -> Option<(usize, f64, f64)> {
+    fn leaf_of_pick(&self, pick: Pick) -> Option<(usize, f64, f64)> {
         match pick {
             Pick::Nothing => None,
             Pick::Column(c) => self.leaves.get(c).map(|(leaf, worth)| (*leaf, *worth, 0.0)),
@@ -304,7 +304,7 @@ impl Parquet {
         (group, from, rows): (usize, usize, usize),
         strip: &mut Strip,
     ) -> Result<(), SeriesError> {
-        let Some((leaf, ..)) = self.stored(pick) else {
+        let Some((leaf, ..)) = self.leaf_of_pick(pick) else {
             return Ok(());
         };
         let mut reader = self.column(group, leaf, from)?;
@@ -316,7 +316,7 @@ impl Parquet {
     /// Hands out decoded rows, `rows` from number `from` on, in blocks.
     fn lay_out(&self, strips: &Strips, from: usize, rows: usize, picks: &[Pick], sink: &mut Sink) {
         let stored = picks.iter().enumerate();
-        let stored = stored.filter_map(|(j, pick)| Some((j, self.stored(*pick)?)));
+        let stored = stored.filter_map(|(j, pick)| Some((j, self.leaf_of_pick(*pick)?)));
         let columns: Vec<(usize, f64, f64)> = stored.map(|(j, (_, w, off))| (j, w, off)).collect();
         let k = picks.len();
         let mut values = vec![f64::NAN; BLOCK.min(rows) * k];
@@ -326,7 +326,7 @@ impl Parquet {
             for (j, worth, off) in &columns {
                 let place = tile.column(*j, count, &mut values, k);
                 if let Some(strip) = strips.get(*j) {
-                    strip.put(from + first, *worth, *off, place);
+                    strip.write_rows(from + first, *worth, *off, place);
                 }
             }
             tile.lay_out(&mut values, k);
@@ -357,7 +357,7 @@ impl Parquet {
         let unread = schema
             .columns()
             .iter()
-            .find(|c| meaning(c).is_none() && is_asked(c.name()));
+            .find(|c| column_meaning(c).is_none() && is_asked(c.name()));
         match unread {
             Some(c) => Err(SeriesError::Broken {
                 wrong: format!("column `{}` contains {}", c.name(), type_words(c)),
@@ -383,7 +383,7 @@ fn type_words(c: &ColumnDescriptor) -> String {
 }
 
 /// Returns the meaning of a stored value; `None` if it is not a number.
-fn meaning(c: &ColumnDescriptor) -> Option<Meaning> {
+fn column_meaning(c: &ColumnDescriptor) -> Option<Meaning> {
     let of_unit = |unit: &TimeUnit| match unit {
         TimeUnit::MILLIS => 1e-3,
         TimeUnit::MICROS => 1e-6,

@@ -48,7 +48,7 @@ impl AsRef<[u8]> for Owner {
 }
 
 impl Whole {
-    pub(super) fn of(source: Source) -> Self {
+    pub(super) fn from_source(source: Source) -> Self {
         let shared = match &source {
             Source::Memory(bytes) => bytes::Bytes::from_owner(Owner(bytes.clone())),
             Source::File(_) => bytes::Bytes::new(),
@@ -61,7 +61,7 @@ impl Whole {
     }
 
     /// Bytes from `start` on, at most so many; all of these where `all`.
-    fn taken(&self, start: u64, most: usize, all: bool) -> Result<bytes::Bytes, ParquetError> {
+    fn read_bytes(&self, start: u64, most: usize, all: bool) -> Result<bytes::Bytes, ParquetError> {
         let left = self
             .source
             .size()
@@ -112,7 +112,7 @@ impl std::io::Read for Reading {
         /// Bytes fetched at a time: a header with its statistics.
         const AHEAD: usize = 512;
         if self.ahead.is_empty() {
-            let more = self.whole.taken(self.at, AHEAD.max(out.len()), false);
+            let more = self.whole.read_bytes(self.at, AHEAD.max(out.len()), false);
             self.ahead = more.map_err(std::io::Error::other)?;
             self.at += self.ahead.len() as u64;
         }
@@ -129,7 +129,7 @@ impl ChunkReader for Whole {
     type T = Reading;
 
     fn get_read(&self, start: u64) -> Result<Self::T, ParquetError> {
-        self.taken(start, 0, true)?;
+        self.read_bytes(start, 0, true)?;
         Ok(Reading {
             whole: Arc::new(Self {
                 source: self.source.clone(),
@@ -142,6 +142,6 @@ impl ChunkReader for Whole {
     }
 
     fn get_bytes(&self, start: u64, length: usize) -> Result<bytes::Bytes, ParquetError> {
-        self.taken(start, length, true)
+        self.read_bytes(start, length, true)
     }
 }

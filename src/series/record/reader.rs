@@ -90,7 +90,7 @@ pub trait RecordReader: Send + Sync {
         ""
     }
     /// Channels of the file that are not among the columns, in file order.
-    fn others(&self) -> &[OtherChannel] {
+    fn other_channels(&self) -> &[OtherChannel] {
         &[]
     }
     /// Where its times come from.

@@ -39,14 +39,14 @@ pub(super) struct Shared {
     buffers: Mutex<Vec<Buffers>>,
 }
 
-fn locked<T>(m: &Mutex<T>) -> MutexGuard<'_, T> {
+fn lock_mutex<T>(m: &Mutex<T>) -> MutexGuard<'_, T> {
     m.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Shared {
     /// The rows `unit`, which `pieces` pieces read, each once; at most `most` of them are kept.
     pub fn rows(&self, unit: usize, pieces: usize, picks: &[Pick], most: usize) -> Arc<Rows> {
-        let mut all = locked(&self.rows);
+        let mut all = lock_mutex(&self.rows);
         if let Some(found) = all.iter().find(|r| r.unit == unit && r.picks == picks) {
             return found.clone();
         }
@@ -78,34 +78,34 @@ impl Shared {
     /// Counts one more piece that has read the rows, and releases them after the last piece.
     pub fn done_with(&self, rows: &Arc<Rows>, strips: Arc<Strips>) {
         drop(strips);
-        let mut state = locked(&rows.state);
+        let mut state = lock_mutex(&rows.state);
         state.left = state.left.saturating_sub(1);
         if state.left > 0 {
             return;
         }
         let decoded = state.decoded.take();
         drop(state);
-        locked(&self.rows).retain(|r| !Arc::ptr_eq(r, rows));
+        lock_mutex(&self.rows).retain(|r| !Arc::ptr_eq(r, rows));
         if let Some(strips) = decoded.and_then(Arc::into_inner) {
-            locked(&self.spare).push(strips);
+            lock_mutex(&self.spare).push(strips);
         }
     }
 
     /// Memory for columns.
     pub fn spare(&self) -> Strips {
-        locked(&self.spare).pop().unwrap_or_default()
+        lock_mutex(&self.spare).pop().unwrap_or_default()
     }
 
     /// Takes it back.
     pub fn take_back(&self, strips: Strips) {
-        locked(&self.spare).push(strips);
+        lock_mutex(&self.spare).push(strips);
     }
 
     /// Runs with memory for decoding.
     pub fn with_buffers<T>(&self, run: impl FnOnce(&mut Buffers) -> T) -> T {
-        let mut buffers = locked(&self.buffers).pop().unwrap_or_default();
+        let mut buffers = lock_mutex(&self.buffers).pop().unwrap_or_default();
         let out = run(&mut buffers);
-        locked(&self.buffers).push(buffers);
+        lock_mutex(&self.buffers).push(buffers);
         out
     }
 }
@@ -120,7 +120,7 @@ struct Turn<'a> {
 
 impl Drop for Turn<'_> {
     fn drop(&mut self) {
-        let mut state = locked(&self.rows.state);
+        let mut state = lock_mutex(&self.rows.state);
         if let (true, Some(slot)) = (self.good, state.strips.get_mut(self.column)) {
             *slot = std::mem::take(&mut self.strip);
             state.finished += 1;
@@ -137,11 +137,11 @@ impl Drop for Turn<'_> {
 impl Rows {
     /// Returns the decoded columns. `decode` fills the strip of one column; it is called for columns that no other thread has begun. Returns `None`
     /// if a column failed, or if the rows were given up: the caller then decodes separately and reports the error.
-    pub fn decoded(
+    pub fn decode_columns(
         &self,
         decode: &mut dyn FnMut(usize, &mut Strip) -> bool,
     ) -> Option<Arc<Strips>> {
-        let mut state = locked(&self.state);
+        let mut state = lock_mutex(&self.state);
         loop {
             if state.failed || state.left == 0 {
                 return None;
@@ -161,7 +161,7 @@ impl Rows {
                 };
                 turn.good = decode(column, &mut turn.strip);
                 drop(turn);
-                state = locked(&self.state);
+                state = lock_mutex(&self.state);
             } else {
                 state = self
                     .turn
@@ -197,7 +197,7 @@ mod tests {
     ) -> [Option<Arc<Strips>>; 2] {
         let one = || {
             let rows = shared.rows(7, 2, &PICKS, 4);
-            rows.decoded(&mut |j, _| decode(j))
+            rows.decode_columns(&mut |j, _| decode(j))
         };
         std::thread::scope(|scope| {
             let two = [scope.spawn(one), scope.spawn(one)];
@@ -220,8 +220,8 @@ mod tests {
             let rows = shared.rows(7, 2, &PICKS, 4);
             shared.done_with(&rows, strips);
         }
-        assert!(locked(&shared.rows).is_empty());
-        assert_eq!(locked(&shared.spare).len(), 1);
+        assert!(lock_mutex(&shared.rows).is_empty());
+        assert_eq!(lock_mutex(&shared.spare).len(), 1);
     }
 
     #[test]
@@ -233,7 +233,7 @@ mod tests {
     #[test]
     fn rows_of_no_column_are_not_waited_for() {
         let rows = Shared::default().rows(0, 2, &[], 1);
-        let strips = rows.decoded(&mut |_, _| false);
+        let strips = rows.decode_columns(&mut |_, _| false);
         assert!(strips.is_some_and(|s| s.is_empty()));
     }
 
@@ -242,10 +242,10 @@ mod tests {
         let shared = Shared::default();
         for unit in 0..9 {
             let rows = shared.rows(unit, 2, &PICKS, 3);
-            let strips = rows.decoded(&mut |_, _| true).unwrap();
+            let strips = rows.decode_columns(&mut |_, _| true).unwrap();
             shared.done_with(&rows, strips);
         }
-        assert_eq!(locked(&shared.rows).len(), 3);
+        assert_eq!(lock_mutex(&shared.rows).len(), 3);
     }
 
     #[test]

@@ -60,7 +60,7 @@ fn as_csv(
     let mut text = RUN.to_owned();
     for (_, column) in &values {
         text.push(',');
-        text.push_str(&quoted(&column.header.whole));
+        text.push_str(&quote_field(&column.header.whole));
     }
     text.push('\n');
     let mut picks: Vec<Pick> = values.iter().map(|(i, _)| Pick::Column(*i)).collect();
@@ -76,7 +76,7 @@ fn as_csv(
                     Some(_) => number.to_string(),
                     None => names.next().unwrap_or_default(),
                 };
-                text.push_str(&quoted(&name));
+                text.push_str(&quote_field(&name));
                 for v in values {
                     text.push(',');
                     if v.is_finite() {
@@ -92,7 +92,7 @@ fn as_csv(
 }
 
 /// A field of CSV.
-fn quoted(field: &str) -> String {
+fn quote_field(field: &str) -> String {
     match field.contains([',', ';', '\t', '"', '\n', '\r', '#']) {
         true => format!(
             "\"{}\"",

@@ -37,7 +37,7 @@ impl Source {
     ///
     /// # Errors
     /// Those of the system.
-    pub fn whole(self) -> std::io::Result<Bytes> {
+    pub fn read_all(self) -> std::io::Result<Bytes> {
         match self {
             Self::Memory(bytes) => Ok(bytes),
             Self::File(file) => {

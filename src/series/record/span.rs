@@ -33,7 +33,7 @@ pub struct Stretch {
 
 impl Stretch {
     /// Returns the first stretch of consecutive pieces, with its continuation in the next pieces.
-    pub(super) fn joined(mut list: impl Iterator<Item = Self>) -> Option<Self> {
+    pub(super) fn join_pieces(mut list: impl Iterator<Item = Self>) -> Option<Self> {
         let mut first = list.next()?;
         for next in list {
             // The rest of a piece may not fill a window.
@@ -61,7 +61,7 @@ pub(super) struct Scale {
 
 impl Scale {
     /// Returns the scale of a record with a single time: no step is a gap.
-    pub(super) fn endless() -> Self {
+    pub(super) fn without_gaps() -> Self {
         Self {
             typical: f64::INFINITY,
             longest: f64::INFINITY,
@@ -153,19 +153,19 @@ pub(super) fn typical_steps(
         let steps = pairs.map(|(a, b)| (b - a) / rows as f64);
         steps.filter(|s| *s > 0.0).collect::<Vec<f64>>()
     };
-    let Some(typical) = ranked(steps(1), 2) else {
+    let Some(typical) = lower_quantile(steps(1), 2) else {
         return Ok(None);
     };
     Ok(Some(Scale {
         typical,
         longest: typical,
-        usual: ranked(steps(WINDOW), 4).unwrap_or(typical),
+        usual: lower_quantile(steps(WINDOW), 4).unwrap_or(typical),
         rounding,
     }))
 }
 
 /// The number that one in `part` is below.
-fn ranked(mut numbers: Vec<f64>, part: usize) -> Option<f64> {
+fn lower_quantile(mut numbers: Vec<f64>, part: usize) -> Option<f64> {
     let at = numbers.len() / part;
     let fits = at < numbers.len();
     fits.then(|| *numbers.select_nth_unstable_by(at, f64::total_cmp).1)
@@ -180,7 +180,7 @@ pub(super) enum Wrong {
 
 impl Wrong {
     /// Returns the error at a line.
-    pub(super) fn at(self, line: usize) -> SeriesError {
+    pub(super) fn error_at_line(self, line: usize) -> SeriesError {
         match self {
             Self::Missing => SeriesError::NoTime { line },
             Self::Back { time_s, before_s } => SeriesError::NotAscending {
@@ -320,7 +320,7 @@ pub(super) fn span(
     piece: usize,
     scale: Option<Scale>,
 ) -> Result<Span, (usize, Wrong)> {
-    let mut walk = Walk::new(scale.unwrap_or(Scale::endless()));
+    let mut walk = Walk::new(scale.unwrap_or(Scale::without_gaps()));
     let (mut rows, mut first, mut last) = (0, f64::NAN, f64::NAN);
     let mut wrong = None;
     let read = reader.read(piece, &[Pick::Time], &mut |block| {

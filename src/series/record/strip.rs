@@ -88,7 +88,7 @@ impl Strip {
     }
 
     /// The rows from number `first` on, times `worth` less `off`.
-    pub(super) fn put(&self, first: usize, worth: f64, off: f64, out: &mut [f64]) {
+    pub(super) fn write_rows(&self, first: usize, worth: f64, off: f64, out: &mut [f64]) {
         if let Some(singles) = self.singles.get(first..).filter(|s| !s.is_empty()) {
             pulp::Arch::new().dispatch(|| {
                 for (slot, v) in out.iter_mut().zip(singles) {

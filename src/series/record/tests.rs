@@ -234,7 +234,7 @@ fn faults_of_a_table_name_their_line() {
 }
 
 /// A table whose times are made by a rule, its only channel twice the time.
-fn timed(n: usize, time: impl Fn(usize) -> f64, digits: usize) -> String {
+fn table_with_times(n: usize, time: impl Fn(usize) -> f64, digits: usize) -> String {
     let mut text = String::from("time,a\n");
     for i in 0..n {
         let t = time(i);
@@ -247,10 +247,10 @@ fn timed(n: usize, time: impl Fn(usize) -> f64, digits: usize) -> String {
 fn steps_within_a_fiftieth_are_even_and_those_beyond_are_resampled_and_said() {
     let jitter =
         |share: f64| move |i: usize| (i as f64 + if i % 2 == 1 { share } else { 0.0 }) * 0.01;
-    let even = open(&timed(500, jitter(0.01), 7)).unwrap();
+    let even = open(&table_with_times(500, jitter(0.01), 7)).unwrap();
     assert_eq!(even.clock.evenness, Evenness::Even);
     assert_eq!(rows(&even).len(), 500);
-    let uneven = open(&timed(500, jitter(0.05), 7)).unwrap();
+    let uneven = open(&table_with_times(500, jitter(0.05), 7)).unwrap();
     let Evenness::Resampled { largest, .. } = uneven.clock.evenness else {
         panic!("5 % is not even")
     };
@@ -262,7 +262,7 @@ fn steps_within_a_fiftieth_are_even_and_those_beyond_are_resampled_and_said() {
         assert!((row[0] - expected).abs() < 1e-9, "{i} {}", row[0]);
     }
     // Times rounded by printing are no jitter: 128 Hz with three digits.
-    let printed = open(&timed(500, |i| i as f64 / 128.0, 3)).unwrap();
+    let printed = open(&table_with_times(500, |i| i as f64 / 128.0, 3)).unwrap();
     assert_eq!(printed.clock.evenness, Evenness::Even);
     assert!((printed.clock.rate_hz / 128.0 - 1.0).abs() < 1e-3);
 }
@@ -270,7 +270,7 @@ fn steps_within_a_fiftieth_are_even_and_those_beyond_are_resampled_and_said() {
 #[test]
 fn missing_samples_are_gaps_and_not_invented() {
     // 100 Hz, without samples 200 to 249 and 300.
-    let text = timed(400, |i| i as f64 * 0.01, 3);
+    let text = table_with_times(400, |i| i as f64 * 0.01, 3);
     let kept = text
         .lines()
         .enumerate()
@@ -309,7 +309,7 @@ fn a_rate_that_changes_is_told_with_its_time_and_no_sample_is_called_missing() {
             None => i as f64 / hz[0],
             Some(after) => end + after as f64 / hz[1],
         };
-        let record = open(&timed(rows[0] + rows[1], time, digits)).unwrap();
+        let record = open(&table_with_times(rows[0] + rows[1], time, digits)).unwrap();
         (record, end, end + (rows[1] - 1) as f64 / hz[1])
     };
     for (rows_of, hz, digits) in [
@@ -358,7 +358,7 @@ fn a_rate_that_changes_is_told_with_its_time_and_no_sample_is_called_missing() {
                 (i - 300).min(15) as f64
             }
     };
-    let lossy = open(&timed(1000, |i| kept(i) * 0.002, 3)).unwrap();
+    let lossy = open(&table_with_times(1000, |i| kept(i) * 0.002, 3)).unwrap();
     assert_eq!((lossy.clock.change, lossy.clock.missing), (None, 15));
 }
 
@@ -366,7 +366,7 @@ fn a_rate_that_changes_is_told_with_its_time_and_no_sample_is_called_missing() {
 #[test]
 fn pieces_join_without_a_seam() {
     let n = 400_000;
-    let even = timed(n, |i| i as f64 * 0.002, 3);
+    let even = table_with_times(n, |i| i as f64 * 0.002, 3);
     let record = open(&even).unwrap();
     assert!(record.n_pieces() > 1);
     let read = rows(&record);
@@ -375,7 +375,7 @@ fn pieces_join_without_a_seam() {
             .enumerate()
             .all(|(i, r)| (r[0] - 0.004 * i as f64).abs() < 1e-9)
     );
-    let uneven = timed(n, |i| (i as f64 + 0.05 * ((i * 7) % 5) as f64) * 0.002, 6);
+    let uneven = table_with_times(n, |i| (i as f64 + 0.05 * ((i * 7) % 5) as f64) * 0.002, 6);
     let record = open(&uneven).unwrap();
     assert!(matches!(record.clock.evenness, Evenness::Resampled { .. }));
     for (i, r) in rows(&record).iter().enumerate() {
@@ -486,7 +486,7 @@ fn mutated_files_do_not_panic() {
         (seed >> 33) as usize
     };
     let mut files: Vec<Vec<u8>> = vec![
-        timed(50, |i| i as f64 * 0.01, 3).into_bytes(),
+        table_with_times(50, |i| i as f64 * 0.01, 3).into_bytes(),
         b"Time;P01;P02\ns;um/m;\n0,0;1,5;-2\n0,1;2,5;\n0,2;3,5;4\n".to_vec(),
         b",P01\n2026-05-01 12:00:00.0,1.5\n2026-05-01 12:00:00.1,2.5\n".to_vec(),
     ];

@@ -33,7 +33,7 @@ pub enum TimeUnit {
 
 impl TimeUnit {
     /// Returns what times count whose first one is `first` and that are `step` apart; `None` where their size does not show it.
-    pub(super) fn of(first: f64, step: f64) -> Option<Self> {
+    pub(super) fn from_times(first: f64, step: f64) -> Option<Self> {
         let within = |x: f64, [from, to]: [f64; 2]| (from..=to).contains(&x);
         if within(first, SERIAL_DAYS) {
             let seconds = step * DAY;
@@ -121,7 +121,7 @@ mod tests {
             (0.0, 0.01, None),
             (0.0, 10.0, None),
         ] {
-            assert_eq!(T::of(first, step), expected, "{first} {step}");
+            assert_eq!(T::from_times(first, step), expected, "{first} {step}");
         }
         assert!((T::SerialDays.since_1970(46_143.5) - noon).abs() < 1e-3);
     }

@@ -59,7 +59,7 @@ pub(super) fn with_times_in_seconds(
         None => {
             let step = typical_steps(&*reader, rounding_s)?.map(|scale| scale.typical);
             let found = first_time(&*reader)?.zip(step);
-            let found = found.and_then(|(t, step)| Some((t, TimeUnit::of(t, step)?)));
+            let found = found.and_then(|(t, step)| Some((t, TimeUnit::from_times(t, step)?)));
             let Some((first, unit)) = found else {
                 return Ok((reader, None));
             };
@@ -173,7 +173,7 @@ fn past_midnight(reader: Box<dyn RecordReader>) -> Result<Box<dyn RecordReader>,
 
 impl Timed {
     /// Hands blocks on with their times in seconds.
-    fn converted(
+    fn convert_times(
         &self,
         piece: usize,
         picks: &[Pick],
@@ -225,8 +225,8 @@ impl RecordReader for Timed {
         self.inner.group(column)
     }
 
-    fn others(&self) -> &[OtherChannel] {
-        self.inner.others()
+    fn other_channels(&self) -> &[OtherChannel] {
+        self.inner.other_channels()
     }
 
     fn times(&self) -> Times {
@@ -238,13 +238,13 @@ impl RecordReader for Timed {
     }
 
     fn read(&self, piece: usize, picks: &[Pick], sink: &mut Sink) -> Result<(), SeriesError> {
-        self.converted(piece, picks, sink, &|sink| {
+        self.convert_times(piece, picks, sink, &|sink| {
             self.inner.read(piece, picks, sink)
         })
     }
 
     fn head(&self, piece: usize, picks: &[Pick], sink: &mut Sink) -> Result<(), SeriesError> {
-        self.converted(piece, picks, sink, &|sink| {
+        self.convert_times(piece, picks, sink, &|sink| {
             self.inner.head(piece, picks, sink)
         })
     }

@@ -39,7 +39,7 @@ pub(super) struct Typed {
 }
 
 impl Meaning {
-    pub(super) fn worth(self) -> f64 {
+    pub(super) fn unit_factor(self) -> f64 {
         match self {
             Self::Number(w) | Self::Instant(w) | Self::Duration(w) => w,
         }
@@ -50,7 +50,9 @@ impl Typed {
     /// Returns the channels and the column of time of columns that have a number in the file, a name, a meaning and a unit that the file states
     /// apart from the name, or a blank. A column of time (`time`, `t`, `timestamp`) gives the times; else the first column of timestamps or
     /// durations, such as the index that pandas writes.
-    pub(super) fn of<'a>(list: impl Iterator<Item = (usize, &'a str, Meaning, &'a str)>) -> Self {
+    pub(super) fn from_columns<'a>(
+        list: impl Iterator<Item = (usize, &'a str, Meaning, &'a str)>,
+    ) -> Self {
         let mut time: Option<(TimeColumn, bool)> = None;
         let mut found = Vec::new();
         for (at, name, meaning, unit) in list {
@@ -74,7 +76,7 @@ impl Typed {
             .into_iter()
             // A row number that pandas or others left over is no channel.
             .filter(|(at, _, c)| Some(*at) != of_time && !c.name.starts_with("__index_level_"))
-            .map(|(at, meaning, c)| ((at, meaning.worth()), c));
+            .map(|(at, meaning, c)| ((at, meaning.unit_factor()), c));
         Self {
             channels: channels.collect(),
             time,

@@ -52,7 +52,7 @@ impl RecordReader for Whole {
         &self.columns
     }
 
-    fn others(&self) -> &[OtherChannel] {
+    fn other_channels(&self) -> &[OtherChannel] {
         &self.others
     }
 

@@ -146,7 +146,7 @@ impl Params {
             .filter(|v| !v.is_empty())
     }
 
-    fn bad(&self, key: &str, expected: &'static str) -> RpcError {
+    fn value_error(&self, key: &str, expected: &'static str) -> RpcError {
         RpcError::Value {
             key: key.to_owned(),
             found: self
@@ -158,18 +158,18 @@ impl Params {
 
     /// A whole number above zero.
     fn count(&self, key: &str) -> Result<usize, RpcError> {
-        self.whole(key)
+        self.whole_number(key)
             .filter(|n| *n > 0)
-            .ok_or_else(|| self.bad(key, "a whole number above 0"))
+            .ok_or_else(|| self.value_error(key, "a whole number above 0"))
     }
 
     /// A whole number, which some programs write with a decimal point.
-    fn whole(&self, key: &str) -> Option<usize> {
-        let x = self.real(key)?;
+    fn whole_number(&self, key: &str) -> Option<usize> {
+        let x = self.real_number(key)?;
         (x >= 0.0 && x.fract() == 0.0 && x < 1e15).then_some(x as usize)
     }
 
-    fn real(&self, key: &str) -> Option<f64> {
+    fn real_number(&self, key: &str) -> Option<f64> {
         self.get(key)?.parse::<f64>().ok().filter(|x| x.is_finite())
     }
 }
@@ -196,11 +196,11 @@ pub fn read_header(bytes: &[u8]) -> Result<Header, RpcError> {
     let blocks = params.count("NUM_HEADER_BLOCKS")?;
     let listed = params.count("NUM_PARAMS")?;
     if blocks > MOST_BLOCKS {
-        return Err(params.bad("NUM_HEADER_BLOCKS", "at most 1024"));
+        return Err(params.value_error("NUM_HEADER_BLOCKS", "at most 1024"));
     }
     let start = blocks * BLOCK;
     if listed > start / RECORD {
-        return Err(params.bad("NUM_PARAMS", "at most four a block"));
+        return Err(params.value_error("NUM_PARAMS", "at most four a block"));
     }
     if start > bytes.len() {
         return Err(cut(start));
@@ -224,7 +224,7 @@ fn of_params(params: &Params, start: usize, length: usize) -> Result<Header, Rpc
         return Err(kind("FILE_TYPE", Some(file_type)));
     }
     // Half a frame more at the end: how it lies there is not told by any file at hand.
-    if params.real("HALF_FRAMES").is_some_and(|n| n != 0.0) {
+    if params.real_number("HALF_FRAMES").is_some_and(|n| n != 0.0) {
         return Err(kind("HALF_FRAMES", params.get("HALF_FRAMES")));
     }
     let numbers = match params.get("DATA_TYPE").unwrap_or("SHORT_INTEGER") {
@@ -233,26 +233,26 @@ fn of_params(params: &Params, start: usize, length: usize) -> Result<Header, Rpc
         other => return Err(kind("DATA_TYPE", Some(other))),
     };
     let dt = params
-        .real("DELTA_T")
+        .real_number("DELTA_T")
         .filter(|dt| *dt > 0.0)
-        .ok_or_else(|| params.bad("DELTA_T", "a time above 0 s"))?;
+        .ok_or_else(|| params.value_error("DELTA_T", "a time above 0 s"))?;
     let n = params.count("CHANNELS")?;
     let (per_frame, per_group) = (
         params.count("PTS_PER_FRAME")?,
         params.count("PTS_PER_GROUP")?,
     );
     if per_group % per_frame != 0 {
-        return Err(params.bad("PTS_PER_GROUP", "a multiple of PTS_PER_FRAME"));
+        return Err(params.value_error("PTS_PER_GROUP", "a multiple of PTS_PER_FRAME"));
     }
     let frames = params
-        .whole("FRAMES")
-        .ok_or_else(|| params.bad("FRAMES", "a whole number"))?;
+        .whole_number("FRAMES")
+        .ok_or_else(|| params.value_error("FRAMES", "a whole number"))?;
     let stored = frames
         .checked_mul(per_frame)
-        .ok_or_else(|| params.bad("FRAMES", "fewer"))?;
-    let samples = match params.whole("SAMPLES") {
+        .ok_or_else(|| params.value_error("FRAMES", "fewer"))?;
+    let samples = match params.whole_number("SAMPLES") {
         Some(exact) if exact <= stored => exact,
-        Some(_) => return Err(params.bad("SAMPLES", "at most FRAMES x PTS_PER_FRAME")),
+        Some(_) => return Err(params.value_error("SAMPLES", "at most FRAMES x PTS_PER_FRAME")),
         None => stored,
     };
     let expected = stored
@@ -261,7 +261,7 @@ fn of_params(params: &Params, start: usize, length: usize) -> Result<Header, Rpc
         .and_then(|points| points.checked_mul(n))
         .and_then(|points| points.checked_mul(numbers.width()))
         .and_then(|bytes| bytes.checked_add(start))
-        .ok_or_else(|| params.bad("FRAMES", "fewer"))?;
+        .ok_or_else(|| params.value_error("FRAMES", "fewer"))?;
     // A header that lists few channels can't name many: refuse before room is made for them.
     if expected > length || n > length {
         return Err(RpcError::Cut {
@@ -289,8 +289,8 @@ fn channel(params: &Params, i: usize, numbers: Numbers) -> Result<RpcChannel, Rp
     let scale = match numbers {
         Numbers::Float32 => 1.0,
         Numbers::Int16 => params
-            .real(&key("SCALE"))
-            .ok_or_else(|| params.bad(&key("SCALE"), "a number"))?,
+            .real_number(&key("SCALE"))
+            .ok_or_else(|| params.value_error(&key("SCALE"), "a number"))?,
     };
     Ok(RpcChannel {
         name: word("DESC").unwrap_or_else(|| i.to_string()),

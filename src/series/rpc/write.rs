@@ -105,7 +105,7 @@ fn write_header(out: &mut dyn Write, targets: &[Target], dt: f64, samples: usize
     put("TIME_TYPE", "RESPONSE".into());
     put("DATA_TYPE", "SHORT_INTEGER".into());
     put("OPERATION", "strainbridge recover".into());
-    put("DELTA_T", real(dt));
+    put("DELTA_T", format_real(dt));
     put("CHANNELS", n.to_string());
     put("PTS_PER_FRAME", FRAME.to_string());
     put("PTS_PER_GROUP", FRAME.to_string());
@@ -121,9 +121,9 @@ fn write_header(out: &mut dyn Write, targets: &[Target], dt: f64, samples: usize
     for (i, t) in (1..).zip(targets) {
         put(&format!("DESC.CHAN_{i}"), t.name.clone());
         put(&format!("UNITS.CHAN_{i}"), t.unit.clone());
-        put(&format!("SCALE.CHAN_{i}"), real(t.scale()));
-        put(&format!("LOWER_LIMIT.CHAN_{i}"), real(t.min));
-        put(&format!("UPPER_LIMIT.CHAN_{i}"), real(t.max));
+        put(&format!("SCALE.CHAN_{i}"), format_real(t.scale()));
+        put(&format!("LOWER_LIMIT.CHAN_{i}"), format_real(t.min));
+        put(&format!("UPPER_LIMIT.CHAN_{i}"), format_real(t.max));
         put(&format!("MAP.CHAN_{i}"), i.to_string());
     }
     let count = records.len() + 3;
@@ -139,15 +139,15 @@ fn write_header(out: &mut dyn Write, targets: &[Target], dt: f64, samples: usize
         .map(|(k, v)| (*k, v.as_str()))
         .chain(records.iter().map(|(k, v)| (k.as_str(), v.as_str())))
     {
-        header.extend(padded(key, KEY));
-        header.extend(padded(value, RECORD - KEY));
+        header.extend(pad_text(key, KEY));
+        header.extend(pad_text(value, RECORD - KEY));
     }
     header.resize(blocks * BLOCK, 0);
     out.write_all(&header)
 }
 
 /// A real that every reader takes for one: with a point, and digits enough to come back.
-fn real(x: f64) -> String {
+fn format_real(x: f64) -> String {
     if x.is_finite() {
         format!("{x:.9E}")
     } else {
@@ -156,7 +156,7 @@ fn real(x: f64) -> String {
 }
 
 /// Latin-1 text of fixed length that ends with a zero byte.
-fn padded(text: &str, length: usize) -> Vec<u8> {
+fn pad_text(text: &str, length: usize) -> Vec<u8> {
     let mut bytes: Vec<u8> = text
         .chars()
         .map(|c| u8::try_from(u32::from(c)).unwrap_or(b'?'))

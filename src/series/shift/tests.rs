@@ -86,16 +86,18 @@ fn values_between_samples_are_those_of_the_cubic() {
         signals: &samples,
     };
     let x: f64 = 3.25;
-    let found = sampled.at(0, 2.0 + x / 4.0).unwrap();
+    let found = sampled.value_at(0, 2.0 + x / 4.0).unwrap();
     assert!((found.value - (x * x * x - 5.0 * x * x)).abs() < 1e-12);
     assert!(
         (found.line - (-18.0 + 0.25 * 2.0)).abs() < 1e-12,
         "{found:?}"
     );
     // In the middle the weights are -1/16, 9/16, 9/16, -1/16: squares sum to 164/256.
-    let middle = sampled.at(0, 2.0 + 3.5 / 4.0).unwrap();
+    let middle = sampled.value_at(0, 2.0 + 3.5 / 4.0).unwrap();
     assert!((middle.noise * middle.noise - 164.0 / 256.0).abs() < 1e-12);
-    let last = sampled.at(0, 2.0 + 7.0 / 4.0).map(|v| (v.value, v.noise));
+    let last = sampled
+        .value_at(0, 2.0 + 7.0 / 4.0)
+        .map(|v| (v.value, v.noise));
     assert_eq!(last, Some((98.0, 1.0)));
-    assert_eq!(sampled.at(0, 2.0 + 7.5 / 4.0), None);
+    assert_eq!(sampled.value_at(0, 2.0 + 7.5 / 4.0), None);
 }

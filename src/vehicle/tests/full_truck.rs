@@ -25,7 +25,7 @@ fn front(r: &Readings) -> Channels {
     ])
 }
 
-fn rear(r: &Readings) -> Channels {
+fn rear_record(r: &Readings) -> Channels {
     record(&[
         ("a_body", &r.body[2]),
         ("a_mid", &r.hub[2]),
@@ -75,7 +75,11 @@ fn quarter_models_give_wheel_forces_within_five_per_cent_on_another_road_and_spe
             front(fitted),
             front(other),
         ),
-        (task("rear3", &[], (0.7, 10.0)), rear(fitted), rear(other)),
+        (
+            task("rear3", &[], (0.7, 10.0)),
+            rear_record(fitted),
+            rear_record(other),
+        ),
     ] {
         let id = identify(&q, &f, Some(&o)).unwrap();
         for (wheel, misfit) in wheel_misfits(&id) {
@@ -84,7 +88,7 @@ fn quarter_models_give_wheel_forces_within_five_per_cent_on_another_road_and_spe
     }
 }
 
-fn whole(r: &Readings) -> Channels {
+fn whole_truck_record(r: &Readings) -> Channels {
     let corners = ["lf", "rf", "lm", "rm", "lr", "rr"];
     let mut list = Vec::new();
     for (i, c) in corners.iter().enumerate() {
@@ -134,7 +138,12 @@ fn the_full_model_gives_every_wheel_force_within_two_per_cent_on_another_road_an
     // The friction's memory (Dahl) is in no model; friction without memory is.
     for terms in [&[][..], &["k", "c", "coulomb_friction"]] {
         let q = full_task(terms, 10.0);
-        let id = identify(&q, &whole(fitted), Some(&whole(other))).unwrap();
+        let id = identify(
+            &q,
+            &whole_truck_record(fitted),
+            Some(&whole_truck_record(other)),
+        )
+        .unwrap();
         let misfits = wheel_misfits(&id);
         assert_eq!(misfits.len(), 6);
         for (wheel, misfit) in misfits {

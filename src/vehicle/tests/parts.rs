@@ -24,7 +24,7 @@ fn noise(n: usize, seed: u64) -> Vec<f64> {
 }
 
 /// First-order coloured noise of unit innovation.
-fn coloured(n: usize, seed: u64) -> Vec<f64> {
+fn coloured_noise(n: usize, seed: u64) -> Vec<f64> {
     let mut x = 0.0;
     noise(n, seed)
         .into_iter()
@@ -88,9 +88,9 @@ fn intervals_hold_the_truth_in_95_of_100_records_with_coloured_residuals() {
     for seed in 0..150 {
         let n = 3000;
         let (a, b, e) = (
-            coloured(n, 3 * seed),
-            coloured(n, 3 * seed + 1),
-            coloured(n, 3 * seed + 2),
+            coloured_noise(n, 3 * seed),
+            coloured_noise(n, 3 * seed + 1),
+            coloured_noise(n, 3 * seed + 2),
         );
         let target = (0..n).map(|i| 2.0 * a[i] - 3.0 * b[i] + e[i]).collect();
         let equations = [Equation {

@@ -4,7 +4,7 @@ use super::*;
 
 fn case(name: &str) -> Option<(Channels, Channels, serde_json::Value)> {
     let truth = crate::support::bytes(&format!("hidden_effects/truth/{name}.json"))?;
-    let root = crate::support::shared("hidden_effects")?;
+    let root = crate::support::find_shared_path("hidden_effects")?;
     let read = |file: &str| {
         read_csv(
             &std::fs::read(root.join("dynamics").join(name).join(file)).unwrap(),
@@ -19,7 +19,7 @@ fn case(name: &str) -> Option<(Channels, Channels, serde_json::Value)> {
     ))
 }
 
-fn off(id: &Identification, truth: &serde_json::Value, name: &str) -> f64 {
+fn relative_error(id: &Identification, truth: &serde_json::Value, name: &str) -> f64 {
     (id.value(name).unwrap() / truth["true_params"][name].as_f64().unwrap() - 1.0).abs()
 }
 
@@ -44,12 +44,12 @@ fn the_control_case_gives_masses_and_stiffness_within_half_a_per_cent_and_wheel_
     .unwrap();
     for name in ["m_b", "m_f", "k_s"] {
         assert!(
-            off(&id, &truth, name) < 0.005,
+            relative_error(&id, &truth, name) < 0.005,
             "{name}: {}",
-            off(&id, &truth, name)
+            relative_error(&id, &truth, name)
         );
     }
-    assert!(off(&id, &truth, "c_s") < 0.01);
+    assert!(relative_error(&id, &truth, "c_s") < 0.01);
     assert!(misfit(&id, "f_wheel") < 0.01);
     assert!((id.mass_closure.unwrap().ratio - 1.0).abs() < 0.01);
     assert!(
@@ -83,9 +83,9 @@ fn the_right_nonlinear_term_brings_stiffness_and_wheel_force_back() {
         .unwrap();
         for p in ["m_b", "m_f", "k_s"] {
             assert!(
-                off(&with, &truth, p) < 0.005,
+                relative_error(&with, &truth, p) < 0.005,
                 "{name} {p}: {}",
-                off(&with, &truth, p)
+                relative_error(&with, &truth, p)
             );
         }
         let hidden = truth["hidden_params"][truth_key].as_f64().unwrap();
@@ -134,7 +134,7 @@ fn without_a_wheel_force_ratios_are_told_and_the_lost_factor_is_named() {
         ..q
     };
     let id = identify(&known, &data, None).unwrap();
-    assert!(off(&id, &truth, "k_s") < 0.005);
+    assert!(relative_error(&id, &truth, "k_s") < 0.005);
 }
 
 #[test]

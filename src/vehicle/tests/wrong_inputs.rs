@@ -54,7 +54,7 @@ fn half(r: &Readings) -> Channels {
     record(list)
 }
 
-fn full(r: &Readings) -> Channels {
+fn full_truck_record(r: &Readings) -> Channels {
     let mut list = Vec::new();
     for (i, corner) in ["lf", "rf", "lr", "rr"].into_iter().enumerate() {
         list.push((format!("a_body_{corner}"), r.body[i].clone()));
@@ -103,17 +103,17 @@ fn readings() -> &'static Readings {
 
 fn records() -> [Channels; 3] {
     let r = readings();
-    [front(r), half(r), full(r)].map(without_gravity)
+    [front(r), half(r), full_truck_record(r)].map(without_gravity)
 }
 
-fn scaled(r: &Channels, is: impl Fn(&str) -> bool, factor: f64) -> Channels {
+fn scale_channels(r: &Channels, is: impl Fn(&str) -> bool, factor: f64) -> Channels {
     let mut out = r.clone();
     let channels = out.list.iter_mut().filter(|c| is(&c.name));
     channels.for_each(|c| c.samples.iter_mut().for_each(|v| *v *= factor));
     out
 }
 
-fn exchanged(r: &Channels, a: &str, b: &str) -> Channels {
+fn exchange_channels(r: &Channels, a: &str, b: &str) -> Channels {
     let mut out = r.clone();
     for c in &mut out.list {
         if c.name == a {
@@ -148,7 +148,7 @@ fn a_reversed_channel_is_found_in_quarter_half_and_full_trucks() {
         let every = if r.list.len() > 6 { 5 } else { 1 };
         for channel in r.list.iter().step_by(every) {
             let name = &channel.name;
-            let reversed = scaled(r, |c| c == name, -1.0);
+            let reversed = scale_channels(r, |c| c == name, -1.0);
             let described = format!("`{name}` has reversed sign");
             finds(task, &reversed, "input-sign-reversed", name, &described);
         }
@@ -159,7 +159,7 @@ fn a_reversed_channel_is_found_in_quarter_half_and_full_trucks() {
 fn all_forces_reversed_are_found_as_such() {
     let [_, task, _] = tasks();
     let [_, r, _] = records();
-    let reversed = scaled(&r, |c| c.starts_with("f_"), -1.0);
+    let reversed = scale_channels(&r, |c| c.starts_with("f_"), -1.0);
     let code = "input-sign-reversed";
     finds(&task, &reversed, code, "all", "all wheel forces have");
 }
@@ -182,7 +182,7 @@ fn exchanged_channels_are_found() {
     for ((task, r), pairs) in tasks().iter().zip(&records()).zip(pairs) {
         for [a, b] in pairs {
             let described = format!("`{a}` and `{b}` are exchanged");
-            let wrong = exchanged(r, a, b);
+            let wrong = exchange_channels(r, a, b);
             finds(
                 task,
                 &wrong,
@@ -202,7 +202,7 @@ fn one_channel_in_another_unit_is_found() {
     let [mut task, ..] = tasks();
     (task.band.low_hz, task.band.high_hz) = (1.0, 15.0);
     for (factor, unit) in [(1.0 / 9.80665, "g"), (1e3, "mm/s2")] {
-        let wrong = scaled(&r, |c| c == "a_body", factor);
+        let wrong = scale_channels(&r, |c| c == "a_body", factor);
         let described = format!("`a_body` is in {unit} and is read as m/s2");
         finds(&task, &wrong, "input-unit", "a_body", &described);
     }
@@ -215,7 +215,7 @@ fn the_unit_of_all_accelerations_or_forces_is_found_by_the_masses() {
         let acceleration = |c: &str| c.starts_with("a_");
         let force = |c: &str| c.starts_with("f_");
         let code = "input-unit";
-        let in_g = scaled(r, acceleration, 1.0 / 9.80665);
+        let in_g = scale_channels(r, acceleration, 1.0 / 9.80665);
         finds(
             task,
             &in_g,
@@ -223,9 +223,9 @@ fn the_unit_of_all_accelerations_or_forces_is_found_by_the_masses() {
             "all",
             "accelerations are in g and are read as m/s2",
         );
-        let in_mm = scaled(r, acceleration, 1e3);
+        let in_mm = scale_channels(r, acceleration, 1e3);
         finds(task, &in_mm, code, "all", "accelerations are in mm/s2");
-        let in_kn = scaled(r, force, 1e-3);
+        let in_kn = scale_channels(r, force, 1e-3);
         finds(task, &in_kn, code, "all", "may be in kN and are read as N");
     }
 }
@@ -269,7 +269,10 @@ fn sound_records_have_no_wrong_input() {
             100 + seed,
             [0.05, 100.0],
         );
-        for (task, r) in tasks().iter().zip([front(&r), half(&r), full(&r)]) {
+        for (task, r) in tasks()
+            .iter()
+            .zip([front(&r), half(&r), full_truck_record(&r)])
+        {
             let r = match seed % 2 {
                 0 => r,
                 _ => without_gravity(r),

@@ -160,7 +160,7 @@ pub(super) fn report_ballast(
         })
         .collect();
     let (run, numbers_fixed, height) = (sized.run.clone(), sized.fit.fixed, sized.height * l);
-    let together = together(task, sized);
+    let together = missing_mass_resultant(task, sized);
     move |deck| Ballasted {
         numbers_asked: 3 * masses.len(),
         masses,
@@ -176,7 +176,7 @@ pub(super) fn report_ballast(
 }
 
 /// Statics alone: the reactions' resultant less the model's own.
-fn together(task: &Task, sized: &Sized) -> Together {
+fn missing_mass_resultant(task: &Task, sized: &Sized) -> Together {
     let (job, g) = (task.job, task.gravity);
     let (l, m) = (length(job), mass(job));
     let pairs = sized.measured.iter().zip(sized.before);

@@ -84,7 +84,7 @@ pub(super) fn solve_completed(
     edited: &[(String, Vec<u8>)],
 ) -> Result<Vec<f64>, Faults> {
     let program = |wrong: String| {
-        Faults::from(Fault::of(
+        Faults::from(Fault::new(
             format!("{DECK}.bdf"),
             "deck",
             wrong,

@@ -52,7 +52,7 @@ pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
     let mut work = Work::of_job(cx, job);
     let read = read_asked(&mut work, job)?;
     let job = &job.with_property_ids(&read.model.property_names)?;
-    let ballast = asked(job)?;
+    let ballast = ballast_section(job)?;
     let wheels = wheels_of(job, &read.model)?;
     let standing = work
         .stage("solve", |_| {
@@ -67,8 +67,8 @@ pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
         standing,
         gravity: ballast.gravity_m_s2 / job.units.length_m(),
     };
-    let (run, measured, sigma) = measured(&mut work, &task)?;
-    let carriers = Carriers::of(&read.model, task.wheels.axis, |p| {
+    let (run, measured, sigma) = read_measured_reactions(&mut work, &task)?;
+    let carriers = Carriers::from_model(&read.model, task.wheels.axis, |p| {
         ballast
             .properties
             .as_ref()
@@ -77,7 +77,7 @@ pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
     let (region, height) = region(&task, &carriers)?;
     let before = task.standing.under_weight(&read.model, task.gravity);
     let lacking: f64 = measured.iter().sum::<f64>() - before.iter().sum::<f64>();
-    let largest = largest(&task, &run, lacking)?;
+    let largest = largest_mass_weight(&task, &run, lacking)?;
     let spec = BallastSpec {
         masses: ballast.masses,
         region,
@@ -113,11 +113,14 @@ pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
         edited,
     };
     let answer = answer(deck);
-    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+    Ok(work.finish(
+        StatedUnits::from_units(job.units, &job.report_units),
+        answer,
+    ))
 }
 
-fn missing(job: &Job, field: &str, example: &str) -> Faults {
-    Faults::from(Fault::of(
+fn missing_section(job: &Job, field: &str, example: &str) -> Faults {
+    Faults::from(Fault::new(
         &*job.file,
         field,
         format!("the job has no [{field}]"),
@@ -129,9 +132,9 @@ fn missing(job: &Job, field: &str, example: &str) -> Faults {
 ///
 /// # Errors
 /// A job without it.
-fn asked(job: &Job) -> Result<&Ballast, Faults> {
+fn ballast_section(job: &Job) -> Result<&Ballast, Faults> {
     job.ballast.as_ref().ok_or_else(|| {
-        missing(
+        missing_section(
             job,
             "ballast",
             "state the unknown masses: [ballast] masses = 2, region = [[x0, x1], [y0, y1]]",
@@ -141,16 +144,15 @@ fn asked(job: &Job) -> Result<&Ballast, Faults> {
 
 /// Checks what the job asks for and reads its deck; findings of the deck go to the work.
 fn read_asked(work: &mut Work, job: &Job) -> Result<DeckModel, Faults> {
-    asked(job)?;
-    let files = job
-        .model
-        .as_ref()
-        .ok_or_else(|| missing(job, "model", "name the deck: [model] deck = \"model.bdf\""))?;
+    ballast_section(job)?;
+    let files = job.model.as_ref().ok_or_else(|| {
+        missing_section(job, "model", "name the deck: [model] deck = \"model.bdf\"")
+    })?;
     check_named(work, job, Absent::Refused)?;
     check_tables(work, job)?;
     let read = work.stage("read model", |s| read_deck(s, job, files))?;
     if read.deck.sources.is_empty() {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*job.file,
             "model.deck",
             "an OP2 is not a deck, and cannot be completed",
@@ -161,13 +163,13 @@ fn read_asked(work: &mut Work, job: &Job) -> Result<DeckModel, Faults> {
 }
 
 /// Returns the largest weight of one mass, in job units: `max_mass` of the job, or else the total weight that the model lacks.
-fn largest(task: &Task, run: &str, lacking: f64) -> Result<f64, Faults> {
+fn largest_mass_weight(task: &Task, run: &str, lacking: f64) -> Result<f64, Faults> {
     let (job, ballast) = (task.job, task.ballast);
     let largest = ballast
         .max_mass
         .map_or(lacking.max(0.0), |m| m * task.gravity);
     if !(largest > 0.0) {
-        return Err(Faults::from(Fault::at(
+        return Err(Faults::from(Fault::with_line(
             &*job.file,
             ballast.line,
             "ballast",
@@ -205,7 +207,7 @@ fn size(
         spec,
     );
     if on_a_line.get() {
-        return Err(Faults::from(Fault::at(
+        return Err(Faults::from(Fault::with_line(
             &*task.job.file,
             task.ballast.line,
             "ballast.region",
@@ -217,10 +219,13 @@ fn size(
 }
 
 /// Name, reactions and their sd in job units of the run asked for, in the order of the wheels.
-fn measured(work: &mut Work, task: &Task) -> Result<(String, Vec<f64>, Vec<f64>), Faults> {
+fn read_measured_reactions(
+    work: &mut Work,
+    task: &Task,
+) -> Result<(String, Vec<f64>, Vec<f64>), Faults> {
     let job = task.job;
     let Some(runs) = &job.runs else {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*job.file,
             "runs",
             "the job has no [runs]",
@@ -233,7 +238,7 @@ fn measured(work: &mut Work, task: &Task) -> Result<(String, Vec<f64>, Vec<f64>)
         None => rows.first(),
     };
     let Some(row) = row else {
-        return Err(Faults::from(Fault::at(
+        return Err(Faults::from(Fault::with_line(
             &*job.file,
             task.ballast.line,
             "ballast.run",
@@ -248,7 +253,7 @@ fn measured(work: &mut Work, task: &Task) -> Result<(String, Vec<f64>, Vec<f64>)
         let name = &job.loads[*l].name;
         match row.loads_si.get(name) {
             Some(v) => values.push(v / newton),
-            None => faults.push(Fault::at(
+            None => faults.push(Fault::with_line(
                 &*runs.file.given,
                 row.line,
                 name.clone(),
@@ -282,7 +287,7 @@ fn measured(work: &mut Work, task: &Task) -> Result<(String, Vec<f64>, Vec<f64>)
 /// Where masses may sit in plan, and their height.
 fn region(task: &Task, carriers: &Carriers) -> Result<([[f64; 2]; 2], f64), Faults> {
     let Some([b, c, up]) = carriers.extent() else {
-        return Err(Faults::from(Fault::at(
+        return Err(Faults::from(Fault::with_line(
             &*task.job.file,
             task.ballast.line,
             "ballast.properties",

@@ -18,7 +18,7 @@ pub(super) struct Asked {
 impl Asked {
     /// Reads which runs `[calibration]` and the column `check` of the table select. Column `key` of the table contains its runs; `strain`
     /// are the runs of the strain file.
-    pub fn of(
+    pub fn from_job(
         (job, headers): (&Job, &[Column]),
         (table, key): (&Table, usize),
         strain: &[String],
@@ -66,7 +66,7 @@ fn asked_rows(
         for (found, file, choices) in known {
             if !found {
                 let wrong = format!("`{file}` has no run `{run}`");
-                faults.push(Fault::at(
+                faults.push(Fault::with_line(
                     &*job.file,
                     job.calibration.line,
                     key,
@@ -97,7 +97,7 @@ fn check_rows(
             match word.to_ascii_lowercase().as_str() {
                 "" | "0" | "false" | "no" => {}
                 "1" | "true" | "yes" => out.push(row),
-                _ => faults.push(Fault::at(
+                _ => faults.push(Fault::with_line(
                     &*table.file,
                     *line,
                     "check",
@@ -109,7 +109,7 @@ fn check_rows(
     }
     for row in asked.into_iter().flatten().filter(|a| out.contains(a)) {
         let run = table.rows[*row].1.get(key).map_or("", String::as_str);
-        faults.push(Fault::at(
+        faults.push(Fault::with_line(
             &*job.file,
             job.calibration.line,
             "calibration.check",

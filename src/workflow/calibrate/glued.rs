@@ -3,7 +3,7 @@
 use super::outcome::{AsGluedSummary, CalibratedGauge, GlueSummary, GluedGauge};
 use crate::calibrate::{AsGlued, GlueTolerance, MoveKind, OffDrawing};
 use crate::finding::{Finding, Severity, list_few};
-use crate::gauge::{CornerRows, Drawn, Gauge, Offset, centre, reading};
+use crate::gauge::{CornerRows, Drawn, Gauge, Offset, centre, gauge_reading};
 use crate::host::fault::{Fault, Faults};
 use crate::job::{CalibrationKeys, Job};
 use crate::linalg::Matrix;
@@ -41,11 +41,15 @@ impl<'a> Sites<'a> {
     ///
     /// # Errors
     /// S that is given: gauges can't be moved in a table. Ids that the deck lacks.
-    pub fn of(job: &Job, prepared: &'a Prepared, tolerance: GlueTolerance) -> Result<Self, Faults> {
+    pub fn from_job(
+        job: &Job,
+        prepared: &'a Prepared,
+        tolerance: GlueTolerance,
+    ) -> Result<Self, Faults> {
         let fields = match &prepared.fields {
             Some(f) if job.sensitivity.is_none() => f,
             _ => {
-                return Err(Fault::at(
+                return Err(Fault::with_line(
                     &*job.file,
                     job.calibration.line,
                     "calibration.position_tolerance",
@@ -80,7 +84,7 @@ impl<'a> Sites<'a> {
 
     /// Row of S of a gauge that sits elsewhere: along, across (job units of length), angle (radians).
     pub fn row(&self, gauge: usize, [along, across, angle_rad]: [f64; 3]) -> Option<Vec<f64>> {
-        let (gauge, _) = self.gauges.get(gauge)?.as_ref()?.glued(Offset {
+        let (gauge, _) = self.gauges.get(gauge)?.as_ref()?.gauge_at_offset(Offset {
             along,
             across,
             angle_rad,
@@ -91,7 +95,7 @@ impl<'a> Sites<'a> {
     fn row_of(&self, gauge: &Gauge) -> Option<Vec<f64>> {
         let cases = self.cases.iter();
         cases
-            .map(|l| Some(reading(gauge, l.case)? / l.applied))
+            .map(|l| Some(gauge_reading(gauge, l.case)? / l.applied))
             .collect()
     }
 
@@ -102,11 +106,11 @@ impl<'a> Sites<'a> {
     }
 
     /// Where a gauge was found; `None` for one on a bar.
-    pub fn found(&self, gauge: usize, glued: &AsGlued) -> Option<GluedGauge> {
-        let of = |kind| glued.of(kind).map_or(0.0, |m| m.value);
+    pub fn locate_gauge(&self, gauge: usize, glued: &AsGlued) -> Option<GluedGauge> {
+        let of = |kind| glued.find_move(kind).map_or(0.0, |m| m.value);
         let drawn = self.gauges.get(gauge)?.as_ref()?;
         let bridge = self.bridges.get(gauge)?;
-        let (gauge, at) = drawn.glued(Offset {
+        let (gauge, at) = drawn.gauge_at_offset(Offset {
             along: of(MoveKind::Along),
             across: of(MoveKind::Across),
             angle_rad: of(MoveKind::Turned),
@@ -129,7 +133,7 @@ impl<'a> Sites<'a> {
 /// How the rows change where gauges are not glued as drawn; `None` where S is given, or all gauges sit on bars.
 ///
 /// # Errors
-/// As [`Sites::of`].
+/// As [`Sites::from_job`].
 pub(super) fn off_drawing(job: &Job, prepared: &Prepared) -> Result<Option<OffDrawing>, Faults> {
     let model = match &prepared.fields {
         Some(f) if job.sensitivity.is_none() => f.model(),
@@ -150,7 +154,7 @@ pub(super) fn off_drawing(job: &Job, prepared: &Prepared) -> Result<Option<OffDr
         position: reach,
         angle_rad: 0.0,
     };
-    let sites = Sites::of(job, prepared, tolerance)?;
+    let sites = Sites::from_job(job, prepared, tolerance)?;
     let (n, k) = prepared.sensitivity.values.shape();
     let zeros = Matrix::zeros(n, k);
     let mut out = OffDrawing {
@@ -173,7 +177,7 @@ pub(super) fn off_drawing(job: &Job, prepared: &Prepared) -> Result<Option<OffDr
         let [Some(turned), Some(crossed)] = turns else {
             continue;
         };
-        let ways: [fn(f64) -> Offset; 2] = [Offset::along, Offset::across];
+        let ways: [fn(f64) -> Offset; 2] = [Offset::shift_along, Offset::shift_across];
         let [along, across] = ways.map(|way| {
             let slope = sites.slope(g, way, PLACE_STEP * reach);
             slope.unwrap_or_else(|| vec![0.0; k])
@@ -191,7 +195,7 @@ pub(super) fn off_drawing(job: &Job, prepared: &Prepared) -> Result<Option<OffDr
 /// Returns the installed position and gain of a gauge from the runs, in job units of length and degrees.
 pub(super) fn summary(glued: &AsGlued) -> AsGluedSummary {
     let of = |kind, unit: f64| {
-        glued.of(kind).map(|m| GlueSummary {
+        glued.find_move(kind).map(|m| GlueSummary {
             value: m.value * unit,
             sigma: m.sigma * unit,
             told: m.is_determined(),
@@ -210,7 +214,7 @@ pub(super) fn summary(glued: &AsGlued) -> AsGluedSummary {
 }
 
 /// Returns a note on positions, angles and gains that the runs do not determine; `None` if the runs determine all of them.
-pub(super) fn untold(gauges: &[CalibratedGauge]) -> Option<Finding> {
+pub(super) fn report_undetermined_values(gauges: &[CalibratedGauge]) -> Option<Finding> {
     type Size = fn(&AsGluedSummary) -> Option<GlueSummary>;
     let sizes: [(&str, Size); 4] = [
         ("place along the axis", |a| a.along),

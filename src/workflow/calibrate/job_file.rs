@@ -4,7 +4,7 @@ use super::Calibrated;
 use crate::host::fault::{Fault, Faults};
 use crate::units::MICROSTRAIN;
 use crate::workflow::reconcile::redirect::redirect;
-use crate::workflow::reconcile::relative::relative;
+use crate::workflow::reconcile::relative::relative_path;
 use std::collections::BTreeSet;
 use std::path::Path;
 use toml::{Table, Value};
@@ -17,7 +17,7 @@ use toml::{Table, Value};
 pub fn calibrated_job(answer: &Calibrated, out: &Path) -> Result<String, Faults> {
     let job = &answer.job;
     let mistake = |e: String| {
-        Faults::from(Fault::of(
+        Faults::from(Fault::new(
             &*job.file,
             "job",
             e,
@@ -28,7 +28,7 @@ pub fn calibrated_job(answer: &Calibrated, out: &Path) -> Result<String, Faults>
         .job_text
         .parse()
         .map_err(|e: toml::de::Error| mistake(e.to_string()))?;
-    redirect(&mut table, &relative(out, &job.folder));
+    redirect(&mut table, &relative_path(out, &job.folder));
     let mut s = match table.remove("sensitivity") {
         Some(Value::Table(given)) => given,
         _ => Table::new(),

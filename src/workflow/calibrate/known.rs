@@ -30,7 +30,7 @@ pub(super) struct Known {
 }
 
 impl Known {
-    fn of(row: usize, loads: KnownLoads, group: usize) -> Self {
+    fn new(row: usize, loads: KnownLoads, group: usize) -> Self {
         Self { row, loads, group }
     }
 }
@@ -72,10 +72,7 @@ pub(super) fn read_known(
     loads: &[Load],
     origin: [f64; 2],
 ) -> Result<KnownRuns, Faults> {
-    let text = work
-        .inputs
-        .read_named_text(job, &runs.file)
-        .map_err(Faults::from)?;
+    let text = work.inputs.read_named_text(job, &runs.file)?;
     let mut table = read_table(&runs.file.given, &text)?;
     let mut headers = take_units_of(&mut work.inputs, job, &runs.file, &mut table);
     table.check_rows()?;
@@ -84,7 +81,7 @@ pub(super) fn read_known(
     let payloads = add_columns(work, (job, runs), &mut table, &mut headers, loads, origin)?;
     let mut faults = FaultList::new();
     let key = run_column(job, &table, &headers)?;
-    let stated = stated(job, runs, &table, &headers, loads, &mut faults);
+    let stated = find_load_columns(job, runs, &table, &headers, loads, &mut faults);
     let place = |name: &str, key: &str, faults: &mut FaultList| {
         column(job, &table, &headers, name, key, faults)
     };
@@ -101,7 +98,8 @@ pub(super) fn read_known(
         cell.map_or("", String::as_str)
     };
     faults.extend(named_twice(&table, key));
-    let Asked { asked, checks } = Asked::of((job, &headers), (&table, key), strain, &mut faults);
+    let Asked { asked, checks } =
+        Asked::from_job((job, &headers), (&table, key), strain, &mut faults);
     let largest = largest_known(&table, &stated, loads.len(), &mut faults);
     let held_out = |run: &str| matches!(&measured.hold_out, HoldOut::Runs(list) if list.iter().any(|r| r == run));
     let (mut out, mut groups): (Vec<Known>, Vec<Vec<String>>) = (Vec::new(), Vec::new());
@@ -131,7 +129,7 @@ pub(super) fn read_known(
                 let wrong = format!(
                     "the loads of run `{run}` are not known, and it is a calibration or a check run"
                 );
-                faults.push(Fault::at(&*table.file, line, "run", wrong, "fill in its loads (0 if a load did not act), or remove it from `[calibration] runs` or `check`"));
+                faults.push(Fault::with_line(&*table.file, line, "run", wrong, "fill in its loads (0 if a load did not act), or remove it from `[calibration] runs` or `check`"));
             } else if stated
                 .iter()
                 .any(|s| matches!(cell(&table, at, s), Ok(Some(_))))
@@ -141,7 +139,7 @@ pub(super) fn read_known(
             continue;
         };
         if is_check {
-            checked.push(Known::of(row, known, 0));
+            checked.push(Known::new(row, known, 0));
             continue;
         }
         let cells = |columns: &[usize]| -> Vec<String> {
@@ -167,9 +165,9 @@ pub(super) fn read_known(
             }
         }
         teaching.push(at);
-        out.push(Known::of(row, known, group));
+        out.push(Known::new(row, known, group));
     }
-    faults.extend(payloads.and_then(|p| p.unaccounted(job, &table, &teaching)));
+    faults.extend(payloads.and_then(|p| p.find_unaccounted_payload(job, &table, &teaching)));
     let none = (out.is_empty() && faults.is_empty()).then(|| nothing_known(&table, loads));
     faults.extend(none);
     Faults::check(faults)?;
@@ -243,7 +241,7 @@ fn partly_known(file: &str, runs: &[&String]) -> Option<Finding> {
 /// Returns the fault of a file without a calibration run.
 fn nothing_known(table: &Table, loads: &[Load]) -> Fault {
     let names: Vec<&str> = loads.iter().map(|l| l.name.as_str()).collect();
-    Fault::of(
+    Fault::new(
         &*table.file,
         "run",
         "no run has both strain and known loads",
@@ -268,7 +266,7 @@ fn named_twice(table: &Table, key: usize) -> FaultList {
     again
         .map(|(_, row)| {
             let wrong = format!("run `{}` occurs twice", name_of(row));
-            Fault::at(
+            Fault::with_line(
                 &*table.file,
                 row.0,
                 "run",
@@ -293,7 +291,7 @@ fn column(
 }
 
 /// Columns of loads and of combinations that the file has.
-fn stated(
+fn find_load_columns(
     job: &Job,
     runs: &Runs,
     table: &Table,
@@ -440,7 +438,7 @@ fn loads_of(
         if left.abs() > ROUNDED * size + CONTRADICTS * variance.sqrt() {
             let line = table.rows.get(row).map_or(0, |r| r.0);
             let [said, made] = [value, value - left].map(|v| number(v / s.unit));
-            return Err(Fault::at(
+            return Err(Fault::with_line(
                 &*table.file,
                 line,
                 &*s.name,

@@ -69,7 +69,7 @@ use crate::workflow::recover::list_load_columns;
 /// ```
 pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults> {
     let mut work = Work::of_job(cx, job);
-    let job = &job.estimating()?;
+    let job = &job.without_validation_gauges()?;
     check_tables(&work, job)?;
     let (measured, runs) = sections(job)?;
     let zeroed = work.stage("read strain", |w| strain_of_runs(w, job, measured))?;
@@ -100,7 +100,7 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
         scale_sd: job.calibration.scale_sd,
     };
     let sites = match glued::tolerance(&job.calibration) {
-        Some(t) => Some((t, glued::Sites::of(job, &prepared, t)?)),
+        Some(t) => Some((t, glued::Sites::from_job(job, &prepared, t)?)),
         None => None,
     };
     let found = work
@@ -109,7 +109,7 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
             None => crate::calibrate::calibrate(&task),
         })
         .map_err(|wrong| {
-            Faults::from(Fault::of(
+            Faults::from(Fault::new(
                 &*runs.file.given,
                 "runs",
                 wrong,
@@ -141,12 +141,13 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
         &calibration.checks,
         &listed.names[..task.loads.len()],
     ));
-    work.findings.extend(glued::untold(&calibration.gauges));
+    work.findings
+        .extend(glued::report_undetermined_values(&calibration.gauges));
     let glued = found.as_glued.iter().enumerate();
     let answer = Calibrated {
         calibration,
         glued: glued
-            .map(|(g, a)| sites.as_ref().and_then(|(_, s)| s.found(g, a)))
+            .map(|(g, a)| sites.as_ref().and_then(|(_, s)| s.locate_gauge(g, a)))
             .collect(),
         sensitivity: found.sensitivity.clone(),
         model: task.model.as_ref().map(|m| m.values.clone()),
@@ -154,7 +155,10 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
         job_text: text_of(&mut work, job)?,
         job: job.clone(),
     };
-    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+    Ok(work.finish(
+        StatedUnits::from_units(job.units, &job.report_units),
+        answer,
+    ))
 }
 
 /// Returns how strain without load is treated: not at all, or as a common zero that is estimated.
@@ -164,7 +168,7 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
 fn common_zero(job: &Job, has_prior: bool) -> Result<CommonZero, Faults> {
     match (job.calibration.terms, has_prior) {
         (Terms::Linear, _) => Ok(CommonZero::None),
-        (Terms::Intercept, false) if job.calibration.scale_sd > 0.0 => Err(Fault::at(
+        (Terms::Intercept, false) if job.calibration.scale_sd > 0.0 => Err(Fault::with_line(
             &*job.file,
             job.calibration.line,
             "calibration.scale_sd",
@@ -173,7 +177,7 @@ fn common_zero(job: &Job, has_prior: bool) -> Result<CommonZero, Faults> {
         )
         .into()),
         (Terms::Intercept, false) => Ok(CommonZero::Sought),
-        (Terms::Intercept, true) => Err(Fault::at(
+        (Terms::Intercept, true) => Err(Fault::with_line(
             &*job.file,
             job.calibration.line,
             "calibration.terms",
@@ -250,7 +254,7 @@ fn payload_place(job: &Job, prepared: &Prepared) -> [f64; 2] {
 /// Returns the two sections that calibration needs, or a fault for each missing section.
 fn sections(job: &Job) -> Result<(&Measured, &Runs), Faults> {
     let lacks = |section: &str, remedy: &str| {
-        Fault::of(
+        Fault::new(
             &*job.file,
             section,
             format!("the job has no [{section}]"),
@@ -298,7 +302,7 @@ fn prior(
         return Ok((prepared, Some(prior)));
     }
     if job.loads.is_empty() {
-        return Err(Fault::of(
+        return Err(Fault::new(
             &*job.file,
             "load",
             "the job contains no loads",
@@ -327,7 +331,7 @@ fn stated_alone(job: &Job, table: &StrainTable) -> Sensitivity {
         expected: l.expected,
         wanted: l.role == LoadRole::Wanted,
         quantity: l.quantity(),
-        ..Load::named(&l.name)
+        ..Load::from_name(&l.name)
     };
     let loads: Vec<Load> = job.loads.iter().map(load).collect();
     Sensitivity {
@@ -351,7 +355,7 @@ fn check_readings(
 ) -> Result<(), Faults> {
     if measured.reference != Reference::None {
         let wrong = "known loads are changes from the state at which the gauges read zero";
-        return Err(Fault::at(
+        return Err(Fault::with_line(
             &*job.file,
             measured.line,
             "measured.reference",

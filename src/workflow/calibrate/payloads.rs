@@ -187,7 +187,12 @@ impl Payloads {
     }
 
     /// A fault where runs that teach carry a payload whose strain no load of the job makes: it would be taken for that of the others.
-    pub fn unaccounted(&self, job: &Job, table: &Table, teaching: &[usize]) -> Option<Fault> {
+    pub fn find_unaccounted_payload(
+        &self,
+        job: &Job,
+        table: &Table,
+        teaching: &[usize],
+    ) -> Option<Fault> {
         let in_readings = job.payload.as_ref().is_none_or(|p| p.weight_in_model);
         let heavy = |row: &&usize| self.weights.get(**row).is_some_and(|w| w.0 != 0.0);
         let row = teaching
@@ -195,7 +200,7 @@ impl Payloads {
             .find(heavy)
             .filter(|_| !self.taught && in_readings)?;
         let line = self.weights.get(*row).map_or(0, |w| w.1);
-        Some(Fault::at(
+        Some(Fault::with_line(
             &*table.file,
             line,
             self.column,

@@ -84,7 +84,7 @@ const UNEVEN: f64 = 300.0;
 const CLEAR: f64 = 6.0;
 
 /// The largest known size of a load; 0 of one that no run has.
-fn largest(task: &Task, l: usize) -> f64 {
+fn largest_known_load(task: &Task, l: usize) -> f64 {
     let known = task.runs.iter().map(|r| r.loads.mean[l].abs());
     known.fold(0.0, f64::max)
 }
@@ -113,7 +113,7 @@ pub(super) fn report_uneven_loads(
             .filter(|&b| listed.units[b].name == listed.units[a].name);
         let most = others.max_by(|b, c| size(*b).total_cmp(&size(*c)))?;
         let times = size(most) / size(a);
-        let read = size(a) * largest(task, a) > CLEAR * task.noise;
+        let read = size(a) * largest_known_load(task, a) > CLEAR * task.noise;
         (read && times > UNEVEN).then_some((a, most, times))
     });
     odd.map(|(a, most, times)| {
@@ -139,7 +139,7 @@ pub(super) fn next_run(
     found: &Calibration,
     units: &[LoadUnits],
 ) -> Option<NextRunSummary> {
-    let size = |l: usize| match largest(task, l) {
+    let size = |l: usize| match largest_known_load(task, l) {
         known if known > 0.0 => Some(known),
         _ => task.loads[l].expected,
     };
@@ -314,10 +314,10 @@ fn ranges<'a>(
 
 /// Recovered less known loads over the runs, by load.
 fn residuals(task: &Task, found: &Calibration, listed: &Listed) -> Vec<LoadResidual> {
-    let fitted = found.fitted(task.noise, &task.runs);
+    let fitted = found.recover_used_runs(task.noise, &task.runs);
     let rms = |v: &[f64]| (v.iter().map(|x| x * x).sum::<f64>() / v.len().max(1) as f64).sqrt();
     let one = |l: usize| {
-        let full = found.range.largest(l);
+        let full = found.range.largest_load(l);
         let percent = |run: usize, value: f64| {
             let known = known_of(task, run, &[(l, 1.0)])?;
             Some(100.0 * (value - known) / full)

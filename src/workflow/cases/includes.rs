@@ -49,13 +49,13 @@ pub(crate) fn relocate_deck(
             let target = edited.iter().position(|f| {
                 names(&s.name, &first, path)
                     .iter()
-                    .any(|p| same(p, Path::new(&f.0)))
+                    .any(|p| is_same_path(p, Path::new(&f.0)))
             });
             let new = match target {
                 Some(t) if copied[t] => name_of(t),
                 Some(t) => from_folder(folder, Path::new(&edited[t].0)),
                 None if is_fixed(&s.name) => continue,
-                None => from_folder(folder, &beside(&first, &s.name)),
+                None => from_folder(folder, &path_in_folder_of(&first, &s.name)),
             };
             text.extend_from_slice(&bytes[at..s.start]);
             text.extend_from_slice(statement(&new).as_bytes());
@@ -142,21 +142,21 @@ fn names(name: &str, first: &str, includer: &str) -> Vec<PathBuf> {
         });
     [name.to_owned(), name.replace('\\', "/")]
         .iter()
-        .flat_map(|n| [beside(first, n), beside(includer, n)])
+        .flat_map(|n| [path_in_folder_of(first, n), path_in_folder_of(includer, n)])
         .chain(symbol)
         .collect()
 }
 
-fn beside(file: &str, name: &str) -> PathBuf {
+fn path_in_folder_of(file: &str, name: &str) -> PathBuf {
     Path::new(file).parent().unwrap_or(Path::new("")).join(name)
 }
 
-fn same(a: &Path, b: &Path) -> bool {
-    plain(a) == plain(b)
+fn is_same_path(a: &Path, b: &Path) -> bool {
+    normalize_path(a) == normalize_path(b)
 }
 
 /// Without `.` and `folder/..`.
-fn plain(p: &Path) -> PathBuf {
+fn normalize_path(p: &Path) -> PathBuf {
     let mut out = PathBuf::new();
     for c in p.components() {
         match c {
@@ -176,8 +176,8 @@ fn plain(p: &Path) -> PathBuf {
 pub(crate) fn from_folder(folder: &Path, file: &Path) -> String {
     let full = |p: &Path| {
         std::path::absolute(p)
-            .map(|p| plain(&p))
-            .unwrap_or_else(|_| plain(p))
+            .map(|p| normalize_path(&p))
+            .unwrap_or_else(|_| normalize_path(p))
     };
     let (from, to) = (full(folder), full(file));
     let a: Vec<Component> = from.components().collect();

@@ -132,7 +132,7 @@ pub fn edited_files(
 pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
     let mut work = Work::of_job(cx, job);
     let fault = |field: &str, wrong: &str, remedy: &str| {
-        Faults::from(Fault::of(&*job.file, field, wrong, remedy))
+        Faults::from(Fault::new(&*job.file, field, wrong, remedy))
     };
     let Some(files) = &job.model else {
         return Err(fault(
@@ -167,7 +167,7 @@ pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
             && !load_ids(&read.deck).contains(&sid)
         {
             let wrong = format!("load `{}`: the deck has no load set {sid}", l.name);
-            faults.push(Fault::at(
+            faults.push(Fault::with_line(
                 &*job.file,
                 l.line,
                 "load.load_set",
@@ -190,7 +190,10 @@ pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
         model: read.model,
         job: job.clone(),
     };
-    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+    Ok(work.finish(
+        StatedUnits::from_units(job.units, &job.report_units),
+        answer,
+    ))
 }
 
 /// Returns the ids of all load sets.
@@ -325,7 +328,7 @@ fn drop_unwanted(edits: &mut Edits, deck: &Deck) {
 /// Takes out the deck's own inertia relief; how many SUPORT entries that were.
 fn drop_relief(edits: &mut Edits, job: &Job, deck: &Deck) -> Result<usize, Faults> {
     let refused = |e: nastran::bdf::EditError| {
-        Faults::from(Fault::of(
+        Faults::from(Fault::new(
             &*job.file,
             "model.deck",
             e.to_string(),

@@ -3,7 +3,7 @@
 use crate::fe::{check_shapes, contradictions, held_dependents};
 use crate::finding::Finding;
 use crate::host::fault::FaultList;
-use crate::host::words::{count_of, short};
+use crate::host::words::{count_of, format_number};
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::model::{Model, UnsupportedCard};
@@ -90,7 +90,7 @@ pub(super) fn look(
     work.findings
         .extend(both.collect::<BTreeMap<_, _>>().into_values());
     let faults = read.faults.clone();
-    (DeckEntry::of(read), faults)
+    (DeckEntry::from_deck(read), faults)
 }
 
 /// SPC sets that case control selects; all of the deck where it selects none.
@@ -146,7 +146,7 @@ fn without_influence(
 }
 
 /// The units that the materials of a deck suggest.
-fn suggested(model: &Model) -> Option<ShownUnits> {
+fn suggest_units(model: &Model) -> Option<ShownUnits> {
     let (moduli, densities) = moduli_and_densities(model);
     let system = likely_system(model.params.unitsys.as_deref(), &moduli, &densities)?;
     Some(ShownUnits {
@@ -157,7 +157,7 @@ fn suggested(model: &Model) -> Option<ShownUnits> {
 }
 
 impl DeckEntry {
-    pub(super) fn of(d: DeckModel) -> Self {
+    pub(super) fn from_deck(d: DeckModel) -> Self {
         let cards = d.deck.counts.clone();
         let weight = d.model.weight();
         let m = &d.model;
@@ -177,7 +177,7 @@ impl DeckEntry {
             wtmass: m.params.wtmass,
             property_names: m.property_names.iter().cloned().collect(),
             faults: d.faults.len(),
-            shown: suggested(m),
+            shown: suggest_units(m),
             model: Some(d.model),
         }
     }
@@ -216,15 +216,15 @@ impl DeckEntry {
         const ROUNDING: f64 = 1e-12;
         let largest = self.cg.iter().fold(0.0, |a: f64, v| a.max(v.abs()));
         let plain = |v: f64| if v.abs() < ROUNDING * largest { 0.0 } else { v };
-        let at = |scale: f64| self.cg.map(|v| short(plain(v) * scale)).join(", ");
+        let at = |scale: f64| self.cg.map(|v| format_number(plain(v) * scale)).join(", ");
         match self.shown {
             None => format!(
                 "{}{wtmass}, centre of gravity {}, units of the deck",
-                short(self.mass),
+                format_number(self.mass),
                 at(1.0)
             ),
             Some(u) => {
-                let mass = short(self.mass * u.system.mass_kg());
+                let mass = format_number(self.mass * u.system.mass_kg());
                 let cg = at(factor(u.system, u.length));
                 let guess = match u.is_stated {
                     true => String::new(),
@@ -247,7 +247,7 @@ impl DeckEntry {
     }
 
     /// The line about cards without influence; empty where there are none.
-    fn idle(&self) -> String {
+    fn describe_idle_cards(&self) -> String {
         let counted = self.without_influence.iter();
         let parts: Vec<String> = counted.map(|(why, n)| format!("{why} {n}")).collect();
         match parts.is_empty() {
@@ -276,7 +276,7 @@ impl DeckEntry {
             count_of(self.subcases.len(), "subcase"),
             self.weight(),
             cards.join(", "),
-            self.idle(),
+            self.describe_idle_cards(),
             self.faults
         )
     }

@@ -27,7 +27,7 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
         Ok(job) => job,
         Err(f) => return found.faults.extend(f),
     };
-    found.units = StatedUnits::of(job.units, &job.report_units);
+    found.units = StatedUnits::from_units(job.units, &job.report_units);
     found.candidates = Some(job.candidates.clone());
     let (decks, of_others) = (found.decks.len(), found.faults.len());
     let results = found.results.len();
@@ -39,7 +39,7 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
     let mut faults = std::mem::take(&mut found.faults);
     let s = job.sensitivity.as_ref().and_then(|_| {
         let read = given_as_asked(work, &job);
-        kept(read, &mut faults)
+        collect_faults(read, &mut faults)
     });
     let gauges = gauges_of(work, &job, s.as_ref(), &mut faults);
     let command = match &job.measured {
@@ -63,26 +63,26 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
         job.units.name()
     ));
     if let Some(m) = &job.measured {
-        faults.extend(measured(work, &job, m, s.as_ref(), &gauges));
+        faults.extend(check_measured_strain(work, &job, m, s.as_ref(), &gauges));
     }
     if let Some((given, _)) = job.sensitivity.as_ref().zip(s.as_ref()) {
         faults.extend(signatures(work, &job, given, &gauges));
     }
     if let Some(r) = &job.runs {
-        kept(runs_file::read_runs(&mut work.inputs, &job, r), &mut faults);
+        collect_faults(runs_file::read_runs(&mut work.inputs, &job, r), &mut faults);
     }
     if job.vehicle.is_some() {
-        kept(identify::look(work, &job), &mut faults);
+        collect_faults(identify::look(work, &job), &mut faults);
     }
-    kept(respond::look(work, &job), &mut faults);
-    if let Some(job) = kept(job.estimating(), &mut faults) {
-        kept(reconcile::look(work, &job), &mut faults);
-        kept(calibrate::look(work, &job), &mut faults);
+    collect_faults(respond::look(work, &job), &mut faults);
+    if let Some(job) = collect_faults(job.without_validation_gauges(), &mut faults) {
+        collect_faults(reconcile::look(work, &job), &mut faults);
+        collect_faults(calibrate::look(work, &job), &mut faults);
     }
     if faults.len() == of_others {
         let deck = found.decks.get(decks).and_then(|d| d.model());
         let grids = deck.map_or(0, |m| m.grids.len());
-        kept(ask(work, &job, grids), &mut faults);
+        collect_faults(ask(work, &job, grids), &mut faults);
     }
     // Two commands say the same of one file.
     each_once(&mut faults, ToString::to_string);
@@ -93,7 +93,7 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
 }
 
 /// Returns the value; on an error, adds the faults to the list and returns `None`.
-fn kept<T>(read: Result<T, Faults>, faults: &mut FaultList) -> Option<T> {
+fn collect_faults<T>(read: Result<T, Faults>, faults: &mut FaultList) -> Option<T> {
     read.map_err(|f| faults.extend(f)).ok()
 }
 
@@ -116,14 +116,14 @@ fn gauges_of(
     let stated = stated_readings(job);
     match &job.measured {
         Some(m) if stated.is_empty() => {
-            kept(recover::gauges_of_file(work, job, m), faults).unwrap_or_default()
+            collect_faults(recover::gauges_of_file(work, job, m), faults).unwrap_or_default()
         }
         _ => stated,
     }
 }
 
 /// Returns the faults of the measured strain, of its zero, and of a separate file with held-out runs.
-fn measured(
+fn check_measured_strain(
     work: &mut Work,
     job: &Job,
     m: &Measured,
@@ -143,7 +143,7 @@ fn measured(
         false => recover::look(work, job, m, s),
     };
     if let HoldOut::File(named) = &m.hold_out {
-        kept(read_zeroed(work, job, m, named), &mut faults);
+        collect_faults(read_zeroed(work, job, m, named), &mut faults);
     }
     faults
 }
@@ -159,10 +159,11 @@ fn signatures(
     if given.signatures != job::Signatures::default() && job.reconcile.is_none() {
         let mut unread = FaultList::new();
         let file = job.measured.as_ref();
-        let file = file.and_then(|m| kept(recover::gauges_of_file(work, job, m), &mut unread));
+        let file =
+            file.and_then(|m| collect_faults(recover::gauges_of_file(work, job, m), &mut unread));
         let is_measured = |g: &&String| file.as_ref().is_none_or(|f| f.contains(g));
         let names: Vec<String> = gauges.iter().filter(is_measured).cloned().collect();
-        kept(
+        collect_faults(
             reconcile::look_at_signatures(work, job, given, &names),
             &mut faults,
         );
@@ -282,7 +283,7 @@ fn missing_ids(job: &Job, model: &Model) -> Vec<Fault> {
 }
 
 fn lacks(file: &str, line: u32, field: &str, what: &str, name: &str) -> Fault {
-    Fault::at(
+    Fault::with_line(
         file,
         line,
         field,

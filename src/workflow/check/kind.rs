@@ -45,7 +45,7 @@ pub(super) fn kind_of(name: &str, bytes: &[u8]) -> Kind {
     if ends(&[".toml"]) {
         return Kind::Job;
     }
-    let is_record = || Layout::of(bytes).is_ok_and(|layout| layout.is_record());
+    let is_record = || Layout::detect(bytes).is_ok_and(|layout| layout.is_record());
     let is_table = ends(TABLES) || ends(&[".txt", ".asc"]) && is_record();
     match is_table && !is_deck(bytes) {
         true => Kind::Table,

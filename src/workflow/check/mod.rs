@@ -81,7 +81,7 @@ fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checked) {
             Ok(entry) => found.records.push(entry),
             Err(faults) => found.faults.extend(faults),
         },
-        Kind::Other(kind) => found.faults.push(Fault::of(
+        Kind::Other(kind) => found.faults.push(Fault::new(
             given,
             "file",
             format!("it is {kind}"),

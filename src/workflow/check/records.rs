@@ -3,7 +3,7 @@
 use crate::finding::list_few;
 use crate::host::fault::Faults;
 use crate::host::files::as_table;
-use crate::host::words::short;
+use crate::host::words::format_number;
 use crate::host::work::Work;
 use crate::measured::faults::record_fault;
 use crate::recovery::clock;
@@ -50,7 +50,7 @@ struct OtherEntry {
 }
 
 impl ChannelEntry {
-    fn of(column: &Column) -> Self {
+    fn from_column(column: &Column) -> Self {
         Self {
             name: column.name.clone(),
             unit: column.unit.clone(),
@@ -68,7 +68,7 @@ impl ChannelEntry {
 }
 
 impl OtherEntry {
-    fn of(c: &OtherChannel) -> Self {
+    fn from_channel(c: &OtherChannel) -> Self {
         Self {
             channel: ChannelEntry {
                 name: c.name.clone(),
@@ -82,7 +82,9 @@ impl OtherEntry {
 
     /// For people: its name, its unit, how many samples at which rate.
     fn text(&self) -> String {
-        let rate = self.sample_rate_hz.map(|r| format!(" at {} Hz", short(r)));
+        let rate = self
+            .sample_rate_hz
+            .map(|r| format!(" at {} Hz", format_number(r)));
         let (name, rate) = (self.channel.text(), rate.unwrap_or_default());
         let plural = if self.samples == 1 { "" } else { "s" };
         format!("{name}, {} sample{plural}{rate}", self.samples)
@@ -122,7 +124,7 @@ impl RecordEntry {
         let plural = if n == 1 { "" } else { "s" };
         let times = match (self.samples, self.sample_rate_hz, self.duration_s) {
             (Some(samples), Some(rate), Some(seconds)) => {
-                let (rate, seconds) = (short(rate), short(seconds));
+                let (rate, seconds) = (format_number(rate), format_number(seconds));
                 format!(", {samples} samples at {rate} Hz, {seconds} s")
             }
             _ => String::new(),
@@ -151,12 +153,16 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str) -> Result<RecordEn
     let format = format_of(&bytes).map_or(text_format(given), |f| f.name());
     let bytes = as_table(given, bytes)?;
     if format_of(&bytes).is_none() {
-        let layout = Layout::of(&bytes).map_err(|e| record_fault(given, &e))?;
+        let layout = Layout::detect(&bytes).map_err(|e| record_fault(given, &e))?;
         if !layout.is_record() {
             return Ok(RecordEntry {
                 path: given.to_owned(),
                 format,
-                channels: layout.columns.iter().map(ChannelEntry::of).collect(),
+                channels: layout
+                    .columns
+                    .iter()
+                    .map(ChannelEntry::from_column)
+                    .collect(),
                 other_channels: Vec::new(),
                 samples: None,
                 sample_rate_hz: None,
@@ -170,17 +176,22 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str) -> Result<RecordEn
     if !record.is_time_unit_stated() {
         work.findings.extend(clock::check_rate(rate));
     }
-    work.findings.extend(clock::irregular(given, &record.clock));
+    work.findings
+        .extend(clock::check_time_steps(given, &record.clock));
     let columns = record.columns().iter().enumerate();
     let channels = columns.map(|(i, c)| ChannelEntry {
         group: record.group(i).to_owned(),
-        ..ChannelEntry::of(c)
+        ..ChannelEntry::from_column(c)
     });
     Ok(RecordEntry {
         path: given.to_owned(),
         format,
         channels: channels.collect(),
-        other_channels: record.others().iter().map(OtherEntry::of).collect(),
+        other_channels: record
+            .other_channels()
+            .iter()
+            .map(OtherEntry::from_channel)
+            .collect(),
         samples: Some(record.clock.samples),
         sample_rate_hz: Some(rate),
         duration_s: Some(record.clock.duration_s()),
@@ -200,8 +211,8 @@ fn text_format(given: &str) -> &'static str {
 mod tests {
     use super::*;
 
-    fn other(group: &str, name: &str, samples: usize, rate: Option<f64>) -> OtherEntry {
-        OtherEntry::of(&OtherChannel {
+    fn other_entry(group: &str, name: &str, samples: usize, rate: Option<f64>) -> OtherEntry {
+        OtherEntry::from_channel(&OtherChannel {
             group: group.to_owned(),
             name: name.to_owned(),
             unit: String::new(),
@@ -228,9 +239,9 @@ mod tests {
         };
         assert!(entry.text().contains("P7 [um/m] and 12 more)"));
         entry.other_channels = vec![
-            other("slow", "battery", 3, Some(1.0)),
-            other("notes", "remark", 1, None),
-            other("slow", "cabin", 3, Some(1.0)),
+            other_entry("slow", "battery", 3, Some(1.0)),
+            other_entry("notes", "remark", 1, None),
+            other_entry("slow", "cabin", 3, Some(1.0)),
         ];
         let text = entry.text();
         let lines: Vec<&str> = text.lines().collect();

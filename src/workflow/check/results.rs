@@ -107,7 +107,7 @@ pub(super) fn look(
             (Some(entry), faults)
         }
         Err(e) => {
-            let fault = Fault::of(given, "results", e.to_string(), "write the file again");
+            let fault = Fault::new(given, "results", e.to_string(), "write the file again");
             (None, vec![fault])
         }
     }
@@ -122,7 +122,7 @@ fn describe(
     let mut faults: Vec<Fault> = read
         .damage
         .iter()
-        .map(|d| damaged(given, d.to_string()))
+        .map(|d| damaged_file_fault(given, d.to_string()))
         .collect();
     let decoded: Vec<_> = (0..file.blocks().len())
         .into_par_iter()
@@ -132,7 +132,7 @@ fn describe(
     let mut undecoded: BTreeMap<String, usize> = BTreeMap::new();
     for (block, rows) in file.blocks().iter().zip(decoded) {
         match &rows {
-            Err(e) if e.is_damage() => faults.push(damaged(given, e.to_string())),
+            Err(e) if e.is_damage() => faults.push(damaged_file_fault(given, e.to_string())),
             Err(e) => *undecoded.entry(e.to_string()).or_default() += 1,
             Ok(_) => {}
         }
@@ -180,8 +180,8 @@ fn describe(
     (entry, findings, faults)
 }
 
-fn damaged(given: &str, what: String) -> Fault {
-    Fault::of(
+fn damaged_file_fault(given: &str, what: String) -> Fault {
+    Fault::new(
         given,
         "results",
         format!("cut short or damaged: {what}"),

@@ -11,7 +11,7 @@ use nastran::op2::Op2;
 use nastran::results::ResultsFile;
 
 /// Warnings of subcases that results hold more than once. Of several files of a job the job may state which one it means.
-fn ambiguous(found: &Checked) -> Vec<Finding> {
+fn find_ambiguous_subcases(found: &Checked) -> Vec<Finding> {
     let all = found.results.iter();
     let (of_jobs, others): (Vec<_>, Vec<_>) = all.partition(|r| r.is_of_job);
     let groups = of_jobs.into_iter().map(|r| vec![r]);
@@ -29,7 +29,7 @@ fn ambiguous(found: &Checked) -> Vec<Finding> {
 
 /// Findings of every result file against the deck. Where no deck has a mesh, the first OP2 with geometry replaces it.
 pub(super) fn compare(work: &mut Work, found: &mut Checked) {
-    work.findings.extend(ambiguous(found));
+    work.findings.extend(find_ambiguous_subcases(found));
     let has_mesh = |d: &DeckEntry| d.model.as_ref().is_some_and(|m| !m.grids.is_empty());
     if !found.decks.iter().any(has_mesh) {
         let with_mesh = found
@@ -39,7 +39,7 @@ pub(super) fn compare(work: &mut Work, found: &mut Checked) {
         if let Some(read) = with_mesh {
             work.findings.extend(read.findings.iter().cloned());
             found.faults.extend(read.faults.iter().cloned());
-            found.decks.push(DeckEntry::of(read));
+            found.decks.push(DeckEntry::from_deck(read));
         }
     }
     let Some(model) = found

@@ -31,7 +31,7 @@ impl Asked {
     }
 
     /// Returns an error finding with the requested records, and their parts, that have no stored result.
-    pub fn missing(&self, held: &[FileHead]) -> Option<Finding> {
+    pub fn find_missing_results(&self, held: &[FileHead]) -> Option<Finding> {
         let held: BTreeSet<&str> = held.iter().map(|f| f.path.as_str()).collect();
         let is_missing = |f: &(usize, &String)| !held.contains(f.1.as_str());
         let missing: Vec<(usize, &String)> =

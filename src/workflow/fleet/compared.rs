@@ -35,7 +35,7 @@ pub(super) struct Reference {
 }
 
 /// Gauges that read on a day.
-fn reading(day: &Day) -> BTreeSet<String> {
+fn gauges_with_readings(day: &Day) -> BTreeSet<String> {
     let read = day.gauges.iter().filter(|g| g.sd.is_finite());
     read.map(|g| g.name.clone()).collect()
 }
@@ -51,12 +51,12 @@ impl Reference {
         let file = files.iter().find(|f| f.day == wanted.day)?;
         let day = kept.day(file)?;
         let parts = day.loads.iter().map(|l| {
-            let of_load = DamageParts::of(&l.tally, &l.scale, l.noise);
+            let of_load = DamageParts::from_tally(&l.tally, &l.scale, l.noise);
             (l.name.clone(), (of_load, day.hours_of(l)))
         });
         Some(Self {
             loads: parts.collect(),
-            gauges: reading(&day),
+            gauges: gauges_with_readings(&day),
             answer: ReferenceAnswer {
                 vehicle: file.vehicle.clone(),
                 day: file.day.clone(),
@@ -69,7 +69,7 @@ impl Reference {
 
     /// Damage an hour of a load of a vehicle over that of the reference. `days` are its days with their damage by that load: where other gauges
     /// read than on the reference day, neither set within the other, the errors of S count as independent.
-    pub fn to(
+    pub fn damage_ratio(
         &self,
         vehicle: &str,
         load: &str,
@@ -92,7 +92,7 @@ impl Reference {
             scale: if all > 0.0 { alike / all } else { 1.0 },
             cycles: vehicle == self.answer.vehicle,
         };
-        let ratio = damage.over(own, shared)?;
+        let ratio = damage.ratio_to(own, shared)?;
         Some(ratio.times(own_hours / hours))
     }
 }
@@ -105,7 +105,7 @@ pub(super) struct Compared {
 
 impl Compared {
     /// Finds the reference day and starts the mission without days.
-    pub fn of(
+    pub fn new(
         keys: &FleetKeys,
         kept: &KeptDays,
         by_vehicle: &BTreeMap<&str, Vec<&FileHead>>,
@@ -113,7 +113,7 @@ impl Compared {
         let wanted = keys.reference.as_ref();
         Self {
             reference: wanted.and_then(|r| Reference::among(r, kept, by_vehicle)),
-            mission: MissionSums::of(keys),
+            mission: MissionSums::from_keys(keys),
         }
     }
 
@@ -140,11 +140,11 @@ impl Compared {
         let wrong = |what: &str| format!("no valid record is {what}");
         if is_all && !absent.is_empty() {
             let faults = absent.iter();
-            let faults =
-                faults.map(|(line, key, what)| Fault::at(file, *line, *key, wrong(what), remedy));
+            let faults = faults
+                .map(|(line, key, what)| Fault::with_line(file, *line, *key, wrong(what), remedy));
             return Err(Faults::or(
                 faults.collect(),
-                Fault::of(file, "fleet", "no record", remedy),
+                Fault::new(file, "fleet", "no record", remedy),
             ));
         }
         let finding = |(_, key, what): &(u32, &str, String)| {
@@ -170,7 +170,7 @@ pub(super) fn check_targets(file: &str, keys: &FleetKeys, loads: &[&str]) -> Res
     let faults = unknown.map(|t| {
         let wrong = format!("the job has no load `{}`", t.load);
         let remedy = format!("write one of {}", loads.join(", "));
-        Fault::at(file, t.line, "fleet.target", wrong, remedy)
+        Fault::with_line(file, t.line, "fleet.target", wrong, remedy)
     });
     Faults::check(faults.collect())
 }

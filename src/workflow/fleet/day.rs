@@ -56,7 +56,7 @@ pub struct GaugeDay {
 
 impl GaugeDay {
     /// Returns the result of a gauge that is dead (no readings) or stuck (constant) in the whole record.
-    pub fn silent(name: &str) -> Self {
+    pub fn without_readings(name: &str) -> Self {
         Self {
             name: name.to_owned(),
             mean: f64::NAN,

@@ -49,7 +49,7 @@ impl DayOrder {
     ///
     /// # Errors
     /// Dates whose day and month could be exchanged with a change of order; dates that contradict each other; a mix of dates and other names.
-    pub fn of<'a>(names: impl Iterator<Item = &'a str>) -> Result<Self, Unordered> {
+    pub fn from_names<'a>(names: impl Iterator<Item = &'a str>) -> Result<Self, Unordered> {
         let names: BTreeSet<&str> = names.collect();
         let dates: Vec<(&str, Option<Date>)> = names.iter().map(|n| (*n, date(n))).collect();
         let of_year_last: Vec<(&str, Date)> = dates
@@ -212,7 +212,7 @@ enum Found {
 }
 
 /// The first date in a name.
-fn found(name: &str) -> Option<Found> {
+fn find_date(name: &str) -> Option<Found> {
     let words = words(name);
     let at = |i: usize| words.get(i..).unwrap_or_default();
     (0..words.len()).find_map(|i| match at(i) {
@@ -223,14 +223,14 @@ fn found(name: &str) -> Option<Found> {
 }
 
 fn date(name: &str) -> Option<Date> {
-    match found(name)? {
+    match find_date(name)? {
         Found::YearLast(date) => Some(date),
         Found::YearFirst(_) => None,
     }
 }
 
 fn year_first(name: &str) -> Option<[u32; 3]> {
-    match found(name)? {
+    match find_date(name)? {
         Found::YearFirst(date) => Some(date),
         Found::YearLast(_) => None,
     }
@@ -315,8 +315,8 @@ fn by_numbers(a: &str, b: &str) -> Ordering {
 mod tests {
     use super::*;
 
-    fn sorted(names: &[&str]) -> Result<Vec<String>, Unordered> {
-        let order = DayOrder::of(names.iter().copied())?;
+    fn sort_names(names: &[&str]) -> Result<Vec<String>, Unordered> {
+        let order = DayOrder::from_names(names.iter().copied())?;
         let mut list: Vec<String> = names.iter().map(|n| (*n).to_owned()).collect();
         list.sort_by(|a, b| order.compare(a, b));
         Ok(list)
@@ -362,7 +362,7 @@ mod tests {
             }
             let mut turned = days.to_vec();
             turned.reverse();
-            assert_eq!(sorted(&turned), Ok(expected));
+            assert_eq!(sort_names(&turned), Ok(expected));
         }
     }
 
@@ -374,7 +374,7 @@ mod tests {
             &["13-05-2026", "05-13-2026"],
             &["31.05.2026", "day 4"],
         ] {
-            let said = sorted(days).unwrap_err();
+            let said = sort_names(days).unwrap_err();
             assert!(
                 said.wrong.contains(days[0]) || said.wrong.contains(days[1]),
                 "{said:?}"

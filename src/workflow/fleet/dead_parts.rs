@@ -27,7 +27,7 @@ pub(super) fn dead_parts(
     errors: ErrorModel,
     noise_factor: f64,
 ) -> Result<Vec<DeadPart>, Fault> {
-    let samples: Vec<(usize, &[f64])> = judged.numbered().collect();
+    let samples: Vec<(usize, &[f64])> = judged.numbered_samples().collect();
     check(&r.sensitivity, &samples, errors, noise_factor)
         .into_iter()
         .map(|stuck| {

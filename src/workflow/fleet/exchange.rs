@@ -137,10 +137,10 @@ mod tests {
         (s, samples)
     }
 
-    fn named(samples: &[Vec<f64>], s: &[[f64; 2]]) -> Option<[usize; 2]> {
+    fn find_exchanged_gauges(samples: &[Vec<f64>], s: &[[f64; 2]]) -> Option<[usize; 2]> {
         let s = Sensitivity {
             gauges: (0..s.len()).map(|g| format!("G{g}")).collect(),
-            loads: ["A", "B"].map(Load::named).to_vec(),
+            loads: ["A", "B"].map(Load::from_name).to_vec(),
             values: Matrix::from_fn(s.len(), 2, |g, l| s[g][l]),
             uncertainty: None,
             noise: None,
@@ -152,16 +152,16 @@ mod tests {
     #[test]
     fn every_pair_that_is_exchanged_is_named_and_no_other_fault() {
         let (s, right) = records();
-        assert_eq!(named(&right, &s), None);
+        assert_eq!(find_exchanged_gauges(&right, &s), None);
         for a in 0..6 {
             for b in a + 1..6 {
                 let mut wrong = right.clone();
                 wrong.iter_mut().for_each(|y| y.swap(a, b));
-                assert_eq!(named(&wrong, &s), Some([a, b]));
+                assert_eq!(find_exchanged_gauges(&wrong, &s), Some([a, b]));
             }
             let mut turned = right.clone();
             turned.iter_mut().for_each(|y| y[a] = -y[a]);
-            assert_eq!(named(&turned, &s), None, "{a}");
+            assert_eq!(find_exchanged_gauges(&turned, &s), None, "{a}");
         }
     }
 }

@@ -87,7 +87,7 @@ pub(super) fn of_records(files: &[FileHead], status: &[Status], days_in: DayOrde
                 _ => vehicle,
             };
             let [of, all] = [vehicle, ""].map(|v| records.get(v).copied().unwrap_or(0));
-            is_told(&alike, of, all).then(|| told(vehicle, subject, &alike, of))
+            is_told(&alike, of, all).then(|| combine_alike_findings(vehicle, subject, &alike, of))
         })
         .collect()
 }
@@ -116,7 +116,7 @@ fn by_chance(n: usize, of: usize) -> f64 {
 }
 
 /// Returns the finding of records with the same code and subject, with their number and the first of them.
-fn told(vehicle: &str, subject: &str, alike: &Alike, of: usize) -> Finding {
+fn combine_alike_findings(vehicle: &str, subject: &str, alike: &Alike, of: usize) -> Finding {
     let f = alike.first;
     let subject = [vehicle, subject].map(str::to_owned);
     let subject: Vec<String> = subject.into_iter().filter(|s| !s.is_empty()).collect();

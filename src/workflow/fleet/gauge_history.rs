@@ -62,14 +62,14 @@ pub(super) struct GainChange {
 }
 
 /// Returns the typical reading of a gauge: the median of its standard deviations over the days with readings.
-fn typical(days: &[GaugeDay]) -> f64 {
+fn typical_reading(days: &[GaugeDay]) -> f64 {
     let sds = days.iter().map(|d| d.sd).filter(|s| s.is_finite());
     median(sds.collect()).unwrap_or(0.0)
 }
 
 /// Returns for each day whether the vehicle moves, by the gauges that read.
 pub(super) fn moving_days(gauges: &[(String, Vec<GaugeDay>)], n_days: usize) -> Vec<bool> {
-    let typical: Vec<f64> = gauges.iter().map(|g| typical(&g.1)).collect();
+    let typical: Vec<f64> = gauges.iter().map(|g| typical_reading(&g.1)).collect();
     let moves = |day: usize| {
         let of = gauges.iter().zip(&typical).filter(|g| *g.1 > 0.0);
         let shares = of.filter_map(|((_, days), typical)| Some(days.get(day)?.sd / typical));
@@ -81,8 +81,13 @@ pub(super) fn moving_days(gauges: &[(String, Vec<GaugeDay>)], n_days: usize) -> 
 
 impl GaugeHistory {
     /// Returns the history of gauge `name` over the days with these names. `moves`: whether the vehicle moved on each day.
-    pub(super) fn of(name: &str, days: &[GaugeDay], names: &[String], moves: &[bool]) -> Self {
-        let typical = typical(days);
+    pub(super) fn from_days(
+        name: &str,
+        days: &[GaugeDay],
+        names: &[String],
+        moves: &[bool],
+    ) -> Self {
+        let typical = typical_reading(days);
         let finite = |x: f64| x.is_finite().then_some(x);
         let is_dead = |(d, moves): (&GaugeDay, &bool)| {
             // Where spikes make the typical day, a gauge that follows the others is not dead.
@@ -124,7 +129,7 @@ impl GaugeHistory {
     }
 
     /// That it was dead on some of `of` days.
-    pub(super) fn dead(&self, vehicle: &str, of: usize) -> Option<Finding> {
+    pub(super) fn dead_days_finding(&self, vehicle: &str, of: usize) -> Option<Finding> {
         let first = self.dead_days.first()?;
         let n = self.dead_days.len();
         let from = match self.dead_from(first) {

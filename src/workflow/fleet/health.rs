@@ -60,7 +60,7 @@ impl Health {
         for (sums, first) in self.sums.chunks_mut(together).zip((0..).step_by(together)) {
             // The last few stand in vectors with those before them.
             let begin = n.checked_sub(together).map(|last| first.min(last));
-            let all = begin.and_then(|begin| Some((begin, added(simd, strain, n, begin)?)));
+            let all = begin.and_then(|begin| Some((begin, sum_readings(simd, strain, n, begin)?)));
             let Some((begin, [sum, squares, seconds])) = all else {
                 for (own, g) in sums.iter_mut().zip(first..) {
                     own.add(strain.iter().skip(g).step_by(n));
@@ -143,7 +143,7 @@ impl pulp::WithSimd for Add<'_> {
 /// Sums, sums of squares and of squared second differences of the gauges from number `first` on, of `n` in a row, as many as the vectors hold;
 /// `None` where a reading is missing or too large to be strain.
 #[inline(always)]
-fn added<S: pulp::Simd>(
+fn sum_readings<S: pulp::Simd>(
     simd: S,
     strain: &[f64],
     n: usize,

@@ -123,13 +123,13 @@ impl Judged {
     }
 
     /// Returns the samples spread over the record, each with its number.
-    pub fn numbered(&self) -> impl Iterator<Item = (usize, &[f64])> {
+    pub fn numbered_samples(&self) -> impl Iterator<Item = (usize, &[f64])> {
         self.spread.iter().map(|(at, strain)| (*at, &**strain))
     }
 
     /// Recovers all of these samples. If the loads explain them, recovers the extremes alone too: among 200 samples a single wrong one may not be
     /// significant. Empty if no gauge reads.
-    pub fn recovered(
+    pub fn recover_loads(
         self,
         s: &Sensitivity,
         errors: ErrorModel,

@@ -71,7 +71,7 @@ pub struct Held {
 }
 
 /// Adds the digest of a stored result at its end; the result remains valid JSON.
-fn sealed(mut json: Vec<u8>) -> Vec<u8> {
+fn append_digest(mut json: Vec<u8>) -> Vec<u8> {
     let seal = hex(&Sha256::digest(&json));
     json.pop();
     json.extend_from_slice(SEAL);
@@ -81,7 +81,7 @@ fn sealed(mut json: Vec<u8>) -> Vec<u8> {
 }
 
 /// The bytes, where their digest is that of what was written.
-fn unsealed(bytes: &[u8]) -> Option<&[u8]> {
+fn verify_digest(bytes: &[u8]) -> Option<&[u8]> {
     let body = bytes.len().checked_sub(SEAL.len() + 64 + 2)?;
     let (body, seal) = bytes.split_at_checked(body)?;
     let mut hash = Sha256::new();
@@ -140,14 +140,14 @@ impl KeptDays {
     }
 
     /// Returns the last stored result of the file with this path, for any content of the file; `None` if no result is stored.
-    pub fn latest(&self, path: &str) -> Option<FileHead> {
+    pub fn latest_result(&self, path: &str) -> Option<FileHead> {
         let bytes = std::fs::read(self.place(path)).ok()?;
         self.head_of(&bytes).filter(|f| f.path == path)
     }
 
     /// Returns the stored result of the file with this path and these bytes; `None` if no result is stored.
     pub fn head(&self, path: &str, sha256: &str) -> Option<FileHead> {
-        self.latest(path).filter(|f| f.sha256 == sha256)
+        self.latest_result(path).filter(|f| f.sha256 == sha256)
     }
 
     /// The day of a file that [`KeptDays::head`] knows.
@@ -174,7 +174,7 @@ impl KeptDays {
     }
 
     fn read<D: DeserializeOwned>(&self, bytes: &[u8]) -> Option<Kept<D>> {
-        let kept: Kept<D> = serde_json::from_slice(unsealed(bytes)?).ok()?;
+        let kept: Kept<D> = serde_json::from_slice(verify_digest(bytes)?).ok()?;
         self.is_own(kept.form, &kept.version, &kept.job)
             .then_some(kept)
     }
@@ -183,7 +183,7 @@ impl KeptDays {
         form == FORM && version == env!("CARGO_PKG_VERSION") && job == self.job
     }
 
-    fn found(&self, bytes: &[u8]) -> Found {
+    fn classify_result(&self, bytes: &[u8]) -> Found {
         let Ok(whose) = serde_json::from_slice::<Whose>(bytes) else {
             return Found::Damaged;
         };
@@ -197,7 +197,7 @@ impl KeptDays {
     ///
     /// # Errors
     /// Those of the system.
-    pub fn put(&self, file: &FileResult) -> std::io::Result<()> {
+    pub fn store_result(&self, file: &FileResult) -> std::io::Result<()> {
         let kept = Kept {
             form: FORM,
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -210,7 +210,7 @@ impl KeptDays {
             done: file.result.as_ref().ok().cloned(),
             failed: file.result.as_ref().err().cloned(),
         };
-        let bytes = sealed(serde_json::to_vec(&kept).map_err(std::io::Error::other)?);
+        let bytes = append_digest(serde_json::to_vec(&kept).map_err(std::io::Error::other)?);
         self.write(&self.place(&file.path), &bytes)
     }
 
@@ -282,7 +282,7 @@ impl KeptDays {
     ///
     /// # Errors
     /// Those of the system.
-    pub fn all(&self) -> std::io::Result<Held> {
+    pub fn read_all(&self) -> std::io::Result<Held> {
         let mut held = Held::default();
         let entries = match std::fs::read_dir(&self.folder) {
             Ok(entries) => entries,
@@ -292,7 +292,7 @@ impl KeptDays {
         for entry in entries {
             let path = entry?.path();
             if path.extension().is_some_and(|e| e == "json") {
-                match self.found(&std::fs::read(&path)?) {
+                match self.classify_result(&std::fs::read(&path)?) {
                     Found::Own(file) => held.files.push(file),
                     Found::Other => held.others += 1,
                     Found::Damaged => held.damaged.push(path.display().to_string()),
@@ -322,16 +322,16 @@ mod tests {
     #[test]
     fn a_kept_result_of_which_any_byte_was_changed_or_cut_is_none() {
         let json = br#"{"form":5,"max":1.25,"name":"A.FZ"}"#.to_vec();
-        let whole = sealed(json.clone());
-        assert_eq!(unsealed(&whole), Some(&whole[..]));
+        let whole = append_digest(json.clone());
+        assert_eq!(verify_digest(&whole), Some(&whole[..]));
         let read: serde_json::Value = serde_json::from_slice(&whole).unwrap();
         assert_eq!(read["max"], 1.25);
-        assert_eq!(unsealed(&json), None);
+        assert_eq!(verify_digest(&json), None);
         for i in 0..whole.len() {
-            assert_eq!(unsealed(&whole[..i]), None, "{i}");
+            assert_eq!(verify_digest(&whole[..i]), None, "{i}");
             let mut other = whole.clone();
             other[i] ^= 1;
-            assert_eq!(unsealed(&other), None, "{i}");
+            assert_eq!(verify_digest(&other), None, "{i}");
         }
     }
 

@@ -84,13 +84,12 @@ impl Kernel {
     /// The reason why loads can't be recovered.
     pub fn day(&self, record: &Record) -> Result<Day, Faults> {
         let mut findings = Vec::new();
-        let irregular = clock::irregular("time", &record.clock);
-        findings.extend(irregular);
+        findings.extend(clock::check_time_steps("time", &record.clock));
         let cut = record
             .left_out()
             .map(|_| may_be_cut("last line", Severity::Warning));
         findings.extend(cut);
-        let mut r = self.prepared(record, &mut findings)?;
+        let mut r = self.prepare_recovery(record, &mut findings)?;
         let mut pass = self.pass(record, &r)?;
         let dead = dead_parts(record, &r, &pass.judged, self.errors, self.noise_factor)?;
         r.blank = blank_of(&dead);
@@ -126,14 +125,14 @@ impl Kernel {
                 scale,
                 tally: c.finish(),
             });
-        let leverage = &r.filter.whole().leverage;
+        let leverage = &r.filter.gain_of_all_gauges().leverage;
         // A time without readings does no damage that is counted.
         let missing = &pass.missing;
         let known = missing.whole + missing.known_in_gaps.iter().max().copied().unwrap_or(0);
         let mut gauges = pass.health.days(&r.sensitivity.gauges, leverage);
         let hours = |samples: f64| samples / record.clock.rate_hz / 3600.0;
         findings.extend(told_dead(&dead, &mut gauges, &record.clock));
-        gauges.extend(r.silent.iter().map(|name| GaugeDay::silent(name)));
+        gauges.extend(r.silent.iter().map(|name| GaugeDay::without_readings(name)));
         let place = |g: &GaugeDay| self.sensitivity.gauges.iter().position(|n| *n == g.name);
         gauges.sort_by_key(place);
         Ok(Day {
@@ -198,7 +197,8 @@ impl Kernel {
         findings: &mut Vec<Finding>,
     ) -> (Option<Filter>, Option<GaugeNoise>) {
         let samples = judged.spread();
-        let judgements = judged.recovered(&r.sensitivity, self.errors, self.noise_factor, time_s);
+        let (errors, factor) = (self.errors, self.noise_factor);
+        let judgements = judged.recover_loads(&r.sensitivity, errors, factor, time_s);
         let Some(first) = judgements.first() else {
             return (None, None);
         };
@@ -235,15 +235,19 @@ impl Kernel {
     }
 
     /// The columns that a record is read for.
-    pub fn wanted(&self) -> Vec<String> {
+    pub fn wanted_columns(&self) -> Vec<String> {
         let gauges = self.sensitivity.gauges.iter().chain(&self.reserved);
         columns_wanted(&self.corrections, gauges)
     }
 
     /// The gauges that read, and the filter from them.
-    fn prepared(&self, record: &Record, findings: &mut Vec<Finding>) -> Result<Recovering, Faults> {
+    fn prepare_recovery(
+        &self,
+        record: &Record,
+        findings: &mut Vec<Finding>,
+    ) -> Result<Recovering, Faults> {
         let all = &self.sensitivity;
-        let columns = find_gauge_columns("record", record.columns(), &self.wanted())?;
+        let columns = find_gauge_columns("record", record.columns(), &self.wanted_columns())?;
         let names: Vec<String> = columns
             .iter()
             .map(|c| column_of(&self.corrections, &c.name).to_owned())
@@ -268,12 +272,11 @@ impl Kernel {
                 None => findings.push(gauge_without_column("", &[name], &unknown)),
             }
         }
-        let sampled = sampled(record, &found)?;
-        if !record.is_time_unit_stated() {
-            let wrong = clock::check(1.0 / record.clock.rate_hz, &sampled, found.len());
-            if let Some(f) = wrong {
-                return Err(Fault::from_finding("record", "time", &f).into());
-            }
+        let sampled = sample_readings(record, &found)?;
+        let step_s = 1.0 / record.clock.rate_hz;
+        let stated = record.is_time_unit_stated();
+        if let Some(f) = clock::check(step_s, &sampled, found.len()).filter(|_| !stated) {
+            return Err(Fault::from_finding("record", "time", &f).into());
         }
         let n = found.len();
         let mut alive = Vec::new();
@@ -281,7 +284,7 @@ impl Kernel {
         looked.look(&sampled);
         // What one gives in a part alone is told by those who read there.
         let columns: Vec<Option<usize>> = found.iter().map(|f| Some(f.1)).collect();
-        let given = looked.throughout(record, &columns);
+        let given = looked.columns_in_record(record, &columns);
         let mut given = given.map_err(|e| record_fault("record", &e))?;
         self.wake(&found, &sampled, &mut given);
         for (&(g, c, scale), gives) in found.iter().zip(given) {
@@ -299,7 +302,7 @@ impl Kernel {
         Ok(Recovering {
             silent: names.collect(),
             samples: record.clock.samples,
-            ..self.recovering(&alive, &alive_values)?
+            ..self.build_recovery(&alive, &alive_values)?
         })
     }
 
@@ -339,7 +342,7 @@ impl Kernel {
         }
     }
 
-    fn recovering(
+    fn build_recovery(
         &self,
         alive: &[(usize, usize, [f64; 2])],
         sampled: &[f64],
@@ -348,7 +351,7 @@ impl Kernel {
         let k = all.loads.len();
         let used: Vec<usize> = alive.iter().map(|a| a.0).collect();
         if used.is_empty() {
-            return Err(Fault::of(
+            return Err(Fault::new(
                 "record",
                 "gauge",
                 "no column has the name of a gauge of the job, or none of these has readings",
@@ -372,7 +375,7 @@ impl Kernel {
             .collect();
         let singular = || {
             let wrong = "S contains numbers that are not finite";
-            Fault::of("record", "sensitivity", wrong, "check the table of S")
+            Fault::new("record", "sensitivity", wrong, "check the table of S")
         };
         let plain = Filter::new(
             &s,
@@ -383,18 +386,14 @@ impl Kernel {
             Widening::none(),
         )
         .ok_or_else(singular)?;
-        if plain.whole().rank < k {
+        if plain.gain_of_all_gauges().rank < k {
             let names: Vec<&str> = s.gauges.iter().map(String::as_str).collect();
             let wrong = format!(
                 "the gauges do not separate the loads: only {} have readings",
                 list_few(&names)
             );
-            return Err(Fault::of(
-                "record",
-                "gauge",
-                wrong,
-                "repair the other gauges",
-            ));
+            let remedy = "repair the other gauges";
+            return Err(Fault::new("record", "gauge", wrong, remedy));
         }
         // Typical loads weigh the model's error: those of the job, so that the loads of a sample do not depend on where its record is cut.
         let scaled: Vec<f64> = sampled.to_vec();
@@ -403,7 +402,7 @@ impl Kernel {
         let mean = |sum: f64, count: u64| (sum / count.max(1) as f64).sqrt();
         let expected = s.loads.iter().map(|l| l.expected.filter(|e| *e > 0.0));
         let typical = expected.collect::<Option<Vec<f64>>>().unwrap_or_else(|| {
-            let of_record = |l| mean(sums.sum_of_squares[l], sums.known(l));
+            let of_record = |l| mean(sums.sum_of_squares[l], sums.known_samples(l));
             (0..k).map(of_record).collect()
         });
         let noise = self.errors.noise;
@@ -415,7 +414,7 @@ impl Kernel {
                 .enumerate()
                 .all(|(g, q)| mean(*q, sums.read(g)) < 1e-3 * noise)
         {
-            return Err(Fault::of(
+            return Err(Fault::new(
                 "record",
                 "readings-below-noise",
                 "every reading is less than a thousandth of the stated noise: the unit may be strain, not microstrain",
@@ -461,7 +460,7 @@ fn line_of(micro: f64, channel: Channel) -> [f64; 2] {
 }
 
 /// Readings of the first block of some pieces spread over the record, strain.
-fn sampled(record: &Record, found: &[(usize, usize, [f64; 2])]) -> Result<Vec<f64>, Fault> {
+fn sample_readings(record: &Record, found: &[(usize, usize, [f64; 2])]) -> Result<Vec<f64>, Fault> {
     let columns: Vec<Option<usize>> = found.iter().map(|f| Some(f.1)).collect();
     let n = record.n_pieces();
     let taken = n.min(LOOKED_AT);

@@ -226,10 +226,11 @@ pub(super) fn vehicle(
             })
             .collect();
         let tallies: Vec<&Tally> = of_load.iter().map(|d| &d.2.tally).collect();
-        let Some(tally) = Tally::joined(&tallies) else {
+        let Some(tally) = Tally::join_parts(&tallies) else {
             continue;
         };
-        let damage_of = |t: &Tally, from: &LoadDay| DamageParts::of(t, &from.scale, from.noise);
+        let damage_of =
+            |t: &Tally, from: &LoadDay| DamageParts::from_tally(t, &from.scale, from.noise);
         let by_day: Vec<f64> = of_load
             .iter()
             .map(|(.., x)| damage_of(&x.tally, x).interval().value)
@@ -245,7 +246,7 @@ pub(super) fn vehicle(
             true => all.interval().value,
             false => {
                 let tallies: Vec<&Tally> = relied.iter().map(|d| &d.2.tally).collect();
-                Tally::joined(&tallies).map_or(0.0, |tally| {
+                Tally::join_parts(&tallies).map_or(0.0, |tally| {
                     damage_of(&tally, &errors(&relied, load)).interval().value
                 })
             }
@@ -257,7 +258,8 @@ pub(super) fn vehicle(
             hours,
             doubtful_share: share_without(all.interval().value, without),
             damage: all.interval(),
-            to_reference: reference.and_then(|r| r.to(name, &load.name, &all, hours, &done)),
+            to_reference: reference
+                .and_then(|r| r.damage_ratio(name, &load.name, &all, hours, &done)),
             tally,
             extremes: [true, false].map(|larger| extreme(&of_load, larger)),
             by_day,
@@ -272,7 +274,9 @@ pub(super) fn vehicle(
         .map(|name| {
             let days = list.iter().map(|(_, d)| {
                 let found = d.gauges.iter().find(|g| g.name == name);
-                found.cloned().unwrap_or_else(|| GaugeDay::silent(name))
+                found
+                    .cloned()
+                    .unwrap_or_else(|| GaugeDay::without_readings(name))
             });
             (name.to_owned(), days.collect())
         })

@@ -112,7 +112,7 @@ impl KindSums {
         self.files += 1;
         self.hours += day.hours;
         for load in &day.loads {
-            let parts = DamageParts::of(&load.tally, &load.scale, load.noise);
+            let parts = DamageParts::from_tally(&load.tally, &load.scale, load.noise);
             let known = day.hours_of(load);
             let hours = [known, known * known];
             let squares = [parts.value * parts.value, parts.value * known];
@@ -122,7 +122,7 @@ impl KindSums {
                     l.damage.add(1.0, &parts);
                     l.squares.iter_mut().zip(squares).for_each(|(a, b)| *a += b);
                     l.hours.iter_mut().zip(hours).for_each(|(a, b)| *a += b);
-                    l.ends = wider(l.ends, ends);
+                    l.ends = merge_spans(l.ends, ends);
                 }
                 None => self.loads.push(LoadSums {
                     name: load.name.clone(),
@@ -153,7 +153,7 @@ impl KindSums {
 
 impl MissionSums {
     /// Nothing yet; `None` where the job has no mission.
-    pub fn of(keys: &FleetKeys) -> Option<Self> {
+    pub fn from_keys(keys: &FleetKeys) -> Option<Self> {
         let kinds = keys.mission.iter().map(|key| KindSums {
             key: key.clone(),
             files: 0,
@@ -182,7 +182,7 @@ impl MissionSums {
             );
             let remedy = "assign every day to one kind";
             let line = second.key.line;
-            return Err(Fault::at(job, line, "fleet.mission", wrong, remedy).into());
+            return Err(Fault::with_line(job, line, "fleet.mission", wrong, remedy).into());
         }
         first.add(day);
         Ok(())
@@ -212,7 +212,7 @@ impl MissionSums {
                 let weight = self.hours * k.key.share / hours;
                 all.add(weight, &l.damage);
                 days += self.hours * k.key.share / k.hours * k.files as f64;
-                ends = wider(ends, l.ends);
+                ends = merge_spans(ends, l.ends);
                 by_kind.push(l.damage.value.max(0.0) / hours);
                 let of_kind = k.between_days(l);
                 let times = (self.hours * k.key.share).powi(2);
@@ -266,7 +266,7 @@ impl MissionSums {
 }
 
 /// Both spans together, the numbers of either that are none left out.
-fn wider(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+fn merge_spans(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
@@ -281,7 +281,7 @@ fn wider(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 /// I. Rychlik, Note on cycle counts in irregular loads, Fatigue Fract. Eng. Mater. Struct. 16 (1993) 377: passages of intervals.
 fn between_days_at_most(law: Law, ends: [f64; 2], days: f64) -> f64 {
     let range = ends[1] - ends[0];
-    let of_one = 0.5 * Law::straight(law.slope).damage(range);
+    let of_one = 0.5 * Law::from_slope(law.slope).damage(range);
     if range > 0.0 { days * of_one } else { 0.0 }
 }
 

@@ -105,11 +105,11 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
     let mut work = Work::of_job(cx, job);
     let Some(section) = &job.fleet else {
         let remedy = "add [fleet] file_name = \"{vehicle}_{day}.parquet\"";
-        return Err(Fault::of(&*job.file, "fleet", "the job has no [fleet]", remedy).into());
+        return Err(Fault::new(&*job.file, "fleet", "the job has no [fleet]", remedy).into());
     };
-    let form = NameForm::of(&section.file_name.given).map_err(|wrong| {
+    let form = NameForm::parse(&section.file_name.given).map_err(|wrong| {
         let remedy = "write it as \"{vehicle}_{day}.parquet\"";
-        Faults::from(Fault::at(
+        Faults::from(Fault::with_line(
             &*job.file,
             section.file_name.line,
             "fleet.file_name",
@@ -122,9 +122,9 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
     check_targets(&job.file, section, &loads)?;
     let kept = KeptDays::new(&spec.folder, job_digest(&mut work, job, section));
     let order = |names: &mut dyn Iterator<Item = &str>| {
-        DayOrder::of(names).map_err(|e| {
+        DayOrder::from_names(names).map_err(|e| {
             let line = section.file_name.line;
-            Fault::at(&*job.file, line, "fleet.file_name", e.wrong, e.remedy)
+            Fault::with_line(&*job.file, line, "fleet.file_name", e.wrong, e.remedy)
         })
     };
     let spec = &FleetSpec {
@@ -138,10 +138,12 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
         .collect();
     order(&mut asked.iter().map(|n| n.day.as_str()))?;
     let (files, reused) = if spec.files.is_empty() {
-        held(&mut work, &kept, &spec.folder)?
+        read_stored_results(&mut work, &kept, &spec.folder)?
     } else {
         work.sources.extend(spec.files.iter().cloned());
-        work.stage("records", |w| done(w, &kernel, &kept, &form, spec))?
+        work.stage("records", |w| {
+            evaluate_files(w, &kernel, &kept, &form, spec)
+        })?
     };
     let days_in = order(
         &mut files
@@ -154,7 +156,7 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
         status,
         compared,
     } = work.stage("merge", |w| {
-        merged(w, &kept, &files, days_in, &job.file, section)
+        merge_vehicles(w, &kept, &files, days_in, &job.file, section)
     })?;
     if spec.shard.is_none() {
         let is_all = spec.files.is_empty();
@@ -163,7 +165,7 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
     }
     let kept = count_of(reused, "result");
     work.notes.push(format!("{kept} stored by an earlier run"));
-    let answer = Fleet::of(job, &kernel, vehicles, &files, &status, compared);
+    let answer = Fleet::from_vehicles(job, &kernel, vehicles, &files, &status, compared);
     work.findings
         .extend(answer.findings(&files, &status, days_in));
     work.findings
@@ -172,7 +174,8 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
         work.findings.extend(drift(v, &kernel.errors));
         work.findings.extend(in_other_scale(v, &kernel.errors));
     }
-    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+    let units = StatedUnits::from_units(job.units, &job.report_units);
+    Ok(work.finish(units, answer))
 }
 
 /// Result of merging the days.
@@ -186,7 +189,7 @@ struct Merged {
 ///
 /// # Errors
 /// A kept result that is gone; a day of two kinds of the mission; one fault where the work is stopped.
-fn merged(
+fn merge_vehicles(
     work: &mut Work,
     kept: &KeptDays,
     files: &[FileHead],
@@ -195,7 +198,7 @@ fn merged(
     keys: &FleetKeys,
 ) -> Result<Merged, Faults> {
     let (by_vehicle, status) = sort_files(files, days_in);
-    let mut compared = Compared::of(keys, kept, &by_vehicle);
+    let mut compared = Compared::new(keys, kept, &by_vehicle);
     let mut vehicles = Vec::with_capacity(by_vehicle.len());
     for (name, list) in by_vehicle {
         work.go_on()?;
@@ -203,7 +206,7 @@ fn merged(
             .par_iter()
             .map(|file| match kept.day(file) {
                 Some(day) => Ok((*file, day)),
-                None => Err(Fault::of(
+                None => Err(Fault::new(
                     &*file.path,
                     "days",
                     "its stored result was deleted or changed while results were merged",
@@ -218,7 +221,7 @@ fn merged(
             }
         }
         let v = vehicle(name, &days, compared.reference.as_ref());
-        vehicles.push(VehicleAnswer::of(v, keys));
+        vehicles.push(VehicleAnswer::from_vehicle(v, keys));
     }
     VehicleAnswer::compare(&mut vehicles);
     Ok(Merged {
@@ -240,10 +243,14 @@ fn job_digest(work: &mut Work, job: &Job, keys: &FleetKeys) -> String {
 }
 
 /// Reads the stored results of the output folder.
-fn held(work: &mut Work, kept: &KeptDays, folder: &Path) -> Result<(Vec<FileHead>, usize), Faults> {
+fn read_stored_results(
+    work: &mut Work,
+    kept: &KeptDays,
+    folder: &Path,
+) -> Result<(Vec<FileHead>, usize), Faults> {
     let shown = folder.display().to_string();
-    let held = kept.all().map_err(|e| {
-        Faults::from(Fault::of(
+    let held = kept.read_all().map_err(|e| {
+        Faults::from(Fault::new(
             &*shown,
             "folder",
             format!("cannot be read ({e})"),
@@ -258,7 +265,7 @@ fn held(work: &mut Work, kept: &KeptDays, folder: &Path) -> Result<(Vec<FileHead
             ),
         };
         let remedy = "name the records to be processed, or the folder of an earlier run with --out";
-        return Err(Fault::of(&*shown, "days", wrong, remedy).into());
+        return Err(Fault::new(&*shown, "days", wrong, remedy).into());
     }
     if held.others > 0 {
         work.findings.push(Finding::new(
@@ -281,14 +288,17 @@ fn held(work: &mut Work, kept: &KeptDays, folder: &Path) -> Result<(Vec<FileHead
             "run the records again into this folder, then delete it if it still exists",
         )
     }));
-    let missing = held.asked.iter().filter_map(|a| a.missing(&held.files));
+    let missing = held
+        .asked
+        .iter()
+        .filter_map(|a| a.find_missing_results(&held.files));
     work.findings.extend(missing);
     let n = held.files.len();
     Ok((held.files, n))
 }
 
 /// The results of the asked files: kept ones, and the others done now.
-fn done(
+fn evaluate_files(
     work: &mut Work,
     kernel: &Kernel,
     kept: &KeptDays,
@@ -319,7 +329,7 @@ fn done(
             let told = told.and_then(|d| kept.head(path, d));
             let done = match told.filter(|before| is_as_then(source, before)) {
                 Some(before) => Ok((before, Came::Kept)),
-                None => one(kernel, kept, form, path, source),
+                None => evaluate_file(kernel, kept, form, path, source),
             };
             progress.advance(1);
             done
@@ -377,7 +387,7 @@ fn told_replaced(paths: &[String]) -> Option<Finding> {
 }
 
 /// The result of one file, and how it came.
-fn one(
+fn evaluate_file(
     kernel: &Kernel,
     kept: &KeptDays,
     form: &NameForm,
@@ -405,7 +415,7 @@ fn one(
         Ok(opened) => opened,
         Err(e) => return unread(file, &e),
     };
-    let before = kept.latest(path);
+    let before = kept.latest_result(path);
     let (hash, result) = match (&named, &before) {
         (None, _) => {
             let wrong = "its path does not match the form of [fleet] file_name";
@@ -439,7 +449,7 @@ fn one(
     if let Err(e) = opened.check() {
         return unread(file, &e);
     }
-    kept.put(&file).map_err(|e| not_kept(path, &e))?;
+    kept.store_result(&file).map_err(|e| not_kept(path, &e))?;
     // What is read back is what a later run would read, to the last digit: a merge of kept results has the same bytes.
     Ok((
         kept.head(path, &file.sha256).unwrap_or_else(|| file.into()),
@@ -449,7 +459,7 @@ fn one(
 
 fn not_kept(path: &str, e: &std::io::Error) -> Fault {
     let wrong = format!("its result cannot be written ({e})");
-    Fault::of(path, "output", wrong, "choose another folder with --out")
+    Fault::new(path, "output", wrong, "choose another folder with --out")
 }
 
 /// Returns why a record comes to nothing in words: every fault with its line, its field and its remedy.
@@ -470,7 +480,7 @@ pub fn day_of(kernel: &Kernel, opened: &Opened) -> Result<Day, Faults> {
     let options = Options {
         declared_hz: None,
         time_unit_s: kernel.time_unit_s,
-        wanted: kernel.wanted(),
+        wanted: kernel.wanted_columns(),
     };
     let record = open_source(opened.source(), &options).map_err(|e| record_fault("record", &e))?;
     let day = kernel.day(&record)?;
@@ -484,7 +494,7 @@ pub fn day_of(kernel: &Kernel, opened: &Opened) -> Result<Day, Faults> {
         Some(l) => {
             let wrong = "its damage exceeds the range of numbers";
             let remedy = "report it in a larger unit, or state a lower slope";
-            Err(Fault::of("record", &*l.name, wrong, remedy).into())
+            Err(Fault::new("record", &*l.name, wrong, remedy).into())
         }
     }
 }

@@ -29,7 +29,7 @@ impl NameForm {
     ///
     /// # Errors
     /// A place that is unknown, missing, given twice or not divided from the next by text.
-    pub fn of(text: &str) -> Result<Self, String> {
+    pub fn parse(text: &str) -> Result<Self, String> {
         let mut parts = Vec::new();
         let mut rest = text;
         while !rest.is_empty() {
@@ -140,7 +140,7 @@ pub struct Shard {
 
 impl Shard {
     /// The shard that a text such as `3/64` states.
-    pub fn of(text: &str) -> Option<Self> {
+    pub fn parse(text: &str) -> Option<Self> {
         let (number, of) = text.split_once('/')?;
         let shard = Self {
             number: number.trim().parse().ok()?,
@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn vehicle_and_day_are_read_from_the_name_whatever_the_folder() {
-        let form = NameForm::of("{vehicle}_{day}.parquet").unwrap();
+        let form = NameForm::parse("{vehicle}_{day}.parquet").unwrap();
         let named = form.read("data/2026/T7_2026-05-01.parquet").unwrap();
         assert_eq!(
             (named.vehicle.as_str(), named.day.as_str()),
@@ -173,14 +173,14 @@ mod tests {
         for other in ["T7.parquet", "T7_1.csv", "_1.parquet", "T7_.parquet"] {
             assert_eq!(form.read(other), None, "{other}");
         }
-        let form = NameForm::of("{day}-{any}-{vehicle}.mf4").unwrap();
+        let form = NameForm::parse("{day}-{any}-{vehicle}.mf4").unwrap();
         let named = form.read("0502-west-T7.mf4").unwrap();
         assert_eq!((named.vehicle.as_str(), named.day.as_str()), ("T7", "0502"));
     }
 
     #[test]
     fn vehicle_and_day_stand_anywhere_in_the_path() {
-        let form = NameForm::of("vehicle={vehicle}/day={day}/{any}.parquet").unwrap();
+        let form = NameForm::parse("vehicle={vehicle}/day={day}/{any}.parquet").unwrap();
         let read = |path: &str| form.read(path).map(|n| (n.vehicle, n.day));
         let wanted = Some(("T9".to_owned(), "2026-05-01".to_owned()));
         assert_eq!(
@@ -200,7 +200,7 @@ mod tests {
         ] {
             assert_eq!(read(other), None, "{other}");
         }
-        let form = NameForm::of("{vehicle}/{day}.csv").unwrap();
+        let form = NameForm::parse("{vehicle}/{day}.csv").unwrap();
         let named = form.read("data/T1/0502.csv").unwrap();
         assert_eq!((named.vehicle.as_str(), named.day.as_str()), ("T1", "0502"));
     }
@@ -214,15 +214,15 @@ mod tests {
             "{truck}_{day}",
             "{vehicle_{day}",
         ] {
-            assert!(NameForm::of(text).is_err(), "{text}");
+            assert!(NameForm::parse(text).is_err(), "{text}");
         }
     }
 
     #[test]
     fn shards_count_from_one_and_share_all_files() {
-        assert_eq!(Shard::of("3/64"), Some(Shard { number: 3, of: 64 }));
+        assert_eq!(Shard::parse("3/64"), Some(Shard { number: 3, of: 64 }));
         for text in ["0/4", "5/4", "1", "a/b", "1/0"] {
-            assert_eq!(Shard::of(text), None, "{text}");
+            assert_eq!(Shard::parse(text), None, "{text}");
         }
         let all: Vec<Shard> = (1..=4).map(|number| Shard { number, of: 4 }).collect();
         for i in 0..100 {

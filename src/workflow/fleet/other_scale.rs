@@ -36,7 +36,7 @@ fn logs<'a>(of: impl Iterator<Item = &'a Vec<Option<f64>>>) -> Vec<Vec<Option<f6
 }
 
 /// The factor of a day's noise, where nearly all gauges have it.
-fn common(logs: &[Vec<Option<f64>>], day: usize) -> Option<f64> {
+fn common_factor(logs: &[Vec<Option<f64>>], day: usize) -> Option<f64> {
     let known: Vec<f64> = logs.iter().filter_map(|g| *g.get(day)?).collect();
     let middle = median(known.clone())?;
     let alike = |v: &&f64| (**v - middle).abs() < ALIKE.ln();
@@ -57,7 +57,9 @@ pub(super) fn in_other_scale(v: &VehicleAnswer, errors: &ErrorModel) -> Option<F
     }
     let noise = logs(v.gauges.iter().map(|g| &g.noise));
     let scatter = logs(v.gauges.iter().map(|g| &g.sd));
-    let factors: Vec<Option<f64>> = (0..v.days.len()).map(|day| common(&noise, day)).collect();
+    let factors: Vec<Option<f64>> = (0..v.days.len())
+        .map(|day| common_factor(&noise, day))
+        .collect();
     // On most days the noise is what it usually is.
     let quiet = factors
         .iter()

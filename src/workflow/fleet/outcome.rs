@@ -184,7 +184,7 @@ impl Answer for Fleet {
 
 impl VehicleAnswer {
     /// Returns the answer of a vehicle without its comparison with other vehicles; [`VehicleAnswer::compare`] adds that.
-    pub(super) fn of(v: Vehicle, keys: &FleetKeys) -> Self {
+    pub(super) fn from_vehicle(v: Vehicle, keys: &FleetKeys) -> Self {
         let moves = moving_days(&v.gauges, v.days.len());
         Self {
             files: v.days.len(),
@@ -192,12 +192,12 @@ impl VehicleAnswer {
             gauges: v
                 .gauges
                 .iter()
-                .map(|(name, days)| GaugeHistory::of(name, days, &v.days, &moves))
+                .map(|(name, days)| GaugeHistory::from_days(name, days, &v.days, &moves))
                 .collect(),
             loads: v
                 .loads
                 .into_iter()
-                .map(|l| VehicleLoadAnswer::of(l, keys))
+                .map(|l| VehicleLoadAnswer::from_load(l, keys))
                 .collect(),
             doubtful_days: v
                 .days
@@ -247,7 +247,7 @@ impl VehicleAnswer {
 }
 
 impl VehicleLoadAnswer {
-    fn of(l: VehicleLoad, keys: &FleetKeys) -> Self {
+    fn from_load(l: VehicleLoad, keys: &FleetKeys) -> Self {
         let DamageInterval {
             value,
             low,
@@ -301,7 +301,7 @@ impl Fleet {
     }
 
     /// The answer of merged vehicles.
-    pub(super) fn of(
+    pub(super) fn from_vehicles(
         job: &Job,
         kernel: &Kernel,
         vehicles: Vec<VehicleAnswer>,
@@ -383,7 +383,7 @@ impl Fleet {
         out.extend(of_records(files, status, days_in));
         for v in &self.vehicles {
             let dead = v.gauges.iter();
-            out.extend(dead.filter_map(|g| g.dead(&v.name, v.days.len())));
+            out.extend(dead.filter_map(|g| g.dead_days_finding(&v.name, v.days.len())));
             out.extend(v.gain_changes());
             out.extend(in_doubt(v));
             out.extend(v.loads.iter().filter_map(|l| known_in_part(v, l)));

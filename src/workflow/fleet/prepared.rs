@@ -25,17 +25,17 @@ const CLASSES: f64 = 32.0;
 /// # Errors
 /// Every fault of the job and of the files it names.
 pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
-    let job = &job.estimating()?;
+    let job = &job.without_validation_gauges()?;
     check_tables(work, job)?;
     let Some(measured) = &job.measured else {
         let remedy = "add [measured] with the noise and the model's uncertainty";
-        return Err(Fault::of(&*job.file, "measured", "the job has no [measured]", remedy).into());
+        return Err(Fault::new(&*job.file, "measured", "the job has no [measured]", remedy).into());
     };
     no_zero_runs(job, measured, "FILES")?;
     if let Some(dynamic) = job.dynamic {
         let wrong = "records of a fleet are read in pieces, and the vibration of the structure cannot be subtracted";
         let remedy = "delete [dynamic], and low-pass filter the strain below a third of the first mode; or `recover` the records one by one";
-        return Err(Fault::at(&*job.file, dynamic.line, "dynamic", wrong, remedy).into());
+        return Err(Fault::with_line(&*job.file, dynamic.line, "dynamic", wrong, remedy).into());
     }
     let prepared = prepare_with_noise(work, job)?;
     let s = &prepared.sensitivity;
@@ -46,7 +46,7 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
     let blank = (0..zero.len()).filter(wanted).find(|g| zero[*g].is_nan());
     if let (Some(named), Some(g)) = (&measured.zero, blank) {
         let remedy = "repair the channel of the zero file, or remove its gauge from the job";
-        return Err(Fault::of(&*named.given, &*s.gauges[g], "no zero reading", remedy).into());
+        return Err(Fault::new(&*named.given, &*s.gauges[g], "no zero reading", remedy).into());
     }
     for (z, r) in zero
         .iter_mut()

@@ -17,7 +17,7 @@ pub fn paths_of_list(shown: &str, text: &str) -> Result<Vec<PathBuf>, Fault> {
         .map(PathBuf::from)
         .collect();
     match paths.is_empty() {
-        true => Err(Fault::of(
+        true => Err(Fault::new(
             shown,
             "--files",
             "the list contains no record",
@@ -38,15 +38,15 @@ pub fn records_of(asked: &[PathBuf], form: &NameForm) -> Result<Vec<PathBuf>, Fa
     for path in asked {
         let shown = path.display().to_string();
         let of = if path.is_dir() {
-            below(path, form)
+            find_records_in(path, form)
         } else if !path.exists() && is_pattern(&shown) {
-            matching(&shown)
+            find_matching_files(&shown)
         } else {
             Ok(vec![path.clone()])
         };
         match of {
             Ok(some) => found.extend(some),
-            Err((wrong, remedy)) => faults.push(Fault::of(shown, "files", wrong, remedy)),
+            Err((wrong, remedy)) => faults.push(Fault::new(shown, "files", wrong, remedy)),
         }
     }
     Faults::check(faults)?;
@@ -60,7 +60,7 @@ fn is_pattern(path: &str) -> bool {
 }
 
 /// The records below a folder.
-fn below(folder: &Path, form: &NameForm) -> Result<Vec<PathBuf>, Wrong> {
+fn find_records_in(folder: &Path, form: &NameForm) -> Result<Vec<PathBuf>, Wrong> {
     let files = all_matching(&format!(
         "{}/**/*",
         Pattern::escape(&folder.display().to_string())
@@ -84,7 +84,7 @@ fn below(folder: &Path, form: &NameForm) -> Result<Vec<PathBuf>, Wrong> {
 }
 
 /// The files that a pattern matches.
-fn matching(pattern: &str) -> Result<Vec<PathBuf>, Wrong> {
+fn find_matching_files(pattern: &str) -> Result<Vec<PathBuf>, Wrong> {
     match all_matching(pattern)? {
         files if files.is_empty() => Err((
             "no file matches the pattern".to_owned(),
@@ -161,7 +161,7 @@ mod tests {
             "[a]_1.csv",
         ];
         let folder = folder("tree", &of);
-        let form = NameForm::of("{vehicle}_{day}.csv").unwrap();
+        let form = NameForm::parse("{vehicle}_{day}.csv").unwrap();
         let found = |asked: &[&str]| {
             let asked: Vec<PathBuf> = asked.iter().map(|p| folder.join(p)).collect();
             records_of(&asked, &form).map(|f| names(&folder, &f))
@@ -181,7 +181,7 @@ mod tests {
                 .iter()
                 .all(|f| f.wrong == "no file matches the pattern")
         );
-        let other = NameForm::of("{vehicle}-{day}.mf4").unwrap();
+        let other = NameForm::parse("{vehicle}-{day}.mf4").unwrap();
         let wrong = records_of(std::slice::from_ref(&folder), &other).unwrap_err();
         assert!(wrong.into_list()[0].wrong.contains("notes.txt"));
         std::fs::remove_dir_all(&folder).unwrap();

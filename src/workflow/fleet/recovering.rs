@@ -8,7 +8,7 @@ use crate::sensitivity::Sensitivity;
 use crate::series::SeriesError;
 use crate::series::rainflow::{Counter, Marks};
 use crate::series::record::Record;
-use crate::series::still::blank;
+use crate::series::still::blank_readings;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
@@ -130,7 +130,7 @@ impl Recovering {
                         }
                     }
                 });
-                blank(&mut strain, n, first, &self.blank);
+                blank_readings(&mut strain, n, first, &self.blank);
                 recovered.values.clear();
                 recovered.gaps.clear();
                 self.filter
@@ -148,7 +148,7 @@ impl Recovering {
                 part.health.add(&strain, loads);
                 part.judged.add(first, &strain, loads);
                 part.loads.extend_from_slice(loads);
-                marks.put(loads, &mut part.marks);
+                marks.append_marks(loads, &mut part.marks);
             }
             ControlFlow::Continue(())
         })?;

@@ -134,9 +134,9 @@ pub fn init(
     let deck = work.stage("read deck", |s| {
         read_model(&mut s.inputs, Path::new(""), &given)
     })?;
-    Faults::check(deck.incomplete())?;
+    Faults::check(deck.unread_part_faults())?;
     if deck.model.grids.is_empty() {
-        let none = Fault::of(
+        let none = Fault::new(
             &*given,
             "GRID",
             "the deck contains no grid",
@@ -170,7 +170,7 @@ pub fn init(
     let verdict = match obstacle(&deck, &given, system.is_none()) {
         Some(finding) => {
             work.findings.push(finding);
-            Verdict::hopeless(&plan)
+            Verdict::from_plan(&plan)
         }
         None => work.stage("try", |w| first_that_places(&w.cx, &plan, &found)),
     };
@@ -216,7 +216,7 @@ fn named_zones(model: &Model) -> BTreeMap<String, BTreeSet<u32>> {
 fn free_target(folder: &Path, cx: &Context) -> Result<PathBuf, Fault> {
     let target = folder.join(JOB);
     if cx.files.load(&target).is_ok() {
-        return Err(Fault::of(
+        return Err(Fault::new(
             target.display().to_string(),
             JOB,
             "a file of this name exists, and it is not overwritten",
@@ -284,9 +284,9 @@ fn read_strained(
             })
         });
         let (solution, repeated, labels) =
-            read.map_err(|e| Fault::of(&*name, "results", e.to_string(), RESULTS_REMEDY))?;
+            read.map_err(|e| Fault::new(&*name, "results", e.to_string(), RESULTS_REMEDY))?;
         if let Some(twice) = repeated.iter().find(|r| r.is_of_strain()) {
-            return Err(Fault::of(&*name, "results", twice.words(&[&name]), HOLD_ONCE).into());
+            return Err(Fault::new(&*name, "results", twice.words(&[&name]), HOLD_ONCE).into());
         }
         if let Some(cut) = deck.cut_beside(&solution.findings) {
             return Err(cut.into());

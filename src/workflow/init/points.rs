@@ -110,7 +110,7 @@ fn axle_ends(m: &Model) -> BTreeSet<GridIx> {
     for g in m.beams.iter().flat_map(|b| b.grids) {
         *bars.entry(g).or_default() += 1;
     }
-    let meshed = meshed(m);
+    let meshed = shell_and_solid_grids(m);
     let masses = m.masses.iter().map(|p| p.grid);
     masses
         .filter(|g| bars.get(g) == Some(&1) && !meshed.contains(g))
@@ -121,7 +121,7 @@ fn axle_ends(m: &Model) -> BTreeSet<GridIx> {
 fn spring_ends(m: &Model) -> BTreeSet<GridIx> {
     let bushes = m.bushes.iter().map(|b| [Some(b.grids.0), b.grids.1]);
     let springs = m.springs.iter().map(|s| s.ends.map(|e| e.map(|e| e.0)));
-    let meshed = meshed(m);
+    let meshed = shell_and_solid_grids(m);
     let mut out = BTreeSet::new();
     for ends in bushes.chain(springs) {
         let grounded = ends.contains(&None);
@@ -132,7 +132,7 @@ fn spring_ends(m: &Model) -> BTreeSet<GridIx> {
 }
 
 /// Grids of shells and solids.
-fn meshed(m: &Model) -> BTreeSet<GridIx> {
+fn shell_and_solid_grids(m: &Model) -> BTreeSet<GridIx> {
     let shells = m.shells.iter().flat_map(|s| &s.grids[..s.shape.n_grids()]);
     let solids = m.solids.iter().flat_map(|s| s.grids.iter().flatten());
     shells.chain(solids).copied().collect()

@@ -148,9 +148,9 @@ fn by_number(
                 true => format!("{what}\ncomponent = \"{component}\""),
                 false => what,
             };
-            let (expected, expected_is) = typical(system, quantity.unwrap_or(Quantity::Force));
+            let (expected, expected_is) = typical_size(system, quantity.unwrap_or(Quantity::Force));
             loads.push(ProposedLoad {
-                name: unique(&mut used, name),
+                name: unique_name(&mut used, name),
                 what,
                 applied: 1.0,
                 subcase: Some(*id),
@@ -226,7 +226,7 @@ fn of_load_sets(
 /// Returns a proposal for each rank of points: wheels, hubs, grids of the mesh. A proposal has one load at each point of its rank. All other points
 /// are in its left-out loads, from which the user can choose.
 fn at_points(deck: &DeckModel, system: Option<UnitSystem>) -> Vec<Proposal> {
-    let (expected, expected_is) = typical(system, Quantity::Force);
+    let (expected, expected_is) = typical_size(system, Quantity::Force);
     let load = |p: &LoadPoint| ProposedLoad {
         name: format!("{}.FZ", p.name),
         what: format!("grid = {}\ncomponent = \"FZ\"", p.grid),
@@ -268,15 +268,15 @@ fn at_points(deck: &DeckModel, system: Option<UnitSystem>) -> Vec<Proposal> {
 
 /// Returns the typical size to propose for a load whose size no file states, with its unit. Where the units are open, SI is taken: the line is to
 /// be corrected with them.
-fn typical(system: Option<UnitSystem>, quantity: Quantity) -> (f64, String) {
+fn typical_size(system: Option<UnitSystem>, quantity: Quantity) -> (f64, String) {
     let size = typical_load(system.unwrap_or(UnitSystem::MKgS), quantity);
     let unit = system.map_or(String::new(), |s| format!(" in {}", s.unit(quantity).name));
     (round(size.unwrap_or(1.0)), unit)
 }
 
 /// Returns the typical size to propose for a load of the size `applied` in the deck, with a note of its unit and source.
-fn expected(system: Option<UnitSystem>, quantity: Quantity, applied: f64) -> (f64, String) {
-    let (size, unit) = typical(system, quantity);
+fn propose_size(system: Option<UnitSystem>, quantity: Quantity, applied: f64) -> (f64, String) {
+    let (size, unit) = typical_size(system, quantity);
     match is_unit_load(system.unwrap_or(UnitSystem::MKgS), quantity, applied) {
         true => (size, format!("{unit} (the deck has a unit load)")),
         false => (round(applied.abs()), unit),
@@ -296,11 +296,11 @@ fn of_set(
     used: &mut BTreeMap<String, usize>,
     system: Option<UnitSystem>,
 ) -> ProposedLoad {
-    let (what, name, applied, (expected, expected_is)) = match single(model, sid) {
+    let (what, name, applied, (expected, expected_is)) = match find_single_load(model, sid) {
         Some((what, name, applied)) => {
             let component = name.rsplit('.').next().unwrap_or_default();
             let quantity = quantity_of(component).unwrap_or(Quantity::Force);
-            let expected = expected(system, quantity, applied);
+            let expected = propose_size(system, quantity, applied);
             (what, name, applied, expected)
         }
         None => {
@@ -312,7 +312,7 @@ fn of_set(
         }
     };
     ProposedLoad {
-        name: unique(used, label.unwrap_or(name)),
+        name: unique_name(used, label.unwrap_or(name)),
         what,
         applied,
         subcase: None,
@@ -349,7 +349,7 @@ fn times_of_set(model: &Model, sid: u32, system: Option<UnitSystem>) -> f64 {
 }
 
 /// A load set that is one force or moment along an axis: what, a name, its size.
-fn single(model: &Model, sid: u32) -> Option<(String, String, f64)> {
+fn find_single_load(model: &Model, sid: u32) -> Option<(String, String, f64)> {
     let set = model.load_sets.iter().find(|s| s.sid == sid)?;
     let [(factor, load)] = set.loads.as_slice() else {
         return None;
@@ -374,7 +374,7 @@ fn single(model: &Model, sid: u32) -> Option<(String, String, f64)> {
     ))
 }
 
-fn unique(used: &mut BTreeMap<String, usize>, name: String) -> String {
+fn unique_name(used: &mut BTreeMap<String, usize>, name: String) -> String {
     let n = used.entry(name.clone()).or_insert(0);
     *n += 1;
     if *n == 1 { name } else { format!("{name}_{n}") }

@@ -143,7 +143,7 @@ impl Purpose {
     }
 
     /// A whole job, where the purpose needs no deck.
-    fn alone(self) -> Option<String> {
+    fn job_without_deck(self) -> Option<String> {
         match self {
             Self::Identify => Some(IDENTIFY.to_owned()),
             Self::Calibrate => Some([CALIBRATE_ALONE, RUNS, CALIBRATION].concat()),
@@ -205,9 +205,9 @@ pub fn init_for(
         proposed.answer.text = purpose.put_into(&proposed.answer.text, &proposed.answer.zones);
         return Ok(proposed);
     }
-    let Some(text) = purpose.alone() else {
+    let Some(text) = purpose.job_without_deck() else {
         let remedy = "name the deck: `strainbridge init truck.bdf --for payload`";
-        return Err(Fault::of("init", "DECK", "no deck is given", remedy).into());
+        return Err(Fault::new("init", "DECK", "no deck is given", remedy).into());
     };
     let path = super::free_target(folder, cx)?;
     let answer = Proposal {

@@ -56,7 +56,7 @@ impl JobPlan<'_> {
             self.loads_text(),
             self.candidates(),
             self.placement(),
-            self.measured(),
+            self.measured_text(),
         ]
         .concat()
     }
@@ -108,7 +108,7 @@ impl JobPlan<'_> {
 
     /// Returns the `support` line of the job, with a comment on the support.
     fn support(&self) -> String {
-        let held = Support::free(&self.deck.model);
+        let held = Support::without_spc(&self.deck.model);
         match self.deck.model.selected_spcs.as_slice() {
             [] if held.is_held() || held.by_springs > 0 => format!("support = \"deck\"                     # check: the deck selects no SPC set; the structure is {}", held.words()),
             [] => "# support = \"free\"                   # the deck selects no SPC set: inertia balances every load".to_owned(),
@@ -223,7 +223,7 @@ impl JobPlan<'_> {
         )
     }
 
-    fn measured(&self) -> String {
+    fn measured_text(&self) -> String {
         LATER.to_owned()
             + "# [gauges]\n\
          # file = \"job.out/gauges.csv\"\n\

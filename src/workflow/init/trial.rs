@@ -33,7 +33,7 @@ pub(super) struct Verdict {
 
 impl Verdict {
     /// Returns the job as planned, which is not recommended.
-    pub(super) fn hopeless(plan: &JobPlan) -> Self {
+    pub(super) fn from_plan(plan: &JobPlan) -> Self {
         Self {
             text: plan.text(),
             loads: names(plan.loads),
@@ -50,7 +50,7 @@ pub(super) fn first_that_places(cx: &Context, plan: &JobPlan, proposals: &[Propo
     if plan.deck.model.grids.len() > MOST_GRIDS {
         return Verdict {
             places: !plan.loads.is_empty(),
-            ..Verdict::hopeless(plan)
+            ..Verdict::from_plan(plan)
         };
     }
     // Solutions are kept for the length of the trials, and for `place` afterwards where the caller keeps them.
@@ -76,7 +76,7 @@ pub(super) fn first_that_places(cx: &Context, plan: &JobPlan, proposals: &[Propo
             format!("`place` finds no gauges for the proposed loads: {why}"),
             "correct the [[load]]s and [candidates], or give results with strain of shells",
         )),
-        ..Verdict::hopeless(plan)
+        ..Verdict::from_plan(plan)
     }
 }
 
@@ -87,7 +87,7 @@ fn names(loads: &[ProposedLoad]) -> Vec<String> {
 fn answer(trial: &JobPlan) -> Verdict {
     Verdict {
         places: true,
-        ..Verdict::hopeless(trial)
+        ..Verdict::from_plan(trial)
     }
 }
 

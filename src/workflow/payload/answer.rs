@@ -4,7 +4,7 @@ use super::judge::words;
 use super::model::Parts;
 use super::readings::{NetReading, Readings};
 use super::task::Task;
-use crate::host::outcome::{Answer, finite};
+use crate::host::outcome::{Answer, finite_or_none};
 use crate::host::words::count_of;
 use crate::job::Job;
 use crate::payload::{PayloadRun, Place, WeighSpec, WeighedRun, Weighing};
@@ -148,8 +148,12 @@ pub struct SingleGauge {
 }
 
 /// A value where it is not refused.
-fn kept(r: &WeighedRun, v: f64) -> Option<f64> {
-    if r.refused.is_some() { None } else { finite(v) }
+fn accepted_value(r: &WeighedRun, v: f64) -> Option<f64> {
+    if r.refused.is_some() {
+        None
+    } else {
+        finite_or_none(v)
+    }
 }
 
 /// Standard deviation of a gauge alone over that of the answer from which it carries less than a thousandth of it.
@@ -164,7 +168,11 @@ pub(super) fn report_payload(
     weighing: Weighing,
 ) -> Weighed {
     let job = task.job;
-    let payload = weighing.runs.iter().map(|r| one(task, spec, r)).collect();
+    let payload = weighing
+        .runs
+        .iter()
+        .map(|r| payload_of_run(task, spec, r))
+        .collect();
     let mut by_gauge: Vec<SingleGauge> = Vec::new();
     for r in &weighing.runs {
         for (g, name) in parts.model.gauges.iter().enumerate() {
@@ -176,8 +184,8 @@ pub(super) fn report_payload(
             by_gauge.push(SingleGauge {
                 run: r.run.clone(),
                 name: name.clone(),
-                estimate: finite(estimate),
-                sigma: r.estimate_sigma.get(g).copied().and_then(finite),
+                estimate: finite_or_none(estimate),
+                sigma: r.estimate_sigma.get(g).copied().and_then(finite_or_none),
                 used: verdict.is_some_and(|v| v.used) && estimate.is_finite() && carries,
                 reason: match verdict {
                     None => "no gauge gives a possible payload".to_owned(),
@@ -195,7 +203,7 @@ pub(super) fn report_payload(
         payload,
         by_gauge,
         net: readings.net,
-        conditioning: modelled.map(|p| Conditioning::of(&p.sensitivity)),
+        conditioning: modelled.map(|p| Conditioning::from_sensitivity(&p.sensitivity)),
         runs: readings.runs,
         weighing,
         prepared: parts.prepared,
@@ -203,19 +211,19 @@ pub(super) fn report_payload(
     }
 }
 
-fn one(task: &Task, spec: &WeighSpec, r: &WeighedRun) -> WeighedPayload {
+fn payload_of_run(task: &Task, spec: &WeighSpec, r: &WeighedRun) -> WeighedPayload {
     let free = spec.place == Place::Free;
     let (half_axes, angle) = r.ellipse();
-    let spread = [0, 3].map(|k| kept(r, r.shift_covariance[k].max(0.0).sqrt()));
+    let spread = [0, 3].map(|k| accepted_value(r, r.shift_covariance[k].max(0.0).sqrt()));
     WeighedPayload {
         run: r.run.clone(),
-        force: kept(r, r.force),
-        force_sigma: kept(r, r.sigma),
-        force_low: kept(r, r.interval[0]),
-        force_high: kept(r, r.interval[1]),
-        mass: kept(r, r.force / task.weight_of_mass),
-        mass_sigma: kept(r, r.sigma / task.weight_of_mass),
-        position: [0, 1].map(|k| kept(r, task.nominal[k] + r.shift[k])),
+        force: accepted_value(r, r.force),
+        force_sigma: accepted_value(r, r.sigma),
+        force_low: accepted_value(r, r.interval[0]),
+        force_high: accepted_value(r, r.interval[1]),
+        mass: accepted_value(r, r.force / task.weight_of_mass),
+        mass_sigma: accepted_value(r, r.sigma / task.weight_of_mass),
+        position: [0, 1].map(|k| accepted_value(r, task.nominal[k] + r.shift[k])),
         position_sigma: free.then_some(spread),
         region: (free && r.refused.is_none()).then(|| Ellipse {
             half_axes,

@@ -5,7 +5,7 @@ use super::stated::REFUTED;
 use super::task::Task;
 use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity, list_few};
-use crate::host::words::short;
+use crate::host::words::format_number;
 use crate::host::work::Work;
 use crate::input_faults::identical::identical_readings;
 use crate::measured::zero::subtract_and_test_zero;
@@ -22,11 +22,11 @@ pub(super) fn words(task: &Task, refusal: &Refusal) -> String {
     match refusal {
         Refusal::Negative { force } => format!(
             "the readings give {} {unit}, and a payload cannot be negative",
-            short(*force)
+            format_number(*force)
         ),
         Refusal::OutsideRegion { sigmas } => format!(
             "the computed place is {} standard deviations outside the region of the payload",
-            short(*sigmas)
+            format_number(*sigmas)
         ),
         Refusal::OutOfBalance {
             strain,
@@ -34,16 +34,16 @@ pub(super) fn words(task: &Task, refusal: &Refusal) -> String {
             sigmas,
         } => format!(
             "strain gives {} {unit} and the wheel forces give {} {unit}: they differ by {} standard deviations, so forces are not in balance",
-            short(*strain),
-            short(*wheels),
-            short(*sigmas)
+            format_number(*strain),
+            format_number(*wheels),
+            format_number(*sigmas)
         ),
         Refusal::Undetermined => "the readings do not determine the weight".to_owned(),
     }
 }
 
 /// A refusal as a finding.
-fn refused(task: &Task, run: &str, refusal: &Refusal) -> Finding {
+fn refusal_finding(task: &Task, run: &str, refusal: &Refusal) -> Finding {
     let (code, remedy) = match refusal {
         Refusal::Negative { .. } => (
             "payload-negative",
@@ -119,7 +119,7 @@ fn place_told(work: &mut Work, spec: &WeighSpec, r: &WeighedRun) {
 }
 
 /// Moments of measured wheel forces against the place that the job states.
-fn elsewhere(
+fn check_stated_place(
     work: &mut Work,
     task: &Task,
     spec: &WeighSpec,
@@ -154,8 +154,8 @@ fn elsewhere(
                 &r.run,
                 format!(
                     "the moments of the wheel forces put the payload at {}, {} {unit}, not at the place in the job",
-                    short(task.nominal[0] + at[0]),
-                    short(task.nominal[1] + at[1])
+                    format_number(task.nominal[0] + at[0]),
+                    format_number(task.nominal[1] + at[1])
                 ),
                 "correct the place, or let the payload be anywhere: position = \"free\"",
             )
@@ -210,7 +210,7 @@ pub(super) fn findings(
     work.findings.extend(weighing.unlike.iter().cloned());
     for (r, run) in weighing.runs.iter().zip(runs) {
         if let Some(refusal) = &r.refused {
-            work.findings.push(refused(task, &r.run, refusal));
+            work.findings.push(refusal_finding(task, &r.run, refusal));
             continue;
         }
         let wide = (r.interval[1] - r.interval[0]) / r.force;
@@ -222,7 +222,7 @@ pub(super) fn findings(
                     &r.run,
                     format!(
                         "the readings do not distinguish a payload from an empty structure: it is at most {} {}, with 97.5 % probability",
-                        short(r.interval[1]),
+                        format_number(r.interval[1]),
                         task.job.report_units.force.name
                     ),
                     "nothing, if the structure is empty; otherwise add gauges where the payload strains it, longer means, or wheel forces",
@@ -245,7 +245,7 @@ pub(super) fn findings(
         if spec.place == Place::Free {
             place_told(work, spec, r);
         } else if let (Some(arms), false) = (&parts.model.arms, run.reactions.is_empty()) {
-            elsewhere(work, task, spec, arms, run, r);
+            check_stated_place(work, task, spec, arms, run, r);
         }
     }
     let rejected: Vec<&str> = weighing

@@ -64,10 +64,10 @@ use task::Task;
 /// ```
 pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
     let mut work = Work::of_job(cx, job);
-    let job = &job.estimating()?;
+    let job = &job.without_validation_gauges()?;
     check_tables(&work, job)?;
     let Some(payload) = &job.payload else {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*job.file,
             "payload",
             "the job has no [payload]",
@@ -77,7 +77,7 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
     let use_strain = payload.use_strain && job.measured.is_some();
     let use_reactions = payload.use_reactions && job.runs.is_some();
     if !use_strain && !use_reactions {
-        return Err(Faults::from(Fault::at(
+        return Err(Faults::from(Fault::with_line(
             &*job.file,
             payload.line,
             "payload.use",
@@ -112,7 +112,10 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
     let mass = stated::mass_contradicted(&mut work, &task, &weighing)?;
     work.findings.extend(mass);
     let answer = answer::report_payload(&task, parts, readings, &spec, weighing);
-    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+    Ok(work.finish(
+        StatedUnits::from_units(job.units, &job.report_units),
+        answer,
+    ))
 }
 
 /// Weight at the nominal place that makes the gauge which the payload strains most read the largest of all readings; 1 where nothing does.

@@ -4,7 +4,7 @@ use super::task::Task;
 use crate::fe::floor::solve_standing;
 use crate::fe::{CaseResult, Support, UnitLoad};
 use crate::finding::{Finding, Severity};
-use crate::gauge::reading;
+use crate::gauge::gauge_reading;
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
 use crate::job::payload_loads::part_of;
@@ -42,7 +42,7 @@ pub(super) fn model_of(
     // A calibrated S stands beside its model, which has the payload's signature.
     let beside_model = has_covariance(task.job) && task.job.model.is_some();
     if task.job.sensitivity.is_some() && !beside_model {
-        return given(work, task, use_strain);
+        return read_model_tables(work, task, use_strain);
     }
     let prepared = if use_strain {
         Some(prepare_with_noise(work, task.job)?)
@@ -56,14 +56,14 @@ pub(super) fn model_of(
         Some(fields) => {
             let support = support_of_job(task.job, fields.model())?;
             let model = match (support.is_held(), &prepared) {
-                (true, Some(p)) => held(work, task, p, fields, support)?,
-                _ => standing(work, task, fields.model(), prepared.as_ref())?,
+                (true, Some(p)) => build_supported_model(work, task, p, fields, support)?,
+                _ => build_model_on_wheels(work, task, fields.model(), prepared.as_ref())?,
             };
             Ok(Parts { model, prepared })
         }
         None => {
             let Some(files) = &task.job.model else {
-                return Err(Faults::from(Fault::of(
+                return Err(Faults::from(Fault::new(
                     &*task.job.file,
                     "model",
                     "the job has neither [model] nor [sensitivity]",
@@ -71,7 +71,7 @@ pub(super) fn model_of(
                 )));
             };
             let read = work.stage("read model", |s| read_deck(s, task.job, files))?;
-            let model = standing(work, task, &read.model, None)?;
+            let model = build_model_on_wheels(work, task, &read.model, None)?;
             Ok(Parts {
                 model,
                 prepared: None,
@@ -83,7 +83,7 @@ pub(super) fn model_of(
 /// The grid of the payload, which the deck must have.
 fn payload_grid(task: &Task, model: &Model) -> Result<(GridIx, u32), Faults> {
     let fault = |wrong: String| {
-        Faults::from(Fault::at(
+        Faults::from(Fault::with_line(
             &*task.job.file,
             task.payload.line,
             "payload.grid",
@@ -156,7 +156,7 @@ fn own_columns(job: &Job, model: &Model, place: Place) -> [Option<usize>; 3] {
 }
 
 /// Strain of the payload's parts by gauge: the job's own column where it has one, else the solution `others` made for it.
-fn direct(
+fn payload_strain(
     (job, model): (&Job, &Model),
     p: &Prepared,
     place: Place,
@@ -167,7 +167,7 @@ fn direct(
         for (g, gauge) in p.gauges.iter().enumerate() {
             let v = match own {
                 Some(l) => p.sensitivity.values[(g, l)],
-                None => reading(gauge, &others[k]).unwrap_or(0.0),
+                None => gauge_reading(gauge, &others[k]).unwrap_or(0.0),
             };
             out[(g, SHIFT_OF[k])] = SIGNS[k] * v;
         }
@@ -188,7 +188,7 @@ fn report_units(task: &Task) -> [f64; 3] {
 }
 
 /// Returns the uncertainty of the columns of `p` from a calibrated S. `columns`: for each column its load of S, with its sign.
-fn calibrated(
+fn calibrated_uncertainty(
     task: &Task,
     s: &Sensitivity,
     columns: [Option<(usize, f64)>; 3],
@@ -204,7 +204,7 @@ fn calibrated(
 }
 
 /// From the deck of a structure on supports: they carry the payload, strain alone weighs it.
-fn held(
+fn build_supported_model(
     work: &mut Work,
     task: &mut Task,
     prepared: &Prepared,
@@ -250,7 +250,7 @@ fn held(
         ),
         "write support = \"free\" if wheels carry it",
     ));
-    let columns = direct((job, fields.model()), prepared, place, &solution.cases);
+    let columns = payload_strain((job, fields.model()), prepared, place, &solution.cases);
     let own = own_columns(job, fields.model(), place);
     let mut calibrated_columns = [None; 3];
     for (k, l) in own.iter().enumerate() {
@@ -259,7 +259,8 @@ fn held(
     // With a column of the model among them the covariance is not that of all.
     let all_own = own.iter().all(Option::is_some);
     Ok(PayloadModel {
-        calibrated: calibrated(task, &prepared.sensitivity, calibrated_columns).filter(|_| all_own),
+        calibrated: calibrated_uncertainty(task, &prepared.sensitivity, calibrated_columns)
+            .filter(|_| all_own),
         noise: prepared.sensitivity.noise.clone(),
         gauges: prepared.sensitivity.gauges.clone(),
         wheels: Matrix::zeros(columns.nrows(), 0),
@@ -270,7 +271,7 @@ fn held(
 }
 
 /// From the deck: unit loads at wheels and payload on the free structure, and the floor.
-fn standing(
+fn build_model_on_wheels(
     work: &mut Work,
     task: &mut Task,
     model: &Model,
@@ -330,7 +331,7 @@ fn standing(
             let rows = s.gauges.len();
             let columns =
                 Matrix::from_fn(rows, n, |g, w| s.values[(g, wheels.loads[w])] / task.force);
-            let direct = direct((job, model), p, place, &standing.others);
+            let direct = payload_strain((job, model), p, place, &standing.others);
             (s.gauges.clone(), columns, direct)
         }
     };
@@ -356,10 +357,10 @@ fn standing(
 }
 
 /// From tables: S, and the payload's signature `b0, b_dx, b_dy` per mass.
-fn given(work: &mut Work, task: &mut Task, use_strain: bool) -> Result<Parts, Faults> {
+fn read_model_tables(work: &mut Work, task: &mut Task, use_strain: bool) -> Result<Parts, Faults> {
     let job = task.job;
     let Some(tables) = &job.sensitivity else {
-        return Err(Fault::of(
+        return Err(Fault::new(
             &*job.file,
             "sensitivity",
             "the job has no [sensitivity]",
@@ -388,12 +389,12 @@ fn given(work: &mut Work, task: &mut Task, use_strain: bool) -> Result<Parts, Fa
             (Some(file), _) => payload = signature(work, task, tables, file, s)?,
             (None, Some(own)) => {
                 payload = in_report_units(task, &columns_of(s, own));
-                known = calibrated(task, s, own);
+                known = calibrated_uncertainty(task, s, own);
                 // Runs of known payload taught all that it does to the structure, wheels included.
                 on_wheels = !vertical.is_empty();
             }
             (None, None) => {
-                return Err(Faults::from(Fault::at(
+                return Err(Faults::from(Fault::with_line(
                     &*job.file,
                     tables.line,
                     "sensitivity.signatures.payload",
@@ -473,7 +474,7 @@ fn signature(
     let length = job.report_units.length.si / tables.per.length.si;
     for (g, name) in s.gauges.iter().enumerate() {
         let Some(row) = table.rows.iter().position(|r| r.1.get(key) == Some(name)) else {
-            faults.push(Fault::of(
+            faults.push(Fault::new(
                 &*file.given,
                 "gauge",
                 format!("no row for gauge `{name}`"),

@@ -3,7 +3,7 @@
 use super::task::Task;
 use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, Faults};
-use crate::host::outcome::finite;
+use crate::host::outcome::finite_or_none;
 use crate::host::work::Work;
 use crate::job::{Measured, NamedFile};
 use crate::measured::common_zero::common_zero;
@@ -63,9 +63,9 @@ pub(super) fn runs_of(
     };
     // Without wheels there is nothing to believe.
     let asked = use_reactions && !(use_strain && task.wheels.is_empty());
-    let reactions = asked && believed(work, task, use_strain);
+    let reactions = asked && accept_wheel_forces(work, task, use_strain);
     if !use_strain && !reactions {
-        return Err(Faults::from(Fault::at(
+        return Err(Faults::from(Fault::with_line(
             &*job.file,
             task.payload.line,
             "payload.use",
@@ -73,7 +73,7 @@ pub(super) fn runs_of(
             "give measured strain or wheel forces",
         )));
     }
-    let unloaded = unloaded(task, &rows)?;
+    let unloaded = find_unloaded_run(task, &rows)?;
     let mut out: Vec<PayloadRun> = Vec::new();
     let mut net = Vec::new();
     if use_strain {
@@ -113,7 +113,7 @@ pub(super) fn runs_of(
     let without = shifts_and_reactions(task, &rows, unloaded, reactions, &mut out);
     if !without.is_empty() {
         if model.floor.is_none() || !use_strain {
-            return Err(Faults::from(Fault::at(
+            return Err(Faults::from(Fault::with_line(
                 &*job.file,
                 job.runs.as_ref().map_or(0, |r| r.line),
                 "runs",
@@ -129,7 +129,7 @@ pub(super) fn runs_of(
             "add their rows and columns to the runs file",
         ));
     } else if !reactions && model.floor.is_none() {
-        return Err(Faults::from(Fault::at(
+        return Err(Faults::from(Fault::with_line(
             &*job.file,
             task.payload.line,
             "payload",
@@ -138,7 +138,7 @@ pub(super) fn runs_of(
         )));
     }
     if out.is_empty() {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*job.file,
             "run",
             "there is no run with a payload",
@@ -173,7 +173,7 @@ fn same_runs(
     // The strain of a single record has the name of its file, which a runs file need not know.
     if read.len() > 1 && !read.iter().any(|run| row(run).is_some()) {
         let all = names(&mut read.iter());
-        return Err(Fault::at(
+        return Err(Fault::with_line(
             &*runs.file.given,
             1,
             "run",
@@ -249,7 +249,7 @@ fn shifts_and_reactions(
 }
 
 /// Returns whether the wheel forces count as evidence. Adds a finding if strain is used instead, or if their noise is assumed.
-fn believed(work: &mut Work, task: &Task, use_strain: bool) -> bool {
+fn accept_wheel_forces(work: &mut Work, task: &Task, use_strain: bool) -> bool {
     let Some(runs) = &task.job.runs else {
         return false;
     };
@@ -277,7 +277,7 @@ fn believed(work: &mut Work, task: &Task, use_strain: bool) -> bool {
     false
 }
 
-fn unloaded<'a>(task: &Task, rows: &'a [RunRow]) -> Result<Option<&'a RunRow>, Faults> {
+fn find_unloaded_run<'a>(task: &Task, rows: &'a [RunRow]) -> Result<Option<&'a RunRow>, Faults> {
     let Some(name) = &task.payload.unloaded else {
         return Ok(None);
     };
@@ -289,7 +289,7 @@ fn unloaded<'a>(task: &Task, rows: &'a [RunRow]) -> Result<Option<&'a RunRow>, F
 }
 
 fn no_unloaded_run(task: &Task, file: &str, name: &str) -> Faults {
-    Faults::from(Fault::at(
+    Faults::from(Fault::with_line(
         &*task.job.file,
         task.payload.line,
         "payload.unloaded",
@@ -488,9 +488,9 @@ fn net_rows(model: &PayloadModel, runs: &[(String, Vec<Net>)]) -> Vec<NetReading
             .map(|(g, n)| NetReading {
                 run: run.clone(),
                 name: g.clone(),
-                net_microstrain: finite(n.value / MICROSTRAIN),
-                sigma_microstrain: finite(n.sigma / MICROSTRAIN),
-                signal_to_noise: finite(n.signal_to_noise()),
+                net_microstrain: finite_or_none(n.value / MICROSTRAIN),
+                sigma_microstrain: finite_or_none(n.sigma / MICROSTRAIN),
+                signal_to_noise: finite_or_none(n.signal_to_noise()),
             })
             .collect()
     };

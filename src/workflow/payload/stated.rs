@@ -5,7 +5,7 @@ use super::task::Task;
 use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::Faults;
-use crate::host::words::short;
+use crate::host::words::format_number;
 use crate::host::work::Work;
 use crate::measured::runs_file::read_runs;
 use crate::payload::{PayloadRun, Place, WeighSpec, WeighedRun, Weighing, weigh};
@@ -53,7 +53,7 @@ pub(super) fn place_contradicted(
         task.job.report_units.length.name,
         task.job.report_units.force.name,
     );
-    let place = [0, 1].map(|k| short(task.nominal[k] + free.shift[k]));
+    let place = [0, 1].map(|k| format_number(task.nominal[k] + free.shift[k]));
     Some(
         Finding::new(
             severity,
@@ -63,11 +63,11 @@ pub(super) fn place_contradicted(
                 "the readings contradict the stated place of the payload. With a free place, run {} weighs {} ± {} {force} at {}, {} \
                  {length}; at the stated place it weighs {} {force}",
                 free.run,
-                short(free.force),
-                short(NORMAL_95 * free.sigma),
+                format_number(free.force),
+                format_number(NORMAL_95 * free.sigma),
                 place[0],
                 place[1],
-                short(known.force)
+                format_number(known.force)
             ),
             "correct the place in the runs file, `nominal_x`, `nominal_y` or `grid`, or let the payload be anywhere: position = \"free\"",
         )
@@ -127,10 +127,10 @@ pub(super) fn mass_contradicted(
                 "the payload masses of `{}` contradict the readings: run {} weighs {} to {} {}, and the recorded payload is {} {}",
                 file.file.given,
                 run.run,
-                short(mass(run.interval[0])),
-                short(mass(run.interval[1])),
+                format_number(mass(run.interval[0])),
+                format_number(mass(run.interval[1])),
                 unit.name,
-                short(*recorded),
+                format_number(*recorded),
                 unit.name
             ),
             "check the recorded masses and their unit, scale and unit of the wheel forces or the gauges, and the run of the zero",

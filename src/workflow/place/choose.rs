@@ -1,7 +1,7 @@
 //! The choice: single gauges through the tensors, or bundles (rosettes, pairs, unlike costs) within a budget.
 
 use super::chosen::{Channel, Chosen, Refused};
-use super::misfits::fitting;
+use super::misfits::fit_gauge_to_part;
 use super::pool::Kind;
 use super::spot_layout;
 use super::task::{Task, know_the_loads, position};
@@ -96,7 +96,7 @@ pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Ch
     let job = task.job;
     let single = |line, field, what, remedy| {
         let wrong = format!("{what} single gauges of one wiring, without pairs, costs or a budget");
-        Refused::Job(Fault::at(&*job.file, line, field, wrong, remedy))
+        Refused::Job(Fault::with_line(&*job.file, line, field, wrong, remedy))
     };
     if job.placement.criterion == Optimality::Condition {
         return Err(single(
@@ -160,7 +160,7 @@ fn channel(task: &Task, kind: &Kind, choice: Choice, name: String) -> Result<Cha
     let job = task.job;
     let refused = |wrong: String, remedy: &str| {
         let (file, line) = (&*job.file, job.candidates.line);
-        Refused::Job(Fault::at(file, line, "candidates", wrong, remedy))
+        Refused::Job(Fault::with_line(file, line, "candidates", wrong, remedy))
     };
     let no_place = || {
         refused(
@@ -175,7 +175,7 @@ fn channel(task: &Task, kind: &Kind, choice: Choice, name: String) -> Result<Cha
         angle_rad: axis_of(kind.bridge, choice.angle),
         grid_length: job.candidates.grid_length,
         bridge: kind.bridge,
-        ..GaugeSpec::on(&*name, shell)
+        ..GaugeSpec::place_on_shell(&*name, shell)
     };
     let corners = task.fields.corner_rows(job);
     let build = |spec: &GaugeSpec| build(task.fields.model(), spec, corners);
@@ -186,7 +186,7 @@ fn channel(task: &Task, kind: &Kind, choice: Choice, name: String) -> Result<Cha
         })?;
         gauges.into_iter().next().ok_or_else(no_place)
     };
-    let (by_angle, misfit) = fitting(job, by_angle, build);
+    let (by_angle, misfit) = fit_gauge_to_part(job, by_angle, build);
     let direction = lay(&by_angle)?.direction;
     let by_direction = GaugeSpec {
         direction: Some(direction),
@@ -283,7 +283,9 @@ fn bundles_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<DescribedBundles<'a>
             .map(|i| (15.0 * f64::from(i)).to_radians())
             .collect(),
     };
-    let mates = p.symmetric.map(|axis| Mirror::of(task, &positions, axis));
+    let mates = p
+        .symmetric
+        .map(|axis| Mirror::from_positions(task, &positions, axis));
     // Rosettes need a quarter kind to take their legs from.
     let quarter = kinds.iter().position(|k| k.bridge == Bridge::Quarter);
     let legs: Option<[f64; 3]> = task.job.candidates.rosette.map(|r| r.legs().map(|l| l.1));
@@ -349,7 +351,7 @@ fn few_enough(task: &Task, a_site: usize) -> Result<(), Refused> {
     if many <= MOST_BUNDLES {
         return Ok(());
     }
-    Err(Refused::Job(Fault::at(
+    Err(Refused::Job(Fault::with_line(
         &*task.job.file,
         task.job.candidates.line,
         "candidates",
@@ -386,7 +388,7 @@ struct Mirror {
 }
 
 impl Mirror {
-    fn of(task: &Task, positions: &[[f64; 3]], axis: usize) -> Self {
+    fn from_positions(task: &Task, positions: &[[f64; 3]], axis: usize) -> Self {
         let size = positions
             .iter()
             .flatten()
@@ -458,7 +460,7 @@ fn probe(task: &Task, site: usize, angle: f64) -> Option<Gauge> {
     let spec = GaugeSpec {
         surface: Some(surface),
         angle_rad: angle,
-        ..GaugeSpec::on("probe", shell)
+        ..GaugeSpec::place_on_shell("probe", shell)
     };
     build(task.fields.model(), &spec, CornerRows::Absent)
         .ok()?

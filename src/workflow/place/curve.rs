@@ -7,7 +7,7 @@ use super::outcome::{BoughtSigma, CurvePoint};
 use super::pool::Kind;
 use super::task::Task;
 use crate::finding::{Finding, Severity};
-use crate::host::outcome::finite;
+use crate::host::outcome::finite_or_none;
 use crate::linalg::{Matrix, dense};
 use crate::placement::quality::judge_rows;
 use crate::placement::{PlaceError, Spec};
@@ -77,7 +77,7 @@ pub(super) fn curve(
         points.push(CurvePoint {
             gauges,
             efficiency_bound: chosen.efficiency_bound,
-            condition_number_scaled: finite(dense::condition(&s)),
+            condition_number_scaled: finite_or_none(dense::condition(&s)),
             worst_loss: q.worst_loss,
             load_sigma,
         });
@@ -86,7 +86,7 @@ pub(super) fn curve(
 }
 
 /// Numbers of gauges that the curve leaves out.
-pub(super) fn incomplete(left_out: &[usize]) -> Option<Finding> {
+pub(super) fn incomplete_curve_finding(left_out: &[usize]) -> Option<Finding> {
     let counts: Vec<String> = left_out.iter().map(usize::to_string).collect();
     (!left_out.is_empty()).then(|| {
         Finding::new(

@@ -6,7 +6,7 @@ use super::outcome::{Installed, InstalledQuality, WorstLoss};
 use super::task::Task;
 use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::Faults;
-use crate::host::outcome::finite;
+use crate::host::outcome::finite_or_none;
 use crate::host::work::Work;
 use crate::placement::candidates::Candidates;
 use crate::placement::quality::judge_rows;
@@ -90,8 +90,8 @@ pub(super) fn evaluate_installed(
     let quality = InstalledQuality {
         log_det,
         upper_bound: bound,
-        condition_number: finite(s.condition_number()),
-        condition_number_scaled: finite(s.condition_number_scaled()),
+        condition_number: finite_or_none(s.condition_number()),
+        condition_number_scaled: finite_or_none(s.condition_number_scaled()),
         load_sigma,
         worst_loss: WorstLoss {
             gauge: s.gauges[q.worst].clone(),

@@ -4,7 +4,7 @@ use super::chosen::{Channel, Chosen};
 use super::outcome::PlacedGauge;
 use super::task::Task;
 use crate::finding::{Finding, Severity};
-use crate::host::words::short;
+use crate::host::words::format_number;
 use crate::host::work::Work;
 use crate::job::{Job, LoadRole};
 use crate::linalg::spd;
@@ -154,7 +154,7 @@ pub(super) fn with_unit_loads(job: &Job, mut finding: Finding) -> Finding {
         let (size, quantity) = (l.expected?, l.quantity()?);
         let unit = job.units.unit(quantity);
         let is_unit = l.role == LoadRole::Wanted && is_unit_load(job.units, quantity, size);
-        is_unit.then(|| (&l.name, format!("{} {}", short(size), unit.name)))
+        is_unit.then(|| (&l.name, format!("{} {}", format_number(size), unit.name)))
     });
     if let Some((name, size)) = unit_load {
         finding.message = format!(
@@ -237,7 +237,7 @@ fn check_budgets<'a>(
     };
     let message = format!(
         "{gauges} to be glued within {} mm, `{name}` within {least:.2} mm: a larger error changes a load by more than 5 % of its expected size",
-        short(kept)
+        format_number(kept)
     );
     let remedy = match tolerance > 0.0 {
         true => "place more gauges, so that each has less weight, or state a larger position_tolerance, so that places with large strain gradients \
@@ -245,7 +245,7 @@ fn check_budgets<'a>(
             .to_owned(),
         false => format!(
             "state [placement] position_tolerance, {} {} for gauges positioned with a ruler, so that places with large strain gradients are avoided",
-            short(2.0 * PLACE / mm),
+            format_number(2.0 * PLACE / mm),
             unit.name
         ),
     };

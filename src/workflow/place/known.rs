@@ -131,7 +131,7 @@ impl Task<'_> {
                 }
             }
         }
-        let over_sd = whitened(&w, &strain, self.order.len());
+        let over_sd = whiten_rows(&w, &strain, self.order.len());
         let sd = (0..n).map(|g| w[g * n + g].sqrt()).collect();
         Rows {
             strain,
@@ -151,7 +151,7 @@ fn is_of(gauge: &Gauge, stated: &JobGauge) -> bool {
 pub(super) fn gluing_variance(task: &Task, gauges: &[Gauge]) -> Vec<f64> {
     let of = |gauge: &Gauge| {
         let stated = task.job.gauges.iter().find(|g| is_of(gauge, g))?;
-        Some(glued(task, gauge, stated)?.variance)
+        Some(gluing_effect(task, gauge, stated)?.variance)
     };
     gauges.iter().map(|g| of(g).unwrap_or(0.0)).collect()
 }
@@ -169,7 +169,7 @@ pub(super) struct Glued {
 }
 
 /// Returns the effect of gluing on a gauge of a shell; `None` on bars.
-pub(super) fn glued(task: &Task, gauge: &Gauge, stated: &JobGauge) -> Option<Glued> {
+pub(super) fn gluing_effect(task: &Task, gauge: &Gauge, stated: &JobGauge) -> Option<Glued> {
     let (job, model) = (task.job, task.fields.model());
     if matches!(stated.place, StatedPlace::BeamPoint { .. }) {
         return None;
@@ -216,7 +216,7 @@ pub(super) fn glued(task: &Task, gauge: &Gauge, stated: &JobGauge) -> Option<Glu
 }
 
 /// `L^-1 A` with `L L' = w`; over the roots of the diagonal where rounding leaves `w` without a factor.
-fn whitened(w: &[f64], rows: &[Vec<f64>], k: usize) -> Vec<Vec<f64>> {
+fn whiten_rows(w: &[f64], rows: &[Vec<f64>], k: usize) -> Vec<Vec<f64>> {
     let n = rows.len();
     let mut out = rows.to_vec();
     let Some(factor) = spd::cholesky(w, n) else {

@@ -11,7 +11,7 @@ use crate::placement::sites::Site;
 type Built = Result<(Vec<Gauge>, Vec<Finding>), GaugeError>;
 
 /// Returns a gauge, reduced to a point if its grid is longer than the part, and the fault of a grid that does not fit.
-pub(super) fn fitting(
+pub(super) fn fit_gauge_to_part(
     job: &Job,
     spec: GaugeSpec,
     build: impl Fn(&GaugeSpec) -> Built,
@@ -51,7 +51,7 @@ fn misfit(job: &Job, built: &Built) -> Option<Fault> {
         Err(_) => return None,
     };
     let line = job.candidates.line;
-    Some(Fault::at(
+    Some(Fault::with_line(
         &*job.file,
         line,
         "candidates.grid_length",

@@ -24,7 +24,7 @@ pub(super) use region::allowed_sites;
 use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
-use crate::host::outcome::{Outcome, StatedUnits, finite};
+use crate::host::outcome::{Outcome, StatedUnits, finite_or_none};
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::placement::quality::{judge_rows, reserve};
@@ -61,16 +61,19 @@ pub fn place(job: &Job, cx: &Context) -> Result<Outcome<Placed>, Faults> {
     check_tables(&work, job)?;
     let fields = read_fields(&mut work, job, WantedAt::Anywhere)?;
     let job = &job.with_property_ids(&fields.model().property_names)?;
-    let answer = placed(&mut work, job, &fields)?;
-    let answer = answer.with(fields, job);
-    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+    let answer = lay_out_gauges(&mut work, job, &fields)?;
+    let answer = answer.into_placed(fields, job);
+    Ok(work.finish(
+        StatedUnits::from_units(job.units, &job.report_units),
+        answer,
+    ))
 }
 
 /// Layouts that are looked for at most until every grid fits: each leaves out the places of the one before where a grid does not fit.
 const ROUNDS: usize = 20;
 
 /// The layout on the model.
-fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Faults> {
+fn lay_out_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Faults> {
     let cases = fields.load_cases(job);
     let (common, findings) = common_shells(&cases);
     work.findings.extend(findings);
@@ -123,7 +126,7 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
         };
         return Err(task.refusal(&singular).into());
     };
-    let validation = reserved(work, &task, &rows, &spec.prior)?;
+    let validation = reserve_gauges(work, &task, &rows, &spec.prior)?;
     let chosen_gauges = chosen.channels.iter().map(|c| c.gauge.clone());
     let all: Vec<_> = chosen_gauges.chain(task.kept.clone()).collect();
     let s = task
@@ -139,7 +142,8 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
         Some(kind) => installed::evaluate_installed(work, &task, &kind.candidates, &spec)?,
         None => None,
     };
-    work.findings.extend(check_separability(&s.unconditioned()));
+    work.findings
+        .extend(check_separability(&s.without_prior_loads()));
     judge::judge_layout(work, job, &chosen, &quality, &spec, &gauges, k);
     let recovered = judge::chosen_as_recovered(&task, &spec, &chosen.channels);
     let as_glued = judge::as_glued(job, &quality, k);
@@ -155,7 +159,8 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
         let (points, left_out) =
             work.stage("curve", |_| curve::curve(&task, &kinds, &spec, &listed));
         work.go_on()?;
-        work.findings.extend(curve::incomplete(&left_out));
+        work.findings
+            .extend(curve::incomplete_curve_finding(&left_out));
         points
     };
     let reserved = validation.iter().map(|(i, inflation)| {
@@ -216,7 +221,7 @@ struct LayoutOf {
 }
 
 impl LayoutOf {
-    fn with(self, fields: Fields, job: &Job) -> Placed {
+    fn into_placed(self, fields: Fields, job: &Job) -> Placed {
         Placed {
             gauges: self.gauges,
             files: outcome::FILES,
@@ -230,8 +235,8 @@ impl LayoutOf {
             cost: self.chosen.cost,
             kept: self.kept,
             mesh_error: self.mesh_error,
-            conditioning: Conditioning::of(&self.sensitivity),
-            least_condition_number_scaled: self.chosen.least_condition.and_then(finite),
+            conditioning: Conditioning::from_sensitivity(&self.sensitivity),
+            least_condition_number_scaled: self.chosen.least_condition.and_then(finite_or_none),
             load_sigma: self.load_sigma,
             worst_loss: self.worst_loss,
             reserved: self.reserved,
@@ -248,7 +253,7 @@ impl LayoutOf {
 ///
 /// # Errors
 /// Where the rest would not separate the loads.
-fn reserved(
+fn reserve_gauges(
     work: &mut Work,
     task: &task::Task,
     rows: &[Vec<f64>],
@@ -259,7 +264,7 @@ fn reserved(
         return Ok(Vec::new());
     }
     let Some(found) = reserve(rows, prior, task.cases.len(), n) else {
-        return Err(Faults::from(Fault::at(
+        return Err(Faults::from(Fault::with_line(
             &*task.job.file,
             task.job.placement.line,
             "placement.reserve",

@@ -45,7 +45,7 @@ pub(crate) fn scatter(
         } else {
             Vec::new()
         },
-        ..Scatter::uniform(own.map_or(p.noise_microstrain, |n| n.1))
+        ..Scatter::with_uniform_noise(own.map_or(p.noise_microstrain, |n| n.1))
     }
 }
 

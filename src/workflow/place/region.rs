@@ -40,7 +40,7 @@ impl StrictRule {
     }
 
     /// Returns the stricter of two rules: the one that leaves no shell, else the one that excludes more.
-    fn stricter(a: Option<Self>, b: Self) -> Self {
+    fn choose_stricter(a: Option<Self>, b: Self) -> Self {
         match a {
             Some(a) if a.left == 0 || b.left > 0 && a.of - a.left >= b.of - b.left => a,
             _ => b,
@@ -108,7 +108,10 @@ pub(super) fn allowed_sites_and_rule(
             })
         });
         let (rule, left) = (format!("`{key}`"), shells.len());
-        most = Some(StrictRule::stricter(most, StrictRule { rule, left, of }));
+        most = Some(StrictRule::choose_stricter(
+            most,
+            StrictRule { rule, left, of },
+        ));
     }
     let clear = rule.clear;
     let rims = clear.holes.unwrap_or(clear.edges);
@@ -136,7 +139,10 @@ pub(super) fn allowed_sites_and_rule(
         shells.retain(|_| flags.next().unwrap_or(false));
         let rule = format!("`clear_of` {key} = {distance}");
         let left = shells.len();
-        most = Some(StrictRule::stricter(most, StrictRule { rule, left, of }));
+        most = Some(StrictRule::choose_stricter(
+            most,
+            StrictRule { rule, left, of },
+        ));
     }
     let sites: Vec<Site> = shells
         .iter()
@@ -154,7 +160,7 @@ pub(super) fn allowed_sites_and_rule(
                 "ask for STRAIN of shells in every subcase".to_owned(),
             ),
         };
-        let fault = Fault::at(&*job.file, rule.line, "candidates", wrong, remedy);
+        let fault = Fault::with_line(&*job.file, rule.line, "candidates", wrong, remedy);
         return Err(Faults::from(fault));
     }
     Ok((sites, most))
@@ -194,7 +200,7 @@ fn check_ids(job: &Job, model: &Model) -> Result<(), Faults> {
                 true => a.to_string(),
                 false => format!("{a} to {b}"),
             };
-            faults.push(Fault::at(
+            faults.push(Fault::with_line(
                 &*job.file,
                 rule.line,
                 format!("candidates.{key}"),
@@ -206,7 +212,7 @@ fn check_ids(job: &Job, model: &Model) -> Result<(), Faults> {
     let placement = &job.placement;
     let missing = placement.references.iter();
     for (name, grid) in missing.filter(|r| model.grid_ix(r.1).is_none()) {
-        faults.push(Fault::at(
+        faults.push(Fault::with_line(
             &*job.file,
             placement.line,
             "placement.references",
@@ -231,7 +237,7 @@ fn sets_of<'a>(job: &Job, fields: &'a Fields) -> Result<Vec<&'a nastran::bdf::Se
             .find_map(|s| s.sets.get(&id));
         match set {
             Some(s) => found.push(s),
-            None => faults.push(Fault::at(
+            None => faults.push(Fault::with_line(
                 &*job.file,
                 job.candidates.line,
                 "candidates.sets",

@@ -1,7 +1,7 @@
 //! Layouts of named spots: chosen one by one, or within a budget.
 
 use super::chosen::{Chosen, Refused};
-use super::known::glued;
+use super::known::gluing_effect;
 use super::pool::Kind;
 use super::spots::{LaidSpot, Leg};
 use super::task::Task;
@@ -59,7 +59,7 @@ impl Task<'_> {
         let leg = |gauge: Gauge| {
             let one = std::slice::from_ref(&gauge);
             let s = self.s_of(one).ok()?;
-            let glued = glued(self, &gauge, &spot.gauge);
+            let glued = gluing_effect(self, &gauge, &spot.gauge);
             let more = [glued.as_ref().map_or(0.0, |g| g.variance)];
             let mut rows = self.rows_of(one, &s, p.model_uncertainty_rel, &more);
             Some(Leg {
@@ -90,7 +90,7 @@ impl Task<'_> {
         let mut faults = FaultList::new();
         let mut fault = |field: &str, wrong: String, remedy: &str| {
             let field = format!("placement.{field}");
-            faults.push(Fault::at(&*job.file, p.line, field, wrong, remedy));
+            faults.push(Fault::with_line(&*job.file, p.line, field, wrong, remedy));
         };
         match (p.budget, p.gauges) {
             (None, _) if job.candidates.has_costs() => fault(
@@ -131,7 +131,7 @@ pub(super) fn kind(task: &Task, spots: &[LaidSpot]) -> Kind {
     let first: Vec<&Leg> = spots.iter().filter_map(|s| s.legs.first()).collect();
     let scatter = Scatter {
         extra: first.iter().map(|l| l.sd * l.sd - noise * noise).collect(),
-        ..Scatter::uniform(noise)
+        ..Scatter::with_uniform_noise(noise)
     };
     let fill = |spot: usize, row: &mut [f64]| row.copy_from_slice(&first[spot].strain);
     Kind {
@@ -190,7 +190,7 @@ pub(super) fn within_budget(
     let layout = place_bundles(&bundles, &of_bundles).map_err(|e| {
         Refused::By(match e {
             PlaceError::Singular { loads, .. } => PlaceError::Singular {
-                gauges: affordable(spots, budget),
+                gauges: count_affordable(spots, budget),
                 loads,
             },
             e => e,
@@ -210,7 +210,7 @@ pub(super) fn within_budget(
 }
 
 /// Returns the largest number of spots that the budget pays for.
-fn affordable(spots: &[LaidSpot], budget: f64) -> usize {
+fn count_affordable(spots: &[LaidSpot], budget: f64) -> usize {
     let mut costs: Vec<f64> = spots.iter().map(|s| s.cost).collect();
     costs.sort_by(f64::total_cmp);
     let sums = costs.iter().scan(0.0, |sum, cost| {

@@ -4,7 +4,7 @@ use super::pool::column_order;
 use super::region::StrictRule;
 use super::spots::LaidSpot;
 use crate::finding::{Finding, Severity};
-use crate::gauge::{Bridge, Gauge, reading};
+use crate::gauge::{Bridge, Gauge, gauge_reading};
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::job::{Job, Keep, LoadRole, Optimality};
@@ -80,7 +80,7 @@ impl<'a> Task<'a> {
             let own = |g: &Gauge, n: &String| g.name == *n || g.name.starts_with(&format!("{n}."));
             for n in names {
                 if !laid.iter().any(|g| own(g, n)) {
-                    return Err(Faults::from(Fault::at(
+                    return Err(Faults::from(Fault::with_line(
                         &*self.job.file,
                         p.line,
                         "placement.keep",
@@ -225,7 +225,7 @@ impl<'a> Task<'a> {
             remedy = format!("ask for fewer, or add spots to `{}`", file.given);
         }
         let line = self.job.placement.line;
-        Fault::at(&*self.job.file, line, "placement", wrong, remedy)
+        Fault::with_line(&*self.job.file, line, "placement", wrong, remedy)
     }
 }
 
@@ -295,6 +295,6 @@ pub(super) fn by_load(task: &Task, gauge: &Gauge) -> Vec<f64> {
     task.cases
         .iter()
         .zip(&task.scales)
-        .map(|(c, f)| reading(gauge, c.case).unwrap_or(0.0) * f / c.applied / MICROSTRAIN)
+        .map(|(c, f)| gauge_reading(gauge, c.case).unwrap_or(0.0) * f / c.applied / MICROSTRAIN)
         .collect()
 }

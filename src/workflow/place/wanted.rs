@@ -22,7 +22,7 @@ pub(super) fn on_wanted(
     };
     let refuse = |wrong: String, remedy: &str| {
         let (file, line) = (&*task.job.file, task.job.candidates.line);
-        Fault::at(file, line, "candidates.wanted_elements", wrong, remedy)
+        Fault::with_line(file, line, "candidates.wanted_elements", wrong, remedy)
     };
     let mut places: Vec<(u32, usize)> = Vec::new();
     for (place, (shell, _)) in task.sites.iter().enumerate() {

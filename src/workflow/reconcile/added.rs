@@ -94,18 +94,18 @@ impl Held<'_> {
                     "times 1",
                     format!("times {}", number(*factor)),
                 ),
-                None => at(
+                None => change_at(
                     format!("{SENSITIVITY}: every entry"),
                     "times 1",
                     format!("times {}", number(*factor)),
                 ),
             }],
-            Extension::LoadScale { load, factor } => vec![at(
+            Extension::LoadScale { load, factor } => vec![change_at(
                 format!("{RUNS}: column {load}"),
                 "as noted",
                 format!("divided by {}", number(*factor)),
             )],
-            Extension::RunExchange { runs } => vec![at(
+            Extension::RunExchange { runs } => vec![change_at(
                 format!("{RUNS}: rows {}", runs.join(" and ")),
                 "as noted",
                 "loads and payload exchanged".into(),
@@ -136,11 +136,12 @@ impl Held<'_> {
     }
 
     fn in_job(&self, key: &str, old: &str, new: String) -> Place {
-        at(format!("{}: {key}", self.extended.name), old, new)
+        change_at(format!("{}: {key}", self.extended.name), old, new)
     }
 
     fn channel(&self, gauge: &str, correction: &Correction) -> Place {
-        let in_s = |what: String| at(format!("{SENSITIVITY}: row {gauge}"), "as drawn", what);
+        let in_s =
+            |what: String| change_at(format!("{SENSITIVITY}: row {gauge}"), "as drawn", what);
         let turned = matches!(correction, Correction::AngleDeg(_));
         match correction {
             Correction::AngleDeg(by) if self.deck.is_none() => {
@@ -149,7 +150,7 @@ impl Held<'_> {
             Correction::PositionMm(by) => in_s(format!("moved by {} mm", number(*by))),
             _ if self.extended.readings.is_some() && !turned => {
                 let (key, new) = key_of(correction);
-                at(
+                change_at(
                     format!("{STRAIN}: column {gauge}"),
                     "as read",
                     format!("corrected by {key} {new}"),
@@ -246,7 +247,11 @@ impl Held<'_> {
                 StiffnessOf::Described => "",
             };
             let new = format!("{}{unit}", number(size));
-            return vec![at(format!("{SENSITIVITY}: change by {place}"), "0", new)];
+            return vec![change_at(
+                format!("{SENSITIVITY}: change by {place}"),
+                "0",
+                new,
+            )];
         };
         let edit = effect_of(self.job, place).map(|e| &e.source);
         match (of, edit) {
@@ -269,7 +274,7 @@ impl Held<'_> {
         let new = format!("{} kg", number(kilogram));
         let of_mass = format!("strain of {new} at {place}");
         let strain = match self.extended.readings {
-            Some(_) => at(
+            Some(_) => change_at(
                 format!("{STRAIN}: every column"),
                 "as read",
                 format!("less the {of_mass}"),
@@ -281,7 +286,7 @@ impl Held<'_> {
         };
         let card = self
             .deck
-            .map(|_| at(format!("{DECK}: CONM2 at {place}"), "none", new));
+            .map(|_| change_at(format!("{DECK}: CONM2 at {place}"), "none", new));
         card.into_iter().chain([strain]).collect()
     }
 
@@ -289,7 +294,7 @@ impl Held<'_> {
         if let Some(x_m) = self.extended.nominal_x_m {
             let old = format!("{} m", number(self.frame.payload_origin[0]));
             let new = format!("{} m", number(x_m));
-            return at(
+            return change_at(
                 format!("{}: [payload] nominal_x", self.extended.name),
                 &old,
                 new,
@@ -299,7 +304,7 @@ impl Held<'_> {
             None => PAYLOAD,
             Some(_) => RUNS,
         };
-        at(
+        change_at(
             format!("{file}: place of the payload"),
             "as noted",
             format!("moved by {} m and {} m to the left", number(dx), number(dy)),
@@ -320,7 +325,7 @@ impl Held<'_> {
             let old = frame.loads.get(r * n_l + l)?;
             let new = now.loads.get(r * n_l + l)?;
             let unit = load_unit(frame.is_moment(l));
-            Some(at(
+            Some(change_at(
                 format!("{RUNS}: run {run}, {name}"),
                 &format!("{} {unit}", number(*old)),
                 format!("{} {unit}", number(*new)),
@@ -333,7 +338,7 @@ impl Held<'_> {
                 let old = frame.payload.get(r).map_or(0.0, |p| p[0]);
                 let new = now.payload.get(r).map_or(old, |p| p[0]);
                 let path = format!("{RUNS}: run {run}, payload_mass");
-                vec![at(
+                vec![change_at(
                     path,
                     &format!("{} kg", number(old)),
                     format!("{} kg", number(new)),
@@ -363,7 +368,7 @@ fn load_unit(is_moment: bool) -> &'static str {
     }
 }
 
-fn at(path: String, old: &str, new: String) -> Place {
+fn change_at(path: String, old: &str, new: String) -> Place {
     [path, old.to_owned(), new]
 }
 
@@ -371,7 +376,7 @@ fn at(path: String, old: &str, new: String) -> Place {
 fn thicknesses(deck: &DeckFrame, wanted: impl Fn(u32) -> bool, factor: f64) -> Vec<Place> {
     let cards = deck.fields.deck.deck.cards.pshells.iter().map(|p| &p.card);
     let one = |(id, t): (u32, f64)| {
-        at(
+        change_at(
             format!("{DECK}: PSHELL {id}, T"),
             &number(t),
             number(t * factor),
@@ -390,7 +395,7 @@ fn joint(deck: &DeckFrame, place: &str, factor: f64) -> Vec<Place> {
         let k: Vec<String> = k.map(|k: f64| number(k * factor)).collect();
         k.join(", ")
     };
-    vec![at(
+    vec![change_at(
         format!("{DECK}: PBUSH of CBUSH {place}, K"),
         &list(1.0),
         list(factor),

@@ -63,35 +63,67 @@ fn places(frame: &MotionFrame, outcome: &MotionOutcome, job: &str, e: &MotionEff
             format!("{b}, {a}"),
         ]],
         Change::Gain { channel } | Change::Flip { channel } => {
-            vec![corrected(frame, outcome, job, channel, "gain", |a| {
-                number(a.gain)
-            })]
+            vec![correction_change(
+                frame,
+                outcome,
+                job,
+                channel,
+                "gain",
+                |a| number(a.gain),
+            )]
         }
         Change::Delay { channel } => {
-            vec![corrected(frame, outcome, job, channel, "delay_s", |a| {
-                number(a.delay_s)
-            })]
+            vec![correction_change(
+                frame,
+                outcome,
+                job,
+                channel,
+                "delay_s",
+                |a| number(a.delay_s),
+            )]
         }
         Change::Clock { channel } => {
-            vec![corrected(frame, outcome, job, channel, "clock_ppm", |a| {
-                number(1e6 * a.clock)
-            })]
+            vec![correction_change(
+                frame,
+                outcome,
+                job,
+                channel,
+                "clock_ppm",
+                |a| number(1e6 * a.clock),
+            )]
         }
         Change::Slip { channel, .. } => {
-            vec![corrected(frame, outcome, job, channel, "slip_s", |a| {
-                let list = a.slips.iter();
-                or_none(list.map(|s| format!("{} at {} s", number(s.by_s), number(s.at_s))))
-            })]
+            vec![correction_change(
+                frame,
+                outcome,
+                job,
+                channel,
+                "slip_s",
+                |a| {
+                    let list = a.slips.iter();
+                    or_none(list.map(|s| format!("{} at {} s", number(s.by_s), number(s.at_s))))
+                },
+            )]
         }
         Change::Lag { channel, .. } => {
-            vec![corrected(frame, outcome, job, channel, "low_pass_s", |a| {
-                or_none(a.lags.iter().map(|l| number(l.time_s)))
-            })]
+            vec![correction_change(
+                frame,
+                outcome,
+                job,
+                channel,
+                "low_pass_s",
+                |a| or_none(a.lags.iter().map(|l| number(l.time_s))),
+            )]
         }
         Change::Line { channel, .. } => {
-            vec![corrected(frame, outcome, job, channel, "line_hz", |a| {
-                or_none(a.lines_hz.iter().map(|hz| number(*hz)))
-            })]
+            vec![correction_change(
+                frame,
+                outcome,
+                job,
+                channel,
+                "line_hz",
+                |a| or_none(a.lines_hz.iter().map(|hz| number(*hz))),
+            )]
         }
     }
 }
@@ -105,7 +137,7 @@ fn or_none(list: impl Iterator<Item = String>) -> String {
 }
 
 /// A key of a channel's corrections before and after.
-fn corrected(
+fn correction_change(
     frame: &MotionFrame,
     outcome: &MotionOutcome,
     job: &str,

@@ -293,7 +293,7 @@ pub enum Simulation {
 
 impl Simulation {
     /// Returns the result of the simulation, if it was possible.
-    pub fn done(&self) -> Option<&SimulationFound> {
+    pub fn result(&self) -> Option<&SimulationFound> {
         match self {
             Self::Done(found) => Some(found),
             Self::NotDone { .. } => None,
@@ -364,7 +364,7 @@ impl From<SimulatedGap> for SimulationFound {
 }
 
 /// The first of a list where it is a number.
-pub(super) fn first(list: &[f64]) -> Option<f64> {
+pub(super) fn first_finite(list: &[f64]) -> Option<f64> {
     list.first().copied().filter(|x| x.is_finite())
 }
 

@@ -120,7 +120,7 @@ fn read(
 ) -> Result<Vec<Cause>, Faults> {
     let Some(runs) = &job.runs else {
         let remedy = "add `[runs]` with a file that has a column for each cause";
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*job.file,
             "runs",
             "no `[runs]`",
@@ -154,7 +154,7 @@ fn read(
             match row.map(|r| t.number(r, c)) {
                 Some(Ok(Some(v))) => values.push(v),
                 Some(Err(f)) => faults.push(f),
-                _ => faults.push(Fault::of(
+                _ => faults.push(Fault::new(
                     &*t.file,
                     column.clone(),
                     format!("no value for run `{run}`"),

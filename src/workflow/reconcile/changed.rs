@@ -66,7 +66,9 @@ impl DeckFrame {
     fn model_with(&self, changed: &Changed) -> Model {
         match changed {
             Changed::Bush(id, factor) => self.with_joint(id, *factor),
-            Changed::Shells(shells, factor) => softened(self.fields.model(), shells, *factor),
+            Changed::Shells(shells, factor) => {
+                scale_shell_moduli(self.fields.model(), shells, *factor)
+            }
             Changed::Thickness(ids, factor) => self.with_properties(ids, *factor),
         }
     }
@@ -109,7 +111,7 @@ impl DeckFrame {
 }
 
 /// The model with shells' moduli times `factor`: properties and materials of their own behind all others.
-fn softened(model: &Model, shells: &[usize], factor: f64) -> Model {
+fn scale_shell_moduli(model: &Model, shells: &[usize], factor: f64) -> Model {
     let mut out = model.clone();
     let mut materials: BTreeMap<u32, MaterialIx> = BTreeMap::new();
     let mut properties: BTreeMap<u32, ShellPropertyIx> = BTreeMap::new();

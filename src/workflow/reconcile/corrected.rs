@@ -26,7 +26,7 @@ impl Undo {
     };
 
     /// Subtracts `offset` from the converted strain.
-    fn less(&mut self, offset: f64) {
+    fn subtract_offset(&mut self, offset: f64) {
         self.offset += self.factor * offset;
     }
 }
@@ -60,7 +60,7 @@ pub(super) fn corrections(
                 Correction::Sign => own.factor = -own.factor,
                 Correction::Gain(gain) if *gain != 0.0 => own.factor *= gain,
                 Correction::Gain(_) | Correction::Ignore => own.ignore = true,
-                Correction::Offset(offset) => own.less(*offset),
+                Correction::Offset(offset) => own.subtract_offset(*offset),
                 // Where S is given its row is turned instead.
                 Correction::AngleDeg(by) if has_deck => own.angle_deg += by,
                 Correction::AngleDeg(_) | Correction::PositionMm(_) => {}
@@ -86,7 +86,7 @@ pub(super) fn corrections(
                 let gains = gains.filter(|g| g.0 == *place).map(|g| &g.1);
                 for per_kg in gains.chain([&mass.per_kg]) {
                     for (own, per_kg) in undo.iter_mut().zip(per_kg) {
-                        own.less(kilogram * per_kg);
+                        own.subtract_offset(kilogram * per_kg);
                     }
                 }
             }

@@ -50,7 +50,8 @@ pub(super) fn read(
     job: &Job,
     channels: &[String],
 ) -> Result<(ModelPart, DeckFrame), Faults> {
-    let columns = |model: &Model| Ok(SignatureLoads::of(job, &Heated::of(job, model)?)?.columns);
+    let columns =
+        |model: &Model| Ok(SignatureLoads::from_job(job, &Heated::from_job(job, model)?)?.columns);
     let Prepared {
         sensitivity,
         fields: Some(mut fields),
@@ -58,7 +59,7 @@ pub(super) fn read(
         ..
     } = prepare_beside(work, &on_own_mesh(job), Some(&columns))?
     else {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*job.file,
             "model",
             "S does not come from a model",
@@ -66,15 +67,15 @@ pub(super) fn read(
         )));
     };
     let gauges = in_order(job, gauges, channels)?;
-    let s = FrameColumns::of(job, sensitivity, channels)?;
-    let turned = turned(work, job, &fields, channels)?;
-    let heated = Heated::of(job, fields.model())?;
+    let s = FrameColumns::from_sensitivity(job, sensitivity, channels)?;
+    let turned = lay_turned_gauges(work, job, &fields, channels)?;
+    let heated = Heated::from_job(job, fields.model())?;
     let model = &heated.model;
-    let asked = SignatureLoads::of(job, &heated)?;
+    let asked = SignatureLoads::from_job(job, &heated)?;
     let support = support_of_job(job, model)?;
     // Signatures come from a mesh half as wide, where that can be made: what the mesh makes is computed, not guessed.
     let laid = [&gauges, &turned[0], &turned[1]];
-    let finer = work.stage("refine", |_| Finer::of(model, laid));
+    let finer = work.stage("refine", |_| Finer::refine_model(model, laid));
     if let Err(why) = &finer {
         work.findings.push(mesh_unknown(job, why));
     }
@@ -117,7 +118,7 @@ pub(super) fn read(
             Some(f) => influence(job, model, &f.lay(&laid, model)?, &solution, n_c),
             None if from_results => {
                 let s = from_cases(&laid, &fields.load_cases(job)).ok()?;
-                let s = FrameColumns::of(job, s, channels).ok()?;
+                let s = FrameColumns::from_sensitivity(job, s, channels).ok()?;
                 with_s(&influence(job, model, &laid, &own, n_c), &s, n_c)
             }
             None => influence(job, model, &laid, &solution, n_c),
@@ -131,16 +132,14 @@ pub(super) fn read(
     part.gauges = gauge_facts(job, channels, &gauges);
     part.tensors = plane_strain([&table, &at_45, &at_90], n_c);
     part.influence = table;
-    let apparent: Vec<f64> = channels.iter().map(|c| apparent(job, c)).collect();
+    let apparent: Vec<f64> = channels.iter().map(|c| apparent_strain(job, c)).collect();
     [part.thermal_uniform, part.thermal_gradient] =
-        asked.thermal(&heated, &apparent, &heated.rises(&gauges), column);
+        asked.thermal_strain(&heated, &apparent, &heated.rises(&gauges), column);
     let along = gradients(job, model, &gauges, &own, n_c, Axis::Along);
     let across = gradients(job, model, &gauges, &own, n_c, Axis::Across);
-    // An S whose mesh error is subtracted hardly differs from the finer mesh: what may remain follows from the change by halving the width.
-    let own_mesh = match fields.mesh_error {
-        Some(_) => &by_solver,
-        None => &base,
-    };
+    // An S whose mesh error is subtracted hardly differs from the finer mesh: the change by halving the width bounds the remaining error.
+    let corrected = fields.mesh_error.is_some();
+    let own_mesh = if corrected { &by_solver } else { &base };
     part.scatter = background(
         job,
         &part,
@@ -161,7 +160,7 @@ pub(super) fn read(
         stop: work.cx.progress.stop(),
     };
     part.stiffness = work.stage("solve zones", |_| deck.signatures(job))?;
-    let described = deck.described(&mut work.inputs, job, channels, &per_job_unit(job))?;
+    let described = deck.compute_signatures(&mut work.inputs, job, channels, &per_job_unit(job))?;
     part.stiffness.extend(described);
     Ok((part, deck))
 }
@@ -177,7 +176,7 @@ fn on_own_mesh(job: &Job) -> Job {
 }
 
 /// Lays the gauges turned by 45 and by 90 degrees. Their readings at three angles determine the in-plane strain.
-fn turned(
+fn lay_turned_gauges(
     work: &mut Work,
     job: &Job,
     fields: &Fields,
@@ -242,7 +241,7 @@ pub(super) fn per_job_unit(job: &Job) -> Vec<TableColumn> {
 }
 
 /// Apparent strain of a channel's wiring, microstrain a degree.
-fn apparent(job: &Job, channel: &str) -> f64 {
+fn apparent_strain(job: &Job, channel: &str) -> f64 {
     let bridge = job
         .gauges
         .iter()
@@ -264,7 +263,7 @@ fn in_order(job: &Job, laid: Vec<Gauge>, channels: &[String]) -> Result<Vec<Gaug
                 let wrong = format!(
                     "the strain file has a column `{name}`, and the job has no gauge of this name"
                 );
-                Fault::of(&*job.file, "gauge", wrong, "name the gauges as the columns")
+                Fault::new(&*job.file, "gauge", wrong, "name the gauges as the columns")
             })
     };
     let (mut out, mut faults) = (Vec::new(), FaultList::new());

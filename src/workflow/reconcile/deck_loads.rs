@@ -42,7 +42,7 @@ pub(super) struct SignatureLoads {
 impl SignatureLoads {
     /// # Errors
     /// Loads that no model can be put under, grids that the deck lacks.
-    pub(super) fn of(job: &Job, heated: &Heated) -> Result<Self, Faults> {
+    pub(super) fn from_job(job: &Job, heated: &Heated) -> Result<Self, Faults> {
         let model = &heated.model;
         let JobLoads {
             wheels,
@@ -143,7 +143,7 @@ impl SignatureLoads {
 
     /// Microstrain a degree, everywhere and along the deck's pattern: mechanical strain from the model, and what the gauge shows of heat
     /// besides (`apparent`, `rises` the pattern where each gauge sits).
-    pub(super) fn thermal(
+    pub(super) fn thermal_strain(
         &self,
         heated: &Heated,
         apparent: &[f64],
@@ -169,7 +169,7 @@ impl SignatureLoads {
 
 fn grid_of(job: &Job, model: &Model, id: u32) -> Result<GridIx, Faults> {
     let wrong = || {
-        Faults::from(Fault::of(
+        Faults::from(Fault::new(
             &*job.file,
             "grid",
             format!("the deck has no grid {id}"),
@@ -238,12 +238,12 @@ fn job_loads(job: &Job, model: &Model) -> Result<JobLoads, Faults> {
             ) => {
                 out.wheels
                     .push((l.name.clone(), grid_of(job, model, *grid)?));
-                out.columns.push(scaled(
+                out.columns.push(scale_load(
                     &load,
                     KILO / (l.applied * job.units.si(component.quantity())),
                 ));
             }
-            (LoadActs::Set(sid), LoadRole::Wanted) => faults.push(Fault::at(
+            (LoadActs::Set(sid), LoadRole::Wanted) => faults.push(Fault::with_line(
                 &*job.file,
                 l.line,
                 "load.load_set",
@@ -255,7 +255,7 @@ fn job_loads(job: &Job, model: &Model) -> Result<JobLoads, Faults> {
             )),
             (LoadActs::AtGrid { grid, .. }, LoadRole::Nuisance)
                 if payload.is_some() && model.grid_ix(*grid) == payload => {}
-            (LoadActs::Named, LoadRole::Wanted) => faults.push(Fault::at(
+            (LoadActs::Named, LoadRole::Wanted) => faults.push(Fault::with_line(
                 &*job.file,
                 l.line,
                 "load.grid",
@@ -291,7 +291,7 @@ fn job_loads(job: &Job, model: &Model) -> Result<JobLoads, Faults> {
 }
 
 /// A load times `factor`; sets stay as they are.
-fn scaled(load: &UnitLoad, factor: f64) -> UnitLoad {
+fn scale_load(load: &UnitLoad, factor: f64) -> UnitLoad {
     match load {
         UnitLoad::AtGrid {
             grid,

@@ -33,7 +33,7 @@ pub(super) struct Heated {
 impl Heated {
     /// # Errors
     /// A set that the deck lacks, or that holds one temperature only.
-    pub(super) fn of(job: &Job, model: &Model) -> Result<Self, Faults> {
+    pub(super) fn from_job(job: &Job, model: &Model) -> Result<Self, Faults> {
         let top = |sids: Vec<u32>| sids.into_iter().max().unwrap_or(0);
         let free = top(model.temperatures.iter().map(|t| t.sid).collect())
             .max(top(model.load_sets.iter().map(|s| s.sid).collect()))
@@ -45,9 +45,10 @@ impl Heated {
             pattern: None,
             shape: None,
         };
-        out.model
-            .temperatures
-            .extend([constant(cold, 0.0), constant(warm, 1.0)]);
+        out.model.temperatures.extend([
+            uniform_temperature(cold, 0.0),
+            uniform_temperature(warm, 1.0),
+        ]);
         let load = |set| UnitLoad::Temperature {
             set,
             initial: Some(cold),
@@ -58,7 +59,7 @@ impl Heated {
             .as_ref()
             .and_then(|r| Some((r.temperature_set?, r)))
         {
-            let set = scaled(job, reconcile, model, sid, shape)?;
+            let set = scale_temperature_set(job, reconcile, model, sid, shape)?;
             out.model.temperatures.push(set.clone());
             out.shape = Some(set);
             out.pattern = Some(load(shape));
@@ -109,7 +110,7 @@ impl Heated {
     }
 }
 
-fn constant(sid: u32, degrees: f64) -> TemperatureSet {
+fn uniform_temperature(sid: u32, degrees: f64) -> TemperatureSet {
     TemperatureSet {
         sid,
         default: Some(degrees),
@@ -121,7 +122,7 @@ fn constant(sid: u32, degrees: f64) -> TemperatureSet {
 }
 
 /// The deck's set moved and scaled so that its coldest place has 0 and its warmest 1 degree.
-fn scaled(
+fn scale_temperature_set(
     job: &Job,
     reconcile: &Reconcile,
     model: &Model,
@@ -129,7 +130,7 @@ fn scaled(
     as_sid: u32,
 ) -> Result<TemperatureSet, Faults> {
     let fault = |wrong: String, remedy: &str| {
-        Faults::from(Fault::at(
+        Faults::from(Fault::with_line(
             &*job.file,
             reconcile.line,
             "reconcile.temperature_set",
@@ -180,7 +181,7 @@ fn scaled(
                 (*id, t)
             })
             .collect(),
-        ..constant(as_sid, 0.0)
+        ..uniform_temperature(as_sid, 0.0)
     })
 }
 

@@ -47,7 +47,7 @@ pub(super) fn from_tables(
             e,
             from_table(inputs, job, file, channels, columns, n_columns)?,
         )),
-        _ => Err(Faults::from(Fault::at(
+        _ => Err(Faults::from(Fault::with_line(
             &*job.file,
             e.line,
             "reconcile.effect.edit",
@@ -100,7 +100,7 @@ fn from_table(
         .filter_map(|(k, c)| Some((k, named(c)?)))
         .collect();
     if known.is_empty() {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*file.given,
             "header",
             "no column has the name of a load",
@@ -123,7 +123,7 @@ impl DeckFrame {
     ///
     /// # Errors
     /// Tables that can't be read, edits of what the deck lacks, what stops the solver.
-    pub(super) fn described(
+    pub(super) fn compute_signatures(
         &self,
         inputs: &mut Inputs,
         job: &Job,
@@ -152,7 +152,7 @@ impl DeckFrame {
         size: f64,
     ) -> Result<Vec<f64>, Faults> {
         let lacks = |what: String| {
-            Faults::from(Fault::at(
+            Faults::from(Fault::with_line(
                 &*job.file,
                 e.line,
                 "reconcile.effect.edit",

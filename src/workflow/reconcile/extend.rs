@@ -146,7 +146,7 @@ pub(super) fn extend_model(
             Moved::Origin { x_m } => Some(x_m),
             Moved::Not | Moved::Signature { .. } | Moved::InNotes => None,
         },
-        ..ExtendedModel::of(JOB, text_of(work, job)?)
+        ..ExtendedModel::from_job_text(JOB, text_of(work, job)?)
     }))
 }
 
@@ -266,7 +266,7 @@ fn deck_with(job: &Job, deck: &DeckFrame, outcome: &Outcome) -> Edited {
     if stiffness.is_empty() && masses.is_empty() && side.is_empty() {
         return Edited::Unchanged;
     }
-    deck.extended(job, &stiffness, &masses, &side)
+    deck.extend_deck(job, &stiffness, &masses, &side)
         .map_or(Edited::Refused, Edited::Deck)
 }
 

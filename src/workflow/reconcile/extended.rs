@@ -43,7 +43,7 @@ pub struct ExtendedModel {
 
 impl ExtendedModel {
     /// A job named `name` of this text, in which no file changes.
-    pub(super) fn of(name: &'static str, job_text: String) -> Self {
+    pub(super) fn from_job_text(name: &'static str, job_text: String) -> Self {
         Self {
             name,
             path: name.to_owned(),

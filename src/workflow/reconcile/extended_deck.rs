@@ -21,7 +21,7 @@ pub(super) type NamedStiffness = (StiffnessOf, String, f64);
 impl DeckFrame {
     /// The deck with zones thickened, joints changed, masses and a load set of side loads added, in one file, each edited card behind a
     /// comment; `None` where nothing changes or it can't be written.
-    pub(super) fn extended(
+    pub(super) fn extend_deck(
         &self,
         job: &Job,
         stiffness: &[NamedStiffness],
@@ -58,7 +58,7 @@ impl DeckFrame {
         if !side.is_empty() {
             let sets = self.fields.model().load_sets.iter().map(|s| s.sid);
             let sid = sets.max().unwrap_or(0).checked_add(1)?;
-            let note = noted("side loads as found, root mean square over the runs");
+            let note = comment_line("side loads as found, root mean square over the runs");
             edits.insert_cards(deck, &(note + &cards(job, sid, side)));
         }
         one_file(deck, write_edited(deck, &edits))
@@ -94,7 +94,7 @@ impl DeckFrame {
                 .replace_card(
                     deck,
                     p.at,
-                    &(noted(&format!("{words}: thickness times {factor:.4}"))
+                    &(comment_line(&format!("{words}: thickness times {factor:.4}"))
                         + &format_card("PSHELL", &fields)),
                 )
                 .ok()?;
@@ -133,7 +133,7 @@ impl DeckFrame {
         let id = highest?.checked_add(bush.card.id)?;
         edits.insert_cards(
             deck,
-            &(noted(&format!("joint {place}: stiffness times {factor:.4}"))
+            &(comment_line(&format!("joint {place}: stiffness times {factor:.4}"))
                 + &pbush(&Pbush {
                     id,
                     k: old.k.map(|k| k * factor),
@@ -144,7 +144,7 @@ impl DeckFrame {
             pid: Some(id),
             ..bush.card
         });
-        let note = noted(&format!("joint {place}: its separate property is {id}"));
+        let note = comment_line(&format!("joint {place}: its separate property is {id}"));
         edits.replace_card(deck, bush.at, &(note + &card)).ok()
     }
 
@@ -163,7 +163,7 @@ impl DeckFrame {
                 Field::Blank,
                 mass.into(),
             ];
-            let note = noted(&format!("a mass that the model lacked at {place}"));
+            let note = comment_line(&format!("a mass that the model lacked at {place}"));
             edits.insert_cards(deck, &(note + &format_card("CONM2", &fields)));
         }
         Some(())
@@ -200,7 +200,7 @@ impl DeckFrame {
 }
 
 /// A comment line before an edited card.
-fn noted(words: &str) -> String {
+fn comment_line(words: &str) -> String {
     format!("$ reconcile: {words}\n")
 }
 

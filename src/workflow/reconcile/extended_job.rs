@@ -2,7 +2,7 @@
 
 use super::answer::Reconciled;
 use super::redirect::redirect;
-use super::relative::relative;
+use super::relative::relative_path;
 use super::words::effect_in_words;
 use super::{motion_job, strain_job};
 use crate::host::fault::{Fault, Faults};
@@ -20,14 +20,14 @@ pub fn extended_job(answer: &Reconciled, out: &Path) -> Result<Option<String>, F
     };
     let job = &answer.job;
     let mut table: Table = extended.job_text.parse().map_err(|e: toml::de::Error| {
-        Faults::from(Fault::of(
+        Faults::from(Fault::new(
             &*job.file,
             "job",
             e.to_string(),
             "write valid TOML",
         ))
     })?;
-    redirect(&mut table, &relative(out, &job.folder));
+    redirect(&mut table, &relative_path(out, &job.folder));
     let title = table.get("title").and_then(Value::as_str).unwrap_or("job");
     let title = format!("{title}, with {}", answer.named.join(" and "));
     table.insert("title".into(), Value::String(title));
@@ -40,7 +40,7 @@ pub fn extended_job(answer: &Reconciled, out: &Path) -> Result<Option<String>, F
         motion_job::edit(section, &motion.frame, &motion.outcome);
     }
     let body = toml::to_string(&table).map_err(|e| {
-        Faults::from(Fault::of(
+        Faults::from(Fault::new(
             extended.name,
             "job",
             e.to_string(),

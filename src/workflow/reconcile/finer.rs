@@ -13,7 +13,7 @@ pub(super) struct Finer {
 impl Finer {
     /// # Errors
     /// Why no finer mesh was made.
-    pub(super) fn of(model: &Model, laid: [&Vec<Gauge>; 3]) -> Result<Self, String> {
+    pub(super) fn refine_model(model: &Model, laid: [&Vec<Gauge>; 3]) -> Result<Self, String> {
         let refined = refined_mesh(model, laid.first().map(|g| g.as_slice()))?;
         let lost = || "a gauge is not on the refined mesh".to_owned();
         let of = |k: usize| {

@@ -21,7 +21,7 @@ impl FrameColumns {
     ///
     /// # Errors
     /// Channels that S has no row for.
-    pub(super) fn of(
+    pub(super) fn from_sensitivity(
         job: &Job,
         sensitivity: Sensitivity,
         channels: &[String],
@@ -35,7 +35,7 @@ impl FrameColumns {
                         "the strain file has a column `{name}`, and S has no row of this name"
                     );
                     let remedy = "name the gauges as the columns, or leave the column out";
-                    faults.push(Fault::of(&*job.file, "gauge", wrong, remedy));
+                    faults.push(Fault::new(&*job.file, "gauge", wrong, remedy));
                 }
             }
         }
@@ -53,7 +53,7 @@ impl FrameColumns {
     }
 
     /// Numbers of the wanted loads.
-    fn wanted(&self) -> impl Iterator<Item = usize> {
+    fn wanted_loads(&self) -> impl Iterator<Item = usize> {
         let loads = self.sensitivity.loads.iter().enumerate();
         loads.filter(|(_, l)| l.wanted).map(|(k, _)| k)
     }
@@ -61,7 +61,7 @@ impl FrameColumns {
     /// Name and column of each wanted load, in the order of S.
     pub(super) fn wanted_columns(&self) -> Vec<(String, Vec<f64>)> {
         let one = |k: usize| (self.sensitivity.loads[k].name.clone(), self.column(k));
-        self.wanted().map(one).collect()
+        self.wanted_loads().map(one).collect()
     }
 
     /// The loads that are there and not asked for; their size is what the job expects.
@@ -76,9 +76,9 @@ impl FrameColumns {
     }
 
     /// How far a calibrated S may be off, in the wanted loads.
-    pub(super) fn learnt(&self) -> Option<Uncertainty> {
+    pub(super) fn calibrated_uncertainty(&self) -> Option<Uncertainty> {
         let of_channels = self.sensitivity.uncertainty.as_ref()?.of_gauges(&self.rows);
-        let loads: Vec<(usize, f64)> = self.wanted().map(|k| (k, self.scales[k])).collect();
+        let loads: Vec<(usize, f64)> = self.wanted_loads().map(|k| (k, self.scales[k])).collect();
         Some(of_channels.of_loads(&loads))
     }
 

@@ -4,7 +4,7 @@ use crate::fe::{
     Adjoint, FeError, Solution, SolveOptions, StrainTerm, UnitLoad, reading_changes,
     solve_unit_loads_on, solve_variants,
 };
-use crate::gauge::{Gauge, reading};
+use crate::gauge::{Gauge, gauge_reading};
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::cancelled_fault;
 use crate::job::Job;
@@ -48,7 +48,10 @@ pub(super) fn readings(
     let mut out = Vec::with_capacity(gauges.len() * range.len());
     for g in gauges {
         for c in range.clone() {
-            let value = solution.cases.get(c).and_then(|case| reading(g, case));
+            let value = solution
+                .cases
+                .get(c)
+                .and_then(|case| gauge_reading(g, case));
             out.push(value.unwrap_or(f64::NAN) / MICROSTRAIN);
         }
     }
@@ -66,7 +69,7 @@ pub(super) fn solve(
     stop: &Stop,
 ) -> Result<Solution, Faults> {
     let support = support_of_job(job, model)?;
-    let solved = solve_unit_loads_on(model, support, loads, &until(stop));
+    let solved = solve_unit_loads_on(model, support, loads, &options_with_stop(stop));
     solved.map(|s| s.0).map_err(|e| of_solver(job, &e))
 }
 
@@ -83,7 +86,14 @@ pub(super) fn solve_each<T>(
     read: impl FnMut(&Model, &Solution) -> T,
 ) -> Result<Vec<T>, Faults> {
     let support = support_of_job(job, model)?;
-    let solved = solve_variants(model, support, loads, variants, &until(stop), read);
+    let solved = solve_variants(
+        model,
+        support,
+        loads,
+        variants,
+        &options_with_stop(stop),
+        read,
+    );
     solved.map_err(|e| of_solver(job, &e))
 }
 
@@ -100,8 +110,15 @@ pub(super) fn small_changes(
     stop: &Stop,
 ) -> Result<Option<Vec<Vec<f64>>>, Faults> {
     let support = support_of_job(job, model)?;
-    let changes = reading_changes(model, support, loads, readings, variants, &until(stop))
-        .map_err(|e| of_solver(job, &e))?;
+    let changes = reading_changes(
+        model,
+        support,
+        loads,
+        readings,
+        variants,
+        &options_with_stop(stop),
+    )
+    .map_err(|e| of_solver(job, &e))?;
     let in_microstrain = |rows: Vec<f64>| rows.iter().map(|v| v / MICROSTRAIN).collect();
     Ok(changes.map(|all| all.into_iter().map(in_microstrain).collect()))
 }
@@ -118,11 +135,11 @@ pub(super) fn adjoint<'a>(
     stop: &Stop,
 ) -> Result<Adjoint<'a>, Faults> {
     let support = support_of_job(job, model)?;
-    let solved = Adjoint::solve(model, support, loads, readings, &until(stop));
+    let solved = Adjoint::solve(model, support, loads, readings, &options_with_stop(stop));
     solved.map_err(|e| of_solver(job, &e))
 }
 
-fn until(stop: &Stop) -> SolveOptions {
+fn options_with_stop(stop: &Stop) -> SolveOptions {
     SolveOptions {
         stop: stop.clone(),
         ..SolveOptions::default()
@@ -134,7 +151,7 @@ pub(super) fn of_solver(job: &Job, e: &FeError) -> Faults {
     let remedy = "repair the deck, or give S as CSV files in `[sensitivity]`";
     match e {
         FeError::Stopped => Faults::from(cancelled_fault()),
-        e => Faults::from(Fault::of(&*job.file, "model", e.to_string(), remedy)),
+        e => Faults::from(Fault::new(&*job.file, "model", e.to_string(), remedy)),
     }
 }
 

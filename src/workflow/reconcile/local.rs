@@ -86,10 +86,10 @@ impl DeckFrame {
         frame: &StrainFrame,
         off: &[String],
     ) -> Result<Vec<StiffnessSignature>, Faults> {
-        let Some(ground) = Ground::of(self.fields.model(), self, frame, off) else {
+        let Some(ground) = Ground::from_frame(self.fields.model(), self, frame, off) else {
             return Ok(vec![]);
         };
-        let residual = Residual::of(frame);
+        let residual = Residual::from_frame(frame);
         let adjoint = self.adjoint(job, &ground)?;
         let tried = |(region, change): (Region, Vec<f64>)| Tried {
             takes: residual.takes(frame, &change),
@@ -105,7 +105,7 @@ impl DeckFrame {
             let near: Vec<Region> = all
                 .iter()
                 .take(REFINED)
-                .flat_map(|t| ground.near(&t.region, step, LOOKS))
+                .flat_map(|t| ground.regions_near(&t.region, step, LOOKS))
                 .collect();
             let mut fresh: Vec<Region> = Vec::new();
             for r in near {
@@ -119,12 +119,15 @@ impl DeckFrame {
             all = best_first(all);
         }
         let n = (BUDGET / ground.model.grids.len().max(1)).clamp(KEPT, LEADING);
-        let leading: Vec<Region> = elsewhere(all, n).into_iter().map(|t| t.region).collect();
+        let leading: Vec<Region> = keep_distinct_places(all, n)
+            .into_iter()
+            .map(|t| t.region)
+            .collect();
         let half = (HALF / 100.0).exp();
         let halved = |r: &Region| Changed::Shells(r.shells.clone(), half);
         let changes = self.changes_by(job, &leading.iter().map(halved).collect::<Vec<_>>())?;
         let solved = leading.into_iter().zip(changes).map(tried).collect();
-        let kept = elsewhere(best_first(solved), KEPT);
+        let kept = keep_distinct_places(best_first(solved), KEPT);
         self.regions = kept.iter().map(|t| t.region.clone()).collect();
         Ok(kept
             .into_iter()
@@ -140,7 +143,11 @@ impl DeckFrame {
     /// Displacements under the job's loads and for what the gauges read.
     fn adjoint(&self, job: &Job, ground: &Ground<'_>) -> Result<Readings<'_>, Faults> {
         let mut counted: Vec<usize> = (0..self.gauges.len()).collect();
-        counted.sort_by(|a, b| ground.far(*a).total_cmp(&ground.far(*b)));
+        counted.sort_by(|a, b| {
+            ground
+                .distance_of_gauge(*a)
+                .total_cmp(&ground.distance_of_gauge(*b))
+        });
         counted.truncate(COUNTED);
         let terms: Vec<_> = counted
             .iter()
@@ -201,7 +208,7 @@ fn best_first(mut all: Vec<Tried>) -> Vec<Tried> {
 }
 
 /// The first `n` at places of their own.
-fn elsewhere(all: Vec<Tried>, n: usize) -> Vec<Tried> {
+fn keep_distinct_places(all: Vec<Tried>, n: usize) -> Vec<Tried> {
     let mut out: Vec<Tried> = Vec::new();
     for t in all {
         if out.len() < n && out.iter().all(|k| k.region.place != t.region.place) {
@@ -219,8 +226,8 @@ struct Residual {
 }
 
 impl Residual {
-    fn of(frame: &StrainFrame) -> Self {
-        let nominal = StrainState::nominal(frame);
+    fn from_frame(frame: &StrainFrame) -> Self {
+        let nominal = StrainState::from_nominal_model(frame);
         let doubt = frame.relative_doubt();
         let runs = frame.observations.fit_runs();
         let entries = frame

@@ -29,13 +29,17 @@ pub(super) struct Ground<'a> {
 }
 
 impl<'a> Ground<'a> {
-    pub(super) fn of(
+    pub(super) fn from_frame(
         model: &'a Model,
         deck: &DeckFrame,
         frame: &StrainFrame,
         off: &[String],
     ) -> Option<Self> {
-        let middles: Vec<Vec3> = model.shells.iter().map(|s| middle(model, s)).collect();
+        let middles: Vec<Vec3> = model
+            .shells
+            .iter()
+            .map(|s| shell_middle(model, s))
+            .collect();
         let places: Vec<Vec3> = deck.gauges.iter().map(|g| g.position).collect();
         let is_off = |g: &usize| frame.gauges.get(*g).is_some_and(|f| off.contains(&f.name));
         let off: Vec<Vec3> = (0..places.len())
@@ -47,7 +51,7 @@ impl<'a> Ground<'a> {
             far.min_by(f64::total_cmp)
         };
         let own = off.iter().filter_map(|p| {
-            let own = closest(&middles, p)?;
+            let own = find_closest(&middles, p)?;
             nearest(middles.get(own)?, &middles, 0.0)
         });
         let element = median(own.collect())?;
@@ -64,7 +68,7 @@ impl<'a> Ground<'a> {
     }
 
     /// Distance of a gauge from the nearest that disagrees.
-    pub(super) fn far(&self, gauge: usize) -> f64 {
+    pub(super) fn distance_of_gauge(&self, gauge: usize) -> f64 {
         let Some(at) = self.places.get(gauge) else {
             return f64::INFINITY;
         };
@@ -73,7 +77,7 @@ impl<'a> Ground<'a> {
     }
 
     fn region(&self, centre: Vec3, radius: f64) -> Option<Region> {
-        let shell = closest(&self.middles, &centre)?;
+        let shell = find_closest(&self.middles, &centre)?;
         let inside = |m: &Vec3| (m - centre).norm() <= radius;
         Some(Region {
             place: self.model.shells.get(shell)?.id.to_string(),
@@ -86,7 +90,7 @@ impl<'a> Ground<'a> {
     }
 
     /// Shells by their distance from the nearest gauges that disagree, so thinned that two lie `apart` at least.
-    fn thinned(&self, mut shells: Vec<usize>, apart: f64, n: usize) -> Vec<usize> {
+    fn thin_shells(&self, mut shells: Vec<usize>, apart: f64, n: usize) -> Vec<usize> {
         let key = |s: &usize| -> f64 {
             let Some(m) = self.middles.get(*s) else {
                 return f64::INFINITY;
@@ -133,7 +137,7 @@ impl<'a> Ground<'a> {
             m.is_some_and(|m| self.off.iter().any(|p| (p - m).norm() <= self.apart))
         };
         let shells = (0..self.middles.len()).filter(close).collect();
-        let chosen = self.thinned(shells, radius, n);
+        let chosen = self.thin_shells(shells, radius, n);
         chosen
             .into_iter()
             .filter_map(|s| self.region(*self.middles.get(s)?, radius))
@@ -141,7 +145,7 @@ impl<'a> Ground<'a> {
     }
 
     /// Regions round grids and shells about a region's middle, `step` of a radius apart, narrower, as wide and wider.
-    pub(super) fn near(&self, r: &Region, step: f64, n: usize) -> Vec<Region> {
+    pub(super) fn regions_near(&self, r: &Region, step: f64, n: usize) -> Vec<Region> {
         let reach = (1.5 * step * r.radius).max(0.8 * self.element);
         let grids = self.model.grids.iter().map(|g| g.x);
         let mut centres: Vec<Vec3> = (self.middles.iter().copied())
@@ -169,7 +173,7 @@ impl<'a> Ground<'a> {
     }
 }
 
-fn middle(model: &Model, s: &Shell) -> Vec3 {
+fn shell_middle(model: &Model, s: &Shell) -> Vec3 {
     let corners = &s.grids[..s.shape.n_corners().min(s.grids.len())];
     let sum: Vec3 = corners
         .iter()
@@ -179,7 +183,7 @@ fn middle(model: &Model, s: &Shell) -> Vec3 {
     sum / corners.len().max(1) as f64
 }
 
-fn closest(places: &[Vec3], to: &Vec3) -> Option<usize> {
+fn find_closest(places: &[Vec3], to: &Vec3) -> Option<usize> {
     let far = |i: &usize| {
         places
             .get(*i)

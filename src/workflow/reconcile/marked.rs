@@ -24,7 +24,11 @@ pub struct MarkedStiffness {
 
 impl DeckFrame {
     /// The stiffnesses of `effects` that lie somewhere on the model.
-    pub(super) fn marked(&self, job: &Job, effects: &[NamedEffect]) -> Vec<MarkedStiffness> {
+    pub(super) fn mark_stiffnesses(
+        &self,
+        job: &Job,
+        effects: &[NamedEffect],
+    ) -> Vec<MarkedStiffness> {
         let of = |e: &NamedEffect| {
             let (of, place, size) = match &e.extension {
                 Extension::ZoneStiffness { place, percent } => (StiffnessOf::Zone, place, *percent),

@@ -27,16 +27,16 @@ pub(super) fn read(
     given: &GivenSensitivity,
     channels: &[String],
 ) -> Result<ModelPart, Faults> {
-    let s = FrameColumns::of(job, read_given(work, job)?, channels)?;
+    let s = FrameColumns::from_sensitivity(job, read_given(work, job)?, channels)?;
     let nuisance = s.nuisance();
     let wanted = s.wanted_columns();
-    let tables = Tables::of(job, given, channels, &wanted);
+    let tables = Tables::from_sensitivity(job, given, channels, &wanted);
     let mut by_column: Vec<Vec<f64>> = wanted.into_iter().map(|w| w.1).collect();
     by_column.extend(tables.payload(&mut work.inputs)?);
     let gauges: Vec<GaugeFacts> = channels.iter().map(|name| facts(job, name)).collect();
     let mut part = ModelPart {
         nuisance,
-        learnt: s.learnt(),
+        learnt: s.calibrated_uncertainty(),
         gauge_noise: s.gauge_noise(job)?,
         load_names: tables.columns.iter().map(|c| c.0.clone()).collect(),
         payload_origin: [
@@ -51,18 +51,18 @@ pub(super) fn read(
     part.tensors = tables.tensors(&mut work.inputs, &gauges, &part.influence)?;
     part.gauges = gauges;
     part.other_loads = tables.other_loads(&mut work.inputs)?;
-    [part.thermal_uniform, part.thermal_gradient] = tables.thermal(&mut work.inputs)?;
+    [part.thermal_uniform, part.thermal_gradient] = tables.read_thermal_strain(&mut work.inputs)?;
     part.masses = tables.masses(&mut work.inputs)?;
     part.stiffness = tables.stiffness(&mut work.inputs)?;
     part.stiffness.extend(described::from_tables(
         &mut work.inputs,
         job,
         channels,
-        &tables.described(),
+        &tables.table_columns(),
         tables.n_columns(),
     )?);
     if tables.columns.is_empty() {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*given.file.given,
             "columns",
             "no load column",
@@ -87,7 +87,7 @@ struct Tables<'a> {
 }
 
 impl<'a> Tables<'a> {
-    fn of(
+    fn from_sensitivity(
         job: &'a Job,
         given: &'a GivenSensitivity,
         channels: &'a [String],
@@ -150,7 +150,7 @@ impl<'a> Tables<'a> {
     }
 
     /// Returns the columns that a user's own table may contain, each by its name in S or by the name of its load.
-    fn described(&self) -> Vec<TableColumn> {
+    fn table_columns(&self) -> Vec<TableColumn> {
         let one = |(name, column): &(String, String)| TableColumn {
             names: vec![column.clone(), name.clone()],
             factor: self.scale(name),
@@ -240,7 +240,7 @@ impl<'a> Tables<'a> {
     }
 
     /// Strain of heat, even and along its gradient; what the job has as a nuisance load is no effect that is missing.
-    fn thermal(&self, inputs: &mut Inputs) -> Result<[Option<Vec<f64>>; 2], Faults> {
+    fn read_thermal_strain(&self, inputs: &mut Inputs) -> Result<[Option<Vec<f64>>; 2], Faults> {
         let Some(file) = &self.signatures.thermal else {
             return Ok([None, None]);
         };

@@ -74,14 +74,17 @@ use crate::strain_chain::named_results::check_tables;
 /// ```
 pub fn reconcile(job: &Job, cx: &Context) -> Result<Outcome<Reconciled>, Faults> {
     let mut work = Work::of_job(cx, job);
-    let job = &job.estimating()?;
+    let job = &job.without_validation_gauges()?;
     check_tables(&work, job)?;
     let path = job.reconcile.as_ref().map(|r| r.path);
     let answer = match path.unwrap_or(ReconcilePath::Static) {
         ReconcilePath::Static => strain_path::answer(job, &mut work)?,
         ReconcilePath::Dynamic => motion_path::answer(job, &mut work)?,
     };
-    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+    Ok(work.finish(
+        StatedUnits::from_units(job.units, &job.report_units),
+        answer,
+    ))
 }
 
 /// Reads what a `[reconcile]` compares, as far as no model is solved for it, and drops it.

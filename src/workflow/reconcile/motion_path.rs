@@ -3,7 +3,7 @@
 use super::added_motion::added_to_motion;
 use super::answer::{
     DetectableSize, EffectFound, GapFound, MotionPart, Reconciled, ReducedChi2, RivalFound,
-    Simulation, SizeFound, WheelMisfit, first,
+    Simulation, SizeFound, WheelMisfit, first_finite,
 };
 use super::extend::effect_not_in_model;
 use super::extended::ExtendedModel;
@@ -48,7 +48,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
     work.go_on()?;
     let mut outcome =
         outcome.map_err(|e| Faults::from(vehicle_fault(job, &section.data.given, &e)))?;
-    let found = work.stage("identify", |_| identified(&records, &outcome));
+    let found = work.stage("identify", |_| identify_vehicle(&records, &outcome));
     if let Some(wrong) = found.as_ref().and_then(Identification::wrong_input) {
         let is_error = wrong.severity == Severity::Error;
         if is_error && !is_identified(&wrong, &outcome) {
@@ -62,8 +62,8 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
     let wheel_force = work.stage("wheel forces", |_| {
         wheel_forces(&records, &frame, &outcome, found.as_ref())
     });
-    let identified = found.and_then(|f| driven(&records, f));
-    let named = outcome.verdict == Verdict::Named && repairable(&outcome);
+    let identified = found.and_then(|f| compute_motion(&records, f));
+    let named = outcome.verdict == Verdict::Named && is_repairable(&outcome);
     work.go_on()?;
     let simulation = named.then(|| work.stage("simulate", |_| simulated_gap(&frame, &outcome)));
     let simulation = simulation.map(|s| match s {
@@ -83,7 +83,10 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
             .push(effect_not_in_model(&ids.join(" + "), why));
     }
     let extended_model = match named && can_state {
-        true => Some(ExtendedModel::of(motion_job::JOB, text_of(work, job)?)),
+        true => Some(ExtendedModel::from_job_text(
+            motion_job::JOB,
+            text_of(work, job)?,
+        )),
         false => None,
     };
     let added = added_to_motion(&frame, &outcome, extended_model.as_ref());
@@ -155,8 +158,8 @@ fn effect_found(e: &MotionEffect) -> EffectFound {
         id: e.id.clone(),
         place: e.place.clone(),
         size: Some(SizeFound {
-            size: first(&e.size),
-            sigma: first(&e.sigma),
+            size: first_finite(&e.size),
+            sigma: first_finite(&e.sigma),
             unit: e.unit.clone(),
             sizes: e.size.clone(),
             sigmas: e.sigma.clone(),
@@ -209,7 +212,7 @@ fn is_identified(wrong: &Finding, outcome: &MotionOutcome) -> bool {
 }
 
 /// Returns whether a model can correct the effects. It can't correct a dead or saturated channel.
-fn repairable(outcome: &MotionOutcome) -> bool {
+fn is_repairable(outcome: &MotionOutcome) -> bool {
     !outcome.effects.iter().any(is_lost)
 }
 
@@ -276,20 +279,23 @@ fn frame(section: &VehicleJob, records: &VehicleRecords, stop: Stop) -> MotionFr
 }
 
 /// The analyst's vehicle as identified, with its motion over the fitted record.
-fn driven(records: &VehicleRecords, found: Identification) -> Option<(Identification, Motion)> {
+fn compute_motion(
+    records: &VehicleRecords,
+    found: Identification,
+) -> Option<(Identification, Motion)> {
     let q = &records.task;
     let slow = slow_stretches(&found.vehicle, &found.values, &records.data, &q.corrections);
     let treatment = Treatment {
         adjust: q.corrections.clone(),
         slow,
-        ..Treatment::of(q.band)
+        ..Treatment::from_band(q.band)
     };
     let moved = motion(&found.vehicle, &records.data, &treatment).ok()?;
     Some((found, moved))
 }
 
 /// The analyst's vehicle as identified; none where a channel has no signal, as the vehicle would be fitted to it.
-fn identified(records: &VehicleRecords, outcome: &MotionOutcome) -> Option<Identification> {
+fn identify_vehicle(records: &VehicleRecords, outcome: &MotionOutcome) -> Option<Identification> {
     let is_dead = outcome.effects.iter().any(is_dead);
     let found = || identify(&records.task, &records.data, records.hold_out.as_ref()).ok();
     (!is_dead).then(found).flatten()
@@ -311,7 +317,7 @@ fn wheel_forces(
             .collect()
     };
     let before = found.map(misfits).unwrap_or_default();
-    let after = (outcome.verdict == Verdict::Named && repairable(outcome)).then(|| {
+    let after = (outcome.verdict == Verdict::Named && is_repairable(outcome)).then(|| {
         let q = IdentifyTask {
             vehicle: outcome
                 .after

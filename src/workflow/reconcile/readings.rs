@@ -12,7 +12,7 @@ use crate::units::MICROSTRAIN;
 /// Readings of the strain file and of a held-out file, runs by name.
 pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, Faults> {
     let Some(measured) = &job.measured else {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*job.file,
             "measured",
             "no `[measured]`",
@@ -20,7 +20,7 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
         )));
     };
     if measured.reference != Reference::None {
-        return Err(Faults::from(Fault::at(
+        return Err(Faults::from(Fault::with_line(
             &*job.file,
             measured.line,
             "measured.reference",
@@ -53,7 +53,7 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
         } = zeroed;
         noise_factor.extend(own);
         if kept.gauges != out.channels {
-            return Err(Faults::from(Fault::of(
+            return Err(Faults::from(Fault::new(
                 &*kept.file,
                 "header",
                 "other gauges than the strain file",
@@ -66,7 +66,7 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
     }
     if out.held_out.iter().all(|h| *h) || out.runs.len() < 2 {
         let wrong = "fewer than one run for the fit and one for the proof";
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*table.file,
             "run",
             wrong,

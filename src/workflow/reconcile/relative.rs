@@ -3,7 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 
 /// `to` as seen from `from`, with forward slashes; absolute where there is no common root.
-pub(crate) fn relative(from: &Path, to: &Path) -> String {
+pub(crate) fn relative_path(from: &Path, to: &Path) -> String {
     let absolute = |p: &Path| {
         let p = if p.as_os_str().is_empty() {
             Path::new(".")

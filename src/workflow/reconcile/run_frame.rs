@@ -23,7 +23,7 @@ pub(super) fn frame(
 ) -> Result<StrainFrame, Faults> {
     let Some(runs) = &job.runs else {
         let remedy = "add `[runs]` with the wheel forces and the payload of each run";
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*job.file,
             "runs",
             "no `[runs]`",
@@ -52,7 +52,7 @@ pub(super) fn frame(
     if let Some(first) = without_row.first() {
         let of_file = rows.iter().map(|r| r.run.as_str());
         let general = "add a row for every run of the strain file";
-        faults.push(Fault::of(
+        faults.push(Fault::new(
             &*runs.file.given,
             "run",
             format!("no row for {}", list_few(&without_row)),
@@ -66,7 +66,7 @@ pub(super) fn frame(
             }
             Some(first) => {
                 let names: Vec<&str> = without.iter().map(|r| r.run.as_str()).collect();
-                Some(Fault::at(
+                Some(Fault::with_line(
                     &*runs.file.given,
                     first.line,
                     name.clone(),

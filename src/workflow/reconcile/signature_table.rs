@@ -40,7 +40,7 @@ impl SignatureTable {
         for gauge in gauges {
             match table.rows.iter().position(|r| r.1.get(key) == Some(gauge)) {
                 Some(row) => rows.push(row),
-                None => faults.push(Fault::of(
+                None => faults.push(Fault::new(
                     &*named.given,
                     "gauge",
                     format!("no row for gauge `{gauge}`"),
@@ -94,7 +94,7 @@ impl SignatureTable {
         let Some(c) = self.table.column(&[name]) else {
             let found = self.table.header.join(", ");
             let wrong = format!("no column `{name}` (found: {found})");
-            return Err(Faults::from(Fault::at(
+            return Err(Faults::from(Fault::with_line(
                 &*self.table.file,
                 1,
                 name,
@@ -104,7 +104,7 @@ impl SignatureTable {
         };
         self.mark(c);
         let number = |&row: &usize| {
-            let blank = || Fault::of(&*self.table.file, name, "blank", "write a number");
+            let blank = || Fault::new(&*self.table.file, name, "blank", "write a number");
             Ok(self.table.number(row, c)?.ok_or_else(blank)? * factor)
         };
         self.rows

@@ -67,7 +67,7 @@ impl DeckFrame {
         let mut models: Vec<Changed> = Vec::new();
         for (of, place, sizes, _) in &wanted {
             for percent in sizes {
-                models.push(self.changed(job, *of, place, *percent)?);
+                models.push(self.resolve_change(job, *of, place, *percent)?);
             }
         }
         let mut changes = self.small_changes_by(job, &models)?.into_iter();
@@ -93,12 +93,12 @@ impl DeckFrame {
         if let (StiffnessOf::Described, Some(e)) = (of, effect_of(job, place)) {
             return self.described_change(job, e, percent);
         }
-        let changed = self.changed(job, of, place, percent)?;
+        let changed = self.resolve_change(job, of, place, percent)?;
         let mut changes = self.changes_by(job, &[changed])?;
         Ok(changes.pop().unwrap_or_default())
     }
 
-    fn changed(
+    fn resolve_change(
         &self,
         job: &Job,
         of: StiffnessOf,
@@ -117,7 +117,7 @@ impl DeckFrame {
 
     fn properties_of_zone(&self, job: &Job, zone: &str) -> Result<Vec<u32>, Faults> {
         let fault = |wrong: String, remedy: &str| {
-            Faults::from(Fault::of(&*job.file, "reconcile.zones", wrong, remedy))
+            Faults::from(Fault::new(&*job.file, "reconcile.zones", wrong, remedy))
         };
         let Some(ids) = self.zones.get(zone) else {
             return Err(fault(format!("no zone `{zone}`"), "name its properties"));

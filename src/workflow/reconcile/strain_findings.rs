@@ -52,7 +52,7 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
         );
     }
     if !outcome.smooth.is_empty() {
-        work.findings.push(smooth(outcome));
+        work.findings.push(smooth_curve_finding(outcome));
     }
     match outcome.verdict {
         Verdict::Unknown => work.findings.push(
@@ -105,7 +105,7 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
                     .with_numbers(r.evidence_difference, 3.0),
                 );
             }
-            for l in outcome.loads.iter().filter(|l| l.moved()) {
+            for l in outcome.loads.iter().filter(|l| l.is_significant()) {
                 work.findings.push(
                     Finding::new(
                         Severity::Info,
@@ -126,7 +126,7 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
 }
 
 /// The curve in words: from the least factor to the greatest.
-fn smooth(outcome: &Outcome) -> Finding {
+fn smooth_curve_finding(outcome: &Outcome) -> Finding {
     let by_factor = |a: &&SmoothAt, b: &&SmoothAt| a.factor.total_cmp(&b.factor);
     let at = |s: Option<&SmoothAt>| {
         s.map_or(String::new(), |s| {

@@ -55,20 +55,20 @@ pub(super) fn edit(table: &mut Table, job: &Job, found: &StrainPart, extended: &
             Some(_) => KILO,
             None => runs.units.force.si,
         };
-        put(table, "runs", "ground", Value::Float(ground * KILO / unit));
+        set_key(table, "runs", "ground", Value::Float(ground * KILO / unit));
     }
     if let Some(x_m) = extended.nominal_x_m {
         let x = x_m / job.units.length_m();
-        put(table, "payload", "nominal_x", Value::Float(x));
+        set_key(table, "payload", "nominal_x", Value::Float(x));
     }
     let weighs = |e: &Extension| matches!(e, Extension::PayloadWeight);
     if effects.iter().any(|e| weighs(&e.extension)) {
-        put(table, "payload", "weight_in_model", Value::Boolean(true));
+        set_key(table, "payload", "weight_in_model", Value::Boolean(true));
     }
     if extended.deck.is_some() {
         set(table, "model", "deck", DECK);
     }
-    let accepted: Vec<&str> = effects.iter().filter_map(described).collect();
+    let accepted: Vec<&str> = effects.iter().filter_map(id_of_described).collect();
     drop_accepted(table, &accepted);
 }
 
@@ -85,7 +85,7 @@ pub(super) fn ground_found(effects: &[NamedEffect]) -> Option<f64> {
 }
 
 /// The id of a hypothesis of the user's own.
-fn described(e: &NamedEffect) -> Option<&str> {
+fn id_of_described(e: &NamedEffect) -> Option<&str> {
     match &e.extension {
         Extension::Described { id, .. } => Some(id),
         _ => None,
@@ -190,7 +190,7 @@ fn add_to(table: &mut Table, name: &str, add: impl FnOnce(&mut Vec<Value>)) {
 }
 
 /// Sets a key of a section, and adds the section if it is missing.
-fn put(table: &mut Table, section: &str, key: &str, value: Value) {
+fn set_key(table: &mut Table, section: &str, key: &str, value: Value) {
     let section = table
         .entry(section)
         .or_insert_with(|| Value::Table(Table::new()));

@@ -3,7 +3,7 @@
 use super::added::added_to_strain;
 use super::answer::{
     DetectableSize, EffectFound, GapFound, Reconciled, ReducedChi2, RivalFound, SizeFound,
-    StrainGap, StrainPart, first,
+    StrainGap, StrainPart, first_finite,
 };
 use super::deck_frame::{self, DeckFrame};
 use super::described::effect_of;
@@ -44,7 +44,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
             (part, Some(deck))
         }
         (None, None) => {
-            return Err(Faults::from(Fault::of(
+            return Err(Faults::from(Fault::new(
                 &*job.file,
                 "model",
                 "the job has neither `[model]` nor `[sensitivity]`",
@@ -70,7 +70,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         deck = None;
     }
     let mut outcome = match wrong.is_empty() {
-        true => searched(work, &frame, &only)?,
+        true => search_effects(work, &frame, &only)?,
         false => work.stage("search", |_| outcome_of_wrong_inputs(&frame, wrong)),
     };
     if let Some(deck) = &mut deck {
@@ -80,7 +80,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
             work.go_on()?;
             if !found.is_empty() {
                 frame.stiffness.extend(found);
-                outcome = searched(work, &frame, &only)?;
+                outcome = search_effects(work, &frame, &only)?;
             }
         }
     }
@@ -91,7 +91,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
                 break;
             }
             work.go_on()?;
-            outcome = searched(work, &frame, &only)?;
+            outcome = search_effects(work, &frame, &only)?;
         }
     }
     findings(work, &outcome);
@@ -162,7 +162,11 @@ pub(super) fn look(job: &Job, work: &mut Work) -> Result<(), Faults> {
 ///
 /// # Errors
 /// One fault where the work is stopped: the search was cut short then.
-fn searched(work: &mut Work, frame: &StrainFrame, only: &[String]) -> Result<Outcome, Faults> {
+fn search_effects(
+    work: &mut Work,
+    frame: &StrainFrame,
+    only: &[String],
+) -> Result<Outcome, Faults> {
     let outcome = work.stage("search", |_| examine(frame, only));
     work.go_on()?;
     Ok(outcome)
@@ -174,7 +178,9 @@ fn strain_part(
     outcome: Outcome,
     deck: Option<DeckFrame>,
 ) -> StrainPart {
-    let marked = deck.as_ref().map(|d| d.marked(job, &outcome.best_attempt));
+    let marked = deck
+        .as_ref()
+        .map(|d| d.mark_stiffnesses(job, &outcome.best_attempt));
     let n = outcome.covariance.len().isqrt().max(1);
     StrainPart {
         wins_of_100: outcome.wins,
@@ -218,8 +224,8 @@ fn effect_found(e: &NamedEffect) -> EffectFound {
         id: e.id.clone(),
         place: e.place.clone(),
         size: Some(SizeFound {
-            size: first(&e.size).or(channel_size(e)),
-            sigma: first(&e.sigma),
+            size: first_finite(&e.size).or(channel_size(e)),
+            sigma: first_finite(&e.sigma),
             unit: e.unit.to_owned(),
             sizes: e.size.clone(),
             sigmas: e.sigma.clone(),

@@ -46,13 +46,19 @@ fn clause(e: &EffectFound) -> String {
         ("gauge_swap", _) => format!("the columns of {both} are exchanged"),
         ("run_exchange", _) => format!("the readings of runs {both} are exchanged"),
         ("rail_stiffness", [(v, half)]) => {
-            format!("zone {place} is {} than the model", than(*v, *half))
+            format!(
+                "zone {place} is {} than the model",
+                stiffness_in_words(*v, *half)
+            )
         }
         ("joint_stiffness" | "local_stiffness", [(v, half)]) => {
             // Natural log of the stiffness times 100.
             let percent = |log: f64| 100.0 * (0.01 * log).exp_m1();
             let half = 0.5 * (percent(v + half) - percent(v - half));
-            format!("{place} is {} than the model", than(percent(*v), half))
+            format!(
+                "{place} is {} than the model",
+                stiffness_in_words(percent(*v), half)
+            )
         }
         ("gauge_gain" | "accel_gain", [(v, half)]) => {
             format!(
@@ -97,7 +103,7 @@ const SIDE: [(&str, &str); 5] = [
 ];
 
 /// Returns a change of stiffness in percent as `15.8 ± 0.4 % less stiff`.
-fn than(percent: f64, half: f64) -> String {
+fn stiffness_in_words(percent: f64, half: f64) -> String {
     let way = if percent < 0.0 { "less" } else { "more" };
     format!("{} % {way} stiff", plus_minus(percent.abs(), half))
 }
@@ -116,8 +122,8 @@ impl Reconciled {
                     "Identified: {}{}{}.{}",
                     causes.join("; "),
                     self.gauges_closed(),
-                    closed(gap),
-                    self.sure()
+                    closed_gap_in_words(gap),
+                    self.confidence_in_words()
                 )
             }
             Verdict::None => format!(
@@ -127,12 +133,12 @@ impl Reconciled {
             Verdict::Unknown => format!(
                 "Model and measurement disagree, and no known effect explains it{}.{}",
                 open(gap),
-                self.nearest()
+                self.nearest_explanation()
             ),
             Verdict::BelowDetectability => format!(
                 "The data indicate an effect that is too small to identify{}.{}",
                 open(gap),
-                self.nearest()
+                self.nearest_explanation()
             ),
         }
     }
@@ -166,7 +172,7 @@ impl Reconciled {
     }
 
     /// How sure the identified set is.
-    fn sure(&self) -> String {
+    fn confidence_in_words(&self) -> String {
         let strain = self.strain.as_ref();
         strain.map_or_else(String::new, |s| {
             format!(" {} of 100 resampled run sets agree.", s.wins_of_100)
@@ -174,7 +180,7 @@ impl Reconciled {
     }
 
     /// The nearest explanation where none is identified, and what would settle it.
-    fn nearest(&self) -> String {
+    fn nearest_explanation(&self) -> String {
         let attempt = self.best_attempt.iter().flatten();
         let attempt: Vec<String> = attempt.map(clause).collect();
         let near = match (attempt.is_empty(), self.rivals.first()) {
@@ -187,7 +193,7 @@ impl Reconciled {
 }
 
 /// The gap before and after, where one is known.
-fn closed(gap: &GapFound) -> String {
+fn closed_gap_in_words(gap: &GapFound) -> String {
     match gap.before.is_finite() && gap.after.is_finite() {
         true => format!(
             "; the gap falls from {} % to {} %",

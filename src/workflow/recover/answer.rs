@@ -263,7 +263,7 @@ pub struct RecordLoad {
 
 impl RecoveredRuns {
     /// The answer in report units; `units` are those of the loads that the estimates list.
-    pub(super) fn of(
+    pub(super) fn from_recovery(
         s: &Sensitivity,
         readings: Vec<Readings>,
         recovery: Recovery,

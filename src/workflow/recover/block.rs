@@ -10,7 +10,7 @@ use crate::recovery::history::{Filter, SampleLoads};
 pub(crate) fn block(record: &Record, filter: &Filter, i: usize) -> Result<(Block, Sums), Fault> {
     let mut sums = Sums::new(filter.n_gauges(), filter.n_loads());
     let mut loads = SampleLoads::default();
-    record.each(i, |strain| filter.apply(strain, 1.0, &mut loads, &mut sums))?;
+    record.each_strain_block(i, |strain| filter.apply(strain, 1.0, &mut loads, &mut sums))?;
     let block = Block {
         first: 0,
         times: record.times(i),

@@ -31,7 +31,7 @@ pub fn list_load_columns(job: &Job, s: &Sensitivity) -> Result<Listed, Faults> {
                 names.push(combination.name.clone());
                 sums.push(terms);
             }
-            Err((wrong, remedy)) => faults.push(Fault::at(
+            Err((wrong, remedy)) => faults.push(Fault::with_line(
                 &*job.file,
                 combination.line,
                 "combination.terms",

@@ -3,7 +3,7 @@
 use super::sink::{RecordHead, Samples};
 use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity};
-use crate::host::outcome::finite;
+use crate::host::outcome::finite_or_none;
 use crate::recovery::Sums;
 use crate::series::rainflow::{Cycle, Damage, Point, Rainflow};
 use rayon::prelude::*;
@@ -67,11 +67,11 @@ pub(super) fn damage(
                 cycles: d.cycles,
                 largest_range: d.largest,
                 damage: d.value,
-                damage_low: finite(d.low),
-                damage_high: finite(d.high),
-                one_cycle_range: finite(d.one_cycle(d.value)),
-                one_cycle_range_low: finite(d.one_cycle(d.low)),
-                one_cycle_range_high: finite(d.one_cycle(d.high)),
+                damage_low: finite_or_none(d.low),
+                damage_high: finite_or_none(d.high),
+                one_cycle_range: finite_or_none(d.one_cycle(d.value)),
+                one_cycle_range_low: finite_or_none(d.one_cycle(d.low)),
+                one_cycle_range_high: finite_or_none(d.one_cycle(d.high)),
                 count: d,
             }
         })

@@ -9,7 +9,7 @@ use crate::measured::record::Record;
 use crate::recovery::Readings;
 use crate::recovery::stuck::{check, still_parts};
 use crate::sensitivity::Sensitivity;
-use crate::series::still::{Gives, blank};
+use crate::series::still::{Gives, blank_readings};
 use std::ops::Range;
 
 /// A record without the readings of gauges where they are dead.
@@ -54,11 +54,11 @@ pub(super) fn without_dead_parts(
     }
     let n = s.gauges.len();
     for (at, readings) in &mut samples {
-        blank(&mut readings.strain, n, *at, &blanked);
+        blank_readings(&mut readings.strain, n, *at, &blanked);
     }
     let readings = samples.into_iter().map(|r| r.1).collect();
     Ok(Living {
-        record: record.without(blanked),
+        record: record.with_blank_readings(blanked),
         readings,
         dead: parts,
     })

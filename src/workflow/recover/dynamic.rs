@@ -3,7 +3,7 @@
 use super::task::Task;
 use crate::fe::{CaseResult, LoadCase, modal_loads};
 use crate::finding::{Finding, Severity};
-use crate::gauge::reading;
+use crate::gauge::gauge_reading;
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::job::Dynamic;
@@ -69,7 +69,7 @@ pub(super) fn remove_vibration(
         return Ok(None);
     };
     let fault = |wrong: String, remedy: &str| {
-        Faults::from(Fault::at(
+        Faults::from(Fault::with_line(
             &*task.job.file,
             asked.line,
             "dynamic",
@@ -111,12 +111,15 @@ pub(super) fn remove_vibration(
             "record a longer time, or state a higher `up_to_hz`",
         ));
     }
-    work.findings
-        .push(about(&motion, asked, &task.measured.strain.given));
+    work.findings.push(vibration_finding(
+        &motion,
+        asked,
+        &task.measured.strain.given,
+    ));
     Ok(Some(Rested {
         noise_factor: task.noise_factor - 1.0 + rested.noise_share,
         doubt: rested.doubt,
-        apart: apart(&dynamics, step_s),
+        apart: independent_spacing(&dynamics, step_s),
         blank: rested.blank,
         motion,
         record: record.with_readings(rested.readings, (first_s, step_s))?,
@@ -124,7 +127,7 @@ pub(super) fn remove_vibration(
 }
 
 /// Samples by which noise is apart where it is independent: white noise of a band up to `f` is so at `1 / (2 f)`.
-fn apart(dynamics: &Dynamics, step_s: f64) -> usize {
+fn independent_spacing(dynamics: &Dynamics, step_s: f64) -> usize {
     (0.5 / (dynamics.up_to_hz * step_s)).ceil().max(1.0) as usize
 }
 
@@ -155,7 +158,9 @@ fn dynamics(
 ) -> Result<Dynamics, Faults> {
     let job = task.job;
     let fault = |field: &str, wrong: String, remedy: &str| {
-        Faults::from(Fault::at(&*job.file, asked.line, field, wrong, remedy))
+        Faults::from(Fault::with_line(
+            &*job.file, asked.line, field, wrong, remedy,
+        ))
     };
     let Some(fields) = &task.prepared.fields else {
         return Err(fault(
@@ -192,7 +197,7 @@ fn dynamics(
     let strain_of = |case: &CaseResult| -> Result<Vec<f64>, Faults> {
         let at = |name: &String| {
             let gauge = task.prepared.gauges.iter().find(|g| g.name == *name);
-            gauge.and_then(|g| reading(g, case)).ok_or_else(|| {
+            gauge.and_then(|g| gauge_reading(g, case)).ok_or_else(|| {
                 fault(
                     "gauge",
                     format!("gauge `{name}` has no strain in the structure's modes"),
@@ -254,7 +259,7 @@ fn motion_of(dynamics: &Dynamics, rested: &AtRest, step_s: f64) -> Motion {
 }
 
 /// Returns the finding on the vibration that was removed from the record.
-fn about(motion: &Motion, asked: Dynamic, file: &str) -> Finding {
+fn vibration_finding(motion: &Motion, asked: Dynamic, file: &str) -> Finding {
     let known: Option<Vec<f64>> = motion.change_rel.iter().copied().collect();
     let most = known.map(|k| k.into_iter().fold(0.0_f64, f64::max));
     let as_at_rest = match most {

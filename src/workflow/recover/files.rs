@@ -4,7 +4,7 @@ use super::damage::extremes;
 use super::sink::RecordHead;
 use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, Faults};
-use crate::host::words::short;
+use crate::host::words::format_number;
 use crate::job::{Job, LoadFile};
 use crate::recovery::Sums;
 use crate::series::rpc::Target;
@@ -31,7 +31,7 @@ pub(super) fn select_load_files(job: &Job, samples: usize) -> Result<Vec<LoadFil
         return Ok(few.collect());
     };
     if files.iter().any(|f| !f.is_built()) {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*job.file,
             "recover.files",
             "this build of strainbridge does not write Parquet",
@@ -45,7 +45,7 @@ pub(super) fn select_load_files(job: &Job, samples: usize) -> Result<Vec<LoadFil
 pub(super) fn findings(job: &Job, head: &RecordHead, sums: &Sums) -> Vec<Finding> {
     let mut out = Vec::new();
     if head.files.contains(&LoadFile::Rpc) {
-        out.push(quantised(head, sums));
+        out.push(quantisation_finding(head, sums));
     }
     out.extend(left_out(job, head, sums));
     if head.stride > 1 {
@@ -80,13 +80,15 @@ pub fn rpc_targets(head: &RecordHead, sums: &Sums) -> Vec<Target> {
 }
 
 /// Returns the finding on the error of 16-bit numbers.
-fn quantised(head: &RecordHead, sums: &Sums) -> Finding {
+fn quantisation_finding(head: &RecordHead, sums: &Sums) -> Finding {
     let steps: Vec<String> = rpc_targets(head, sums)
         .iter()
-        .map(|t| format!("{} {} {}", t.name, short(t.scale()), t.unit))
+        .map(|t| format!("{} {} {}", t.name, format_number(t.scale()), t.unit))
         .collect();
     let samples = sums.missing.samples();
-    let repeated: u64 = (0..head.n_loads()).map(|l| samples - sums.known(l)).sum();
+    let repeated: u64 = (0..head.n_loads())
+        .map(|l| samples - sums.known_samples(l))
+        .sum();
     let gaps = if repeated > 0 {
         format!("; {repeated} missing numbers repeat the number before")
     } else {

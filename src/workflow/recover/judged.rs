@@ -46,7 +46,7 @@ pub(super) fn judge_at_rest(
     let beyond = |(i, r): &(usize, Readings)| {
         let reads = |g: &usize| r.strain[*g].is_finite();
         let used: Vec<usize> = (0..r.strain.len()).filter(reads).collect();
-        doubt.beyond(*i, &used)
+        doubt.covariances_at(*i, &used)
     };
     let beyond = readings.iter().map(beyond).collect();
     let readings = readings.into_iter().map(|r| r.1).collect();
@@ -109,7 +109,7 @@ pub(super) fn spread(
         }
     }
     if readings.is_empty() {
-        return Err(Faults::from(Fault::at(
+        return Err(Faults::from(Fault::with_line(
             record.file(),
             1,
             "rows",
@@ -161,7 +161,7 @@ pub(super) fn content(
         // The record as measured has its noise outside of the band too.
         let noise = task.errors.noise_variance(task.noise_factor).sqrt();
         for (l, s) in sigma.iter_mut().enumerate() {
-            let weights = filter.whole().weights(l);
+            let weights = filter.gain_of_all_gauges().weights(l);
             *s = s.max(noise * weights.iter().map(|w| w * w).sum::<f64>().sqrt());
         }
     }

@@ -189,7 +189,7 @@ fn signature(
     for gauge in &task.prepared.sensitivity.gauges {
         let mut b = [0.0; 4];
         match table.rows.iter().position(|r| r.1.get(key) == Some(gauge)) {
-            None => faults.push(Fault::of(
+            None => faults.push(Fault::new(
                 &*file.given,
                 "gauge",
                 format!("no row for gauge `{gauge}`"),

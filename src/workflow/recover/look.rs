@@ -66,7 +66,8 @@ fn readings(work: &mut Work, task: &Task, known: Known) -> Result<(), Faults> {
     if known == Known::S {
         // A job that is reconciled lists loads that only the runs file tells apart.
         if task.job.reconcile.is_none() {
-            work.findings.extend(check_separability(&s.unconditioned()));
+            work.findings
+                .extend(check_separability(&s.without_prior_loads()));
         }
         list_load_columns(task.job, s)?;
     }

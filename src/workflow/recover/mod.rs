@@ -115,29 +115,32 @@ pub fn recover_into(
 ) -> Result<Outcome<Recovered>, Faults> {
     let mut work = Work::of_job(cx, job);
     let measured = task::measured_of(job)?;
-    job.estimating()?;
+    job.without_validation_gauges()?;
     check_tables(&work, job)?;
     let mut prepared = prepare_with_noise(&mut work, job)?;
-    let (states, beside) = recovered(&mut work, (job, measured), &prepared, sink)?;
+    let (states, beside) = recover_measured_loads(&mut work, (job, measured), &prepared, sink)?;
     prepared.retain(&task::validation_rows(job, &prepared.sensitivity).1);
     let answer = Recovered {
         validation: beside.validation,
         comparison: beside.comparison,
-        sections: Sections::of(job, beside.sections),
-        conditioning: Conditioning::of(&prepared.sensitivity),
+        sections: Sections::from_loads(job, beside.sections),
+        conditioning: Conditioning::from_sensitivity(&prepared.sensitivity),
         states,
         mesh_error: prepared.mesh_error.clone(),
         prepared,
         job: job.clone(),
     };
-    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+    Ok(work.finish(
+        StatedUnits::from_units(job.units, &job.report_units),
+        answer,
+    ))
 }
 
 /// Loads of what was measured; those of a record go to `sink`.
 ///
 /// # Errors
 /// Unreadable readings; those of `sink`.
-fn recovered(
+fn recover_measured_loads(
     work: &mut Work,
     (job, measured): (&Job, &Measured),
     prepared: &Prepared,
@@ -145,7 +148,8 @@ fn recovered(
 ) -> Result<(States, Beside), Faults> {
     let (_, estimating) = task::validation_rows(job, &prepared.sensitivity);
     let s = prepared.sensitivity.of_gauges(&estimating);
-    work.findings.extend(check_separability(&s.unconditioned()));
+    work.findings
+        .extend(check_separability(&s.without_prior_loads()));
     let task = task::task_of(work, job, measured, prepared)?;
     work.findings.extend(task::changes(measured));
     let strain = open_strain(work, job, measured)?;
@@ -183,7 +187,7 @@ pub(super) fn judged_alone(
     measured: &Measured,
     prepared: &Prepared,
 ) -> Result<(), Faults> {
-    recovered(work, (job, measured), prepared, &mut Unheard).map(|_| ())
+    recover_measured_loads(work, (job, measured), prepared, &mut Unheard).map(|_| ())
 }
 
 /// Readings and recovered loads of the job's static runs, for commands that go on from there.

@@ -10,16 +10,16 @@ use super::dead_parts::{Living, without_dead_parts};
 use super::dynamic::{Motion, remove_vibration};
 use super::files;
 use super::judged::{check_times, content, judge, judge_at_rest, spread};
-use super::runs::identical;
+use super::runs::find_identical_readings;
 use super::sections;
 use super::sink::{Block, RecordHead, RecordSink};
-use super::speaking::{Speaking, speaking};
+use super::speaking::{Speaking, exclude_silent_gauges};
 use super::task::Task;
 use super::trace::Spans;
 use super::validation::{self, Channels, Compared};
 use crate::finding::Finding;
 use crate::host::fault::{Fault, Faults};
-use crate::host::outcome::finite;
+use crate::host::outcome::finite_or_none;
 use crate::host::work::Work;
 use crate::job::LoadFile;
 use crate::measured::record::Record;
@@ -46,12 +46,12 @@ pub(super) fn record(
     sink: &mut dyn RecordSink,
 ) -> Result<(RecoveredRecord, Beside), Faults> {
     no_zero_runs(task.job, task.measured, &task.measured.strain.given)?;
-    let mut channels = Channels::of(task, record);
+    let mut channels = Channels::from_record(task, record);
     let Speaking {
         record,
         sensitivity,
         zero,
-    } = speaking(work, task, record)?;
+    } = exclude_silent_gauges(work, task, record)?;
     let Listed {
         names,
         units,
@@ -63,7 +63,8 @@ pub(super) fn record(
         dead,
     } = without_dead_parts(work, task, record, &sensitivity, &zero)?;
     check_times(work, &record)?;
-    work.findings.extend(identical(&sensitivity, &readings));
+    work.findings
+        .extend(find_identical_readings(&sensitivity, &readings));
     let clock = record.clock().clone();
     let recorded = compare::record_of_job(work, task, &names)?;
     let parts = sections::parts(task.job, &clock)?;
@@ -121,7 +122,7 @@ pub(super) fn record(
     work.findings
         .extend(beyond_calibration(task, &sensitivity, &head, &sums));
     let validation = match &channels {
-        Some(c) => c.found(&compared, head.filter.whole()),
+        Some(c) => c.compare_gauges(&compared, head.filter.gain_of_all_gauges()),
         None => Vec::new(),
     };
     work.findings
@@ -179,7 +180,7 @@ fn beyond_calibration(
     )
 }
 
-/// Adds the findings on files and on gaps; `blank` samples are blank for the filter of [dynamic] alone, which its own finding states.
+/// Adds the findings on files and on gaps; `blank` samples are blank for the filter of `[dynamic]` alone, which its own finding states.
 fn about_files(
     work: &mut Work,
     task: &Task,
@@ -208,7 +209,7 @@ pub(super) fn look(
         record,
         sensitivity,
         zero,
-    } = speaking(work, task, record)?;
+    } = exclude_silent_gauges(work, task, record)?;
     let (all, unloaded): (Vec<usize>, _) = (
         (0..sensitivity.gauges.len()).collect(),
         vec![0.0; sensitivity.loads.len()],
@@ -221,7 +222,7 @@ pub(super) fn look(
         &unloaded,
     );
     if gain.is_none() && !unloaded.is_empty() {
-        return Err(unusable(task).into());
+        return Err(sensitivity_fault(task).into());
     }
     check_times(work, &record)?;
     let living = without_dead_parts(work, task, record, &sensitivity, &zero)?;
@@ -230,7 +231,7 @@ pub(super) fn look(
     in_groups(work, &record, &mut |group| {
         let pieces = group.par_iter();
         impossible += pieces
-            .map(|&i| record.impossible(i, &zero))
+            .map(|&i| record.count_impossible_readings(i, &zero))
             .sum::<Result<u64, Fault>>()?;
         Ok(())
     })?;
@@ -260,7 +261,7 @@ fn filter(
         &judged.typical,
         judged.widening,
     );
-    let mut filter = filter.ok_or_else(|| unusable(task))?;
+    let mut filter = filter.ok_or_else(|| sensitivity_fault(task))?;
     if let Some(doubt) = doubt {
         filter.add_doubt(doubt);
     }
@@ -269,13 +270,13 @@ fn filter(
 }
 
 /// The fault of an S that no estimate can be formed of.
-fn unusable(task: &Task) -> Fault {
+fn sensitivity_fault(task: &Task) -> Fault {
     let file = match (&task.job.sensitivity, &task.job.model) {
         (Some(given), _) => &*given.file.given,
         (None, Some(model)) => &*model.deck.given,
         (None, None) => &*task.job.file,
     };
-    Fault::of(
+    Fault::new(
         file,
         "sensitivity",
         "S contains numbers that are not finite, or too large to compute with",
@@ -369,7 +370,9 @@ fn answer(
     spans: Spans,
     (content, motion, damage): (Option<Content>, Option<Motion>, Option<Vec<LoadDamage>>),
 ) -> RecoveredRecord {
-    let known: Vec<f64> = (0..head.n_loads()).map(|l| sums.known(l) as f64).collect();
+    let known: Vec<f64> = (0..head.n_loads())
+        .map(|l| sums.known_samples(l) as f64)
+        .collect();
     let rms: Vec<f64> = sums
         .sum_of_squares
         .iter()
@@ -387,7 +390,7 @@ fn answer(
         max: sums.max[l] * u.factor,
         rms: rms[l] * u.factor,
     });
-    let (n, whole) = (sensitivity.gauges.len(), head.filter.whole());
+    let (n, whole) = (sensitivity.gauges.len(), head.filter.gain_of_all_gauges());
     let dof = n.saturating_sub(whole.rank).max(1) as f64;
     let free: f64 = (0..n).map(|g| sums.read(g) as f64 * dof / n as f64).sum();
     let residual = (sums.residual.iter().sum::<f64>() / free.max(1.0)).sqrt();
@@ -408,7 +411,7 @@ fn answer(
         gaps: sums.missing.gaps,
         duration_s: to - from,
         csv_every: head.stride,
-        sample_rate_hz: finite(samples.saturating_sub(1) as f64 / (to - from)),
+        sample_rate_hz: finite_or_none(samples.saturating_sub(1) as f64 / (to - from)),
         content,
         motion,
         damage,

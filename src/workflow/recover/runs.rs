@@ -152,7 +152,7 @@ pub(super) fn solve(work: &mut Work, task: &Task, table: &StrainTable) -> Result
         let mut others = || alternative_rows(work, task.job, fields, &s.gauges);
         recover_with_alternatives(&s, &readings, task.errors, &mut others)
     });
-    work.findings.extend(identical(&s, &readings));
+    work.findings.extend(find_identical_readings(&s, &readings));
     s = recovery.s(&s);
     let validation = validation::of_runs(task, (&s, &readings), &all, &recovery);
     work.findings
@@ -235,7 +235,7 @@ pub(super) fn runs(
     for run in &mut recovery.runs {
         run.estimate.add_sums(&names[k..], &combinations);
     }
-    let runs = RecoveredRuns::of(&s, readings, recovery, names, units);
+    let runs = RecoveredRuns::from_recovery(&s, readings, recovery, names, units);
     let beside = Beside {
         validation,
         comparison,
@@ -323,7 +323,7 @@ fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
 }
 
 /// The finding on gauges with the same readings.
-pub(super) fn identical(s: &Sensitivity, readings: &[Readings]) -> Option<Finding> {
+pub(super) fn find_identical_readings(s: &Sensitivity, readings: &[Readings]) -> Option<Finding> {
     let of_gauge = |g: usize| readings.iter().map(|r| r.strain[g]).collect();
     let columns: Vec<Vec<f64>> = (0..s.gauges.len()).map(of_gauge).collect();
     identical_readings(&s.gauges, &columns)

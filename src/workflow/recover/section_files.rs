@@ -47,7 +47,7 @@ pub(super) fn count_files(work: &mut Work, task: &Task) -> Result<Vec<SectionLoa
                 file.given
             );
             let remedy = "name a record: a column `time`, or a format of records";
-            let at = Fault::at(&*job.file, section.line, "section.file", wrong, remedy);
+            let at = Fault::with_line(&*job.file, section.line, "section.file", wrong, remedy);
             return Err(at.into());
         };
         let mut history = History::default();

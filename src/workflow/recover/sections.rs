@@ -2,7 +2,7 @@
 
 use super::damage::{Counting, PIECE};
 use crate::host::fault::{Fault, FaultList, Faults};
-use crate::host::words::short;
+use crate::host::words::format_number;
 use crate::job::{Job, RecordSection, SectionExtent};
 use crate::series::record::Clock;
 use rayon::prelude::*;
@@ -78,7 +78,7 @@ pub(super) fn without_record(job: &Job) -> Result<(), Faults> {
     };
     let wrong = "sections are stretches of a record, and the strain file has runs";
     let remedy = "delete the sections, or name a record: a column `time`, or a format of records";
-    Err(Fault::at(&*job.file, first.line, "section", wrong, remedy).into())
+    Err(Fault::with_line(&*job.file, first.line, "section", wrong, remedy).into())
 }
 
 /// The sections of a job that are stretches of its strain record, with their samples.
@@ -98,16 +98,22 @@ pub(super) fn parts<'a>(job: &'a Job, clock: &Clock) -> Result<Vec<Part<'a>>, Fa
         };
         let range = place(from)..place(to).min(clock.samples);
         let mut fault = |field: &str, wrong: String, remedy: &str| {
-            faults.push(Fault::at(&*job.file, section.line, field, wrong, remedy));
+            faults.push(Fault::with_line(
+                &*job.file,
+                section.line,
+                field,
+                wrong,
+                remedy,
+            ));
         };
         if from < clock.start_s - 1e-6 * step || to > end_s + 1e-6 * step {
             let wrong = format!(
                 "section `{}` from {} to {} s is beyond the record, which covers {} to {} s",
                 section.name,
-                short(from),
-                short(to),
-                short(clock.start_s),
-                short(end_s)
+                format_number(from),
+                format_number(to),
+                format_number(clock.start_s),
+                format_number(end_s)
             );
             fault(
                 "section.end_s",
@@ -175,7 +181,7 @@ pub(super) fn count(
 
 impl Sections {
     /// Sections in the order of the job, and the duty cycle of them; `None` without any.
-    pub(super) fn of(job: &Job, counted: Vec<SectionLoad>) -> Option<Self> {
+    pub(super) fn from_loads(job: &Job, counted: Vec<SectionLoad>) -> Option<Self> {
         let place = |s: &SectionLoad| job.sections.iter().position(|j| j.name == s.section);
         let mut sections = counted;
         sections.sort_by_key(place);

@@ -23,7 +23,11 @@ pub(super) struct Speaking {
 ///
 /// # Errors
 /// A record that can't be read, or without a single reading.
-pub(super) fn speaking(work: &mut Work, task: &Task, record: &Record) -> Result<Speaking, Faults> {
+pub(super) fn exclude_silent_gauges(
+    work: &mut Work,
+    task: &Task,
+    record: &Record,
+) -> Result<Speaking, Faults> {
     let all = &task.prepared.sensitivity;
     let named = &task.measured.strain;
     let file = named.given.as_str();
@@ -56,7 +60,7 @@ pub(super) fn speaking(work: &mut Work, task: &Task, record: &Record) -> Result<
         record = record.with_columns(used.iter().map(|&g| channel(g)).collect());
     }
     if used.is_empty() {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             file,
             "gauge",
             "no gauge has a single reading",
@@ -104,5 +108,5 @@ fn columns_of_record(record: &Record) -> Result<Vec<Gives>, Faults> {
             break;
         }
     }
-    Ok(record.throughout(&looked)?)
+    Ok(record.column_contents(&looked)?)
 }

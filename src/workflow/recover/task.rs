@@ -30,7 +30,7 @@ pub(super) struct Task<'a> {
 /// `[measured]` of a job.
 pub(super) fn measured_of(job: &Job) -> Result<&Measured, Faults> {
     job.measured.as_ref().ok_or_else(|| {
-        Faults::from(Fault::of(
+        Faults::from(Fault::new(
             &*job.file,
             "measured",
             "the job has no [measured]",

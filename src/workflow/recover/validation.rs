@@ -3,7 +3,7 @@
 use super::task::Task;
 use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::Fault;
-use crate::host::outcome::finite;
+use crate::host::outcome::finite_or_none;
 use crate::job::correct::channel_of;
 use crate::measured::columns::columns_of_gauges;
 use crate::measured::record::Record;
@@ -41,10 +41,10 @@ struct Differences {
 }
 
 impl Differences {
-    fn found(self, name: &str) -> ValidationGauge {
+    fn into_validation_gauge(self, name: &str) -> ValidationGauge {
         let rms = |sum: f64| match self.n {
             0 => None,
-            n => finite((sum / n as f64).sqrt() / MICROSTRAIN),
+            n => finite_or_none((sum / n as f64).sqrt() / MICROSTRAIN),
         };
         ValidationGauge {
             name: name.to_owned(),
@@ -89,7 +89,7 @@ struct Predicted<'a> {
 }
 
 impl<'a> Predicted<'a> {
-    fn all(task: &'a Task<'a>) -> Vec<Self> {
+    fn from_validation_gauges(task: &'a Task<'a>) -> Vec<Self> {
         let s = &task.prepared.sensitivity;
         let of = |&row: &usize| Self {
             task,
@@ -127,7 +127,7 @@ pub(super) fn of_runs(
     all: &[Readings],
     recovery: &Recovery,
 ) -> Vec<ValidationGauge> {
-    let gauges = Predicted::all(task);
+    let gauges = Predicted::from_validation_gauges(task);
     if gauges.is_empty() {
         return Vec::new();
     }
@@ -157,7 +157,9 @@ pub(super) fn of_runs(
         }
     }
     let found = sums.iter().zip(&gauges);
-    found.map(|(sum, g)| sum.found(g.name())).collect()
+    found
+        .map(|(sum, g)| sum.into_validation_gauge(g.name()))
+        .collect()
 }
 
 /// The channels of a record that hold validation gauges.
@@ -195,8 +197,8 @@ impl Compared {
 
 impl<'a> Channels<'a> {
     /// Returns the channels of the job's validation gauges in a record; `None` where it has none.
-    pub fn of(task: &'a Task<'a>, record: &Record) -> Option<Self> {
-        let gauges = Predicted::all(task);
+    pub fn from_record(task: &'a Task<'a>, record: &Record) -> Option<Self> {
+        let gauges = Predicted::from_validation_gauges(task);
         if gauges.is_empty() {
             return None;
         }
@@ -262,7 +264,7 @@ impl<'a> Channels<'a> {
     }
 
     /// Returns the comparison of all parts; the expected difference is computed at the root mean square of the loads.
-    pub fn found(&self, compared: &Compared, gain: &Gain) -> Vec<ValidationGauge> {
+    pub fn compare_gauges(&self, compared: &Compared, gain: &Gain) -> Vec<ValidationGauge> {
         let samples = compared.samples.max(1) as f64;
         let typical = compared.loads.iter().map(|v| (v / samples).sqrt());
         let typical: Vec<f64> = typical.collect();
@@ -272,7 +274,7 @@ impl<'a> Channels<'a> {
                 let variance = gauge.variance(gain, &typical, gauge.task.noise_factor);
                 sum.expected = sum.n as f64 * variance;
             }
-            sum.found(gauge.name())
+            sum.into_validation_gauge(gauge.name())
         };
         self.gauges.iter().enumerate().map(of).collect()
     }

@@ -2,7 +2,7 @@
 
 use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::Faults;
-use crate::host::outcome::finite;
+use crate::host::outcome::finite_or_none;
 use crate::host::work::Work;
 use crate::job::{Job, Reference};
 use crate::measured::means::is_long_record;
@@ -146,7 +146,7 @@ pub(super) fn check(
             name: name.clone(),
             measured_rms: rms(&|p| p.1),
             residual_rms: rms(&|p| p.1 - p.0),
-            correlation: finite(cov / (vp * vm).sqrt()),
+            correlation: finite_or_none(cov / (vp * vm).sqrt()),
         };
         out.rows.push(row);
     }

@@ -45,8 +45,11 @@ use std::collections::BTreeSet;
 /// ```
 pub fn respond(job: &Job, cx: &Context) -> Result<Outcome<Responded>, Faults> {
     let mut work = Work::of_job(cx, job);
-    let answer = responded(&mut work, &job.estimating()?)?;
-    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+    let answer = compute_response(&mut work, &job.without_validation_gauges()?)?;
+    Ok(work.finish(
+        StatedUnits::from_units(job.units, &job.report_units),
+        answer,
+    ))
 }
 
 /// Reads the table of loads that the job names, as `respond` does, and drops it.
@@ -60,11 +63,11 @@ pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
     })
 }
 
-fn responded(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
+fn compute_response(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
     check_tables(work, job)?;
     let calibrated = has_covariance(job) && job.model.is_some();
     if job.sensitivity.is_some() && !calibrated {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*job.file,
             "sensitivity",
             "the job gives S, not unit fields: stress cannot be superposed",
@@ -88,7 +91,7 @@ fn responded(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
         prepare(work, job)?
     };
     let Some(fields) = &prepared.fields else {
-        return Err(Fault::of(
+        return Err(Fault::new(
             &*job.file,
             "model",
             "the job has no [model]",
@@ -104,7 +107,7 @@ fn responded(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
     let (rows, findings) = response_rows(fields.model(), &fields.load_cases(job), |_| true);
     work.findings.extend(findings);
     if rows.is_empty() {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*job.file,
             "model",
             "no element has strain in every load's subcase",
@@ -122,7 +125,7 @@ fn responded(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
         }
     }
     if order.is_empty() {
-        return Err(Faults::from(Fault::at(
+        return Err(Faults::from(Fault::with_line(
             &*job.file,
             job.respond.line,
             "respond.elements",
@@ -176,7 +179,7 @@ fn responded(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
 
 /// The fault of a slope without a history.
 fn no_history(job: &Job) -> Fault {
-    Fault::at(
+    Fault::with_line(
         &*job.file,
         job.respond.line,
         "respond.slope",

@@ -30,7 +30,7 @@ pub(super) fn read(
                 let si = quantity_of(job, name).map_or(1.0, |q| job.units.si(q));
                 columns.push((at, si));
             }
-            None => faults.push(Fault::of(
+            None => faults.push(Fault::new(
                 &*named.given,
                 name.clone(),
                 format!("no column `{name}`"),

@@ -35,7 +35,7 @@ pub(super) fn read(work: &mut Work, job: &Job, prepared: &Prepared) -> Result<St
         return from_table(work, job, named);
     }
     let Some(measured) = job.measured.as_ref().filter(|_| !job.gauges.is_empty()) else {
-        return Err(Faults::from(Fault::at(
+        return Err(Faults::from(Fault::with_line(
             &*job.file,
             job.respond.line,
             "respond.loads",
@@ -97,7 +97,7 @@ pub(super) fn from_table(work: &mut Work, job: &Job, named: &NamedFile) -> Resul
             };
             let read = take_units_of(&mut work.inputs, job, named, &mut header);
             unread = unread_loads((&part, &read), job, &names);
-            Columns::of((&part, &read), job, named, &mut faults)
+            Columns::find_in_table((&part, &read), job, named, &mut faults)
         });
         for row in 0..part.rows.len() {
             faults.extend(columns.wrong_key(&part, row, &mut keys));
@@ -129,7 +129,7 @@ fn finish(
     blank: usize,
 ) -> Result<Vec<LoadState>, Faults> {
     if states.is_empty() {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*named.given,
             "loads",
             "no row with all loads",
@@ -241,7 +241,7 @@ struct Sized {
 }
 
 impl Columns {
-    fn of(
+    fn find_in_table(
         (t, columns): (&Table, &[Column]),
         job: &Job,
         named: &NamedFile,
@@ -270,7 +270,7 @@ impl Columns {
             let value = of(name);
             let ends = [".low", ".high"].map(|end| of(&format!("{name}{end}")));
             let Some(value) = value else {
-                faults.push(Fault::at(
+                faults.push(Fault::with_line(
                     &*t.file,
                     1,
                     name.clone(),
@@ -317,7 +317,7 @@ impl Columns {
                 }
             }
         };
-        Some(Fault::at(&*t.file, *line, field, wrong, remedy))
+        Some(Fault::with_line(&*t.file, *line, field, wrong, remedy))
     }
 
     /// The state of a row; `None` where it lacks a load.
@@ -355,7 +355,7 @@ impl Columns {
             let name = t.header.get(low).map_or("", String::as_str);
             let remedy = "take the table as `recover` wrote it";
             let wrong = "the low end of this interval is above its high end";
-            faults.push(Fault::at(&*t.file, line, name, wrong, remedy));
+            faults.push(Fault::with_line(&*t.file, line, name, wrong, remedy));
         }
         let label = t.rows.get(row).and_then(|r| r.1.get(self.key));
         Some(LoadState {

@@ -43,7 +43,7 @@ pub struct LayoutPlace {
 
 impl LayoutGauge {
     /// Returns a gauge without a place.
-    pub(super) fn named(name: &str) -> Self {
+    pub(super) fn without_place(name: &str) -> Self {
         Self {
             name: name.to_owned(),
             place: None,
@@ -51,7 +51,7 @@ impl LayoutGauge {
     }
 
     /// Returns a gauge as laid onto the model.
-    pub(super) fn of(gauge: &Gauge, spec: &GaugeSpec) -> Self {
+    pub(super) fn from_gauge(gauge: &Gauge, spec: &GaugeSpec) -> Self {
         let place = LayoutPlace {
             element: gauge.element,
             surface: gauge.surface.word(),

@@ -35,7 +35,7 @@ pub(super) struct LayoutOf {
 ///
 /// # Errors
 /// No pool at all, candidates that can't be used.
-pub(super) fn of(
+pub(super) fn build_layouts(
     work: &mut Work,
     job: &Job,
     study: &Study,
@@ -80,9 +80,9 @@ pub(super) fn of(
                     pool: pool.clone(),
                     members: random_subsets(pool.len(), n, study.seed),
                 }),
-                ("random", Some(w)) => w.random(job, prepared, n, study.seed),
+                ("random", Some(w)) => w.random_layout(job, prepared, n, study.seed),
                 ("random", None) => None,
-                (_, Some(w)) => Some(w.best(job, prepared, name, n)?),
+                (_, Some(w)) => Some(w.best_layout(job, prepared, name, n)?),
                 (_, None) if n <= pool.len() => Some(best_of_pool(job, prepared, pool, name, n)?),
                 _ => None,
             };
@@ -102,7 +102,7 @@ pub(super) fn of(
         ));
     }
     if out.is_empty() {
-        return Err(Faults::from(Fault::at(
+        return Err(Faults::from(Fault::with_line(
             &*job.file,
             study.line,
             "study.layouts",
@@ -128,7 +128,7 @@ fn random_subsets(all: usize, n: usize, seed: u64) -> Vec<Vec<usize>> {
 
 impl LayoutOf {
     /// Returns the gauges of the layout; none for random layouts, of which there are many.
-    pub fn chosen(&self) -> Vec<LayoutGauge> {
+    pub fn chosen_gauges(&self) -> Vec<LayoutGauge> {
         match self.members.as_slice() {
             [one] if self.name != "random" => {
                 let places = one.iter().filter_map(|&i| self.pool.places.get(i));
@@ -160,11 +160,11 @@ fn spec_of(job: &Job, name: &str, n: usize, k: usize, order: &[usize]) -> Spec {
     spec
 }
 
-fn refused(job: &Job, study: &str, e: &PlaceError) -> Faults {
+fn placement_fault(job: &Job, study: &str, e: &PlaceError) -> Faults {
     let line = job.study.as_ref().map_or(0, |s| s.line);
     let (wrong, remedy) = e.parts();
     let field = format!("study.layouts {study}");
-    Faults::from(Fault::at(&*job.file, line, field, wrong, remedy))
+    Faults::from(Fault::with_line(&*job.file, line, field, wrong, remedy))
 }
 
 /// The D-optimal part of the job's own gauges.
@@ -195,14 +195,19 @@ fn best_of_pool(
                 .unwrap_or(if norm > 0.0 { 1.0 / norm } else { 1.0 })
         })
         .collect();
-    let c = Candidates::from_rows(k, pool.len(), Scatter::uniform(noise), |g, out| {
-        for (o, &l) in out.iter_mut().zip(&order) {
-            *o = pool.gauges[g].row[l] * scale[l];
-        }
-    });
+    let c = Candidates::from_rows(
+        k,
+        pool.len(),
+        Scatter::with_uniform_noise(noise),
+        |g, out| {
+            for (o, &l) in out.iter_mut().zip(&order) {
+                *o = pool.gauges[g].row[l] * scale[l];
+            }
+        },
+    );
     let mut spec = spec_of(job, name, n, k, &order);
     spec.spacing = 0.0;
-    let layout = place(&c, &spec).map_err(|e| refused(job, name, &e))?;
+    let layout = place(&c, &spec).map_err(|e| placement_fault(job, name, &e))?;
     Ok(LayoutOf {
         name: name.to_owned(),
         gauges: n,
@@ -221,7 +226,7 @@ struct Wide {
 impl Wide {
     fn new(work: &mut Work, job: &Job, prepared: &Prepared) -> Result<Self, Faults> {
         let Some(fields) = &prepared.fields else {
-            return Err(Fault::of(
+            return Err(Fault::new(
                 &*job.file,
                 "model",
                 "the job has no [model]",
@@ -265,12 +270,12 @@ impl Wide {
             surface: Some(surface),
             angle_rad: choice.angle,
             grid_length: job.candidates.grid_length,
-            ..GaugeSpec::on("candidate", shell)
+            ..GaugeSpec::place_on_shell("candidate", shell)
         };
         on_model(fields, job, &fields.load_cases(job), &spec)
     }
 
-    fn best(
+    fn best_layout(
         &self,
         job: &Job,
         prepared: &Prepared,
@@ -278,7 +283,7 @@ impl Wide {
         n: usize,
     ) -> Result<LayoutOf, Faults> {
         let spec = spec_of(job, name, n, prepared.loads.len(), &self.order);
-        let layout = place(&self.candidates, &spec).map_err(|e| refused(job, name, &e))?;
+        let layout = place(&self.candidates, &spec).map_err(|e| placement_fault(job, name, &e))?;
         let mut pool = Pool::default();
         for (i, choice) in layout.gauges.iter().enumerate() {
             if let Some((gauge, place)) = self.gauge(job, prepared, choice) {
@@ -298,7 +303,13 @@ impl Wide {
     }
 
     /// Random places and angles among the candidates.
-    fn random(&self, job: &Job, prepared: &Prepared, n: usize, seed: u64) -> Option<LayoutOf> {
+    fn random_layout(
+        &self,
+        job: &Job,
+        prepared: &Prepared,
+        n: usize,
+        seed: u64,
+    ) -> Option<LayoutOf> {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let gauges: Vec<PoolGauge> = (0..n * RANDOM_LAYOUTS)
             .filter_map(|_| {

@@ -9,7 +9,7 @@ pub use gauges::{LayoutGauge, LayoutGauges, LayoutPlace};
 use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, FaultList, Faults};
-use crate::host::outcome::{Answer, Outcome, StatedUnits, finite};
+use crate::host::outcome::{Answer, Outcome, StatedUnits, finite_or_none};
 use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::job::{Job, Study};
@@ -147,9 +147,9 @@ pub struct StudiedLoad {
 /// ```
 pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
     let mut work = Work::of_job(cx, job);
-    let job = &job.estimating()?;
+    let job = &job.without_validation_gauges()?;
     let Some(study) = &job.study else {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*job.file,
             "study",
             "the job has no [study]",
@@ -179,14 +179,14 @@ pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
         seed: study.seed,
     };
     if let Some(l) = loads.iter().find(|l| !l.wanted && l.expected.is_none()) {
-        return Err(Faults::from(Fault::of(
+        return Err(Faults::from(Fault::new(
             &*job.file,
             "load.expected",
             format!("nuisance load `{}` has no size", l.name),
             "state `expected`, its standard deviation: every trial draws a random value",
         )));
     }
-    let layouts = layouts::of(&mut work, job, study, &prepared)?;
+    let layouts = layouts::build_layouts(&mut work, job, study, &prepared)?;
     let mut lines: Vec<Line> = Vec::new();
     work.stage("repeat", |w| -> Result<(), Faults> {
         w.cx.progress.parts(layouts.len() * errors.len());
@@ -196,7 +196,7 @@ pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
                 lines.push(Line {
                     layout: l.name.clone(),
                     gauges: l.gauges,
-                    names: l.chosen().into_iter().map(|g| g.name).collect(),
+                    names: l.chosen_gauges().into_iter().map(|g| g.name).collect(),
                     error: word.clone(),
                     row: study_layout(&l.pool.gauges, &l.members, *error, &spec),
                 });
@@ -206,12 +206,13 @@ pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
         Ok(())
     })?;
     if let Some(s) = &prepared.installed {
-        work.findings.extend(check_separability(&s.unconditioned()));
+        work.findings
+            .extend(check_separability(&s.without_prior_loads()));
     }
     findings(&mut work, &lines, loads);
     let rows = lines
         .iter()
-        .map(|line| studied(line, loads, &units, &truth));
+        .map(|line| summarise_layout(line, loads, &units, &truth));
     let answer = Studied {
         study: rows.collect(),
         layouts: layouts
@@ -220,13 +221,19 @@ pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
             .map(|l| LayoutGauges {
                 layout: l.name.clone(),
                 gauges: l.gauges,
-                chosen: l.chosen(),
+                chosen: l.chosen_gauges(),
             })
             .collect(),
-        conditioning: prepared.installed.as_ref().map(Conditioning::of),
+        conditioning: prepared
+            .installed
+            .as_ref()
+            .map(Conditioning::from_sensitivity),
         job: job.clone(),
     };
-    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+    Ok(work.finish(
+        StatedUnits::from_units(job.units, &job.report_units),
+        answer,
+    ))
 }
 
 fn errors(job: &Job, study: &Study) -> Result<Vec<(StudyError, String)>, Faults> {
@@ -247,7 +254,7 @@ fn errors(job: &Job, study: &Study) -> Result<Vec<(StudyError, String)>, Faults>
                 StudyError { kind, size: *size },
                 format!("{} {size}", kind.word()),
             )),
-            None => faults.push(Fault::at(
+            None => faults.push(Fault::with_line(
                 &*job.file,
                 study.line,
                 "study.errors.kind",
@@ -322,7 +329,7 @@ fn truth(
         ));
         return Ok(loads.iter().map(drawn).collect());
     }
-    Err(Faults::from(Fault::at(
+    Err(Faults::from(Fault::with_line(
         &*job.file,
         study.line,
         "load.expected",
@@ -332,14 +339,14 @@ fn truth(
 }
 
 /// Root mean square error of a load over its true size.
-fn relative(row: &StudyRow, truth: &[TrueLoad], l: usize) -> f64 {
+fn relative_rms(row: &StudyRow, truth: &[TrueLoad], l: usize) -> f64 {
     row.bias[l].hypot(row.sigma[l]) / truth[l].size()
 }
 
 fn mean_relative(row: &StudyRow, truth: &[TrueLoad], loads: &[Load]) -> f64 {
     let all: Vec<f64> = (0..loads.len())
         .filter(|l| loads[*l].wanted && truth[*l].size() != 0.0)
-        .map(|l| relative(row, truth, l))
+        .map(|l| relative_rms(row, truth, l))
         .collect();
     all.iter().sum::<f64>() / all.len().max(1) as f64
 }
@@ -385,13 +392,18 @@ fn findings(work: &mut Work, lines: &[Line], loads: &[Load]) {
     }
 }
 
-fn studied(line: &Line, loads: &[Load], units: &[LoadUnits], truth: &[TrueLoad]) -> StudiedLayout {
+fn summarise_layout(
+    line: &Line,
+    loads: &[Load],
+    units: &[LoadUnits],
+    truth: &[TrueLoad],
+) -> StudiedLayout {
     let by_load = (0..loads.len()).map(|l| StudiedLoad {
         name: loads[l].name.clone(),
-        bias: finite(line.row.bias[l] * units[l].factor),
-        sigma: finite(line.row.sigma[l] * units[l].factor),
-        relative_rms: finite(relative(&line.row, truth, l)),
-        coverage: finite(line.row.coverage[l]),
+        bias: finite_or_none(line.row.bias[l] * units[l].factor),
+        sigma: finite_or_none(line.row.sigma[l] * units[l].factor),
+        relative_rms: finite_or_none(relative_rms(&line.row, truth, l)),
+        coverage: finite_or_none(line.row.coverage[l]),
         unit: units[l].name.clone(),
         wanted: loads[l].wanted,
     });
@@ -400,8 +412,8 @@ fn studied(line: &Line, loads: &[Load], units: &[LoadUnits], truth: &[TrueLoad])
         gauges: line.gauges,
         names: line.names.clone(),
         error: line.error.clone(),
-        condition_number: finite(line.row.condition_number),
-        mean_relative_rms: finite(mean_relative(&line.row, truth, loads)),
+        condition_number: finite_or_none(line.row.condition_number),
+        mean_relative_rms: finite_or_none(mean_relative(&line.row, truth, loads)),
         loads: by_load.collect(),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::gauges::LayoutGauge;
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
-use crate::gauge::{Gauge, GaugePlace, GaugeSpec, build, reading, to_side};
+use crate::gauge::{Gauge, GaugePlace, GaugeSpec, build, gauge_reading, to_side};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
 use crate::job::readings::readings_of;
@@ -100,7 +100,7 @@ fn of_table(s: &Sensitivity, rows: impl Iterator<Item = usize>) -> Pool {
             turned: None,
             slope: None,
         };
-        pool.push((gauge, LayoutGauge::named(&s.gauges[g])));
+        pool.push((gauge, LayoutGauge::without_place(&s.gauges[g])));
     }
     pool
 }
@@ -115,7 +115,7 @@ fn spots_in_table(job: &Job, s: &Sensitivity) -> Result<Option<Pool>, Faults> {
         for name in readings_of(spot) {
             match s.gauges.iter().position(|g| *g == name) {
                 Some(row) => rows.push(row),
-                None => faults.push(Fault::at(
+                None => faults.push(Fault::with_line(
                     &*spot.file,
                     spot.line,
                     "name",
@@ -155,7 +155,7 @@ fn pool_on_model(
         for leg in 0..n {
             let i = pool.len();
             let row = s.values.row(i).iter().copied().collect();
-            let place = LayoutGauge::of(&laid[i], &spec);
+            let place = LayoutGauge::from_gauge(&laid[i], &spec);
             pool.push((variants(fields, job, &cases, &spec, leg, row), place));
         }
     }
@@ -172,14 +172,14 @@ pub(super) fn on_model(
     let (gauges, _) = build(fields.model(), spec, fields.corner_rows(job)).ok()?;
     let gauge = gauges.first()?;
     let row = row_of(gauge, cases)?;
-    let place = LayoutGauge::of(gauge, spec);
+    let place = LayoutGauge::from_gauge(gauge, spec);
     Some((variants(fields, job, cases, spec, 0, row), place))
 }
 
 fn row_of(gauge: &Gauge, cases: &[LoadCaseOf]) -> Option<Vec<f64>> {
     cases
         .iter()
-        .map(|c| reading(gauge, c.case).map(|v| v / c.applied))
+        .map(|c| gauge_reading(gauge, c.case).map(|v| v / c.applied))
         .collect()
 }
 

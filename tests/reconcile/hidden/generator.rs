@@ -4,7 +4,7 @@
 //! background of a messy case is 1 % of gain scatter, 1 degree of placement scatter (the model error that the job declares) and
 //! influence coefficients that are off by a fraction of a percent each, as on another mesh.
 
-use super::drawn::normal;
+use super::drawn::draw_normal;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use strainbridge::reconcile::effect::{Member, StrainEffect, library};
@@ -139,9 +139,9 @@ pub fn hide(
     frame.loads = loads;
     let mut truth = frame.clone();
     if background != Background::Clean {
-        let angles: Vec<f64> = (0..n_g).map(|_| normal(&mut rng)).collect();
+        let angles: Vec<f64> = (0..n_g).map(|_| draw_normal(&mut rng)).collect();
         for (g, angle) in angles.iter().enumerate() {
-            let gain = 1.0 + 0.01 * normal(&mut rng);
+            let gain = 1.0 + 0.01 * draw_normal(&mut rng);
             let facts = &frame.gauges[g];
             let (drawn, glued) = (
                 facts.angle_deg.to_radians(),
@@ -150,9 +150,10 @@ pub fn hide(
             for c in 0..n_c {
                 let at = g * n_c + c;
                 if let Some(t) = frame.tensors[g].get(c) {
-                    truth.influence[at] += seen(*t, glued, facts) - seen(*t, drawn, facts);
+                    truth.influence[at] +=
+                        strain_at_angle(*t, glued, facts) - strain_at_angle(*t, drawn, facts);
                 }
-                truth.influence[at] *= gain * (1.0 + 0.001 * normal(&mut rng));
+                truth.influence[at] *= gain * (1.0 + 0.001 * draw_normal(&mut rng));
             }
         }
     }
@@ -187,11 +188,11 @@ pub fn hide(
         frame.noise
     };
     for v in &mut readings {
-        *v += true_noise * normal(&mut rng);
+        *v += true_noise * draw_normal(&mut rng);
     }
     if frame.wheel_forces == WheelForces::Measured {
         for f in &mut frame.loads {
-            *f += frame.load_noise * normal(&mut rng);
+            *f += frame.load_noise * draw_normal(&mut rng);
         }
     }
     frame.observations.values = readings;
@@ -206,7 +207,7 @@ pub fn hide(
     }
 }
 
-fn seen(
+fn strain_at_angle(
     [exx, eyy, gxy]: [f64; 3],
     angle: f64,
     facts: &strainbridge::reconcile::strain::GaugeFacts,
@@ -267,7 +268,7 @@ fn apply(
         }
         "zero_drift_wander" => {
             let mut wanders: Vec<f64> = (0..n_r)
-                .map(|_| sign * size * (1.0 + 0.13 * normal(rng)))
+                .map(|_| sign * size * (1.0 + 0.13 * draw_normal(rng)))
                 .collect();
             wanders.reverse();
             on(readings, g, &mut |r, v| v + wanders[r]);
@@ -351,7 +352,7 @@ fn apply(
             parts.push(format!("intermittent_channel:{name}"));
         }
         "lateral_that_repeats" => {
-            let all: Vec<f64> = frame.other_loads.iter().map(|_| normal(rng)).collect();
+            let all: Vec<f64> = frame.other_loads.iter().map(|_| draw_normal(rng)).collect();
             for r in 0..n_r {
                 for (k, (load, pattern)) in frame.other_loads.iter().enumerate() {
                     let usual = match &load[..2] {
@@ -360,7 +361,7 @@ fn apply(
                         "MX" => 0.9,
                         _ => 0.25,
                     };
-                    let a = usual * (all[k] + 0.5 * normal(rng));
+                    let a = usual * (all[k] + 0.5 * draw_normal(rng));
                     for h in 0..n_g {
                         readings[r * n_g + h] += size * a * pattern[h];
                     }
@@ -411,7 +412,7 @@ fn apply(
             for c in 0..n_c {
                 if let Some(t) = frame.tensors[g].get(c) {
                     moved.influence[g * n_c + c] +=
-                        seen(*t, glued, &facts) - seen(*t, drawn, &facts);
+                        strain_at_angle(*t, glued, &facts) - strain_at_angle(*t, drawn, &facts);
                 }
             }
             let (now, before) = (predict(&moved, &[]), predict(truth, &[]));
@@ -423,7 +424,7 @@ fn apply(
         "payload_offset" => {
             let (dx, dy) = (
                 sign * size * rng.random::<f64>(),
-                size * normal(rng).clamp(-1.5, 1.5),
+                size * draw_normal(rng).clamp(-1.5, 1.5),
             );
             for r in 0..n_r {
                 let [m, x, _] = frame.payload[r];
@@ -480,13 +481,13 @@ fn apply(
         }
         "lateral_wheel_loads" => {
             for r in 0..n_r {
-                let scrub: Vec<f64> = (0..3).map(|_| 2.5 * normal(rng)).collect();
+                let scrub: Vec<f64> = (0..3).map(|_| 2.5 * draw_normal(rng)).collect();
                 for (k, (load, pattern)) in frame.other_loads.iter().enumerate() {
                     let a = match &load[..2] {
-                        "FY" => scrub[[0, 1, 2, 2, 1, 0][(k / 5) % 6]] + 0.2 * normal(rng),
-                        "FX" => normal(rng),
-                        "MX" => 0.9 * normal(rng),
-                        _ => 0.25 * normal(rng),
+                        "FY" => scrub[[0, 1, 2, 2, 1, 0][(k / 5) % 6]] + 0.2 * draw_normal(rng),
+                        "FX" => draw_normal(rng),
+                        "MX" => 0.9 * draw_normal(rng),
+                        _ => 0.25 * draw_normal(rng),
                     };
                     for h in 0..n_g {
                         readings[r * n_g + h] += size * a * pattern[h];
@@ -499,7 +500,7 @@ fn apply(
             frame.wheel_forces = WheelForces::FlatGroundModel;
             for r in 0..n_r {
                 // A twist of the ground: every axle turns the other way, the sum over each side stays.
-                let twist = [normal(rng), normal(rng)];
+                let twist = [draw_normal(rng), draw_normal(rng)];
                 let change = [twist[0], twist[1], -twist[0] - twist[1]];
                 for (l, sign) in [-1.0, -1.0, -1.0, 1.0, 1.0, 1.0].into_iter().enumerate() {
                     let axle = [0, 1, 2, 2, 1, 0][l];
@@ -512,13 +513,13 @@ fn apply(
             parts.push(effect.into());
         }
         form => {
-            unmodelled(form, size, rng, frame, truth, readings, &order);
+            add_unmodelled_effect(form, size, rng, frame, truth, readings, &order);
             parts.push("unknown".into());
         }
     }
 }
 
-fn unmodelled(
+fn add_unmodelled_effect(
     which: &str,
     size: f64,
     rng: &mut ChaCha8Rng,
@@ -555,9 +556,11 @@ fn unmodelled(
         }
         // A force at a place nobody thinks of: one pattern, another size in every run.
         "unknown_load" => {
-            let pattern: Vec<f64> = (0..n_g).map(|_| 0.5 * size * scale * normal(rng)).collect();
+            let pattern: Vec<f64> = (0..n_g)
+                .map(|_| 0.5 * size * scale * draw_normal(rng))
+                .collect();
             for r in 0..n_r {
-                let a = normal(rng);
+                let a = draw_normal(rng);
                 for g in 0..n_g {
                     readings[r * n_g + g] += a * pattern[g];
                 }
@@ -567,7 +570,7 @@ fn unmodelled(
         "one_run" => {
             let r = rng.random_range(0..n_r * 2 / 3);
             for g in 0..n_g {
-                readings[r * n_g + g] += size * scale * normal(rng);
+                readings[r * n_g + g] += size * scale * draw_normal(rng);
             }
         }
         // Channels leak into their neighbours.

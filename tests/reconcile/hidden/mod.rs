@@ -17,8 +17,8 @@ use strainbridge::reconcile::strain::{
 };
 
 /// Folder of the shared material, where present.
-pub fn shared() -> Option<PathBuf> {
-    support::shared("hidden_effects")
+pub fn find_shared_folder() -> Option<PathBuf> {
+    support::find_shared_path("hidden_effects")
 }
 
 struct Table {

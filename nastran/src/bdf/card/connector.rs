@@ -54,7 +54,7 @@ pub(super) fn pweld(f: &mut Fields) -> Pweld {
     Pweld {
         id: f.id(0, "PID"),
         mid: f.id(1, "MID"),
-        d: f.real(2, "D"),
+        d: f.required_real(2, "D"),
         spot: (3..8).any(|i| f.is_word(i, "SPOT")),
         ld: [f.real_or(8, "LDMIN", 0.2), f.real_or(9, "LDMAX", 5.0)],
     }
@@ -75,7 +75,7 @@ pub(super) fn fastener(f: &mut Fields) -> Fastener {
 pub(super) fn pfast(f: &mut Fields) -> Pfast {
     Pfast {
         id: f.id(0, "PID"),
-        d: f.real(1, "D"),
+        d: f.required_real(1, "D"),
         mcid: f
             .opt_signed(2, "MCID")
             .and_then(|cid| u32::try_from(cid).ok()),

@@ -7,7 +7,7 @@ use super::super::fields::{Fields, excerpt};
 type Mask = u64;
 
 /// Returns the first `n` fields.
-const fn first(n: u32) -> Mask {
+const fn first_fields(n: u32) -> Mask {
     match n {
         64.. => Mask::MAX,
         n => (1 << n) - 1,
@@ -16,7 +16,7 @@ const fn first(n: u32) -> Mask {
 
 /// Returns the fields from `from` up to the one before `to`.
 const fn span(from: u32, to: u32) -> Mask {
-    first(to) & !first(from)
+    first_fields(to) & !first_fields(from)
 }
 
 /// Fields of each line of an MPC after the first: field 2 and field 9 are blank.
@@ -29,34 +29,34 @@ const MPC_LINES: Mask = 0x7e7e_7e7e_7e7e_7e7e;
 fn fields_of(name: &[u8]) -> Option<Mask> {
     Some(match name {
         b"GRID" | b"CORD1R" | b"CORD1C" | b"CORD1S" | b"CONROD" | b"CELAS2" | b"CGAP"
-        | b"PMASS" | b"PELAS" | b"PSOLID" | b"PLOAD1" | b"PLOAD2" | b"TEMPD" => first(8),
+        | b"PMASS" | b"PELAS" | b"PSOLID" | b"PLOAD1" | b"PLOAD2" | b"TEMPD" => first_fields(8),
         b"GRDSET" => 1 << 1 | span(5, 8),
         b"CORD2R" | b"CORD2C" | b"CORD2S" | b"PSHELL" | b"CFAST" | b"PGAP" | b"MATT1"
-        | b"RFORCE" | b"RFORCE1" => first(11),
-        b"CQUAD4" | b"CQUADR" => first(8) | span(9, 14),
-        b"CTRIA3" | b"CTRIAR" => first(7) | span(9, 13),
-        b"CQUAD8" | b"CPENTA" => first(17),
-        b"CTRIA6" | b"PLOAD4" => first(14),
-        b"SNORM" | b"FORCE1" | b"MOMENT1" => first(5),
+        | b"RFORCE" | b"RFORCE1" => first_fields(11),
+        b"CQUAD4" | b"CQUADR" => first_fields(8) | span(9, 14),
+        b"CTRIA3" | b"CTRIAR" => first_fields(7) | span(9, 13),
+        b"CQUAD8" | b"CPENTA" => first_fields(17),
+        b"CTRIA6" | b"PLOAD4" => first_fields(14),
+        b"SNORM" | b"FORCE1" | b"MOMENT1" => first_fields(5),
         b"CSHEAR" | b"CELAS1" | b"CMASS1" | b"CMASS2" | b"RBAR1" | b"PSHEAR" | b"PROD"
-        | b"PTUBE" | b"PLOAD" => first(6),
-        b"CBAR" => first(16),
-        b"CBEAM" => first(18),
+        | b"PTUBE" | b"PLOAD" => first_fields(6),
+        b"CBAR" => first_fields(16),
+        b"CBEAM" => first_fields(18),
         b"BAROR" | b"BEAMOR" => 1 << 1 | span(4, 8),
-        b"CROD" | b"CTUBE" | b"CELAS3" | b"CELAS4" | b"CMASS3" | b"CMASS4" => first(4),
-        b"CBUSH" => first(13),
-        b"CTETRA" | b"MAT1" => first(12),
-        b"CHEXA" => first(22),
-        b"CPYRAM" => first(15),
-        b"CONM1" => first(24),
-        b"CONM2" => first(7) | span(8, 14),
-        b"RBAR" => first(9),
-        b"RTRPLT" => first(7) | span(8, 13),
+        b"CROD" | b"CTUBE" | b"CELAS3" | b"CELAS4" | b"CMASS3" | b"CMASS4" => first_fields(4),
+        b"CBUSH" => first_fields(13),
+        b"CTETRA" | b"MAT1" => first_fields(12),
+        b"CHEXA" => first_fields(22),
+        b"CPYRAM" => first_fields(15),
+        b"CONM1" => first_fields(24),
+        b"CONM2" => first_fields(7) | span(8, 14),
+        b"RBAR" => first_fields(9),
+        b"RTRPLT" => first_fields(7) | span(8, 13),
         b"MPC" => 1 | MPC_LINES,
         b"SPC" | b"SPCD" | b"FORCE" | b"MOMENT" | b"FORCE2" | b"MOMENT2" | b"SLOAD" | b"GRAV"
-        | b"TEMP" => first(7),
-        b"PBAR" => first(7) | span(8, 19),
-        b"PARAM" => first(3),
+        | b"TEMP" => first_fields(7),
+        b"PBAR" => first_fields(7) | span(8, 19),
+        b"PARAM" => first_fields(3),
         _ => return None,
     })
 }
@@ -74,7 +74,7 @@ pub(super) fn check(f: &mut Fields) {
         _ => f.name == b"MPC" && MPC_LINES >> (i % 8) & 1 == 1,
     };
     if let Some(i) = (0..last).find(|&i| !f.is_blank(i) && !is_field(i)) {
-        let found = excerpt(f.raw(i));
+        let found = excerpt(f.bytes_at(i));
         f.fault(i, "unused", Wrong::NoSuchField { found });
     }
 }

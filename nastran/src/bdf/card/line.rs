@@ -37,7 +37,7 @@ fn offt(f: &mut Fields, i: usize) -> Option<[u8; 3]> {
     match f.value(i) {
         Value::Blank | Value::Integer(_) => None,
         Value::Real(_) => None,
-        Value::Text => match *f.raw(i).to_ascii_uppercase().as_slice() {
+        Value::Text => match *f.bytes_at(i).to_ascii_uppercase().as_slice() {
             [a @ (b'G' | b'B'), b @ (b'G' | b'O'), c @ (b'G' | b'O')] => Some([a, b, c]),
             // NX and newer MSC: E for element, basic form of the ends
             [

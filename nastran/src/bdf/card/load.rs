@@ -181,7 +181,7 @@ pub(super) fn accel(f: &mut Fields) -> Accel {
     let mut table = Vec::new();
     for i in (8..f.len()).step_by(2) {
         if !f.is_blank(i) || !f.is_blank(i + 1) {
-            table.push((f.real(i, "LOC"), f.real(i + 1, "VAL")));
+            table.push((f.required_real(i, "LOC"), f.required_real(i + 1, "VAL")));
         }
     }
     if direction.is_empty() && !table.is_empty() {
@@ -226,11 +226,11 @@ pub(super) fn rforce(f: &mut Fields) -> Rforce {
 
 pub(super) fn load(f: &mut Fields) -> LoadSum {
     let sid = f.id(0, "SID");
-    let scale = f.real(1, "S");
+    let scale = f.required_real(1, "S");
     let mut terms = Vec::new();
     for i in (2..f.len()).step_by(2) {
         if !f.is_blank(i) || !f.is_blank(i + 1) {
-            terms.push((f.real(i, "S"), f.id(i + 1, "L")));
+            terms.push((f.required_real(i, "S"), f.id(i + 1, "L")));
         }
     }
     LoadSum { sid, scale, terms }
@@ -243,7 +243,7 @@ pub(super) fn temp(f: &mut Fields, cards: &mut Cards) {
             let card = Temp {
                 sid,
                 grid: f.id(i, "G"),
-                t: f.real(i + 1, "T"),
+                t: f.required_real(i + 1, "T"),
             };
             if !f.unusable {
                 cards.temps.push(Placed { card, at: f.at });
@@ -257,7 +257,7 @@ pub(super) fn tempd(f: &mut Fields, cards: &mut Cards) {
         if i == 0 || !f.is_blank(i) {
             let card = Tempd {
                 sid: f.id(i, "SID"),
-                t: f.real(i + 1, "T"),
+                t: f.required_real(i + 1, "T"),
             };
             if !f.unusable {
                 cards.tempds.push(Placed { card, at: f.at });

@@ -35,8 +35,8 @@ pub(super) fn mat2(f: &mut Fields) -> Mat2 {
 pub(super) fn mat8(f: &mut Fields) -> Mat8 {
     Mat8 {
         id: f.id(0, "MID"),
-        e1: f.real(1, "E1"),
-        e2: f.real(2, "E2"),
+        e1: f.required_real(1, "E1"),
+        e2: f.required_real(2, "E2"),
         nu12: f.real_or(3, "NU12", 0.0),
         g12: f.real_or(4, "G12", 0.0),
         g1z: f.opt_real(5, "G1Z"),

@@ -34,7 +34,7 @@ pub(super) fn pbeam(f: &mut Fields) -> Pbeam {
     let mut written = Vec::new();
     while is_so(f, i) {
         let word = f.word(i);
-        let x_xb = f.real(i + 1, "X/XB");
+        let x_xb = f.required_real(i + 1, "X/XB");
         if !(x_xb > 0.0 && x_xb <= 1.0) {
             let found = f.word(i + 1);
             f.fault(

@@ -77,7 +77,7 @@ pub(super) fn pshear(f: &mut Fields) -> Pshear {
     Pshear {
         id: f.id(0, "PID"),
         mid: f.id(1, "MID"),
-        t: f.real(2, "T"),
+        t: f.required_real(2, "T"),
         nsm: f.real_or(3, "NSM", 0.0),
         f1: f.real_or(4, "F1", 0.0),
         f2: f.real_or(5, "F2", 0.0),
@@ -124,7 +124,7 @@ pub(super) fn ptube(f: &mut Fields) -> Ptube {
     Ptube {
         id: f.id(0, "PID"),
         mid: f.id(1, "MID"),
-        od: f.real(2, "OD"),
+        od: f.required_real(2, "OD"),
         t: f.opt_real(3, "T"),
         nsm: f.real_or(4, "NSM", 0.0),
         od2: f.opt_real(5, "OD2"),

@@ -61,7 +61,7 @@ pub(super) fn rbe3(f: &mut Fields) -> Rbe3 {
                 match groups.last_mut() {
                     Some(group) => group.grids.push(grid),
                     None => {
-                        f.real(i, "WT1");
+                        f.required_real(i, "WT1");
                     }
                 }
                 i += 1;

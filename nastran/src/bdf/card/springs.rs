@@ -33,7 +33,7 @@ pub(super) fn spring(f: &mut Fields) -> Spring {
     let id = f.id(0, "EID");
     let stiffness = if f.name == b"CELAS2" {
         SpringStiffness::Direct {
-            k: f.real(1, "K"),
+            k: f.required_real(1, "K"),
             damping: f.real_or(6, "GE", 0.0),
             stress_coefficient: f.real_or(7, "S", 0.0),
         }
@@ -52,7 +52,7 @@ pub(super) fn scalar_spring(f: &mut Fields) -> Spring {
     let id = f.id(0, "EID");
     let stiffness = if f.name == b"CELAS4" {
         SpringStiffness::Direct {
-            k: f.real(1, "K"),
+            k: f.required_real(1, "K"),
             damping: 0.0,
             stress_coefficient: 0.0,
         }

@@ -36,8 +36,8 @@ pub(super) fn material_table(f: &mut Fields) -> MaterialTable {
             let x = [
                 f.real_or(1, "X1", 0.0),
                 divisor(f),
-                f.real(3, "X3"),
-                f.real(4, "X4"),
+                f.required_real(3, "X3"),
+                f.required_real(4, "X4"),
             ];
             let a = coefficients(f);
             (MaterialTableForm::Series { x, a }, 4)
@@ -56,7 +56,7 @@ pub(super) fn material_table(f: &mut Fields) -> MaterialTable {
 
 /// Reads X2, the divisor.
 fn divisor(f: &mut Fields) -> f64 {
-    let x2 = f.real(2, "X2");
+    let x2 = f.required_real(2, "X2");
     if x2 == 0.0 && !f.is_blank(2) {
         let found = f.word(2);
         let allowed = "a number other than 0";
@@ -87,7 +87,7 @@ fn points(f: &mut Fields) -> Vec<(f64, f64)> {
     for i in (8..end).step_by(2) {
         let skipped = f.is_word(i, "SKIP") || f.is_word(i + 1, "SKIP");
         if !skipped && !(f.is_blank(i) && f.is_blank(i + 1)) {
-            points.push((f.real(i, "x"), f.real(i + 1, "y")));
+            points.push((f.required_real(i, "x"), f.required_real(i + 1, "y")));
         }
     }
     if points.len() < 2 {

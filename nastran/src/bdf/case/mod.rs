@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use crate::cards::Param;
 use crate::place::Place;
 
-/// Case control as written; [`CaseControl::effective`] applies the values that subcases inherit.
+/// Case control as written; [`CaseControl::effective_subcase`] applies the values that subcases inherit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CaseControl {
     /// Statements above the first subcase; its id is 0.
@@ -144,7 +144,7 @@ impl Subcase {
 
 impl CaseControl {
     /// The subcase with what it inherits from above the subcases filled in. Without any subcase: the global part, as id 1.
-    pub fn effective(&self, subcase: &Subcase) -> Subcase {
+    pub fn effective_subcase(&self, subcase: &Subcase) -> Subcase {
         let global = &self.global;
         let mut full = subcase.clone();
         full.title = subcase.title.clone().or_else(|| global.title.clone());
@@ -221,6 +221,9 @@ impl CaseControl {
             only.id = 1;
             return vec![only];
         }
-        self.subcases.iter().map(|s| self.effective(s)).collect()
+        self.subcases
+            .iter()
+            .map(|s| self.effective_subcase(s))
+            .collect()
     }
 }

@@ -22,7 +22,7 @@ pub(in super::super) fn read_case_control(
     let mut skips = false;
     let mut rest = statements;
     while let Some((first, more)) = rest.split_first() {
-        let (text, end, used) = joined(first, more);
+        let (text, end, used) = join_continuations(first, more);
         rest = more.get(used..).unwrap_or_default();
         let text = text.trim();
         let name: String = text
@@ -88,7 +88,7 @@ fn skip_switch(name: &str, text: &str) -> Option<bool> {
 }
 
 /// The statement with the lines that continue it, where the last ends, and how many they are.
-fn joined(first: &Statement, more: &[Statement]) -> (String, usize, usize) {
+fn join_continuations(first: &Statement, more: &[Statement]) -> (String, usize, usize) {
     let mut text = first.text.trim_end().to_owned();
     let mut end = first.end;
     let mut used = 0;
@@ -149,7 +149,7 @@ impl Reader<'_> {
         );
     }
 
-    fn current(&mut self) -> &mut Subcase {
+    fn current_subcase(&mut self) -> &mut Subcase {
         match self.case.subcases.last_mut() {
             Some(subcase) => subcase,
             None => &mut self.case.global,
@@ -188,17 +188,17 @@ impl Reader<'_> {
             return self.fault(name, text, why);
         }
         match word {
-            "TITLE" => self.current().title = Some(value.to_owned()),
-            "SUBTITLE" => self.current().subtitle = Some(value.to_owned()),
-            "LABEL" => self.current().label = Some(value.to_owned()),
-            "LOAD" => self.current().load = self.number(name, value),
-            "SPC" => self.current().spc = self.number(name, value),
-            "MPC" => self.current().mpc = self.number(name, value),
-            "NSM" => self.current().nsm = self.number(name, value),
-            "SUPORT1" => self.current().suport1 = self.number(name, value),
-            "DEFORM" => self.current().deform = self.number(name, value),
-            "METHOD" => self.current().method = self.number(name, value),
-            "ANALYSIS" => self.current().analysis = Some(value.to_ascii_uppercase()),
+            "TITLE" => self.current_subcase().title = Some(value.to_owned()),
+            "SUBTITLE" => self.current_subcase().subtitle = Some(value.to_owned()),
+            "LABEL" => self.current_subcase().label = Some(value.to_owned()),
+            "LOAD" => self.current_subcase().load = self.number(name, value),
+            "SPC" => self.current_subcase().spc = self.number(name, value),
+            "MPC" => self.current_subcase().mpc = self.number(name, value),
+            "NSM" => self.current_subcase().nsm = self.number(name, value),
+            "SUPORT1" => self.current_subcase().suport1 = self.number(name, value),
+            "DEFORM" => self.current_subcase().deform = self.number(name, value),
+            "METHOD" => self.current_subcase().method = self.number(name, value),
+            "ANALYSIS" => self.current_subcase().analysis = Some(value.to_ascii_uppercase()),
             "TEMPERATURE" => self.temperature(name, text, value),
             "SUBSEQ" | "SYMSEQ" => self.sequence(name, value),
             "SET" => self.set(text),
@@ -225,7 +225,7 @@ impl Reader<'_> {
         let id = self.number(name, value);
         let options = options_of(text);
         let is = |o: &str| options.iter().any(|have| abbreviates(have, o));
-        let current = self.current();
+        let current = self.current_subcase();
         if is("INITIAL") {
             current.temperature_initial = id;
             return;
@@ -247,7 +247,7 @@ impl Reader<'_> {
                 None => return self.fault(name, word, "a coefficient is needed"),
             }
         }
-        self.current().sequence = numbers;
+        self.current_subcase().sequence = numbers;
     }
 
     fn set(&mut self, text: &str) {
@@ -259,7 +259,7 @@ impl Reader<'_> {
         let id = head.get(3..).unwrap_or_default().trim().parse::<u32>();
         match (id, Set::from_text(items)) {
             (Ok(id), Ok(set)) => {
-                self.current().sets.insert(id, set);
+                self.current_subcase().sets.insert(id, set);
             }
             // sets of times, grid components or named sets: kept in the deck, not read
             (Ok(_), Err(word)) if word.contains(['.', '/', '(']) => {}
@@ -289,7 +289,7 @@ impl Reader<'_> {
                 None => ParamValue::Text(w.to_ascii_uppercase()),
             })
             .collect();
-        self.current().params.push(Param {
+        self.current_subcase().params.push(Param {
             name: name.to_ascii_uppercase(),
             values,
         });
@@ -314,7 +314,7 @@ impl Reader<'_> {
             },
         };
         let options = options_of(text);
-        let current = self.current();
+        let current = self.current_subcase();
         current.requests.retain(|r| r.what != full);
         current.requests.push(Request {
             what: full.to_owned(),
@@ -338,7 +338,9 @@ fn end_of_number(text: &str, from: usize) -> usize {
 fn value_of(text: &str, name: usize) -> &str {
     let rest = text.get(name..).unwrap_or_default();
     let rest = match rest.trim_start().strip_prefix('(') {
-        Some(inner) => close(inner).map_or("", |i| inner.get(i + 1..).unwrap_or_default()),
+        Some(inner) => {
+            find_closing_bracket(inner).map_or("", |i| inner.get(i + 1..).unwrap_or_default())
+        }
         None => rest,
     };
     rest.trim_start_matches([' ', '\t', ','])
@@ -347,7 +349,7 @@ fn value_of(text: &str, name: usize) -> &str {
 }
 
 /// Returns the offset of the closing bracket.
-fn close(inner: &str) -> Option<usize> {
+fn find_closing_bracket(inner: &str) -> Option<usize> {
     let mut depth = 1;
     for (i, c) in inner.char_indices() {
         match c {
@@ -368,7 +370,9 @@ fn options_of(text: &str) -> Vec<String> {
     let Some((_, inner)) = text.split_once('(').filter(|_| before.contains('(')) else {
         return Vec::new();
     };
-    let inner = close(inner).and_then(|i| inner.get(..i)).unwrap_or(inner);
+    let inner = find_closing_bracket(inner)
+        .and_then(|i| inner.get(..i))
+        .unwrap_or(inner);
     inner
         .split(',')
         .map(|w| w.trim().to_ascii_uppercase())

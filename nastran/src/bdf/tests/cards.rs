@@ -1,10 +1,10 @@
-use super::clean;
+use super::read_clean_deck;
 use crate::cards::*;
 
 #[test]
 fn pbeam_fills_blank_stations_as_the_guide_says() {
     // end B takes A's values where blank, stations between are interpolated
-    let deck = clean(
+    let deck = read_clean_deck(
         "PBEAM,1,1,2.,4.,6.,,8.\n,.1,.2,.3,.4,.5,.6,.7,.8\n,NO,.5,,,,,,\n,YESA,1.,4.,,,,,\n,.9,.8\n",
     );
     let p = &deck.cards.pbeams[0];
@@ -31,13 +31,13 @@ fn pbeam_fills_blank_stations_as_the_guide_says() {
 
 #[test]
 fn pbeam_with_one_line_is_uniform() {
-    let deck = clean("PBEAM,1,1,2.,4.,6.,,8.\n");
+    let deck = read_clean_deck("PBEAM,1,1,2.,4.,6.,,8.\n");
     let p = &deck.cards.pbeams[0];
     assert_eq!(
         (p.stations.len(), p.stations[1].x_xb, p.stations[1].j),
         (2, 1.0, 8.0)
     );
-    let k_line = clean(
+    let k_line = read_clean_deck(
         "PBEAM,101,501,15000.,2500.,250.,0.0,25000.,0.0\n,.1,.1,-0.1,.1,-0.1,-0.1,.1,-0.1\n,0.0,0.0\n",
     );
     assert_eq!(k_line.cards.pbeams[0].k, [Some(0.0), Some(0.0)]);
@@ -45,7 +45,7 @@ fn pbeam_with_one_line_is_uniform() {
 
 #[test]
 fn pbeaml_stations_take_blank_dimensions_from_end_a() {
-    let deck = clean("PBEAML,1,1,,BAR\n,10.,20.,.5,YES,.4,12.,,.6,NO,1.,,5.\n");
+    let deck = read_clean_deck("PBEAML,1,1,,BAR\n,10.,20.,.5,YES,.4,12.,,.6,NO,1.,,5.\n");
     let p = &deck.cards.pbeamls[0];
     let dims: Vec<(f64, Vec<f64>, f64)> = p
         .stations
@@ -64,7 +64,7 @@ fn pbeaml_stations_take_blank_dimensions_from_end_a() {
 
 #[test]
 fn pcomp_plies_repeat_material_and_thickness() {
-    let deck = clean("PCOMP,7,,,,,,,SYM\n,1,0.1,45.,YES,,,-45.\n,2,.2\n");
+    let deck = read_clean_deck("PCOMP,7,,,,,,,SYM\n,1,0.1,45.,YES,,,-45.\n,2,.2\n");
     let p = &deck.cards.pcomps[0];
     let plies: Vec<(u32, f64, f64, bool)> = p
         .plies
@@ -80,14 +80,14 @@ fn pcomp_plies_repeat_material_and_thickness() {
         ]
     );
     assert!(p.symmetric);
-    let g = clean("PCOMPG,9\n,1,1,0.1\n,2,1,0.2,90.,YES\n");
+    let g = read_clean_deck("PCOMPG,9\n,1,1,0.1\n,2,1,0.2,90.,YES\n");
     assert_eq!(g.cards.pcomps[0].plies.len(), 2);
     assert_eq!(g.cards.pcomps[0].plies[1].theta_deg, 90.0);
 }
 
 #[test]
 fn rbe3_groups_begin_with_a_weight() {
-    let deck = clean(
+    let deck = read_clean_deck(
         "RBE3,14,,100,1234,1.0,123,1,3\n,5,4.7,1,2,4,6,5.2,2\n,7,8,9,5.1,1,15,16\n,UM,100,14,5,3,7,2\n,ALPHA,6.5-6\n",
     );
     let e = &deck.cards.rbe3s[0];
@@ -114,7 +114,7 @@ fn rbe3_groups_begin_with_a_weight() {
 
 #[test]
 fn rbe2_may_end_in_a_thermal_expansion() {
-    let deck = clean("RBE2,9,8,12,10,12,14,15,16\n,20,6.5-6\n");
+    let deck = read_clean_deck("RBE2,9,8,12,10,12,14,15,16\n,20,6.5-6\n");
     assert_eq!(
         (
             deck.cards.rbe2s[0].dependent.as_slice(),
@@ -126,7 +126,7 @@ fn rbe2_may_end_in_a_thermal_expansion() {
 
 #[test]
 fn rbe1_lists_independent_and_dependent_dofs() {
-    let deck = clean("RBE1,59,59,123,60,456\n,UM,61,246,,,62,3\n");
+    let deck = read_clean_deck("RBE1,59,59,123,60,456\n,UM,61,246,,,62,3\n");
     let e = &deck.cards.rbe1s[0];
     assert_eq!((e.independent.len(), e.dependent.len()), (2, 2));
     assert_eq!(e.dependent[1].0, 62);
@@ -134,7 +134,7 @@ fn rbe1_lists_independent_and_dependent_dofs() {
 
 #[test]
 fn pairs_on_one_card_are_two_entries() {
-    let deck = clean(
+    let deck = read_clean_deck(
         "CORD1R,3,16,32,19,5,1,2,3\nPELAS,7,4.29,.06,7.92,27,2.17,.0032\nTEMP,3,94,316.2,49,219.8\nTEMPD,1,216.3,2,217.\n",
     );
     assert_eq!(
@@ -159,7 +159,7 @@ fn pairs_on_one_card_are_two_entries() {
 
 #[test]
 fn lists_hold_ids_and_ranges() {
-    let deck = clean(
+    let deck = read_clean_deck(
         "SPC1,3,2,1,3,10,9\nSPC1,4,123,5,thru,13\nPLOAD2,1,2.5,1,THRU,9\nPLOAD4,2,1106,10.,8.,5.,,THRU,1143\nSPOINT,1,2,3\n",
     );
     assert_eq!(deck.cards.spc1s[0].grids, IdList::Each(vec![1, 3, 10, 9]));
@@ -175,7 +175,8 @@ fn lists_hold_ids_and_ranges() {
 
 #[test]
 fn pbush_lines_begin_with_what_they_hold() {
-    let deck = clean("PBUSH,35,K,4.35,2.4,,,RIGID,3.1\n,,GE,.01\n,,RCV,7.3,3.3\n,,B,1.,2.\n");
+    let deck =
+        read_clean_deck("PBUSH,35,K,4.35,2.4,,,RIGID,3.1\n,,GE,.01\n,,RCV,7.3,3.3\n,,B,1.,2.\n");
     let p = &deck.cards.pbushes[0];
     assert_eq!(p.k, [4.35, 2.4, 0.0, 0.0, 0.0, 3.1]);
     assert!(p.rigid[4] && !p.rigid[0]);
@@ -187,7 +188,7 @@ fn pbush_lines_begin_with_what_they_hold() {
 
 #[test]
 fn mpc_terms_stand_in_two_columns_of_fields() {
-    let deck = clean(
+    let deck = read_clean_deck(
         "MPC     3       28      3       6.2     2       1       4.29\n                1       4       -2.91\n",
     );
     assert_eq!(
@@ -199,18 +200,20 @@ fn mpc_terms_stand_in_two_columns_of_fields() {
 #[test]
 fn tubes_may_lack_the_inner_radius() {
     assert_eq!(
-        clean("PBARL,1,1,,TUBE\n,.5\n").cards.pbarls[0].dims,
+        read_clean_deck("PBARL,1,1,,TUBE\n,.5\n").cards.pbarls[0].dims,
         [0.5, 0.0]
     );
     assert_eq!(
-        clean("PBARL,1,1,,tube\n,.5,.4,2.\n").cards.pbarls[0].nsm,
+        read_clean_deck("PBARL,1,1,,tube\n,.5,.4,2.\n").cards.pbarls[0].nsm,
         2.0
     );
 }
 
 #[test]
 fn defaults_of_bars_and_grids_are_kept_apart() {
-    let deck = clean("BAROR,,39,,,.6,2.9,-5.87,GOG\nGRDSET,,16,,,,32,3456\nBEAMOR,,4,,,1.,2.,3.\n");
+    let deck = read_clean_deck(
+        "BAROR,,39,,,.6,2.9,-5.87,GOG\nGRDSET,,16,,,,32,3456\nBEAMOR,,4,,,1.,2.,3.\n",
+    );
     assert_eq!(
         deck.cards.baror.as_ref().unwrap().orientation,
         Orientation::Vector([0.6, 2.9, -5.87])
@@ -227,7 +230,7 @@ fn defaults_of_bars_and_grids_are_kept_apart() {
 
 #[test]
 fn scalar_masses_name_components_or_scalar_points() {
-    let deck = clean(
+    let deck = read_clean_deck(
         "CMASS1,1,7,2,1\nCMASS2,2,.5,,,3,2\nCMASS3,3,7,90\nCMASS4,4,.25,90,91\nPMASS,7,1.,8,2.,9,3.,10,4.\n",
     );
     let masses: Vec<ScalarMass> = deck.cards.scalar_masses.iter().map(|m| m.card).collect();
@@ -249,7 +252,7 @@ fn scalar_masses_name_components_or_scalar_points() {
 
 #[test]
 fn tables_end_at_endt_leave_out_skip_and_keep_their_order() {
-    let one = |text: &str| clean(text).cards.material_tables[0].card.clone();
+    let one = |text: &str| read_clean_deck(text).cards.material_tables[0].card.clone();
     let table = one("TABLEM1,9\n,0.,1.,5.,SKIP,10.,3.,20.,4.\n,ENDT\n,99.,99.\n");
     assert_eq!(
         table.form,
@@ -277,7 +280,7 @@ fn tables_end_at_endt_leave_out_skip_and_keep_their_order() {
 fn a_station_without_stress_output_has_the_points_of_end_a() {
     // QRG, PBEAM: the line of points is left out where SO is YESA or NO.
     for so in ["NO", "YESA"] {
-        let deck = super::clean(&format!(
+        let deck = super::read_clean_deck(&format!(
             "PBEAM,1,1,8.,2.,3.,,1.\n,20.,10.,-20.,10.\n,{so},.5,9.,4.,5.\n,YES,1.,16.,4.,6.\n,21.,11.,-21.,11.\n"
         ));
         let stations = &deck.cards.pbeams[0].stations;
@@ -288,7 +291,7 @@ fn a_station_without_stress_output_has_the_points_of_end_a() {
 
 #[test]
 fn a_shell_scales_the_thicknesses_that_it_states() {
-    let deck = super::clean(
+    let deck = super::read_clean_deck(
         "CQUAD4,1,1,1,2,3,4\n,,,2.,,4.\nCQUAD4,2,1,1,2,3,4\n,,1,2.,2.,2.,2.\nCQUAD4,3,1,1,2,3,4\n",
     );
     let scaled: Vec<_> = deck

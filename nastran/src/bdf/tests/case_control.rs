@@ -1,5 +1,5 @@
 use super::super::{Selection, SubcaseKind};
-use super::{bulk, clean, shown};
+use super::{bulk, fault_texts, read_clean_deck};
 
 const DECK: &str = "\
 NASTRAN SYSTEM(442)=-1
@@ -43,7 +43,7 @@ ENDDATA
 
 #[test]
 fn subcases_hold_what_they_select() {
-    let deck = clean(DECK);
+    let deck = read_clean_deck(DECK);
     assert_eq!(
         (deck.sol, deck.sol_text.as_deref()),
         (Some(101), Some("SESTATIC"))
@@ -80,9 +80,9 @@ fn subcases_hold_what_they_select() {
 
 #[test]
 fn a_subcase_inherits_what_it_does_not_state() {
-    let deck = clean(DECK);
+    let deck = read_clean_deck(DECK);
     let case = &deck.case_control;
-    let a = case.effective(&case.subcases[0]);
+    let a = case.effective_subcase(&case.subcases[0]);
     assert_eq!(
         (a.spc, a.temperature_initial, a.title.as_deref()),
         (Some(1), Some(4), Some("Truck, frame"))
@@ -92,7 +92,7 @@ fn a_subcase_inherits_what_it_does_not_state() {
     assert!(strain.has("STRCUR") && !strain.has("FIBER"));
     assert_eq!(a.request("DISPLACEMENT").unwrap().value, Selection::Set(2));
     assert_eq!(a.request("SPCFORCES").unwrap().value, Selection::None);
-    let b = case.effective(&case.subcases[1]);
+    let b = case.effective_subcase(&case.subcases[1]);
     assert_eq!(b.spc, Some(2));
     assert!(b.request("STRAIN").unwrap().has("FIBER"));
     assert!(b.sets[&1].has(99) && !b.sets[&1].has(5));
@@ -101,7 +101,7 @@ fn a_subcase_inherits_what_it_does_not_state() {
 
 #[test]
 fn sets_list_ids_ranges_and_exceptions() {
-    let deck = clean(DECK);
+    let deck = read_clean_deck(DECK);
     let one = &deck.case_control.global.sets[&1];
     let have: Vec<u32> = (0..50).filter(|&id| one.has(id)).collect();
     assert_eq!(have, [1, 5, 8, 9, 20, 30, 35, 40]);
@@ -112,7 +112,7 @@ fn sets_list_ids_ranges_and_exceptions() {
 #[test]
 fn an_exception_ends_outside_its_range() {
     let read = |list: &str| {
-        let deck = clean(&format!(
+        let deck = read_clean_deck(&format!(
             "SOL 101\nCEND\nSET 1 = {list}\nBEGIN BULK\nGRID,1\n"
         ));
         let set = &deck.case_control.global.sets[&1];
@@ -157,7 +157,7 @@ fn thru_in_a_list_behind_except_is_a_fault() {
         "1 THRU 10 EXCEPT THRU 6",
     ] {
         let text = format!("SOL 101\nCEND\nSET 1 = {list}\nBEGIN BULK\nGRID,1\n");
-        let faults = shown(&bulk(&text));
+        let faults = fault_texts(&bulk(&text));
         assert!(
             faults.len() == 1 && faults[0].contains("SET"),
             "{list}: {faults:?}"
@@ -167,14 +167,15 @@ fn thru_in_a_list_behind_except_is_a_fault() {
 
 #[test]
 fn a_deck_without_subcases_has_one() {
-    let deck = clean("SOL 101\nCEND\nLOAD=5\nBEGIN BULK\nGRID,1\n");
+    let deck = read_clean_deck("SOL 101\nCEND\nLOAD=5\nBEGIN BULK\nGRID,1\n");
     let all = deck.case_control.effective_subcases();
     assert_eq!((all.len(), all[0].id, all[0].load), (1, 1, Some(5)));
 }
 
 #[test]
 fn bulk_data_alone_is_recognised() {
-    let deck = clean("$ from a mesher\nGRID,1,,0.,0.,0.\nLOAD,5,1.,1.,2\nPARAM,POST,-1\n");
+    let deck =
+        read_clean_deck("$ from a mesher\nGRID,1,,0.,0.,0.\nLOAD,5,1.,1.,2\nPARAM,POST,-1\n");
     assert_eq!(
         (
             deck.cards.grids.len(),
@@ -188,20 +189,20 @@ fn bulk_data_alone_is_recognised() {
 
 #[test]
 fn a_deck_may_begin_with_begin_bulk() {
-    let deck = clean("BEGIN BULK\nGRID,1\nENDDATA\n");
+    let deck = read_clean_deck("BEGIN BULK\nGRID,1\nENDDATA\n");
     assert_eq!(deck.cards.grids.len(), 1);
 }
 
 #[test]
 fn faults_of_case_control_name_the_statement() {
     let deck = bulk("SOL 101\nCEND\nLOAD = FIVE\nSUBCASE\nSET 3 = 1 THRU X\nBEGIN BULK\n");
-    assert_eq!(shown(&deck).len(), 3);
-    assert!(shown(&deck)[0].starts_with("test.bdf:3: `LOAD`: a set number is needed: FIVE"));
+    assert_eq!(fault_texts(&deck).len(), 3);
+    assert!(fault_texts(&deck)[0].starts_with("test.bdf:3: `LOAD`: a set number is needed: FIVE"));
 }
 
 #[test]
 fn requests_may_list_ids_and_unread_ones_may_hold_anything() {
-    let deck = clean(
+    let deck = read_clean_deck(
         "SOL 101\nCEND\nESE = 1,2\nEKE(THRESH=.01) = 1 THRU 5,\n 9\nGPFORCE = TIME1\nSTRAIN(CORNER) = 4, 7 THRU 9 EXCEPT 8\nBEGIN BULK\n",
     );
     let strain = deck.case_control.global.request("STRAIN").unwrap();
@@ -212,14 +213,14 @@ fn requests_may_list_ids_and_unread_ones_may_hold_anything() {
     assert_eq!(have, [4, 7, 9]);
     assert!(strain.has("CORNER"));
     assert_eq!(
-        shown(&bulk("SOL 101\nCEND\nSTRAIN = SOME\nBEGIN BULK\n")).len(),
+        fault_texts(&bulk("SOL 101\nCEND\nSTRAIN = SOME\nBEGIN BULK\n")).len(),
         1
     );
 }
 
 #[test]
 fn sets_list_types_of_elements_and_exceptions() {
-    let deck = clean(
+    let deck = read_clean_deck(
         "SOL 101\nCEND\nSET 2 = QUAD4 TRIA3 EXCEPT 21\nSET 3 = ALL EXCEPT CTRIA3, 30 THRU 40\nSET 4 = SHEAR, INCLUDE ELEMENTS 5, GRID POINTS 6 THRU 9\nSET 10 BAR, EXCEPT 7\nBEGIN BULK\n",
     );
     let sets = &deck.case_control.global.sets;
@@ -236,7 +237,7 @@ fn an_exception_from_single_ids_is_refused() {
     // EXCEPT follows a range, ALL or types.
     for items in ["1, 2, 3 EXCEPT 2", "EXCEPT 2"] {
         let deck = bulk(&format!("SOL 101\nCEND\nSET 1 = {items}\nBEGIN BULK\n"));
-        assert_eq!(shown(&deck).len(), 1, "{items}");
+        assert_eq!(fault_texts(&deck).len(), 1, "{items}");
     }
 }
 
@@ -250,7 +251,7 @@ fn statements_between_skip_on_and_skip_off_are_not_carried_out() {
         let text = format!(
             "SOL 101\nCEND\nLOAD = 1\n{on}\nLOAD = 2\nSUBCASE 7\nLOAD = 3\n{off}\nSPC = 4\nBEGIN BULK\nGRID,1\nENDDATA\n"
         );
-        let case = clean(&text).case_control;
+        let case = read_clean_deck(&text).case_control;
         assert_eq!(
             (case.global.load, case.global.spc),
             (Some(1), Some(4)),
@@ -276,7 +277,7 @@ fn options_and_values_that_nastran_does_not_know_are_refused_with_their_line() {
         "ANALYSIS = STATCS",
         "RIGID = FOO",
     ] {
-        let found = shown(&read(line));
+        let found = fault_texts(&read(line));
         assert!(
             found.len() == 1 && found[0].starts_with("test.bdf:3: "),
             "{line}: {found:?}"
@@ -291,7 +292,7 @@ fn options_and_values_that_nastran_does_not_know_are_refused_with_their_line() {
         "ANALYSIS MODES",
         "RIGID = LAGR",
     ] {
-        assert_eq!(shown(&read(line)), Vec::<String>::new(), "{line}");
+        assert_eq!(fault_texts(&read(line)), Vec::<String>::new(), "{line}");
     }
 }
 
@@ -312,7 +313,7 @@ fn a_missing_or_misspelt_statement_between_sections_is_one_fault() {
             "test.bdf:3: `BEGIN`: no part",
         ),
     ] {
-        let found = shown(&bulk(&format!("{sections}{bulk_data}ENDDATA\n")));
+        let found = fault_texts(&bulk(&format!("{sections}{bulk_data}ENDDATA\n")));
         assert!(
             found.len() == 1 && found[0].starts_with(starts),
             "{sections}: {found:?}"

@@ -1,8 +1,8 @@
-use super::{clean, shown};
+use super::{fault_texts, read_clean_deck};
 
 /// A PSHELL with Z1, Z2.
 fn fibres(text: &str) -> (Option<f64>, Option<f64>) {
-    let deck = clean(text);
+    let deck = read_clean_deck(text);
     let p = &deck.cards.pshells[0];
     (p.z1, p.z2)
 }
@@ -47,7 +47,7 @@ RBE2    9       1       123     2       3       4       5       6       +R1
 +R2     15
 +R1     7       8       9       10      11      12      13      14      +R2
 ";
-    let deck = clean(text);
+    let deck = read_clean_deck(text);
     assert_eq!(deck.cards.pshells[0].z2, Some(0.2));
     assert_eq!(deck.cards.bars[0].offsets[0], [-1.0, 0.0, 0.0]);
     assert_eq!(
@@ -60,7 +60,7 @@ RBE2    9       1       123     2       3       4       5       6       +R1
 fn a_continuation_without_a_card_is_a_fault() {
     let deck = super::bulk("+B1     -1.0    .0      .0      -1.0    .0      .0\nGRID,1\n");
     assert_eq!(
-        shown(&deck),
+        fault_texts(&deck),
         [
             "test.bdf:1: the continuation belongs to no card: B1: put the continuation below its card, or give both the same name in columns 73-80 and 1-8"
         ]
@@ -71,7 +71,7 @@ fn a_continuation_without_a_card_is_a_fault() {
 #[test]
 fn a_continuation_with_another_name_belongs_to_no_card() {
     let head = "PSHELL  4       1       .25     1               1                       ";
-    let asked = shown(&super::bulk(&format!("{head}+P4\n+P5     -.1     .2\n")));
+    let asked = fault_texts(&super::bulk(&format!("{head}+P4\n+P5     -.1     .2\n")));
     assert_eq!(asked.len(), 2, "{asked:?}");
     assert!(
         asked[0].starts_with("test.bdf:2: the continuation belongs to no card: P5"),
@@ -87,14 +87,14 @@ fn a_continuation_with_another_name_belongs_to_no_card() {
         format!("{head}\n+P5     -.1     .2\n"),
         format!("{head}\nGRID,9\n+P5     -.1     .2\n"),
     ] {
-        let found = shown(&super::bulk(&text));
+        let found = fault_texts(&super::bulk(&text));
         assert!(
             found.len() == 1 && found[0].contains("belongs to no card: P5"),
             "{found:?}"
         );
     }
     // a beginning is another name
-    let other = shown(&super::bulk(&format!(
+    let other = fault_texts(&super::bulk(&format!(
         "{head}+P\nGRID,9\n+P5     -.1     .2\n"
     )));
     assert_eq!(other.len(), 2, "{other:?}");
@@ -105,7 +105,7 @@ fn the_last_of_several_continuations_is_missed_too() {
     let head = "RBE2    9       1       123     2       3       4       5       6       +R1\n";
     let rest = "+R1     7       8       9       10      11      12      13      14      +R2\n";
     for between in ["", "GRID,99\n"] {
-        let found = shown(&super::bulk(&[head, between, rest].concat()));
+        let found = fault_texts(&super::bulk(&[head, between, rest].concat()));
         assert!(
             found.len() == 1 && found[0].contains("that does not exist: R2"),
             "{between}: {found:?}"
@@ -129,7 +129,7 @@ fn a_name_that_two_cards_ask_for_is_refused_though_one_has_it_below() {
     };
     let rest = "+A      -.1     .2\n";
     let text = [&head(4), &head(5), rest, rest].concat();
-    let found = shown(&super::bulk(&text));
+    let found = fault_texts(&super::bulk(&text));
     assert!(
         found
             .iter()
@@ -147,7 +147,7 @@ fn chunks_of_a_large_deck_are_cut_between_cards() {
             "RBE2,{i},1,123,2,3,4,5,6,\n$ between\n7,8,9\n,10,11\n"
         ));
     }
-    let deck = clean(&text);
+    let deck = read_clean_deck(&text);
     assert_eq!(deck.cards.rbe2s.len(), 20_000);
     for (i, rbe2) in deck.cards.rbe2s.iter().enumerate() {
         assert_eq!((rbe2.id as usize, rbe2.dependent.len()), (i + 1, 10));
@@ -157,7 +157,7 @@ fn chunks_of_a_large_deck_are_cut_between_cards() {
 
 /// Offsets, stress points and end of a bar whose cards are in any order.
 fn bar(text: &str) -> (f64, f64) {
-    let deck = clean(text);
+    let deck = read_clean_deck(text);
     (
         deck.cards.bars[0].offsets[0][0],
         deck.cards.pbars[0].recovery[0][0],
@@ -218,7 +218,7 @@ fn a_continuation_goes_to_the_card_that_names_it_also_below_a_card_without_a_nam
 
 #[test]
 fn the_marks_of_columns_1_and_73_are_no_part_of_a_name() {
-    let deck = clean(
+    let deck = read_clean_deck(
         "\
 PBAR    5       6       .02     1.-5    1.-5    1.-5                     +000007
 ++000007.25     0.      -.25    0.      0.      .25     0.      -.25     +000008
@@ -238,7 +238,7 @@ fn a_continuation_that_two_cards_name_is_refused_with_both_lines() {
         format!("PBAR    {id:<8}6       .02     1.-5    1.-5    1.-5                    +Q1\n")
     };
     let [grid, rest] = ["GRID    1\n", "+Q1     .25     .25\n"];
-    let deck = |parts: &[&str]| shown(&super::bulk(&parts.concat()));
+    let deck = |parts: &[&str]| fault_texts(&super::bulk(&parts.concat()));
     let [five, six] = [card(5), card(6)];
     let apart = deck(&[&five, grid, &six, grid, rest]);
     assert_eq!(apart.len(), 1, "{apart:?}");
@@ -277,7 +277,7 @@ fn names_of_included_files_are_their_own() {
     };
     let text = b"INCLUDE 'a.inc'\nINCLUDE 'b.inc'\n".to_vec();
     let deck = super::super::read_deck("test.bdf", text, &mut loader);
-    assert_eq!(shown(&deck), Vec::<String>::new());
+    assert_eq!(fault_texts(&deck), Vec::<String>::new());
     let z1 = |id: u32| deck.cards.pshells.iter().find(|p| p.id == id)?.z1;
     assert_eq!((z1(5), z1(6)), (Some(-0.5), Some(-0.6)));
 }
@@ -292,12 +292,14 @@ fn commas_behind_a_blank_field_are_text_of_the_card_above() {
         "DEQATN,4,F(A,B)=A+B\n",
     ];
     for card in cards {
-        let deck = clean(&format!("{card}GRID,1\n            GRID,2\nGRID,3\n"));
+        let deck = read_clean_deck(&format!("{card}GRID,1\n            GRID,2\nGRID,3\n"));
         assert_eq!(deck.others.len(), 1, "{card}");
         let ids: Vec<u32> = deck.cards.grids.iter().map(|g| g.id).collect();
         assert_eq!(ids, [1, 2, 3], "{card}");
     }
     // a leading comma is an empty field 1
-    let deck = clean("RBE3    9               1       123     1.      123     1\n        ,2,3\n");
+    let deck = read_clean_deck(
+        "RBE3    9               1       123     1.      123     1\n        ,2,3\n",
+    );
     assert_eq!(deck.cards.rbe3s.len(), 1);
 }

@@ -1,27 +1,27 @@
 use super::super::{EditError, Edits, ToFields, read_deck, write_deck, write_edited};
-use super::{bulk, clean};
+use super::{bulk, read_clean_deck};
 use crate::cards::*;
 
 const DECK: &str = "SOL 101\r\nCEND\r\n$ my case\r\nSPC = 1\r\nSUBCASE 1\r\n  LOAD = 1 $ old\r\nSUBCASE 2\r\n$ kept\r\n  LOAD = 2\r\nBEGIN BULK\r\n$ my shells\r\nPSHELL  4       1       .25     1               1                       +P4\r\n$ inside\r\n+P4     -.1     .2\r\ngrid,1,,0.,0.,0. $ origin\r\nENDDATA 123\r\nafter\r\n";
 
-fn first(files: Vec<(String, Vec<u8>)>) -> String {
+fn first_file_text(files: Vec<(String, Vec<u8>)>) -> String {
     String::from_utf8(files.into_iter().next().unwrap().1).unwrap()
 }
 
 #[test]
 fn an_unedited_deck_is_written_byte_for_byte() {
-    assert_eq!(first(write_deck(&bulk(DECK))), DECK);
+    assert_eq!(first_file_text(write_deck(&bulk(DECK))), DECK);
 }
 
 #[test]
 fn a_changed_thickness_leaves_all_other_lines() {
-    let deck = clean(DECK);
+    let deck = read_clean_deck(DECK);
     let mut p = deck.cards.pshells[0].clone();
     p.card.t = Some(0.3);
     let mut edits = Edits::default();
     edits.replace_card(&deck, p.at, &p.to_card()).unwrap();
-    let new = first(write_edited(&deck, &edits));
-    assert_eq!(clean(&new).cards.pshells[0].card, p.card);
+    let new = first_file_text(write_edited(&deck, &edits));
+    assert_eq!(read_clean_deck(&new).cards.pshells[0].card, p.card);
     let expected = DECK
         .replace(
             "PSHELL  4       1       .25     1               1                       +P4\r\n",
@@ -33,20 +33,20 @@ fn a_changed_thickness_leaves_all_other_lines() {
 
 #[test]
 fn subcases_are_replaced_and_comments_stay() {
-    let deck = clean(DECK);
+    let deck = read_clean_deck(DECK);
     let mut edits = Edits::default();
     edits.remove_subcases(&deck);
     edits.insert_case_end(&deck, "SUBCASE 7\n  LOAD = 7\n");
     edits.insert_cards(&deck, "FORCE,7,1,,1.,0.,0.,1.");
     edits.replace_sol(&deck, "103");
-    let new = first(write_edited(&deck, &edits));
+    let new = first_file_text(write_edited(&deck, &edits));
     let expected = DECK
         .replace("SOL 101", "SOL 103")
         .replace("SUBCASE 1\r\n  LOAD = 1 $ old\r\nSUBCASE 2\r\n", "")
         .replace("  LOAD = 2\r\n", "SUBCASE 7\r\n  LOAD = 7\r\n")
         .replace("ENDDATA", "FORCE,7,1,,1.,0.,0.,1.\r\nENDDATA");
     assert_eq!(new, expected);
-    let read = clean(&new);
+    let read = read_clean_deck(&new);
     assert_eq!(
         (
             read.sol,
@@ -59,11 +59,11 @@ fn subcases_are_replaced_and_comments_stay() {
 
 #[test]
 fn bulk_data_alone_gets_its_sections() {
-    let deck = clean("$ mesh\nGRID,1");
+    let deck = read_clean_deck("$ mesh\nGRID,1");
     let mut edits = Edits::default();
     edits.insert_case_end(&deck, "SUBCASE 1\n  LOAD = 1\n");
     edits.insert_cards(&deck, "FORCE,1,1,,1.,0.,0.,1.\n");
-    let new = first(write_edited(&deck, &edits));
+    let new = first_file_text(write_edited(&deck, &edits));
     assert_eq!(
         new,
         "SOL 101\nCEND\nSUBCASE 1\n  LOAD = 1\nBEGIN BULK\n$ mesh\nGRID,1\nFORCE,1,1,,1.,0.,0.,1.\nENDDATA\n"
@@ -72,7 +72,7 @@ fn bulk_data_alone_gets_its_sections() {
 
 #[test]
 fn replicated_cards_and_cards_apart_are_not_edited() {
-    let deck = clean("GRID,1\n=,*1,==\n");
+    let deck = read_clean_deck("GRID,1\n=,*1,==\n");
     let grids = &deck.cards.grids;
     for grid in grids {
         assert_eq!(
@@ -80,7 +80,7 @@ fn replicated_cards_and_cards_apart_are_not_edited() {
             Err(EditError::Replicated(grid.at))
         );
     }
-    let deck = clean(
+    let deck = read_clean_deck(
         "+P4     -.1     .2\nPSHELL  4       1       .25     1               1                       +P4\n",
     );
     let at = deck.cards.pshells[0].at;
@@ -92,10 +92,10 @@ fn replicated_cards_and_cards_apart_are_not_edited() {
 
 #[test]
 fn removed_cards_are_gone_with_their_continuations() {
-    let deck = clean("RBE2,1,1,123,2,\n3,4\n,5\nGRID,1\n");
+    let deck = read_clean_deck("RBE2,1,1,123,2,\n3,4\n,5\nGRID,1\n");
     let mut edits = Edits::default();
     edits.remove_card(&deck, deck.cards.rbe2s[0].at).unwrap();
-    assert_eq!(first(write_edited(&deck, &edits)), "GRID,1\n");
+    assert_eq!(first_file_text(write_edited(&deck, &edits)), "GRID,1\n");
 }
 
 #[test]
@@ -294,7 +294,7 @@ fn written_cards_read_back_equal() {
     ] {
         text.push_str(&card);
     }
-    let deck = clean(&text);
+    let deck = read_clean_deck(&text);
     let c = &deck.cards;
     assert_eq!(c.grids[0].card, grid);
     assert_eq!((&c.forces[0].card, &c.moments[0].card), (&force, &force));
@@ -400,7 +400,7 @@ fn cards_of_mass_and_temperature_read_back_as_written() {
     masses.iter().for_each(|m| text += &m.to_card());
     rforces.iter().for_each(|r| text += &r.to_card());
     tables.iter().for_each(|t| text += &t.to_card());
-    let c = clean(&text).cards;
+    let c = read_clean_deck(&text).cards;
     assert_eq!((&c.accels[0].card, &c.accel1s[0].card), (&accel, &accel1));
     assert_eq!((&c.matt1s[0].card, &c.snorms[0].card), (&matt1, &snorm));
     assert_eq!(c.pmasses[0].card, pmass);

@@ -1,4 +1,4 @@
-use super::{bulk, clean, shown};
+use super::{bulk, fault_texts, read_clean_deck};
 
 #[test]
 fn a_value_beyond_the_last_field_is_a_fault_with_its_field() {
@@ -32,7 +32,7 @@ fn a_value_beyond_the_last_field_is_a_fault_with_its_field() {
             "test.bdf:1: `MPC` field 12 ",
         ),
     ] {
-        let found = shown(&bulk(text));
+        let found = fault_texts(&bulk(text));
         assert!(
             found.len() == 1 && found[0].starts_with(at) && found[0].contains("no such field"),
             "{text}: {found:?}"
@@ -48,11 +48,11 @@ fn a_second_card_of_defaults_is_a_fault() {
         "BEAMOR,,,,,0.,1.,0.",
     ] {
         assert_eq!(
-            shown(&bulk(&format!("GRID,1\n{card}\n"))).len(),
+            fault_texts(&bulk(&format!("GRID,1\n{card}\n"))).len(),
             0,
             "{card}"
         );
-        let found = shown(&bulk(&format!("GRID,1\n{card}\n{card}\n")));
+        let found = fault_texts(&bulk(&format!("GRID,1\n{card}\n{card}\n")));
         assert!(
             found.len() == 1 && found[0].contains("2 cards"),
             "{found:?}"
@@ -62,7 +62,8 @@ fn a_second_card_of_defaults_is_a_fault() {
 
 #[test]
 fn blank_fields_beyond_the_last_are_none() {
-    let deck = clean("FORCE,1,2,,1.,0.,1.,0.,,,,\nMPC,1,2,1,1.,3,1,-1.\n,,4,1,1.\n,,5,1,1.\n");
+    let deck =
+        read_clean_deck("FORCE,1,2,,1.,0.,1.,0.,,,,\nMPC,1,2,1,1.,3,1,-1.\n,,4,1,1.\n,,5,1,1.\n");
     assert_eq!(deck.cards.forces.len(), 1);
     assert_eq!(deck.cards.mpcs[0].terms.len(), 4);
 }

@@ -1,4 +1,4 @@
-use super::{bulk, shown};
+use super::{bulk, fault_texts};
 
 #[test]
 fn every_fault_is_reported_with_line_and_field() {
@@ -28,9 +28,9 @@ CTRIA3,7,1,1,2
         (7, None),
         (8, Some(6)),
     ];
-    assert_eq!(lines, expected, "{:#?}", shown(&deck));
+    assert_eq!(lines, expected, "{:#?}", fault_texts(&deck));
     assert_eq!(
-        shown(&deck)[0],
+        fault_texts(&deck)[0],
         "test.bdf:1: `GRID` field 5 (X2): a real number is needed, found: A.: write a number such as 1.5 or 1.5-3, and check that the value is in its own field: between commas, or in columns 9, 17, 25 .. on"
     );
 }

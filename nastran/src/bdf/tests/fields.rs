@@ -1,5 +1,5 @@
 use super::super::MemoryLoader;
-use super::{bulk, clean};
+use super::{bulk, read_clean_deck};
 use crate::cards::{CoordDefinition, MaterialAngle, Orientation};
 
 const X: [f64; 3] = [1.25, -2.5e-3, 30.0];
@@ -24,7 +24,7 @@ fn small_large_free_and_tabbed_fields_give_the_same_grid() {
         "GRID,7,2,1.25,-2.5-3,30.,3,126\r$ old line ends\rENDDATA",
     ];
     for form in forms {
-        let deck = clean(form);
+        let deck = read_clean_deck(form);
         let grid = &deck.cards.grids[0];
         assert_eq!(
             (grid.id, grid.cp, grid.x, grid.cd),
@@ -41,25 +41,26 @@ fn small_large_free_and_tabbed_fields_give_the_same_grid() {
 
 #[test]
 fn numbers_may_fill_their_fields_without_a_gap() {
-    let deck = clean("GRID           1        112.001664.7919323.51444\n");
+    let deck = read_clean_deck("GRID           1        112.001664.7919323.51444\n");
     assert_eq!(deck.cards.grids[0].x, [112.0016, 64.79193, 23.51444]);
 }
 
 #[test]
 fn columns_behind_80_are_ignored_in_fixed_fields() {
-    let deck =
-        clean("GRID    1               1.      2.      3.                              99999999\n");
+    let deck = read_clean_deck(
+        "GRID    1               1.      2.      3.                              99999999\n",
+    );
     assert_eq!(deck.cards.grids[0].x, [1.0, 2.0, 3.0]);
 }
 
 #[test]
 fn a_free_line_with_more_than_eight_fields_goes_on_by_itself() {
-    let deck = clean("CORD2C,1,0, 0.,0.,0., 0.,0.,1., 0.,1.,0.\n");
+    let deck = read_clean_deck("CORD2C,1,0, 0.,0.,0., 0.,0.,1., 0.,1.,0.\n");
     let CoordDefinition::Points { c, .. } = deck.cards.coords[0].definition else {
         panic!()
     };
     assert_eq!(c, [0.0, 1.0, 0.0]);
-    let named = clean("CORD2C,1,0, 0.,0.,0., 0.,0.,1.,+C1\n+C1, 0.,1.,0.\n");
+    let named = read_clean_deck("CORD2C,1,0, 0.,0.,0., 0.,0.,1.,+C1\n+C1, 0.,1.,0.\n");
     assert_eq!(
         named.cards.coords[0].definition,
         deck.cards.coords[0].definition
@@ -68,8 +69,9 @@ fn a_free_line_with_more_than_eight_fields_goes_on_by_itself() {
 
 #[test]
 fn data_may_go_on_behind_a_trailing_comma() {
-    let deck =
-        clean("SPC1,1,123,\n5,6,7,\n8,THRU,\n12\nGRID,1,,0.,0.,0.,,,\nGRID,2,,0.,0.,0.,,,,\n");
+    let deck = read_clean_deck(
+        "SPC1,1,123,\n5,6,7,\n8,THRU,\n12\nGRID,1,,0.,0.,0.,,,\nGRID,2,,0.,0.,0.,,,,\n",
+    );
     let parts: Vec<String> = deck
         .cards
         .spc1s
@@ -82,7 +84,7 @@ fn data_may_go_on_behind_a_trailing_comma() {
 
 #[test]
 fn a_blank_field_is_told_from_zero() {
-    let deck = clean(
+    let deck = read_clean_deck(
         "GRID    1               1.      2.      3.\nGRID    2       0       1.      2.      3.      0       0\n",
     );
     assert_eq!(
@@ -98,7 +100,7 @@ fn a_blank_field_is_told_from_zero() {
 
 #[test]
 fn theta_is_real_and_mcid_is_an_integer() {
-    let deck = clean(
+    let deck = read_clean_deck(
         "CQUAD4,1,1,1,2,3,4,30.\nCQUAD4,2,1,1,2,3,4,30\nCQUAD4,3,1,1,2,3,4\nCQUAD4,4,1,1,2,3,4,0\n",
     );
     let angles: Vec<MaterialAngle> = deck.cards.shells.iter().map(|s| s.angle).collect();
@@ -113,8 +115,9 @@ fn theta_is_real_and_mcid_is_an_integer() {
 
 #[test]
 fn a_lone_integer_as_orientation_is_a_grid() {
-    let deck =
-        clean("CBAR,1,1,1,2,5\nCBAR,2,1,1,2,0.,0.,1.\nCBAR,3,1,1,2,,1.\nCBAR,4,1,1,2,,,,GOO\n");
+    let deck = read_clean_deck(
+        "CBAR,1,1,1,2,5\nCBAR,2,1,1,2,0.,0.,1.\nCBAR,3,1,1,2,,1.\nCBAR,4,1,1,2,,,,GOO\n",
+    );
     let v: Vec<Orientation> = deck.cards.bars.iter().map(|b| b.orientation).collect();
     let expected = [
         Orientation::Grid(5),
@@ -141,7 +144,7 @@ fn bytes_that_are_no_utf8_are_kept_in_comments() {
 #[test]
 fn cards_without_a_struct_are_kept_word_for_word() {
     let text = "EIGRL    1       0.              10      0 $ modes\nGRID,1\nTABLED1 42 \n$ inside\n+       0.0     0.0     5.      100.    ENDT\nGRID,2\n";
-    let deck = clean(text);
+    let deck = read_clean_deck(text);
     let texts: Vec<String> = deck.others.iter().map(|o| deck.text(o)).collect();
     assert_eq!(
         texts[0],
@@ -163,7 +166,7 @@ fn cards_without_a_struct_are_kept_word_for_word() {
 
 #[test]
 fn text_behind_enddata_is_not_read() {
-    let deck = clean("GRID,1\nENDDATA 58e050da\nGRID,2\n");
+    let deck = read_clean_deck("GRID,1\nENDDATA 58e050da\nGRID,2\n");
     assert_eq!(deck.cards.grids.len(), 1);
     assert_eq!(deck.counts["ENDDATA"], 1);
 }

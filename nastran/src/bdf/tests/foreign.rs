@@ -1,7 +1,7 @@
 //! Texts that are no decks: nothing of them is shown.
 
 use super::super::{MemoryLoader, Wrong, read_deck};
-use super::shown;
+use super::fault_texts;
 
 fn read(main: &str, included: &str) -> Vec<String> {
     let mut loader = MemoryLoader::default();
@@ -9,7 +9,7 @@ fn read(main: &str, included: &str) -> Vec<String> {
         .files
         .insert("/etc/accounts".to_owned(), included.as_bytes().to_vec());
     let deck = read_deck("main.bdf", main.as_bytes().to_vec(), &mut loader);
-    shown(&deck)
+    fault_texts(&deck)
 }
 
 #[test]

@@ -1,5 +1,5 @@
 use super::super::{Deck, IncludeRequest, MemoryLoader, read_deck};
-use super::shown;
+use super::fault_texts;
 
 fn loader(files: &[(&str, &str)]) -> MemoryLoader {
     let files = files
@@ -40,7 +40,7 @@ fn include_names_are_quoted_or_not_and_may_take_two_lines() {
             &format!("GRID,1\n{statement}GRID,3\n"),
             &[("jobs/run/a/b.inc", "GRID,2\n")],
         );
-        assert_eq!(shown(&deck), Vec::<String>::new(), "{statement}");
+        assert_eq!(fault_texts(&deck), Vec::<String>::new(), "{statement}");
         let ids: Vec<u32> = deck.cards.grids.iter().map(|g| g.id).collect();
         assert_eq!(ids, [1, 2, 3], "{statement}");
         assert_eq!(deck.cards.grids[1].at.source.0, 1);
@@ -112,7 +112,7 @@ fn a_missing_file_is_a_fault_in_every_section() {
         "SOL 101\nINCLUDE 'dmap.alt'\nCEND\nINCLUDE 'case.inc'\nBEGIN BULK\nINCLUDE 'gone.inc'\nGRID,1\nENDDATA\n",
         &[],
     );
-    let faults = shown(&deck);
+    let faults = fault_texts(&deck);
     for (fault, (line, name)) in
         faults
             .iter()
@@ -130,19 +130,19 @@ fn a_missing_file_is_a_fault_in_every_section() {
 #[test]
 fn a_deck_that_ends_within_a_line_is_cut_and_one_without_enddata_may_be() {
     let whole = "SOL 101\nCEND\nBEGIN BULK\nGRID,1\nGRID,21\nENDDATA\n";
-    assert!(shown(&read(whole, &[])).is_empty());
-    let within = shown(&read(&whole[..whole.len() - 10], &[]));
+    assert!(fault_texts(&read(whole, &[])).is_empty());
+    let within = fault_texts(&read(&whole[..whole.len() - 10], &[]));
     assert_eq!(within.len(), 1);
     assert!(
         within[0].contains(":5: `ENDDATA`: the deck ends within a line"),
         "{within:?}"
     );
     let between = read(&whole[..whole.len() - 8], &[]);
-    assert!(shown(&between).is_empty());
+    assert!(fault_texts(&between).is_empty());
     assert!(between.notes[0].text.contains("without ENDDATA"));
     // bulk data alone needs no ENDDATA
     let bulk = read("GRID,1\nGRID,21", &[]);
-    assert!(shown(&bulk).is_empty() && bulk.notes.is_empty());
+    assert!(fault_texts(&bulk).is_empty() && bulk.notes.is_empty());
 }
 
 #[test]
@@ -156,7 +156,8 @@ fn a_file_that_includes_itself_is_a_fault() {
     );
     assert_eq!(deck.faults.len(), 1);
     assert!(
-        shown(&deck)[0].contains("jobs/run/b.inc:1: `INCLUDE`: the file includes itself: a.inc")
+        fault_texts(&deck)[0]
+            .contains("jobs/run/b.inc:1: `INCLUDE`: the file includes itself: a.inc")
     );
     assert_eq!(deck.cards.grids.len(), 2);
 }
@@ -172,7 +173,7 @@ fn executive_case_and_bulk_may_each_be_included() {
         "INCLUDE 'exec.inc'\nINCLUDE 'case.inc'\nBEGIN BULK\nINCLUDE 'bulk.inc'\nGRID,2\n",
         &files,
     );
-    assert_eq!(shown(&deck), Vec::<String>::new());
+    assert_eq!(fault_texts(&deck), Vec::<String>::new());
     assert_eq!(
         (
             deck.sol,

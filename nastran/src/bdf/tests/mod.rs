@@ -26,13 +26,13 @@ fn bulk(text: &str) -> Deck {
 }
 
 /// Reads bulk data that must be free of faults.
-fn clean(text: &str) -> Deck {
+fn read_clean_deck(text: &str) -> Deck {
     let deck = bulk(text);
-    assert_eq!(shown(&deck), Vec::<String>::new());
+    assert_eq!(fault_texts(&deck), Vec::<String>::new());
     deck
 }
 
-fn shown(deck: &Deck) -> Vec<String> {
+fn fault_texts(deck: &Deck) -> Vec<String> {
     deck.faults
         .iter()
         .map(|f| f.show(&deck.sources).to_string())

@@ -1,5 +1,5 @@
 use super::super::Named;
-use super::clean;
+use super::read_clean_deck;
 
 #[test]
 fn comments_of_preprocessors_name_properties() {
@@ -21,7 +21,7 @@ fn comments_of_preprocessors_name_properties() {
         "$ Property: rail\n",
     ];
     for form in forms {
-        let deck = clean(&format!("{form}{card}"));
+        let deck = read_clean_deck(&format!("{form}{card}"));
         assert_eq!(deck.label(Named::Property, 5), Some("rail"), "{form}");
         assert_eq!(deck.labels.len(), 1, "{form}");
     }
@@ -29,7 +29,7 @@ fn comments_of_preprocessors_name_properties() {
 
 #[test]
 fn components_and_materials_have_names_of_their_own() {
-    let deck = clean(
+    let deck = read_clean_deck(
         "$HMNAME COMP                  75\"Barre, lang\"\n$HMNAME MAT 1 \"steel\"\n$ Material Record : alu\nMAT1,2,7.+10,,.3\n$ Femap Material 3 : brass\n",
     );
     assert_eq!(deck.label(Named::Component, 75), Some("Barre, lang"));
@@ -41,7 +41,7 @@ fn components_and_materials_have_names_of_their_own() {
 #[test]
 fn a_name_before_another_kind_of_card_names_nothing() {
     assert!(
-        clean("$*  I-DEAS property: 17   name: MASS\nCONM2,1,2,,1.\nPSHELL,5,1,.1\n")
+        read_clean_deck("$*  I-DEAS property: 17   name: MASS\nCONM2,1,2,,1.\nPSHELL,5,1,.1\n")
             .labels
             .is_empty()
     );
@@ -67,7 +67,7 @@ fn each_name_belongs_to_the_card_below_it() {
     ];
     for form in forms {
         let parts: String = (7..10).map(form).collect();
-        let deck = clean(&format!(
+        let deck = read_clean_deck(&format!(
             "CQUAD4,70,7,1,2,3,4\nGRID,1\n{parts}MAT1,1,1.,,.3\n"
         ));
         let mut names: Vec<(u32, &str)> = deck
@@ -83,7 +83,7 @@ fn each_name_belongs_to_the_card_below_it() {
 
 #[test]
 fn a_component_names_its_property() {
-    let deck = clean(
+    let deck = read_clean_deck(
         "$HMNAME COMP                   3\"left rail\" 5 \"rail of 8 mm\" 4\nPSHELL,5,1,8.\n",
     );
     let component = deck.labels.iter().find(|l| l.kind == Named::Component);
@@ -93,7 +93,7 @@ fn a_component_names_its_property() {
 
 #[test]
 fn a_name_without_its_card_names_no_later_card() {
-    let deck = clean(
+    let deck = read_clean_deck(
         "$ANSA_NAME;5;PSHELL;~\nPSHELL,5,1,.1\n$ a remark\n$* Property: rail\nCONROD,1,1,2,1,.1\nPSHELL,6,1,.1\n",
     );
     assert!(deck.labels.is_empty(), "{:?}", deck.labels);

@@ -1,6 +1,6 @@
 use super::super::{Number, format_real, read_number, shortest_real};
 
-fn real(text: &str) -> Option<f64> {
+fn parse_real(text: &str) -> Option<f64> {
     match read_number(text.as_bytes()) {
         Some(Number::Real(x)) => Some(x),
         _ => None,
@@ -26,9 +26,12 @@ fn reals_may_lack_the_exponent_letter_or_digits_beside_the_point() {
         ("3.5510038288-06", 3.5510038288e-6),
     ];
     for (text, value) in cases {
-        assert_eq!(real(text), Some(value), "{text}");
+        assert_eq!(parse_real(text), Some(value), "{text}");
     }
-    assert_eq!(real("-0.").map(f64::to_bits), Some((-0.0_f64).to_bits()));
+    assert_eq!(
+        parse_real("-0.").map(f64::to_bits),
+        Some((-0.0_f64).to_bits())
+    );
 }
 
 #[test]
@@ -70,7 +73,7 @@ fn reals_are_rounded_as_the_standard_library_rounds() {
         let nastran = format!("{mantissa}{exponent:+}");
         let usual: f64 = format!("{mantissa}e{exponent}").parse().unwrap();
         assert_eq!(
-            real(&nastran).map(f64::to_bits),
+            parse_real(&nastran).map(f64::to_bits),
             Some(usual.to_bits()),
             "{nastran}"
         );
@@ -84,7 +87,11 @@ fn the_shortest_form_of_a_real_reads_back_as_the_same_real() {
         let x = f64::from_bits(next(&mut state) << 12 ^ next(&mut state));
         if x.is_finite() {
             let text = shortest_real(x);
-            assert_eq!(real(&text).map(f64::to_bits), Some(x.to_bits()), "{text}");
+            assert_eq!(
+                parse_real(&text).map(f64::to_bits),
+                Some(x.to_bits()),
+                "{text}"
+            );
         }
     }
 }
@@ -116,11 +123,11 @@ fn reals_in_sixteen_columns_keep_eleven_digits_and_more() {
         let x = (next(&mut state) as f64 / (1_u64 << 53) as f64 - 0.5) * 10_f64.powi(exponent);
         let text = format_real(x, 16);
         assert!(text.len() <= 16, "{text}");
-        let back = real(&text).unwrap();
+        let back = parse_real(&text).unwrap();
         assert!((back - x).abs() <= 5e-11 * x.abs(), "{x:e} {text}");
         let positive = format_real(x.abs(), 16);
         assert!(
-            (real(&positive).unwrap() - x.abs()).abs() <= 5e-12 * x.abs(),
+            (parse_real(&positive).unwrap() - x.abs()).abs() <= 5e-12 * x.abs(),
             "{x:e} {positive}"
         );
     }

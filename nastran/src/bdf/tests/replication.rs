@@ -1,9 +1,9 @@
-use super::{bulk, clean};
+use super::{bulk, read_clean_deck};
 
 #[test]
 fn fields_are_repeated_and_increased() {
     // the example of the quick reference guide
-    let deck = clean("GRID,101,17,1.0,10.5,,17,3456\n=,*(1),=,*(0.2),*(0.1),==\n=(3)\n");
+    let deck = read_clean_deck("GRID,101,17,1.0,10.5,,17,3456\n=,*(1),=,*(0.2),*(0.1),==\n=(3)\n");
     let ids: Vec<u32> = deck.cards.grids.iter().map(|g| g.id).collect();
     assert_eq!(ids, [101, 102, 103, 104, 105]);
     let last = &deck.cards.grids[4];
@@ -15,7 +15,7 @@ fn fields_are_repeated_and_increased() {
 
 #[test]
 fn replication_works_in_fixed_fields_and_without_brackets() {
-    let deck = clean(
+    let deck = read_clean_deck(
         "GRID    1               1.      2.      3.\n=       *1      =       *.5     ==\n=4\n",
     );
     assert_eq!(deck.cards.grids.len(), 6);
@@ -24,9 +24,9 @@ fn replication_works_in_fixed_fields_and_without_brackets() {
 
 #[test]
 fn a_new_value_replaces_the_repeated_one() {
-    let deck = clean("DEFORM,4,101,.05 $\n=,=,107,= $\n=,=,301,= $\n");
+    let deck = read_clean_deck("DEFORM,4,101,.05 $\n=,=,107,= $\n=,=,301,= $\n");
     assert_eq!(deck.counts["DEFORM"], 3);
-    let force = clean("FORCE,1,5,,1.,0.,0.,1.\n=,=,6,==\n");
+    let force = read_clean_deck("FORCE,1,5,,1.,0.,0.,1.\n=,=,6,==\n");
     assert_eq!(
         (force.cards.forces[1].grid, force.cards.forces[1].n),
         (6, [0.0, 0.0, 1.0])

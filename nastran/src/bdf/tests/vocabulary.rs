@@ -1,5 +1,5 @@
 use super::super::vocabulary::{Effect, all_cards, case_word, effect_of_card};
-use super::{bulk, clean, shown};
+use super::{bulk, fault_texts, read_clean_deck};
 
 /// Names with a struct are those that the table calls carried.
 #[test]
@@ -44,8 +44,8 @@ fn words_of_case_control_are_read_in_full_or_abbreviated() {
 #[test]
 fn an_unknown_name_is_one_fault_with_its_count() {
     let deck = bulk("BEGIN BULK\nGRID,1\nFORCEE,1,1\nFORCEE,2,1\nCQDMEM,9,1,1\nENDDATA\n");
-    let [fault] = &shown(&deck)[..] else {
-        panic!("{:?}", shown(&deck))
+    let [fault] = &fault_texts(&deck)[..] else {
+        panic!("{:?}", fault_texts(&deck))
     };
     assert!(
         fault.starts_with("test.bdf:3: `FORCEE`: Nastran has no card of this name (2 cards)"),
@@ -56,14 +56,15 @@ fn an_unknown_name_is_one_fault_with_its_count() {
 
 #[test]
 fn the_statement_autospc_is_the_parameter() {
-    let deck = clean("SOL 101\nCEND\nAUTOSPC(NOPRINT) = NO\nBEGIN BULK\nGRID,1\nENDDATA\n");
+    let deck =
+        read_clean_deck("SOL 101\nCEND\nAUTOSPC(NOPRINT) = NO\nBEGIN BULK\nGRID,1\nENDDATA\n");
     assert_eq!(deck.param("AUTOSPC").map(|p| p.values.len()), Some(1));
 }
 
 #[test]
 fn a_line_of_case_control_without_a_word_is_a_fault() {
     let deck = bulk("SOL 101\nCEND\nLOAD = 1\n-7, 8\nBEGIN BULK\nGRID,1\nENDDATA\n");
-    assert_eq!(shown(&deck).len(), 1, "{:?}", shown(&deck));
+    assert_eq!(fault_texts(&deck).len(), 1, "{:?}", fault_texts(&deck));
 }
 
 #[test]
@@ -87,7 +88,7 @@ fn a_line_above_cend_that_no_statement_begins_is_a_fault() {
             "test.bdf:4: `FOO`",
         ),
     ] {
-        let found = shown(&with(lines));
+        let found = fault_texts(&with(lines));
         assert!(
             found.len() == 1 && found[0].starts_with(says),
             "{lines}: {found:?}"
@@ -98,6 +99,6 @@ fn a_line_above_cend_that_no_statement_begins_is_a_fault() {
         "COMPILE SEDISP\nALTER 'CALL SUPER1'\nMESSAGE //'text' $\nENDALTER\nINIT MASTER(S)\n",
         "APP DISP\nCHKPNT YES\nID,STAND,BEAM\nMODEL_CHECK MAT_DENSITY=OFF\n",
     ] {
-        assert_eq!(shown(&with(lines)), Vec::<String>::new(), "{lines}");
+        assert_eq!(fault_texts(&with(lines)), Vec::<String>::new(), "{lines}");
     }
 }

@@ -50,7 +50,7 @@ pub(crate) fn executive_word(word: &str) -> bool {
 /// Returns the statement above CEND that one letter makes of a misspelt one.
 pub(crate) fn nearest_executive(word: &str) -> Option<&'static str> {
     let statements = words().iter().filter(|e| e.effect.is_executive());
-    spelling::nearest(word, statements.map(|e| e.written))
+    spelling::find_nearest_name(word, statements.map(|e| e.written))
 }
 
 /// Returns the full name of an output request; `None` for another word.
@@ -70,18 +70,18 @@ pub fn request_of(word: &str) -> Option<&'static str> {
 /// assert_eq!(effect_of_card("PSHEL"), None);
 /// ```
 pub fn nearest_card(name: &str) -> Option<&'static str> {
-    spelling::nearest(name, all_cards().map(|c| c.0))
+    spelling::find_nearest_name(name, all_cards().map(|c| c.0))
 }
 
 /// Returns the word of case control that one letter makes of a misspelt one.
 pub fn nearest_word(word: &str) -> Option<&'static str> {
-    spelling::nearest(word, all_words().map(|w| w.0))
+    spelling::find_nearest_name(word, all_words().map(|w| w.0))
 }
 
 /// Returns the parameter of the program that one letter makes of a misspelt one; `None` for a name of another parameter.
 pub fn nearest_parameter(name: &str) -> Option<&'static str> {
     let known = PARAMETERS.contains(&name) || SIMILAR_PARAMETERS.contains(&name);
-    (!known).then(|| spelling::nearest(name, PARAMETERS.into_iter()))?
+    (!known).then(|| spelling::find_nearest_name(name, PARAMETERS.into_iter()))?
 }
 
 /// Parameters that the program reads.

@@ -2,22 +2,22 @@
 
 /// Returns the known name that one letter more, less, other or exchanged with its neighbour makes of `word`: of several the one with the
 /// longest common beginning, then the shortest.
-pub(super) fn nearest(
+pub(super) fn find_nearest_name(
     word: &str,
     known: impl Iterator<Item = &'static str>,
 ) -> Option<&'static str> {
     let near = known.filter(|k| differs_by_one(k, word));
-    near.min_by_key(|k| (std::cmp::Reverse(common(k, word)), k.len()))
+    near.min_by_key(|k| (std::cmp::Reverse(common_prefix_length(k, word)), k.len()))
 }
 
 /// Returns the number of letters that two words share at their beginning.
-fn common(a: &str, b: &str) -> usize {
+fn common_prefix_length(a: &str, b: &str) -> usize {
     a.bytes().zip(b.bytes()).take_while(|(a, b)| a == b).count()
 }
 
 /// Whether the distance of two words is 1.
 fn differs_by_one(a: &str, b: &str) -> bool {
-    let same = common(a, b);
+    let same = common_prefix_length(a, b);
     let (a, b) = (a.as_bytes().get(same..), b.as_bytes().get(same..));
     let (a, b) = (a.unwrap_or_default(), b.unwrap_or_default());
     match (a, b) {

@@ -47,7 +47,7 @@ impl<T: Into<Field>> From<Option<T>> for Field {
 }
 
 impl Field {
-    fn exact(&self) -> String {
+    fn format_exact(&self) -> String {
         match self {
             Field::Blank => String::new(),
             Field::Integer(n) => n.to_string(),
@@ -56,10 +56,10 @@ impl Field {
         }
     }
 
-    fn large(&self) -> String {
+    fn format_large(&self) -> String {
         match self {
             Field::Real(x) => format_real(*x, 16),
-            other => other.exact(),
+            other => other.format_exact(),
         }
     }
 }
@@ -73,11 +73,11 @@ pub fn format_card(name: &str, fields: &[Field]) -> String {
         .rposition(|f| *f != Field::Blank)
         .map_or(0, |i| i + 1);
     let fields = fields.get(..used).unwrap_or_default();
-    let exact: Vec<String> = fields.iter().map(Field::exact).collect();
+    let exact: Vec<String> = fields.iter().map(Field::format_exact).collect();
     if exact.iter().all(|t| t.len() <= 8) {
         return lines(name, "+", &exact, 8);
     }
-    let large: Vec<String> = fields.iter().map(Field::large).collect();
+    let large: Vec<String> = fields.iter().map(Field::format_large).collect();
     let mut text = lines(&format!("{name}*"), "*", &large, 4);
     // large field counts in pairs of lines
     if large.len().div_ceil(4) % 2 == 1 {

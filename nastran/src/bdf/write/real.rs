@@ -4,8 +4,8 @@
 ///
 /// A finite `x` only; others are written as 0.
 pub fn shortest_real(x: f64) -> String {
-    let (negative, digits, exponent) = parts(&format!("{:e}", finite(x)));
-    shortest(negative, &digits, exponent)
+    let (negative, digits, exponent) = parts(&format!("{:e}", finite_or_zero(x)));
+    format_shortest(negative, &digits, exponent)
 }
 
 /// Returns the Nastran form of `x` in at most `width` columns (at least 8) with as many digits as fit.
@@ -32,8 +32,8 @@ pub fn format_real(x: f64, width: usize) -> String {
         return exact;
     }
     for decimals in (0..17).rev() {
-        let (negative, digits, exponent) = parts(&format!("{:.*e}", decimals, finite(x)));
-        let text = shortest(negative, &digits, exponent);
+        let (negative, digits, exponent) = parts(&format!("{:.*e}", decimals, finite_or_zero(x)));
+        let text = format_shortest(negative, &digits, exponent);
         if text.len() <= width {
             return text;
         }
@@ -41,7 +41,7 @@ pub fn format_real(x: f64, width: usize) -> String {
     exact
 }
 
-fn finite(x: f64) -> f64 {
+fn finite_or_zero(x: f64) -> f64 {
     if x.is_finite() { x } else { 0.0 }
 }
 
@@ -57,7 +57,7 @@ fn parts(text: &str) -> (bool, String, i32) {
 }
 
 /// Without an exponent where that takes at most 8 columns, else the shortest form. The value is `d.ddd * 10^exponent`.
-fn shortest(negative: bool, digits: &str, exponent: i32) -> String {
+fn format_shortest(negative: bool, digits: &str, exponent: i32) -> String {
     let sign = if negative { "-" } else { "" };
     if digits == "0" {
         return format!("{sign}0.");

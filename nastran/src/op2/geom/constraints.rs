@@ -6,12 +6,12 @@ use crate::cards::{IdList, SetSum, Spc, Spc1, Suport};
 /// SPC: `sid g c d`, 4 words; 5 with an unused word before d, 6 where d is double.
 pub(super) fn spc(f: &mut Fields<'_>) -> Option<Spc> {
     let (sid, grid, dofs) = (f.id()?, f.id()?, f.dofs()?);
-    if f.left() > 1 {
+    if f.words_left() > 1 {
         (f.int()? == 0).then_some(())?;
     }
     Some(Spc {
         sid,
-        terms: vec![(grid, dofs, f.real()?)],
+        terms: vec![(grid, dofs, f.read_real()?)],
     })
 }
 

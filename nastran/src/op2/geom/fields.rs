@@ -25,7 +25,7 @@ impl<'a> Fields<'a> {
     }
 
     /// Words not yet read.
-    pub(super) fn left(&self) -> usize {
+    pub(super) fn words_left(&self) -> usize {
         self.words.len().saturating_sub(self.at)
     }
 
@@ -65,15 +65,15 @@ impl<'a> Fields<'a> {
     }
 
     /// An id that may be negative.
-    pub(super) fn signed(&mut self) -> Option<i32> {
+    pub(super) fn read_signed_id(&mut self) -> Option<i32> {
         i32::try_from(self.int()?).ok()
     }
 
-    pub(super) fn real(&mut self) -> Option<f64> {
+    pub(super) fn read_real(&mut self) -> Option<f64> {
         let (value, n) = if self.double {
-            (self.words.double(self.at)?, 2)
+            (self.words.double_at(self.at)?, 2)
         } else {
-            (self.words.real(self.at)?, 1)
+            (self.words.real_at(self.at)?, 1)
         };
         self.at = self.at.checked_add(n)?;
         Some(value)
@@ -81,20 +81,20 @@ impl<'a> Fields<'a> {
 
     /// A real that is no integer read as one: 0, or of a usual size.
     pub(super) fn usual_real(&mut self) -> Option<f64> {
-        self.real()
+        self.read_real()
             .filter(|x| *x == 0.0 || (1e-30..1e30).contains(&x.abs()))
     }
 
     /// A real; the solvers' mark for a blank field (1.7368e-18) is `None`.
     pub(super) fn blank_or_real(&mut self) -> Option<Option<f64>> {
-        let x = self.real()?;
+        let x = self.read_real()?;
         Some(Some(x).filter(|x| !(1.7366e-18..1.7370e-18).contains(&x.abs())))
     }
 
     pub(super) fn reals<const N: usize>(&mut self) -> Option<[f64; N]> {
         let mut out = [0.0; N];
         for x in &mut out {
-            *x = self.real()?;
+            *x = self.read_real()?;
         }
         Some(out)
     }
@@ -110,9 +110,9 @@ impl<'a> Fields<'a> {
     /// A double in two words of a 32-bit file, or the first of two words.
     pub(super) fn pair(&mut self, narrow: bool) -> Option<f64> {
         let value = if narrow {
-            self.words.double(self.at)?
+            self.words.double_at(self.at)?
         } else {
-            self.words.real(self.at)?
+            self.words.real_at(self.at)?
         };
         self.skip(2)?;
         Some(value)

@@ -9,7 +9,7 @@ pub(super) fn grid(f: &mut Fields<'_>) -> Option<Grid> {
         id: f.id()?,
         cp: Some(f.id_or_zero()?),
         x: f.reals()?,
-        cd: Some(f.signed().filter(|cd| *cd >= -1)?),
+        cd: Some(f.read_signed_id().filter(|cd| *cd >= -1)?),
         ps: f.blank_or_dofs()?,
         seid: f.blank_or_id()?,
     })

@@ -94,10 +94,10 @@ pub(super) fn conrod(f: &mut Fields<'_>) -> Option<Conrod> {
         id: f.id()?,
         grids: f.ids()?,
         mid: f.id()?,
-        area: f.real()?,
-        torsion: f.real()?,
-        c: f.real()?,
-        nsm: f.real()?,
+        area: f.read_real()?,
+        torsion: f.read_real()?,
+        c: f.read_real()?,
+        nsm: f.read_real()?,
     })
 }
 
@@ -115,7 +115,7 @@ pub(super) fn bush(f: &mut Fields<'_>) -> Option<Bush> {
     };
     let cid = f.int()?;
     let s = f.blank_or_real()?;
-    let ocid = f.signed()?;
+    let ocid = f.read_signed_id()?;
     Some(Bush {
         id,
         pid: Some(pid),
@@ -140,14 +140,14 @@ pub(super) fn celas1(f: &mut Fields<'_>) -> Option<Spring> {
 
 /// CELAS2: `eid k g1 g2 c1 c2 ge s`.
 pub(super) fn celas2(f: &mut Fields<'_>) -> Option<Spring> {
-    let (id, k) = (f.id()?, f.real()?);
+    let (id, k) = (f.id()?, f.read_real()?);
     let ends = ends(f)?;
     Some(Spring {
         id,
         stiffness: SpringStiffness::Direct {
             k,
-            damping: f.real()?,
-            stress_coefficient: f.real()?,
+            damping: f.read_real()?,
+            stress_coefficient: f.read_real()?,
         },
         ends,
     })
@@ -167,7 +167,7 @@ pub(super) fn celas4(f: &mut Fields<'_>) -> Option<Spring> {
     Some(Spring {
         id: f.id()?,
         stiffness: SpringStiffness::Direct {
-            k: f.real()?,
+            k: f.read_real()?,
             damping: 0.0,
             stress_coefficient: 0.0,
         },

@@ -11,14 +11,14 @@ pub(super) fn force(f: &mut Fields<'_>) -> Option<Force> {
         sid: f.id()?,
         grid: f.id()?,
         cid: f.id_or_zero()?,
-        scale: f.real()?,
+        scale: f.read_real()?,
         n: f.reals()?,
     })
 }
 
 /// PLOAD: `sid p g1..g4`.
 pub(super) fn pload(f: &mut Fields<'_>) -> Option<Pload> {
-    let (sid, pressure) = (f.id()?, f.real()?);
+    let (sid, pressure) = (f.id()?, f.read_real()?);
     Some(Pload {
         sid,
         pressure,
@@ -57,7 +57,7 @@ pub(super) fn pload1(f: &mut Fields<'_>) -> Option<Pload1> {
 pub(super) fn pload2(f: &mut Fields<'_>) -> Option<Pload2> {
     Some(Pload2 {
         sid: f.id()?,
-        pressure: f.real()?,
+        pressure: f.read_real()?,
         elements: IdList::Each(vec![f.id()?]),
     })
 }
@@ -69,7 +69,7 @@ pub(super) fn pload4(f: &mut Fields<'_>) -> Option<Pload4> {
     let face = [f.blank_or_id()?, f.blank_or_id()?];
     let cid = f.id_or_zero()?;
     let n: [f64; 3] = f.reals()?;
-    let (sorl, ldir) = if f.left() > 0 {
+    let (sorl, ldir) = if f.words_left() > 0 {
         (f.text(2)?, f.text(2)?)
     } else {
         Default::default()
@@ -93,7 +93,7 @@ pub(super) fn grav(f: &mut Fields<'_>) -> Option<Grav> {
     Some(Grav {
         sid: f.id()?,
         cid: f.id_or_zero()?,
-        scale: f.real()?,
+        scale: f.read_real()?,
         n: f.reals()?,
     })
 }
@@ -104,11 +104,19 @@ pub(super) fn rforce(f: &mut Fields<'_>) -> Option<Rforce> {
         f.id()?,
         f.id_or_zero()?,
         f.id_or_zero()?,
-        f.real()?,
+        f.read_real()?,
         f.reals()?,
     );
-    let method = if f.left() > 0 { f.blank_or_id()? } else { None };
-    let acceleration = if f.left() > 0 { f.real()? } else { 0.0 };
+    let method = if f.words_left() > 0 {
+        f.blank_or_id()?
+    } else {
+        None
+    };
+    let acceleration = if f.words_left() > 0 {
+        f.read_real()?
+    } else {
+        0.0
+    };
     Some(Rforce {
         is_rforce1: false,
         sid,
@@ -124,14 +132,14 @@ pub(super) fn rforce(f: &mut Fields<'_>) -> Option<Rforce> {
 
 /// LOAD: `sid s (si li) .. -1 -1`.
 pub(super) fn load_sum(f: &mut Fields<'_>) -> Option<LoadSum> {
-    let (sid, scale) = (f.id()?, f.real()?);
+    let (sid, scale) = (f.id()?, f.read_real()?);
     let mut terms = Vec::new();
     loop {
         if f.peek()? == -1 {
             f.skip(2)?;
             return Some(LoadSum { sid, scale, terms });
         }
-        terms.push((f.real()?, f.id()?));
+        terms.push((f.read_real()?, f.id()?));
     }
 }
 
@@ -140,7 +148,7 @@ pub(super) fn temp(f: &mut Fields<'_>) -> Option<Temp> {
     Some(Temp {
         sid: f.id()?,
         grid: f.id()?,
-        t: f.real()?,
+        t: f.read_real()?,
     })
 }
 
@@ -148,6 +156,6 @@ pub(super) fn temp(f: &mut Fields<'_>) -> Option<Temp> {
 pub(super) fn tempd(f: &mut Fields<'_>) -> Option<Tempd> {
     Some(Tempd {
         sid: f.id()?,
-        t: f.real()?,
+        t: f.read_real()?,
     })
 }

@@ -19,8 +19,8 @@ pub(super) fn conm2(f: &mut Fields<'_>) -> Option<Conm2> {
     Some(Conm2 {
         id: f.id()?,
         grid: f.id()?,
-        cid: f.signed().filter(|c| *c >= -1)?,
-        mass: f.real()?,
+        cid: f.read_signed_id().filter(|c| *c >= -1)?,
+        mass: f.read_real()?,
         offset: f.reals()?,
         inertia: f.reals()?,
     })
@@ -64,13 +64,13 @@ fn property(f: &mut Fields<'_>) -> Option<ScalarMassValue> {
 }
 
 fn value(f: &mut Fields<'_>) -> Option<ScalarMassValue> {
-    Some(ScalarMassValue::Direct(f.real()?))
+    Some(ScalarMassValue::Direct(f.read_real()?))
 }
 
 /// PMASS: `pid m`.
 pub(super) fn pmass(f: &mut Fields<'_>) -> Option<Pmass> {
     Some(Pmass {
         id: f.id()?,
-        mass: f.real()?,
+        mass: f.read_real()?,
     })
 }

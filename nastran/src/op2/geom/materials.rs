@@ -10,10 +10,10 @@ pub(super) fn mat1(f: &mut Fields<'_>) -> Option<Mat1> {
         e: f.blank_or_real()?,
         g: f.blank_or_real()?,
         nu: f.blank_or_real()?,
-        rho: f.real()?,
-        alpha: f.real()?,
-        tref: f.real()?,
-        ge: f.real()?,
+        rho: f.read_real()?,
+        alpha: f.read_real()?,
+        tref: f.read_real()?,
+        ge: f.read_real()?,
         limits: [limit(f)?, limit(f)?, limit(f)?],
     })
 }
@@ -23,10 +23,10 @@ pub(super) fn mat2(f: &mut Fields<'_>) -> Option<Mat2> {
     Some(Mat2 {
         id: f.id()?,
         g: f.reals()?,
-        rho: f.real()?,
+        rho: f.read_real()?,
         alpha: f.reals()?,
-        tref: f.real()?,
-        ge: f.real()?,
+        tref: f.read_real()?,
+        ge: f.read_real()?,
     })
 }
 
@@ -34,15 +34,15 @@ pub(super) fn mat2(f: &mut Fields<'_>) -> Option<Mat2> {
 pub(super) fn mat8(f: &mut Fields<'_>) -> Option<Mat8> {
     Some(Mat8 {
         id: f.id()?,
-        e1: f.real()?,
-        e2: f.real()?,
-        nu12: f.real()?,
-        g12: f.real()?,
+        e1: f.read_real()?,
+        e2: f.read_real()?,
+        nu12: f.read_real()?,
+        g12: f.read_real()?,
         g1z: limit(f)?,
         g2z: limit(f)?,
-        rho: f.real()?,
+        rho: f.read_real()?,
         alpha: f.reals()?,
-        tref: f.real()?,
+        tref: f.read_real()?,
     })
 }
 
@@ -51,10 +51,10 @@ pub(super) fn mat9(f: &mut Fields<'_>) -> Option<Mat9> {
     Some(Mat9 {
         id: f.id()?,
         g: f.reals()?,
-        rho: f.real()?,
+        rho: f.read_real()?,
         alpha: f.reals()?,
-        tref: f.real()?,
-        ge: f.real()?,
+        tref: f.read_real()?,
+        ge: f.read_real()?,
     })
 }
 

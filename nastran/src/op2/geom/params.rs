@@ -8,7 +8,7 @@ use crate::op2::words::Words;
 /// Parameters of a record: name (2 words), type (1 integer, 2 real, 3 two words: text or a double), value. Stops at a type we do not know.
 pub(in crate::op2) fn read_params(words: Words<'_>, out: &mut Geometry) {
     let mut f = Fields::new(words, false);
-    while f.left() >= 4 {
+    while f.words_left() >= 4 {
         let Some(param) = param(&mut f, words.format.bytes() == 4) else {
             out.note(
                 "PVT0",
@@ -25,7 +25,7 @@ fn param(f: &mut Fields<'_>, narrow: bool) -> Option<Param> {
     let known = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     let value = match f.int()? {
         1 => ParamValue::Integer(f.int()?),
-        2 => ParamValue::Real(f.real()?),
+        2 => ParamValue::Real(f.read_real()?),
         3 => two_words(f, narrow)?,
         _ => return None,
     };

@@ -9,7 +9,7 @@ pub(super) fn pshell(f: &mut Fields<'_>) -> Option<Pshell> {
         id: f.id()?,
         mid1: f.blank_or_id()?,
         t: f.blank_or_real()?,
-        mid2: Some(f.signed()?).filter(|mid| *mid != 0),
+        mid2: Some(f.read_signed_id()?).filter(|mid| *mid != 0),
         bending_ratio: f.blank_or_real()?,
         mid3: f.blank_or_id()?,
         shear_ratio: f.blank_or_real()?,
@@ -33,10 +33,10 @@ pub(super) fn pcomp(f: &mut Fields<'_>) -> Option<Pcomp> {
         String::new()
     };
     let n = if n == 0 { u64::MAX } else { n.unsigned_abs() };
-    while (pcomp.plies.len() as u64) < n && f.left() > 0 && f.peek() != Some(-1) {
+    while (pcomp.plies.len() as u64) < n && f.words_left() > 0 && f.peek() != Some(-1) {
         pcomp.plies.push(ply(f)?);
     }
-    if f.left() >= 4 && f.peek() == Some(-1) {
+    if f.words_left() >= 4 && f.peek() == Some(-1) {
         f.skip(4)?;
     }
     (n == u64::MAX || pcomp.plies.len() as u64 == n).then_some(pcomp)
@@ -57,7 +57,7 @@ pub(super) fn pcompg(f: &mut Fields<'_>) -> Option<Pcomp> {
 
 fn laminate(f: &mut Fields<'_>, id: u32) -> Option<Pcomp> {
     let z0 = f.blank_or_real()?;
-    let nsm = f.real()?;
+    let nsm = f.read_real()?;
     let sb = f.blank_or_real()?.filter(|sb| *sb != 0.0);
     f.skip(1)?;
     Some(Pcomp {
@@ -66,7 +66,7 @@ fn laminate(f: &mut Fields<'_>, id: u32) -> Option<Pcomp> {
         nsm,
         sb,
         tref: f.blank_or_real()?,
-        ge: f.real()?,
+        ge: f.read_real()?,
         symmetric: false,
         lam: String::new(),
         plies: Vec::new(),
@@ -76,8 +76,8 @@ fn laminate(f: &mut Fields<'_>, id: u32) -> Option<Pcomp> {
 fn ply(f: &mut Fields<'_>) -> Option<Ply> {
     Some(Ply {
         mid: f.id()?,
-        t: f.real()?,
-        theta_deg: f.real()?,
+        t: f.read_real()?,
+        theta_deg: f.read_real()?,
         output: f.int()? != 0,
     })
 }
@@ -87,10 +87,10 @@ pub(super) fn pshear(f: &mut Fields<'_>) -> Option<Pshear> {
     Some(Pshear {
         id: f.id()?,
         mid: f.id()?,
-        t: f.real()?,
-        nsm: f.real()?,
-        f1: f.real()?,
-        f2: f.real()?,
+        t: f.read_real()?,
+        nsm: f.read_real()?,
+        f1: f.read_real()?,
+        f2: f.read_real()?,
     })
 }
 
@@ -99,17 +99,23 @@ pub(super) fn prod(f: &mut Fields<'_>) -> Option<Prod> {
     Some(Prod {
         id: f.id()?,
         mid: f.id()?,
-        area: f.real()?,
-        j: f.real()?,
-        c: f.real()?,
-        nsm: f.real()?,
+        area: f.read_real()?,
+        j: f.read_real()?,
+        c: f.read_real()?,
+        nsm: f.read_real()?,
     })
 }
 
 /// PTUBE: `pid mid od t nsm`, and od2 in some versions.
 pub(super) fn ptube(f: &mut Fields<'_>) -> Option<Ptube> {
-    let (id, mid, od, t, nsm) = (f.id()?, f.id()?, f.real()?, f.real()?, f.real()?);
-    let od2 = if f.left() > 0 {
+    let (id, mid, od, t, nsm) = (
+        f.id()?,
+        f.id()?,
+        f.read_real()?,
+        f.read_real()?,
+        f.read_real()?,
+    );
+    let od2 = if f.words_left() > 0 {
         f.blank_or_real()?.filter(|d| *d != 0.0)
     } else {
         None
@@ -126,9 +132,13 @@ pub(super) fn ptube(f: &mut Fields<'_>) -> Option<Ptube> {
 
 /// PBUSH: `pid k1..k6 b1..b6`, then `ge1 sa st ea et` (18 words) or `ge1..ge6 sa st ea et` (23), from 24 words on with the mass.
 pub(super) fn pbush(f: &mut Fields<'_>) -> Option<Pbush> {
-    let n = f.left();
+    let n = f.words_left();
     let (id, k, b) = (f.id()?, f.reals()?, f.reals()?);
-    let ge = if n < 23 { [f.real()?; 6] } else { f.reals()? };
+    let ge = if n < 23 {
+        [f.read_real()?; 6]
+    } else {
+        f.reals()?
+    };
     let recovery = f.reals()?;
     let mass = if n > 23 {
         f.blank_or_real()?.unwrap_or(0.0)
@@ -150,15 +160,15 @@ pub(super) fn pbush(f: &mut Fields<'_>) -> Option<Pbush> {
 pub(super) fn pelas(f: &mut Fields<'_>) -> Option<Pelas> {
     Some(Pelas {
         id: f.id()?,
-        k: f.real()?,
-        ge: f.real()?,
-        s: f.real()?,
+        k: f.read_real()?,
+        ge: f.read_real()?,
+        s: f.read_real()?,
     })
 }
 
 /// PSOLID: `pid mid cordm in stress isop fctn`; options as numbers, 0 where blank.
 pub(super) fn psolid(f: &mut Fields<'_>) -> Option<Psolid> {
-    let (id, mid, cordm) = (f.id()?, f.id_or_zero()?, f.signed()?);
+    let (id, mid, cordm) = (f.id()?, f.id_or_zero()?, f.read_signed_id()?);
     let mut options: [Option<String>; 4] = Default::default();
     for option in options.iter_mut().take(3) {
         *option = Some(f.int()?).filter(|v| *v != 0).map(|v| v.to_string());

@@ -1,7 +1,7 @@
 //! Records of cards: cards of fixed length in one of several widths, cards of varying length.
 
 use super::fields::Fields;
-use super::unread::{Code, Unread, unread};
+use super::unread::{Code, Unread, classify_unread_record};
 use crate::cards::{Cards, UnreadEntry};
 use crate::op2::words::Words;
 use crate::place::{Place, Placed};
@@ -24,13 +24,13 @@ pub(super) struct Record<'a> {
 }
 
 impl<'a> Record<'a> {
-    fn double(&self) -> bool {
+    fn is_double(&self) -> bool {
         self.stated.is_some_and(|s| s.1)
     }
 
     /// All words as fields, for cards of varying length.
     pub(super) fn fields(&self) -> Fields<'a> {
-        Fields::new(self.words, self.double())
+        Fields::new(self.words, self.is_double())
     }
 
     /// Words after the last `mark` in the record: what a card holds behind its terminator, at most two.
@@ -51,8 +51,8 @@ impl Geometry {
     }
 
     /// Adds the entries of a record without a reader that act, and a note on those that act where case control selects them.
-    pub(super) fn unread(&mut self, code: Code, record: Record<'_>) {
-        match unread(code, record.table, record.words, record.stated.map(|s| s.0)) {
+    pub(super) fn add_unread_entries(&mut self, code: Code, record: Record<'_>) {
+        match classify_unread_record(code, record.table, record.words, record.stated.map(|s| s.0)) {
             Unread::Acting(entries) => {
                 let entries = entries.into_iter().map(Self::place);
                 self.cards.unread.extend(entries);
@@ -86,7 +86,7 @@ impl Geometry {
 
     /// Adds cards of a fixed number of words. Solvers and versions differ in it: of `widths` the first one with which all cards
     /// make sense is taken, else the one with which most do; cards that do not are left out with a note.
-    pub(super) fn fixed<T>(
+    pub(super) fn add_fixed_cards<T>(
         &mut self,
         record: Record<'_>,
         card: &str,
@@ -100,8 +100,8 @@ impl Geometry {
             .map(|s| s.0)
             .filter(|w| *w > 0 && n_words.is_multiple_of(*w));
         let widths: Vec<(usize, bool)> = match stated {
-            Some(width) => vec![(width, record.double())],
-            None => widths.iter().map(|w| (*w, record.double())).collect(),
+            Some(width) => vec![(width, record.is_double())],
+            None => widths.iter().map(|w| (*w, record.is_double())).collect(),
         };
         let mut best: Option<(usize, Vec<Placed<T>>)> = None;
         for (width, double) in widths {
@@ -135,7 +135,7 @@ impl Geometry {
     }
 
     /// Adds cards of varying length; stops with a note at the first that does not make sense.
-    pub(super) fn varying<T>(
+    pub(super) fn add_varying_cards<T>(
         &mut self,
         record: Record<'_>,
         card: &str,
@@ -143,13 +143,13 @@ impl Geometry {
         list: impl Fn(&mut Cards) -> &mut Vec<Placed<T>>,
     ) {
         let mut fields = record.fields();
-        while fields.left() > 0 {
+        while fields.words_left() > 0 {
             match parse(&mut fields) {
                 Some(card) => list(&mut self.cards).push(Self::place(card)),
                 None => {
                     let message = format!(
                         "{card}: the record is not valid from word {} of {} on; the rest was left out",
-                        record.words.len().saturating_sub(fields.left()),
+                        record.words.len().saturating_sub(fields.words_left()),
                         record.words.len()
                     );
                     self.left_out(card, record.table, message);

@@ -12,7 +12,11 @@ pub(super) fn rbar(f: &mut Fields<'_>) -> Option<Rbar> {
         *c = f.blank_or_dofs()?.unwrap_or_default();
     }
     let [cna, cnb, cma, cmb] = c;
-    let alpha = if f.left() > 0 { f.real()? } else { 0.0 };
+    let alpha = if f.words_left() > 0 {
+        f.read_real()?
+    } else {
+        0.0
+    };
     Some(Rbar {
         id,
         grids,
@@ -64,7 +68,7 @@ pub(super) fn rbe3(record: Record<'_>) -> impl Fn(&mut Fields<'_>) -> Option<Rbe
                 mark = end;
                 break;
             }
-            let (weight, dofs) = (f.real()?, f.dofs()?);
+            let (weight, dofs) = (f.read_real()?, f.dofs()?);
             let (grids, end) = f.ids_until_mark()?;
             mark = end;
             groups.push(Rbe3Group {
@@ -102,7 +106,7 @@ pub(super) fn mpc(f: &mut Fields<'_>) -> Option<Mpc> {
         terms.push((
             f.id()?,
             u8::try_from(f.int()?).ok().filter(|c| *c <= 6)?,
-            f.real()?,
+            f.read_real()?,
         ));
     }
 }
@@ -120,5 +124,9 @@ pub(super) fn pairs(f: &mut Fields<'_>, mark: i64) -> Option<Vec<(u32, Dofs)>> {
 fn alpha(f: &mut Fields<'_>, tail: usize) -> Option<f64> {
     let mut values = *f;
     f.skip(tail)?;
-    if tail == 0 { Some(0.0) } else { values.real() }
+    if tail == 0 {
+        Some(0.0)
+    } else {
+        values.read_real()
+    }
 }

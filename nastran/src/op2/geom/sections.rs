@@ -18,7 +18,7 @@ pub(super) fn pbar(f: &mut Fields<'_>) -> Option<Pbar> {
         nsm,
         recovery,
         k: [or_blank(f)?, or_blank(f)?],
-        i12: f.real()?,
+        i12: f.read_real()?,
     })
 }
 
@@ -98,7 +98,7 @@ pub(super) fn pbeam(f: &mut Fields<'_>) -> Option<Pbeam> {
     if let Some(last) = stations.last().filter(|s| s.x_xb < 1.0).copied() {
         stations.push(BeamStation { x_xb: 1.0, ..last });
     }
-    let k = [Some(f.real()?), Some(f.real()?)];
+    let k = [Some(f.read_real()?), Some(f.read_real()?)];
     let s = f.reals()?;
     let mut pairs = [[None; 2]; 6];
     for value in pairs.as_flattened_mut() {
@@ -125,7 +125,7 @@ fn section(f: &mut Fields<'_>) -> Option<(u32, u32, String, Vec<f64>)> {
     let kind = f.text(2)?;
     let mut values = Vec::new();
     while f.peek()? != -1 {
-        values.push(f.real()?);
+        values.push(f.read_real()?);
     }
     f.skip(1)?;
     Some((id, mid, kind, values))

@@ -35,7 +35,7 @@ pub(super) fn quad8(f: &mut Fields<'_>) -> Option<Shell> {
     thicknesses(f, &mut shell)?;
     shell.angle = theta(f)?;
     shell.zoffs = offset(f)?;
-    shell.tflag = f.left() > 0 && flag(f)?;
+    shell.tflag = f.words_left() > 0 && flag(f)?;
     mcid(f, shell)
 }
 
@@ -45,7 +45,7 @@ pub(super) fn tria6(f: &mut Fields<'_>) -> Option<Shell> {
     shell.angle = theta(f)?;
     shell.zoffs = offset(f)?;
     thicknesses(f, &mut shell)?;
-    shell.tflag = f.left() > 0 && flag(f)?;
+    shell.tflag = f.words_left() > 0 && flag(f)?;
     mcid(f, shell)
 }
 
@@ -117,7 +117,7 @@ fn thicknesses(f: &mut Fields<'_>, shell: &mut Shell) -> Option<()> {
 
 /// The last word of newer versions: a material coordinate system, or -1.
 fn mcid(f: &mut Fields<'_>, mut shell: Shell) -> Option<Shell> {
-    if f.left() > 0 {
+    if f.words_left() > 0 {
         match f.int()? {
             -1 => {}
             cid => shell.angle = MaterialAngle::Mcid(u32::try_from(cid).ok()?),

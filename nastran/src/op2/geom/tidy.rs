@@ -16,41 +16,47 @@ pub(in crate::op2) fn tidy(g: &mut Geometry) {
             twice.push(format!("{n} {card}"));
         }
     };
-    once("GRID", unique(&mut c.grids, |g| g.id));
-    once("CORD", unique(&mut c.coords, |x| x.id));
-    once("shell", unique(&mut c.shells, |e| e.id));
-    once("CSHEAR", unique(&mut c.shear_panels, |e| e.id));
-    once("CBAR", unique(&mut c.bars, |e| e.id));
-    once("CBEAM", unique(&mut c.beams, |e| e.bar.id));
-    once("CROD", unique(&mut c.rods, |e| e.id));
-    once("CONROD", unique(&mut c.conrods, |e| e.id));
-    once("CBUSH", unique(&mut c.bushes, |e| e.id));
-    once("CELAS", unique(&mut c.springs, |e| e.id));
-    once("solid", unique(&mut c.solids, |e| e.id));
-    once("CONM1", unique(&mut c.conm1s, |e| e.id));
-    once("CONM2", unique(&mut c.conm2s, |e| e.id));
-    once("CMASS", unique(&mut c.scalar_masses, |e| e.id));
-    once("RBE1", unique(&mut c.rbe1s, |e| e.id));
-    once("RBE2", unique(&mut c.rbe2s, |e| e.id));
-    once("RBE3", unique(&mut c.rbe3s, |e| e.id));
-    once("RBAR", unique(&mut c.rbars, |e| e.id));
-    once("PSHELL", unique(&mut c.pshells, |p| p.id));
-    once("PCOMP", unique(&mut c.pcomps, |p| p.id));
-    once("PSHEAR", unique(&mut c.pshears, |p| p.id));
-    once("PBAR", unique(&mut c.pbars, |p| p.id));
-    once("PBARL", unique(&mut c.pbarls, |p| p.id));
-    once("PBEAM", unique(&mut c.pbeams, |p| p.id));
-    once("PBEAML", unique(&mut c.pbeamls, |p| p.id));
-    once("PROD", unique(&mut c.prods, |p| p.id));
-    once("PTUBE", unique(&mut c.ptubes, |p| p.id));
-    once("PBUSH", unique(&mut c.pbushes, |p| p.id));
-    once("PELAS", unique(&mut c.pelas, |p| p.id));
-    once("PMASS", unique(&mut c.pmasses, |p| p.id));
-    once("PSOLID", unique(&mut c.psolids, |p| p.id));
-    once("MAT1", unique(&mut c.mat1s, |m| m.id));
-    once("MAT2", unique(&mut c.mat2s, |m| m.id));
-    once("MAT8", unique(&mut c.mat8s, |m| m.id));
-    once("MAT9", unique(&mut c.mat9s, |m| m.id));
+    once("GRID", remove_duplicate_ids(&mut c.grids, |g| g.id));
+    once("CORD", remove_duplicate_ids(&mut c.coords, |x| x.id));
+    once("shell", remove_duplicate_ids(&mut c.shells, |e| e.id));
+    once(
+        "CSHEAR",
+        remove_duplicate_ids(&mut c.shear_panels, |e| e.id),
+    );
+    once("CBAR", remove_duplicate_ids(&mut c.bars, |e| e.id));
+    once("CBEAM", remove_duplicate_ids(&mut c.beams, |e| e.bar.id));
+    once("CROD", remove_duplicate_ids(&mut c.rods, |e| e.id));
+    once("CONROD", remove_duplicate_ids(&mut c.conrods, |e| e.id));
+    once("CBUSH", remove_duplicate_ids(&mut c.bushes, |e| e.id));
+    once("CELAS", remove_duplicate_ids(&mut c.springs, |e| e.id));
+    once("solid", remove_duplicate_ids(&mut c.solids, |e| e.id));
+    once("CONM1", remove_duplicate_ids(&mut c.conm1s, |e| e.id));
+    once("CONM2", remove_duplicate_ids(&mut c.conm2s, |e| e.id));
+    once(
+        "CMASS",
+        remove_duplicate_ids(&mut c.scalar_masses, |e| e.id),
+    );
+    once("RBE1", remove_duplicate_ids(&mut c.rbe1s, |e| e.id));
+    once("RBE2", remove_duplicate_ids(&mut c.rbe2s, |e| e.id));
+    once("RBE3", remove_duplicate_ids(&mut c.rbe3s, |e| e.id));
+    once("RBAR", remove_duplicate_ids(&mut c.rbars, |e| e.id));
+    once("PSHELL", remove_duplicate_ids(&mut c.pshells, |p| p.id));
+    once("PCOMP", remove_duplicate_ids(&mut c.pcomps, |p| p.id));
+    once("PSHEAR", remove_duplicate_ids(&mut c.pshears, |p| p.id));
+    once("PBAR", remove_duplicate_ids(&mut c.pbars, |p| p.id));
+    once("PBARL", remove_duplicate_ids(&mut c.pbarls, |p| p.id));
+    once("PBEAM", remove_duplicate_ids(&mut c.pbeams, |p| p.id));
+    once("PBEAML", remove_duplicate_ids(&mut c.pbeamls, |p| p.id));
+    once("PROD", remove_duplicate_ids(&mut c.prods, |p| p.id));
+    once("PTUBE", remove_duplicate_ids(&mut c.ptubes, |p| p.id));
+    once("PBUSH", remove_duplicate_ids(&mut c.pbushes, |p| p.id));
+    once("PELAS", remove_duplicate_ids(&mut c.pelas, |p| p.id));
+    once("PMASS", remove_duplicate_ids(&mut c.pmasses, |p| p.id));
+    once("PSOLID", remove_duplicate_ids(&mut c.psolids, |p| p.id));
+    once("MAT1", remove_duplicate_ids(&mut c.mat1s, |m| m.id));
+    once("MAT2", remove_duplicate_ids(&mut c.mat2s, |m| m.id));
+    once("MAT8", remove_duplicate_ids(&mut c.mat8s, |m| m.id));
+    once("MAT9", remove_duplicate_ids(&mut c.mat9s, |m| m.id));
 
     c.psolids
         .retain(|p| p.options.last().and_then(Option::as_deref) != Some("FAKE"));
@@ -90,7 +96,7 @@ pub(in crate::op2) fn tidy(g: &mut Geometry) {
 }
 
 /// Keeps the first card of each id; how many went.
-fn unique<T>(list: &mut Vec<Placed<T>>, id: impl Fn(&T) -> u32) -> usize {
+fn remove_duplicate_ids<T>(list: &mut Vec<Placed<T>>, id: impl Fn(&T) -> u32) -> usize {
     let before = list.len();
     let mut seen = HashSet::with_capacity(before);
     list.retain(|card| seen.insert(id(&card.card)));

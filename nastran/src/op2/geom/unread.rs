@@ -28,7 +28,12 @@ pub(super) enum Unread {
 
 /// Returns the entries of a record without a reader. `words` are those behind its code, `stated` is the length of an entry where the code
 /// states it. A record whose entries vary in length, or have an unknown length, is one entry.
-pub(super) fn unread(code: Code, table: &str, words: Words<'_>, stated: Option<usize>) -> Unread {
+pub(super) fn classify_unread_record(
+    code: Code,
+    table: &str,
+    words: Words<'_>,
+    stated: Option<usize>,
+) -> Unread {
     let Some((name, length)) = names().get(&code).copied() else {
         let (a, b, c) = code;
         return Unread::Acting(vec![UnreadEntry {
@@ -69,13 +74,13 @@ fn names() -> &'static HashMap<Code, (&'static str, usize)> {
     NAMES.get_or_init(|| {
         include_str!("records.txt")
             .lines()
-            .filter_map(named)
+            .filter_map(parse_record_name)
             .collect()
     })
 }
 
 /// Reads `NAME a,b,c length`.
-fn named(line: &'static str) -> Option<(Code, (&'static str, usize))> {
+fn parse_record_name(line: &'static str) -> Option<(Code, (&'static str, usize))> {
     let mut words = line.split(' ');
     let name = words.next()?;
     let mut code = words.next()?.split(',').map(str::parse);
@@ -92,7 +97,7 @@ mod tests {
     #[test]
     fn every_code_has_one_name_and_no_reader_of_its_own() {
         let lines = include_str!("records.txt").lines();
-        let codes: Vec<Code> = lines.filter_map(named).map(|n| n.0).collect();
+        let codes: Vec<Code> = lines.filter_map(parse_record_name).map(|n| n.0).collect();
         assert!(codes.len() > 300, "{}", codes.len());
         assert_eq!(codes.len(), names().len());
         let dispatch = include_str!("dispatch.rs");

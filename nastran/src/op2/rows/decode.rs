@@ -62,7 +62,7 @@ fn push_entry(
 ) -> Result<(), i64> {
     let entity = entity.map_or_else(|| leading_id(w), Ok)?;
     let id = |at: u32, layer: u32| RowId { entity, at, layer };
-    let grid = |i: usize| narrow(w.int(i).unwrap_or(0));
+    let grid = |i: usize| narrow_to_u32(w.int(i).unwrap_or(0));
     let columns = layout.columns.len();
     match layout.shape {
         Shape::Plain | Shape::Stations => {
@@ -91,7 +91,7 @@ fn push_entry(
                 let at = if i == 0 {
                     0
                 } else {
-                    narrow(place.int(0).unwrap_or(0))?
+                    narrow_to_u32(place.int(0).unwrap_or(0))?
                 };
                 rows.ids.extend([id(at, 1), id(at, 2)]);
                 place.push_reals(1, 2 * columns, &mut rows.values);
@@ -102,7 +102,7 @@ fn push_entry(
                 let at = if i == 0 {
                     0
                 } else {
-                    narrow(place.int(0).unwrap_or(0))?
+                    narrow_to_u32(place.int(0).unwrap_or(0))?
                 };
                 rows.ids.push(id(at, 0));
                 place.push_reals(1, columns, &mut rows.values);
@@ -111,15 +111,17 @@ fn push_entry(
         Shape::Beam => {
             for (i, station) in w.rest(1).entries(columns.saturating_add(1)).enumerate() {
                 // stations that are not asked for are filled with zeros
-                if i == 0 || station.real(1).is_some_and(|x| x > 0.0) {
-                    rows.ids.push(id(narrow(station.int(0).unwrap_or(0))?, 0));
+                if i == 0 || station.real_at(1).is_some_and(|x| x > 0.0) {
+                    rows.ids
+                        .push(id(narrow_to_u32(station.int(0).unwrap_or(0))?, 0));
                     station.push_reals(1, columns, &mut rows.values);
                 }
             }
         }
         Shape::Solid => {
             for place in w.rest(4).entries(21) {
-                rows.ids.push(id(narrow(place.int(0).unwrap_or(0))?, 0));
+                rows.ids
+                    .push(id(narrow_to_u32(place.int(0).unwrap_or(0))?, 0));
                 push_solid(place, &mut rows.values);
             }
         }
@@ -130,7 +132,7 @@ fn push_entry(
 /// A location of a solid: `grid, xx xy p1 a1 a2 a3 pressure vm, yy yz p2 b1 b2 b3, zz zx p3 c1 c2 c3`, where a, b, c are direction cosines. The
 /// principal values p1 p2 p3 have no fixed order in the file; they are sorted.
 fn push_solid(place: Words<'_>, out: &mut Vec<f64>) {
-    let v = |i: usize| place.real(i).unwrap_or(f64::NAN);
+    let v = |i: usize| place.real_at(i).unwrap_or(f64::NAN);
     let mut principal = [v(3), v(11), v(17)];
     principal.sort_by(|a, b| b.total_cmp(a));
     let [max, mid, min] = principal;
@@ -143,10 +145,10 @@ fn leading_id(w: Words<'_>) -> Result<u32, i64> {
     if word < 0 {
         return Err(word);
     }
-    narrow(word / 10).map_err(|_| word)
+    narrow_to_u32(word / 10).map_err(|_| word)
 }
 
-fn narrow(word: i64) -> Result<u32, i64> {
+fn narrow_to_u32(word: i64) -> Result<u32, i64> {
     u32::try_from(word).map_err(|_| word)
 }
 

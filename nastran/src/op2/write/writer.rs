@@ -58,7 +58,7 @@ impl<W: Write> Op2Writer<W> {
     /// What the output gives.
     pub fn write_encoded(&mut self, block: &EncodedBlock) -> Result<(), WriteError> {
         if self.open != Some(block.table) {
-            self.close()?;
+            self.close_table()?;
             self.stream
                 .open_table(block.table, block.subtable, self.date)?;
             self.open = Some(block.table);
@@ -74,11 +74,11 @@ impl<W: Write> Op2Writer<W> {
     ///
     /// What the output gives.
     pub fn finish(mut self) -> Result<W, WriteError> {
-        self.close()?;
+        self.close_table()?;
         Ok(self.stream.finish()?)
     }
 
-    fn close(&mut self) -> Result<(), WriteError> {
+    fn close_table(&mut self) -> Result<(), WriteError> {
         if self.open.take().is_some() {
             self.stream.close_table()?;
         }

@@ -39,7 +39,7 @@ pub(crate) struct Interior {
 }
 
 impl LineStrain {
-    fn at(&self, xi: f64) -> Vector3<f64> {
+    fn strain_at(&self, xi: f64) -> Vector3<f64> {
         let mix = |v: [f64; 2]| v[0] + (v[1] - v[0]) * xi;
         // Strain at (y, z) is e0 + z ky - y kz.
         Vector3::new(mix(self.axial), mix(self.per_z), -mix(self.per_y))
@@ -47,7 +47,7 @@ impl LineStrain {
 }
 
 /// Returns the section forces N, Vy, Vz, T, My, Mz at `xi` from the loads beyond it.
-pub(super) fn beyond(loads: &[LineLoad], xi: f64, length: f64) -> Vector6<f64> {
+pub(super) fn sum_loads_beyond(loads: &[LineLoad], xi: f64, length: f64) -> Vector6<f64> {
     let mut sum = Vector6::zeros();
     let mut add = |x: f64, f: Vec3, m: Vec3| {
         let arm = length * (x - xi);
@@ -106,10 +106,10 @@ impl Interior {
                     0.0, 0.0, -arm, 0.0, 1.0, 0.0, //
                     0.0, arm, 0.0, 0.0, 0.0, 1.0,
                 ]);
-                let q = beyond(&self.loads, xi, l);
+                let q = sum_loads_beyond(&self.loads, xi, l);
                 let mut strain = beam.compliance(&s) * Vector3::new(q[0], q[4], q[5]);
                 if let Some(t) = &self.thermal {
-                    strain += t.at(xi);
+                    strain += t.strain_at(xi);
                 }
                 d += b.transpose() * strain * dx;
                 for (i, k) in beam.k.iter().enumerate() {
@@ -129,7 +129,7 @@ impl Interior {
     pub(super) fn end_forces(&self, beam: &LocalBeam<'_>) -> Option<SVector<f64, 12>> {
         let (kb, g) = beam.basic()?;
         let held = kb * self.displacement(beam);
-        let at_a = beyond(&self.loads, 0.0, beam.length) - g * held;
+        let at_a = sum_loads_beyond(&self.loads, 0.0, beam.length) - g * held;
         let mut f = SVector::<f64, 12>::zeros();
         f.fixed_rows_mut::<6>(0).copy_from(&at_a);
         f.fixed_rows_mut::<6>(6).copy_from(&held);

@@ -14,7 +14,7 @@ const GAUSS: [(f64, f64); 3] = [
 ];
 
 /// Integrates f(share of the length, section, length element) along a beam.
-fn along(model: &Model, beam: &Beam, mut f: impl FnMut(f64, &Section, f64)) {
+fn integrate_along_beam(model: &Model, beam: &Beam, mut f: impl FnMut(f64, &Section, f64)) {
     let Some(property) = model.beam_properties.get(beam.property.us()) else {
         return;
     };
@@ -49,7 +49,7 @@ pub(crate) fn beam_lumped_mass(model: &Model, i: usize) -> [Matrix6<f64>; 2] {
     let beam = &model.beams[i];
     let rho = density(model, beam);
     let mut ends = [Matrix6::zeros(); 2];
-    along(model, beam, |xi, s, dx| {
+    integrate_along_beam(model, beam, |xi, s, dx| {
         for (end, share) in [(0, 1.0 - xi), (1, xi)] {
             let at = |[y, z]: [f64; 2]| {
                 beam.offsets[end] + beam.axes.transpose() * Vector3::new(0.0, y, z)
@@ -107,7 +107,7 @@ fn local_mass(model: &Model, beam: &Beam) -> SMatrix<f64, 12, 12> {
     let (rho, l) = (density(model, beam), length(model, beam));
     let mut m = SMatrix::<f64, 12, 12>::zeros();
     // Degree six: the three-point rule on halves is exact enough for uniform beams and keeps rigid motions exact.
-    along(model, beam, |xi, s, dx| {
+    integrate_along_beam(model, beam, |xi, s, dx| {
         let (mass, polar) = per_length(rho, s);
         let n = shapes(xi, l);
         m += n.transpose() * n * (mass * dx);

@@ -1,7 +1,7 @@
 //! Beams of a model: stiffness in the basic frame, strain at the recovery points.
 
 use super::flexibility::{LocalBeam, compliance, release, section_at};
-use super::interior::{Interior, LineLoad, beyond};
+use super::interior::{Interior, LineLoad, sum_loads_beyond};
 use super::warping::{self, torque_at_ends, warping_torsion};
 use crate::fe::element::ElementMatrix;
 use crate::fe::error::Refusal;
@@ -26,7 +26,7 @@ pub(super) fn length(model: &Model, beam: &Beam) -> f64 {
     (end(1) - end(0)).norm()
 }
 
-pub(super) fn local<'a>(
+pub(super) fn build_local_beam<'a>(
     model: &'a Model,
     beam: &Beam,
 ) -> Result<(LocalBeam<'a>, &'a BeamProperty), Refusal> {
@@ -101,12 +101,12 @@ pub(super) fn to_element(beam: &Beam) -> Matrix12 {
 }
 
 /// Stiffness and the end forces that act as what is between the ends, pins released, element frame.
-fn pinned(
+fn form_stiffness_and_forces(
     model: &Model,
     beam: &Beam,
     interior: &Interior,
 ) -> Result<(Matrix12, SVector<f64, 12>), Refusal> {
-    let (local, _) = local(model, beam)?;
+    let (local, _) = build_local_beam(model, beam)?;
     let flexible = || {
         refuse(
             beam,
@@ -142,7 +142,7 @@ pub(crate) fn beam_end_forces(
     interior: &Interior,
 ) -> Result<Vec<(GridIx, [f64; 6])>, Refusal> {
     let beam = &model.beams[i];
-    let (_, mut f) = pinned(model, beam, interior)?;
+    let (_, mut f) = form_stiffness_and_forces(model, beam, interior)?;
     let mut bimoments = Vec::new();
     if let Some([at_a, at_b]) = beam.warping {
         let torques = interior
@@ -173,9 +173,9 @@ pub(crate) fn beam_end_forces(
 pub(crate) fn beam_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, Refusal> {
     let beam = &model.beams[i];
     let t = to_element(beam);
-    let k = pinned(model, beam, &Interior::default())?.0;
+    let k = form_stiffness_and_forces(model, beam, &Interior::default())?.0;
     if beam.warping.is_some() {
-        return warped(model, beam, k, &t);
+        return replace_torsion_by_warping(model, beam, k, &t);
     }
     let k = t.transpose() * k * t;
     Ok(ElementMatrix {
@@ -185,7 +185,12 @@ pub(crate) fn beam_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, R
 }
 
 /// The stiffness `k` of a beam (element frame) with its torsion replaced by that of a bar that warps.
-fn warped(model: &Model, beam: &Beam, k: Matrix12, t: &Matrix12) -> Result<ElementMatrix, Refusal> {
+fn replace_torsion_by_warping(
+    model: &Model,
+    beam: &Beam,
+    k: Matrix12,
+    t: &Matrix12,
+) -> Result<ElementMatrix, Refusal> {
     let (gj, ecw, length) = torsion_of(model, beam)?;
     let torsion = warping_torsion(gj, ecw, length);
     Ok(warping::assemble_with_warping(
@@ -198,7 +203,7 @@ fn warped(model: &Model, beam: &Beam, k: Matrix12, t: &Matrix12) -> Result<Eleme
 
 /// GJ, E CW and length of a beam that warps.
 fn torsion_of(model: &Model, beam: &Beam) -> Result<(f64, f64, f64), Refusal> {
-    let (local, property) = local(model, beam)?;
+    let (local, property) = build_local_beam(model, beam)?;
     let uniform = |of: &dyn Fn(&crate::model::Section) -> f64| {
         let first = property.sections.first().map_or(0.0, |s| of(&s.1));
         property
@@ -258,7 +263,7 @@ pub(crate) fn beam_forces(
 ) -> Result<BeamForces, Refusal> {
     let beam = &model.beams[i];
     let grid: Vec<f64> = beam.grids.iter().flat_map(|g| u[g.us()]).collect();
-    let (k, held) = pinned(model, beam, interior)?;
+    let (k, held) = form_stiffness_and_forces(model, beam, interior)?;
     let f = k * (to_element(beam) * SVector::<f64, 12>::from_column_slice(&grid)) - held;
     Ok(BeamForces {
         force: [f[6], f[7], f[8]],
@@ -276,7 +281,7 @@ pub(crate) fn strain_at(
 ) -> StationStrain {
     let s = section_at(sections, xi);
     let arm = length * (1.0 - xi);
-    let inside = beyond(loads, xi, length);
+    let inside = sum_loads_beyond(loads, xi, length);
     let ([n, vy, vz], [my, mz]) = (forces.force, forces.moment);
     let at_section = Vector3::new(
         n + inside[0],
@@ -297,6 +302,6 @@ pub(crate) fn strain_at(
 /// # Errors
 /// As `beam_stiffness`.
 pub(crate) fn modulus_and_length(model: &Model, i: usize) -> Result<(f64, f64), Refusal> {
-    let (local, _) = local(model, &model.beams[i])?;
+    let (local, _) = build_local_beam(model, &model.beams[i])?;
     Ok((local.e, local.length))
 }

@@ -65,7 +65,7 @@ pub(super) fn warping_torsion(gj: f64, ecw: f64, length: f64) -> Matrix4<f64> {
 
 /// Twist and its rate at the share `xi` of the length by theta_A, theta'_A, theta_B, theta'_B, exact: the two pieces that meet there,
 /// solved for their common point.
-fn between(gj: f64, ecw: f64, length: f64, xi: f64) -> SMatrix<f64, 2, 4> {
+fn interpolate_twist(gj: f64, ecw: f64, length: f64, xi: f64) -> SMatrix<f64, 2, 4> {
     let mut rows = SMatrix::<f64, 2, 4>::zeros();
     if !(xi > 0.0 && xi < 1.0) {
         let end = if xi > 0.0 { 2 } else { 0 };
@@ -121,14 +121,14 @@ pub(super) fn torque_at_ends(
 ) -> Vector4<f64> {
     let mut f = Vector4::zeros();
     for ([from, to], torque) in torques {
-        let here = between(gj, ecw, length, from);
+        let here = interpolate_twist(gj, ecw, length, from);
         if from == to {
             f += here.row(0).transpose() * torque[0];
             continue;
         }
         let piece = of_linear_torque(gj, ecw, length * (to - from), torque);
         f += here.transpose() * piece.fixed_rows::<2>(0);
-        f += between(gj, ecw, length, to).transpose() * piece.fixed_rows::<2>(2);
+        f += interpolate_twist(gj, ecw, length, to).transpose() * piece.fixed_rows::<2>(2);
     }
     f
 }

@@ -16,7 +16,7 @@ impl Heat {
     }
 
     /// Free strain at the heights `z` of the surfaces where the rise of the reference plane is `rise`.
-    pub(crate) fn free(&self, rise: f64, z: [f64; 2]) -> [[f64; 3]; 2] {
+    pub(crate) fn free_strain(&self, rise: f64, z: [f64; 2]) -> [[f64; 3]; 2] {
         std::array::from_fn(|s| {
             self.expansion.surface[s].map(|a| a * (rise + self.gradient * z[s]))
         })
@@ -114,7 +114,7 @@ pub(crate) fn expansion(
                 add(&mut out.moment[0], stress, moment(2));
                 add(&mut out.moment[1], stress, moment(3));
             }
-            match Lamination::of(lam)? {
+            match Lamination::parse_lam(lam)? {
                 Lamination::Full => {}
                 Lamination::Membrane => out.moment = [[0.0; 3]; 2],
                 Lamination::Bending => out.force = [[0.0; 3]; 2],

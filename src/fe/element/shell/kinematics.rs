@@ -104,7 +104,7 @@ impl Local {
     }
 }
 
-fn put<const M: usize>(row: &mut Row<M>, at: usize, v: &Vec3) {
+fn add_vector<const M: usize>(row: &mut Row<M>, at: usize, v: &Vec3) {
     row[at] += v.x;
     row[at + 1] += v.y;
     row[at + 2] += v.z;
@@ -118,9 +118,9 @@ pub(super) fn membrane<const N: usize, const M: usize>(
     let mut rows = [[0.0; M]; 3];
     for k in 0..N {
         let (hr, hs) = (shape.hr[k], shape.hs[k]);
-        put(&mut rows[0], 6 * k, &(t.gr * hr));
-        put(&mut rows[1], 6 * k, &(t.gs * hs));
-        put(&mut rows[2], 6 * k, &(t.gr * hs + t.gs * hr));
+        add_vector(&mut rows[0], 6 * k, &(t.gr * hr));
+        add_vector(&mut rows[1], 6 * k, &(t.gs * hs));
+        add_vector(&mut rows[2], 6 * k, &(t.gr * hs + t.gs * hr));
     }
     rows
 }
@@ -144,8 +144,8 @@ pub(super) fn add_bending_sides<const N: usize, const M: usize>(
         let (along_r, along_s) = (t.gr.dot(&bulge), t.gs.dot(&bulge));
         let strains = [along_r * mr, along_s * ms, along_r * ms + along_s * mr];
         for (row, e) in rows.iter_mut().zip(strains) {
-            put(row, 6 * j + 3, &(n * e));
-            put(row, 6 * i + 3, &(n * -e));
+            add_vector(row, 6 * j + 3, &(n * e));
+            add_vector(row, 6 * i + 3, &(n * -e));
         }
     }
 }
@@ -160,12 +160,12 @@ pub(super) fn curvature<const N: usize, const M: usize>(
     for k in 0..N {
         let (hr, hs) = (shape.hr[k], shape.hs[k]);
         let (dr, ds) = (d[k].cross(&t.gr), d[k].cross(&t.gs));
-        put(&mut rows[0], 6 * k, &(t.dr * hr));
-        put(&mut rows[1], 6 * k, &(t.ds * hs));
-        put(&mut rows[2], 6 * k, &(t.dr * hs + t.ds * hr));
-        put(&mut rows[0], 6 * k + 3, &(dr * hr));
-        put(&mut rows[1], 6 * k + 3, &(ds * hs));
-        put(&mut rows[2], 6 * k + 3, &(dr * hs + ds * hr));
+        add_vector(&mut rows[0], 6 * k, &(t.dr * hr));
+        add_vector(&mut rows[1], 6 * k, &(t.ds * hs));
+        add_vector(&mut rows[2], 6 * k, &(t.dr * hs + t.ds * hr));
+        add_vector(&mut rows[0], 6 * k + 3, &(dr * hr));
+        add_vector(&mut rows[1], 6 * k + 3, &(ds * hs));
+        add_vector(&mut rows[2], 6 * k + 3, &(dr * hs + ds * hr));
     }
     rows
 }
@@ -178,26 +178,29 @@ pub(super) fn shear<const N: usize, const M: usize>(
 ) -> [Row<M>; 2] {
     let mut rows = [[0.0; M]; 2];
     for k in 0..N {
-        put(&mut rows[0], 6 * k, &(t.d * shape.hr[k]));
-        put(&mut rows[1], 6 * k, &(t.d * shape.hs[k]));
-        put(&mut rows[0], 6 * k + 3, &(d[k].cross(&t.gr) * shape.h[k]));
-        put(&mut rows[1], 6 * k + 3, &(d[k].cross(&t.gs) * shape.h[k]));
+        add_vector(&mut rows[0], 6 * k, &(t.d * shape.hr[k]));
+        add_vector(&mut rows[1], 6 * k, &(t.d * shape.hs[k]));
+        add_vector(&mut rows[0], 6 * k + 3, &(d[k].cross(&t.gr) * shape.h[k]));
+        add_vector(&mut rows[1], 6 * k + 3, &(d[k].cross(&t.gs) * shape.h[k]));
     }
     rows
 }
 
 /// Rotation about the surface normal less half the curl of the displacements about the same normal.
-pub(super) fn drilling<const N: usize, const M: usize>(local: &Local, shape: &Shape<N>) -> Row<M> {
+pub(super) fn drilling_row<const N: usize, const M: usize>(
+    local: &Local,
+    shape: &Shape<N>,
+) -> Row<M> {
     let mut row = [0.0; M];
     for k in 0..N {
         let hx = local.rx * shape.hr[k] + local.sx * shape.hs[k];
         let hy = local.ry * shape.hr[k] + local.sy * shape.hs[k];
-        put(
+        add_vector(
             &mut row,
             6 * k,
             &(local.e1 * (0.5 * hy) - local.e2 * (0.5 * hx)),
         );
-        put(&mut row, 6 * k + 3, &(local.n * shape.h[k]));
+        add_vector(&mut row, 6 * k + 3, &(local.n * shape.h[k]));
     }
     row
 }
@@ -217,7 +220,7 @@ impl Section<'_> {
     }
 
     /// Drilling stiffness per area: 1e-6 K6ROT G t.
-    fn drilling(&self) -> f64 {
+    fn drilling_stiffness(&self) -> f64 {
         let g = self
             .law
             .membrane
@@ -248,7 +251,11 @@ impl Section<'_> {
             k.add(membrane, &b, curvature);
             k.add(curvature, &b, membrane);
         }
-        k.add(&[*drilling], &[[self.drilling() * weight]], &[*drilling]);
+        k.add(
+            &[*drilling],
+            &[[self.drilling_stiffness() * weight]],
+            &[*drilling],
+        );
     }
 
     pub(super) fn add_shear<const M: usize>(
@@ -283,7 +290,7 @@ pub(super) fn add_thermal<const M: usize>(
 pub(super) fn shift<const M: usize>(row: &mut Row<M>, offset: &Vec3) {
     for k in 0..M / 6 {
         let u = Vec3::new(row[6 * k], row[6 * k + 1], row[6 * k + 2]);
-        put(row, 6 * k + 3, &offset.cross(&u));
+        add_vector(row, 6 * k + 3, &offset.cross(&u));
     }
 }
 

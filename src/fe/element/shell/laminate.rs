@@ -31,7 +31,7 @@ pub(crate) enum Lamination {
 
 impl Lamination {
     /// Returns the option for LAM as written; `None` for options that are not supported (SMCORE ..).
-    pub(crate) fn of(lam: &str) -> Option<Self> {
+    pub(crate) fn parse_lam(lam: &str) -> Option<Self> {
         match lam {
             "" | "SYM" => Some(Self::Full),
             "MEM" | "SYMEM" => Some(Self::Membrane),
@@ -101,7 +101,7 @@ pub(super) fn law(plies: &[Placed], lamination: Lamination) -> Option<ShellLaw> 
         scaled(moment(1), t * t),
         scaled(moment(2), t * t * t / 12.0),
     );
-    let shear = [0, 1].map(|i| transverse(plies, i) / t);
+    let shear = [0, 1].map(|i| transverse_shear_stiffness(plies, i) / t);
     let shear = Some([[shear[0], 0.0], [0.0, shear[1]]]);
     let coupled = b.iter().flatten().any(|v| v.abs() > 1e-12 * a[0][0].abs());
     Some(match lamination {
@@ -134,7 +134,7 @@ pub(super) fn law(plies: &[Placed], lamination: Lamination) -> Option<ShellLaw> 
 
 /// Transverse shear stiffness along axis `i`: (EI)^2 over the integral of g^2 / G, where g is the first moment of the stiffness about
 /// the neutral axis beyond a height.
-fn transverse(plies: &[Placed], i: usize) -> f64 {
+fn transverse_shear_stiffness(plies: &[Placed], i: usize) -> f64 {
     let e = |p: &Placed| p.q[i][i];
     let (mut area, mut first) = (0.0, 0.0);
     for p in plies {

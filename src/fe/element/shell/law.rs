@@ -27,7 +27,7 @@ impl ShellLaw {
                 return None;
             };
             let placed = place_plies(model, plies, *z0, angle_rad)?;
-            return laminate::law(&placed, Lamination::of(lam)?);
+            return laminate::law(&placed, Lamination::parse_lam(lam)?);
         };
         let material = |m: &crate::model::MaterialIx| model.materials.get(m.us());
         let plane = |m: &Option<crate::model::MaterialIx>| match m {

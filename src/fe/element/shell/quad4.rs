@@ -1,8 +1,8 @@
 //! CQUAD4: MITC4 bending and shear, QM6 membrane, drilling stiffness.
 
 use super::kinematics::{
-    Local, Section, Shape, Tangents, add_bending_sides, add_thermal, curvature, drilling, membrane,
-    shear, shift, shift_rows, shift_stiffness,
+    Local, Section, Shape, Tangents, add_bending_sides, add_thermal, curvature, drilling_row,
+    membrane, shear, shift, shift_rows, shift_stiffness,
 };
 use super::output_frame::output_frame;
 use super::products::Products;
@@ -77,7 +77,7 @@ impl Point {
                 self.local.area,
                 &self.membrane,
                 &self.curvature,
-                &drilling(&self.local, &self.shape),
+                &drilling_row(&self.local, &self.shape),
             );
         }
     }

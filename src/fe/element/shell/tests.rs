@@ -14,7 +14,7 @@ fn steel() -> ShellLaw {
 }
 
 /// A warped, skewed quadrilateral turned anyhow in space, its directors tilted towards imagined neighbours.
-fn warped() -> [Vec3; 4] {
+fn warped_quad() -> [Vec3; 4] {
     let r = nalgebra::Rotation3::from_euler_angles(0.4, -0.9, 1.7);
     [
         [0.0, 0.0, 0.0],
@@ -25,7 +25,7 @@ fn warped() -> [Vec3; 4] {
     .map(|x| r * Vec3::from(x) + Vec3::new(900.0, -300.0, 50.0))
 }
 
-fn tilted<const N: usize>(x: &[Vec3; N]) -> [Vec3; N] {
+fn tilt_directors<const N: usize>(x: &[Vec3; N]) -> [Vec3; N] {
     let n = (x[1] - x[0]).cross(&(x[N - 1] - x[0])).normalize();
     std::array::from_fn(|k| {
         (n + Vec3::new(0.1 * k as f64, -0.12, 0.07 * (k % 2) as f64)).normalize()
@@ -91,8 +91,8 @@ fn zero_modes<const M: usize>(k: &[[f64; M]; M]) -> usize {
 
 #[test]
 fn six_rigid_motions_and_no_other_leave_a_warped_quadrilateral_unstrained() {
-    let (law, x) = (steel(), warped());
-    for (directors, zoffs) in [(tilted(&x), 0.0), (tilted(&x), 5.0)] {
+    let (law, x) = (steel(), warped_quad());
+    for (directors, zoffs) in [(tilt_directors(&x), 0.0), (tilt_directors(&x), 5.0)] {
         let m = quad4(&input(x, directors, &law, zoffs)).unwrap();
         assert!(rigid_residual(&m.stiffness, &x) < 1e-10);
         assert_eq!(zero_modes(&m.stiffness), 6);
@@ -102,10 +102,10 @@ fn six_rigid_motions_and_no_other_leave_a_warped_quadrilateral_unstrained() {
 #[test]
 fn six_rigid_motions_and_no_other_leave_a_triangle_unstrained() {
     let law = steel();
-    let [a, b, c, _] = warped();
+    let [a, b, c, _] = warped_quad();
     let x = [a, b, c];
     for zoffs in [0.0, -4.0] {
-        let m = tria3(&input(x, tilted(&x), &law, zoffs)).unwrap();
+        let m = tria3(&input(x, tilt_directors(&x), &law, zoffs)).unwrap();
         assert!(rigid_residual(&m.stiffness, &x) < 1e-10);
         assert_eq!(zero_modes(&m.stiffness), 6);
     }
@@ -113,8 +113,8 @@ fn six_rigid_motions_and_no_other_leave_a_triangle_unstrained() {
 
 #[test]
 fn stiffness_is_symmetric_and_areas_add_up() {
-    let (law, x) = (steel(), warped());
-    let m = quad4(&input(x, tilted(&x), &law, 3.0)).unwrap();
+    let (law, x) = (steel(), warped_quad());
+    let m = quad4(&input(x, tilt_directors(&x), &law, 3.0)).unwrap();
     let largest = m
         .stiffness
         .iter()
@@ -187,14 +187,14 @@ fn a_linear_displacement_field_gives_its_own_strain_at_centre_and_corners() {
 
 #[test]
 fn shells_whose_sides_bend_have_six_rigid_motions_and_no_other() {
-    let (law, x) = (steel(), warped());
-    let mut quad = input(x, tilted(&x), &law, 0.0);
+    let (law, x) = (steel(), warped_quad());
+    let mut quad = input(x, tilt_directors(&x), &law, 0.0);
     (quad.sides, quad.k6rot) = (Sides::Bending, 1e3);
     let m = quad4(&quad).unwrap();
     assert!(rigid_residual(&m.stiffness, &x) < 1e-10);
     assert_eq!(zero_modes(&m.stiffness), 6);
     let corners = [x[0], x[1], x[2]];
-    let mut tria = input(corners, tilted(&corners), &law, 0.0);
+    let mut tria = input(corners, tilt_directors(&corners), &law, 0.0);
     (tria.sides, tria.k6rot) = (Sides::Bending, 1e3);
     let m = tria3(&tria).unwrap();
     assert!(rigid_residual(&m.stiffness, &corners) < 1e-10);

@@ -1,8 +1,8 @@
 //! CTRIA3: MITC3+ bending and shear, constant-strain membrane, drilling stiffness.
 
 use super::kinematics::{
-    Local, Section, Shape, Tangents, add_bending_sides, add_thermal, curvature, drilling, membrane,
-    shear, shift, shift_rows, shift_stiffness,
+    Local, Section, Shape, Tangents, add_bending_sides, add_thermal, curvature, drilling_row,
+    membrane, shear, shift, shift_rows, shift_stiffness,
 };
 use super::output_frame::output_frame;
 use super::products::Products;
@@ -103,7 +103,7 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
             bend[1][18 + k] = fs * bs[k];
             bend[2][18 + k] = fs * br[k] + fr * bs[k];
         }
-        let [rows_r, rows_s] = assumed.at(r, s);
+        let [rows_r, rows_s] = assumed.shear_rows_at(r, s);
         if let Some(heat) = input.heat {
             // The bubble takes no part: the integral of its curvature vanishes.
             let rise = shape.h.iter().zip(&heat.rise).map(|(h, t)| h * t).sum();
@@ -124,7 +124,7 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
                 weight,
                 &with_bubble(&local.strain(&in_plane(&t, &shape))),
                 &local.strain(&bend),
-                &drilling::<3, WITH_BUBBLE>(&local, &shape),
+                &drilling_row::<3, WITH_BUBBLE>(&local, &shape),
             );
         }
     }
@@ -158,7 +158,7 @@ struct AssumedShear {
 
 impl AssumedShear {
     /// Along r and s at a point.
-    fn at(&self, r: f64, s: f64) -> [Row<WITH_BUBBLE>; 2] {
+    fn shear_rows_at(&self, r: f64, s: f64) -> [Row<WITH_BUBBLE>; 2] {
         let Self { a, b, c, e, f, g } = self;
         let mut rows_r = [0.0; WITH_BUBBLE];
         let mut rows_s = [0.0; WITH_BUBBLE];

@@ -57,7 +57,7 @@ impl SolidInput {
     }
 
     pub(super) fn rule(&self) -> &'static [TablePoint] {
-        let tables = Tables::of(self.shape);
+        let tables = Tables::get(self.shape);
         if self.is_linear() {
             &tables.linear
         } else {
@@ -67,7 +67,7 @@ impl SolidInput {
 
     /// 1, or -1 for an element numbered as its mirror image: the same body, which solvers accept.
     pub(super) fn hand(&self) -> f64 {
-        let centre = &Tables::of(self.shape).centre;
+        let centre = &Tables::get(self.shape).centre;
         self.jacobian(&centre.functions(self.shape, &self.mids))
             .determinant()
             .signum()
@@ -86,7 +86,7 @@ impl SolidInput {
     }
 
     /// Strain columns at a point.
-    pub(super) fn at(&self, point: &TablePoint) -> Result<At, Folded> {
+    pub(super) fn strain_columns_at(&self, point: &TablePoint) -> Result<At, Folded> {
         let functions = point.functions(self.shape, &self.mids);
         let j = self.jacobian(&functions);
         let hand = self.hand();
@@ -98,7 +98,7 @@ impl SolidInput {
             push(&mut columns, &(inverse * Vec3::new(f[1], f[2], f[3])));
         }
         if !modes.is_empty() {
-            let centre = Tables::of(self.shape)
+            let centre = Tables::get(self.shape)
                 .centre
                 .functions(self.shape, &self.mids);
             let j0 = self.jacobian(&centre);
@@ -128,7 +128,7 @@ impl SolidInput {
         let mut k = DMatrix::zeros(n + m, n + m);
         let mut f = vec![0.0; n + m];
         for point in self.rule() {
-            let at = self.at(point)?;
+            let at = self.strain_columns_at(point)?;
             let stress: Vec<Vector6<f64>> =
                 at.columns.iter().map(|c| law * c * at.volume).collect();
             for (i, s) in stress.iter().enumerate() {
@@ -173,7 +173,7 @@ impl SolidInput {
         let mut out = vec![0.0; n * n];
         let hand = self.hand();
         // Products of linear functions are of second degree: a tetrahedron's single point is not enough.
-        for point in &Tables::of(self.shape).quadratic {
+        for point in &Tables::get(self.shape).quadratic {
             let functions = point.functions(self.shape, &self.mids);
             let det = self.jacobian(&functions).determinant() * hand;
             for (i, a) in functions.iter().enumerate() {

@@ -26,7 +26,7 @@ fn refuse(solid: &Solid, reason: &str, remedy: &str) -> Refusal {
     )
 }
 
-fn folded(solid: &Solid) -> impl Fn(Folded) -> Refusal + '_ {
+fn refuse_folded(solid: &Solid) -> impl Fn(Folded) -> Refusal + '_ {
     |_| {
         refuse(
             solid,
@@ -60,7 +60,7 @@ fn shape_of(model: &Model, solid: &Solid, grids: &[GridIx]) -> SolidInput {
     }
 }
 
-fn formed(model: &Model, solid: &Solid) -> Result<(SolidInput, SolidLaw), Refusal> {
+fn build_input_and_law(model: &Model, solid: &Solid) -> Result<(SolidInput, SolidLaw), Refusal> {
     let input = input(model, solid)?;
     let corners = &input.x[..solid.shape.n_corners()];
     let law = SolidLaw::new(model, solid, corners)
@@ -79,8 +79,11 @@ pub(crate) fn is_inverted(model: &Model, i: usize) -> bool {
 /// Folded shapes; properties and materials that make no solid.
 pub(crate) fn solid_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, Refusal> {
     let solid = &model.solids[i];
-    let (input, law) = formed(model, solid)?;
-    let k = input.form(&law.g, None).map_err(folded(solid))?.stiffness;
+    let (input, law) = build_input_and_law(model, solid)?;
+    let k = input
+        .form(&law.g, None)
+        .map_err(refuse_folded(solid))?
+        .stiffness;
     let mut out = ElementMatrix::zeros(solid.all_grids());
     let n = out.n();
     for a in 0..k.nrows() {
@@ -131,11 +134,11 @@ pub(crate) fn solid_thermal_force(
     rise: &[f64],
 ) -> Result<Vec<(GridIx, Vec3)>, Refusal> {
     let solid = &model.solids[i];
-    let (input, law) = formed(model, solid)?;
+    let (input, law) = build_input_and_law(model, solid)?;
     let strain = expansion(&law, rise);
     let force = input
         .form(&law.g, Some(&strain))
-        .map_err(folded(solid))?
+        .map_err(refuse_folded(solid))?
         .force;
     Ok(solid
         .all_grids()
@@ -155,19 +158,26 @@ pub(crate) fn solid_strain(
     fields: &[(&[[f64; 6]], Vec<f64>)],
 ) -> Result<Vec<SolidStrain>, Refusal> {
     let solid = &model.solids[i];
-    let (input, law) = formed(model, solid)?;
-    let tables = Tables::of(solid.shape);
+    let (input, law) = build_input_and_law(model, solid)?;
+    let tables = Tables::get(solid.shape);
     let turn = law.axes.as_ref().map(strain_rotation);
     let grids = solid.all_grids();
-    let centre = input.at(&tables.centre).map_err(folded(solid))?;
+    let centre = input
+        .strain_columns_at(&tables.centre)
+        .map_err(refuse_folded(solid))?;
     let sampled: Vec<_> = tables
         .sampling
         .iter()
-        .map(|p| input.at(p))
+        .map(|p| input.strain_columns_at(p))
         .collect::<Result<_, Folded>>()
-        .map_err(folded(solid))?;
+        .map_err(refuse_folded(solid))?;
     let share = match input.has_modes() {
-        true => input.form(&law.g, None).map_err(folded(solid))?.share,
+        true => {
+            input
+                .form(&law.g, None)
+                .map_err(refuse_folded(solid))?
+                .share
+        }
         false => DMatrix::zeros(0, 3 * grids.len()),
     };
     fields
@@ -183,7 +193,7 @@ pub(crate) fn solid_strain(
             } else {
                 input
                     .form(&law.g, Some(&strain))
-                    .map_err(folded(solid))?
+                    .map_err(refuse_folded(solid))?
                     .amount
             };
             for (m, amount) in modes.iter_mut().enumerate() {

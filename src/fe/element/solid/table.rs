@@ -59,7 +59,7 @@ pub(super) struct Tables {
 }
 
 impl Tables {
-    pub(super) fn of(shape: SolidShape) -> &'static Self {
+    pub(super) fn get(shape: SolidShape) -> &'static Self {
         static ALL: [OnceLock<Tables>; 4] = [const { OnceLock::new() }; 4];
         ALL[shape as usize].get_or_init(|| Self::new(shape))
     }
@@ -73,7 +73,7 @@ impl Tables {
         let (linear, quadratic, sampling, centre) = match shape {
             SolidShape::Tetra => (
                 vec![(1.0 / 6.0, [0.25; 3])],
-                collapsed(),
+                collapse_cube_rule(),
                 tetrahedron(),
                 [0.25; 3],
             ),
@@ -152,7 +152,7 @@ const FAR: f64 = 0.585_410_196_624_968_5;
 const NEAR: f64 = 0.138_196_601_125_010_5;
 
 /// A cube's rule collapsed: for mass and stiffness of tetrahedra with mid-side grids, curved ones too.
-fn collapsed() -> Vec<(f64, [f64; 3])> {
+fn collapse_cube_rule() -> Vec<(f64, [f64; 3])> {
     let mut out = Vec::new();
     for (u, wu) in THREE {
         for (v, wv) in THREE {

@@ -15,7 +15,7 @@ fn steel() -> Matrix6<f64> {
 }
 
 /// A distorted element turned anyhow in space; `mids` of its edges carry a grid, the last of them off the middle.
-fn distorted(shape: SolidShape, mids: &[usize]) -> SolidInput {
+fn distorted_element(shape: SolidShape, mids: &[usize]) -> SolidInput {
     let r = nalgebra::Rotation3::from_euler_angles(0.4, -0.9, 1.7);
     let corners: &[[f64; 3]] = match shape {
         SolidShape::Tetra => &[[0., 0., 0.], [10., 1., 0.], [2., 8., -1.], [1., 2., 9.]],
@@ -60,25 +60,25 @@ fn distorted(shape: SolidShape, mids: &[usize]) -> SolidInput {
     }
 }
 
-fn all() -> Vec<SolidInput> {
+fn all_elements() -> Vec<SolidInput> {
     vec![
-        distorted(SolidShape::Tetra, &[]),
-        distorted(SolidShape::Penta, &[]),
-        distorted(SolidShape::Hexa, &[]),
-        distorted(SolidShape::Pyram, &[]),
-        distorted(SolidShape::Tetra, &[0, 1, 2, 3, 4, 5]),
-        distorted(SolidShape::Penta, &[0, 1, 2, 3, 4, 5, 6, 7, 8]),
-        distorted(SolidShape::Hexa, &(0..12).collect::<Vec<_>>()),
+        distorted_element(SolidShape::Tetra, &[]),
+        distorted_element(SolidShape::Penta, &[]),
+        distorted_element(SolidShape::Hexa, &[]),
+        distorted_element(SolidShape::Pyram, &[]),
+        distorted_element(SolidShape::Tetra, &[0, 1, 2, 3, 4, 5]),
+        distorted_element(SolidShape::Penta, &[0, 1, 2, 3, 4, 5, 6, 7, 8]),
+        distorted_element(SolidShape::Hexa, &(0..12).collect::<Vec<_>>()),
         // Mid-side grids left out.
-        distorted(SolidShape::Tetra, &[1, 4]),
-        distorted(SolidShape::Penta, &[0, 3, 7]),
-        distorted(SolidShape::Hexa, &[0, 2, 5, 8, 11]),
+        distorted_element(SolidShape::Tetra, &[1, 4]),
+        distorted_element(SolidShape::Penta, &[0, 3, 7]),
+        distorted_element(SolidShape::Hexa, &[0, 2, 5, 8, 11]),
     ]
 }
 
 #[test]
 fn six_rigid_motions_and_no_other_leave_a_solid_unstrained() {
-    for s in all() {
+    for s in all_elements() {
         let k = s.form(&steel(), None).unwrap().stiffness;
         let n = k.nrows();
         let largest = k.amax();
@@ -125,7 +125,7 @@ fn a_linear_displacement_field_gives_its_own_strain_at_every_point_of_a_straight
             g[(a, b)] + g[(b, a)]
         };
     }
-    for s in all() {
+    for s in all_elements() {
         let formed = s.form(&steel(), None).unwrap();
         let u: Vec<f64> =
             s.x.iter()
@@ -144,7 +144,7 @@ fn a_linear_displacement_field_gives_its_own_strain_at_every_point_of_a_straight
             assert!(amount.abs() < 1e-11, "{:?}: {amount:e}", s.shape);
         }
         for point in s.rule() {
-            let at = s.at(point).unwrap();
+            let at = s.strain_columns_at(point).unwrap();
             for (c, exact) in exact.iter().enumerate() {
                 let got: f64 = at.columns.iter().zip(&u).map(|(b, u)| b[c] * u).sum();
                 assert!(
@@ -159,10 +159,14 @@ fn a_linear_displacement_field_gives_its_own_strain_at_every_point_of_a_straight
 
 #[test]
 fn products_of_shape_functions_add_up_to_the_volume_and_its_first_moment() {
-    for s in all() {
+    for s in all_elements() {
         let n = s.x.len();
         let p = s.products();
-        let volume: f64 = s.rule().iter().map(|q| s.at(q).unwrap().volume).sum();
+        let volume: f64 = s
+            .rule()
+            .iter()
+            .map(|q| s.strain_columns_at(q).unwrap().volume)
+            .sum();
         let sum: f64 = p.iter().sum();
         let exact_volume = matches!(
             s.shape,
@@ -185,7 +189,7 @@ fn products_of_shape_functions_add_up_to_the_volume_and_its_first_moment() {
 
 #[test]
 fn a_mirrored_solid_is_the_same_body_and_a_folded_one_is_refused() {
-    let s = distorted(SolidShape::Hexa, &[]);
+    let s = distorted_element(SolidShape::Hexa, &[]);
     let mut mirrored = s.clone();
     mirrored.x = [4, 5, 6, 7, 0, 1, 2, 3].map(|i| s.x[i]).to_vec();
     let volume = |s: &SolidInput| s.products().iter().sum::<f64>();

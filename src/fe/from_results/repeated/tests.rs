@@ -7,7 +7,7 @@ fn strain(subcase: u32, id: u32, exx: f64) -> String {
     block(subcase, "ELEMENT STRAINS", "33 QUAD4", &[(&id, rows)])
 }
 
-fn found(texts: &[String]) -> Vec<Repeated> {
+fn find_repeated(texts: &[String]) -> Vec<Repeated> {
     let files: Vec<ResultsFile> = texts
         .iter()
         .map(|t| ResultsFile::read(t.as_bytes(), "run.pch").unwrap())
@@ -25,7 +25,7 @@ fn a_subcase_with_other_values_in_a_second_table_is_there_twice() {
         files: vec![(0, 2)],
     };
     assert_eq!(
-        found(std::slice::from_ref(&text)),
+        find_repeated(std::slice::from_ref(&text)),
         std::slice::from_ref(&expected)
     );
     assert!(expected.is_in_one_file());
@@ -34,23 +34,23 @@ fn a_subcase_with_other_values_in_a_second_table_is_there_twice() {
         "subcase 1 is twice in `run.pch` with different strain"
     );
     let third = text + &strain(1, 11, 2e-4);
-    assert_eq!(found(&[third])[0].files, [(0, 3)]);
+    assert_eq!(find_repeated(&[third])[0].files, [(0, 3)]);
 }
 
 #[test]
 fn other_elements_and_equal_values_are_no_repetition() {
     let spread = strain(1, 11, 1e-4) + &strain(1, 12, 5e-4) + &strain(1, 13, 7e-4);
-    assert_eq!(found(&[spread]), []);
+    assert_eq!(find_repeated(&[spread]), []);
     let equal = strain(1, 11, 1e-4) + &strain(1, 11, 1e-4);
-    assert_eq!(found(&[equal]), []);
+    assert_eq!(find_repeated(&[equal]), []);
     // Seven digits of a punch file.
     let rounded = [strain(1, 11, 1.234_567_4e-4), strain(1, 11, 1.234_567e-4)];
-    assert_eq!(found(&rounded), []);
+    assert_eq!(find_repeated(&rounded), []);
 }
 
 #[test]
 fn two_files_with_other_values_hold_a_subcase_once_each() {
-    let two = found(&[strain(1, 11, 1e-4), strain(1, 11, 1.01e-4)]);
+    let two = find_repeated(&[strain(1, 11, 1e-4), strain(1, 11, 1.01e-4)]);
     assert_eq!(two.len(), 1);
     assert_eq!(two[0].files, [(0, 1), (1, 1)]);
     assert!(!two[0].is_in_one_file());
@@ -64,8 +64,8 @@ fn stress_counts_where_there_is_no_strain() {
     };
     let twice = stress(10.0) + &stress(20.0);
     assert_eq!(
-        found(std::slice::from_ref(&twice))[0].quantity,
+        find_repeated(std::slice::from_ref(&twice))[0].quantity,
         Quantity::Stress
     );
-    assert_eq!(found(&[twice + &strain(1, 11, 1e-4)]), []);
+    assert_eq!(find_repeated(&[twice + &strain(1, 11, 1e-4)]), []);
 }

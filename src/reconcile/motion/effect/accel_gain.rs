@@ -13,7 +13,7 @@ pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
             let shapes = vec![Change::Gain {
                 channel: channel.clone(),
             }];
-            Candidate::of("accel_gain", Some(&channel), shapes)
+            Candidate::new("accel_gain", Some(&channel), shapes)
         })
         .collect()
 }

@@ -15,7 +15,7 @@ pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
                 link,
                 terms: vec![Term::TwoRate],
             }];
-            Candidate::of("asymmetric_damper", place.as_deref(), shapes)
+            Candidate::new("asymmetric_damper", place.as_deref(), shapes)
         })
         .collect()
 }

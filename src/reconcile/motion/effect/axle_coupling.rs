@@ -15,5 +15,5 @@ pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
     if shapes.is_empty() {
         return vec![];
     }
-    vec![Candidate::of("axle_coupling", None, shapes)]
+    vec![Candidate::new("axle_coupling", None, shapes)]
 }

@@ -32,7 +32,7 @@ pub(super) fn candidates(frame: &MotionFrame, motion: &Motion) -> Vec<Candidate>
                     }],
                 }));
             }
-            Candidate::of("bump_stop", place.as_deref(), shapes).positive()
+            Candidate::new("bump_stop", place.as_deref(), shapes).with_positive_parameter()
         })
         .collect()
 }

@@ -17,7 +17,7 @@ pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
                 a: a.clone(),
                 b: b.clone(),
             }];
-            out.push(Candidate::of(
+            out.push(Candidate::new(
                 "channel_swap",
                 Some(&format!("{a}+{b}")),
                 shapes,

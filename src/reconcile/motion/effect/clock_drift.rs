@@ -7,7 +7,7 @@ use crate::reconcile::motion::frame::MotionFrame;
 pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
     let one = |channel: String| {
         let id = channel.clone();
-        Candidate::of("clock_drift", Some(&id), vec![Change::Clock { channel }])
+        Candidate::new("clock_drift", Some(&id), vec![Change::Clock { channel }])
     };
     frame.channels().into_iter().map(one).collect()
 }

@@ -29,7 +29,7 @@ pub(super) fn candidates(frame: &MotionFrame, motion: &Motion) -> Vec<Candidate>
                 }],
             };
             let shapes = SHARES.iter().map(shape).collect();
-            Candidate::of("coulomb_friction", place.as_deref(), shapes).positive()
+            Candidate::new("coulomb_friction", place.as_deref(), shapes).with_positive_parameter()
         })
         .collect()
 }

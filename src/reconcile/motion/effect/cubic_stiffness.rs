@@ -15,7 +15,7 @@ pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
                 link,
                 terms: vec![Term::Cubic],
             }];
-            Candidate::of("cubic_stiffness", place.as_deref(), shapes)
+            Candidate::new("cubic_stiffness", place.as_deref(), shapes)
         })
         .collect()
 }

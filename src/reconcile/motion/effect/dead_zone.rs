@@ -28,7 +28,7 @@ pub(super) fn candidates(frame: &MotionFrame, motion: &Motion) -> Vec<Candidate>
                 }],
             };
             let shapes = SHARES.iter().map(shape).collect();
-            Candidate::of("dead_zone", place.as_deref(), shapes).positive()
+            Candidate::new("dead_zone", place.as_deref(), shapes).with_positive_parameter()
         })
         .collect()
 }

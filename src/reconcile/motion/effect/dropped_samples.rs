@@ -15,7 +15,7 @@ pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
             at_s: start + length * i as f64 / (MOMENTS + 1) as f64,
         };
         let shapes = (1..=MOMENTS).map(shape).collect();
-        Candidate::of("dropped_samples", Some(&channel), shapes)
+        Candidate::new("dropped_samples", Some(&channel), shapes)
     };
     frame.channels().into_iter().map(one).collect()
 }

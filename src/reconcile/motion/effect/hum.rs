@@ -27,7 +27,7 @@ pub(super) fn candidates(frame: &MotionFrame, motion: &Motion) -> Vec<Candidate>
                 channel: channel.clone(),
                 hz,
             };
-            let mut one = Candidate::of("hum", Some(&channel), vec![line]);
+            let mut one = Candidate::new("hum", Some(&channel), vec![line]);
             // One line a channel bears the plain name; more are told apart by their frequency.
             if out.iter().any(|c| c.id == one.id) {
                 one.id = format!("hum:{id}");
@@ -40,7 +40,7 @@ pub(super) fn candidates(frame: &MotionFrame, motion: &Motion) -> Vec<Candidate>
 
 /// Returns the frequencies at which a signal exceeds its neighbourhood where mains may be.
 fn lines(frame: &MotionFrame, motion: &Motion, x: &[f64]) -> Vec<f64> {
-    let window = Windowed::of(motion.n_samples(), motion.rate_hz, frame.band);
+    let window = Windowed::new(motion.n_samples(), motion.rate_hz, frame.band);
     let step = window.step_hz();
     let rate = frame.data.rate_hz;
     let mut out: Vec<f64> = Vec::new();
@@ -69,7 +69,7 @@ fn line(window: &Windowed, motion: &Motion, x: &[f64], about: f64, reach: f64) -
     /// Bins of the neighbourhood, either side.
     const FAR: usize = 16;
     let step = window.step_hz();
-    let power = |f: f64| window.at(x, motion.rate_hz, f).norm_sqr();
+    let power = |f: f64| window.transform_at(x, motion.rate_hz, f).norm_sqr();
     let best = |from: f64, to: f64, step: f64| -> (f64, f64) {
         let n = ((to - from) / step).ceil().max(1.0) as usize;
         (0..=n)

@@ -13,9 +13,9 @@ pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
             channel: channel.clone(),
             order,
         };
-        Candidate::of("low_pass", Some(&channel), vec![shape(1), shape(2)])
-            .positive()
-            .handicapped(HANDICAP)
+        Candidate::new("low_pass", Some(&channel), vec![shape(1), shape(2)])
+            .with_positive_parameter()
+            .with_handicap(HANDICAP)
     };
     frame.channels().into_iter().map(one).collect()
 }

@@ -45,7 +45,7 @@ pub(super) fn candidates(frame: &MotionFrame, design: &Design) -> Vec<Candidate>
                 }
             }
             let place = (sprung.len() > 1).then(|| v.bodies[body].name.clone());
-            Candidate::of("mass_change", place.as_deref(), shapes)
+            Candidate::new("mass_change", place.as_deref(), shapes)
         })
         .collect()
 }

@@ -9,5 +9,5 @@ pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
     if shapes.is_empty() {
         return vec![];
     }
-    vec![Candidate::of("pitch_coupling", None, shapes)]
+    vec![Candidate::new("pitch_coupling", None, shapes)]
 }

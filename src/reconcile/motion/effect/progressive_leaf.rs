@@ -15,7 +15,7 @@ pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
                 link,
                 terms: vec![Term::Progressive],
             }];
-            Candidate::of("progressive_leaf", place.as_deref(), shapes).handicapped(2.0)
+            Candidate::new("progressive_leaf", place.as_deref(), shapes).with_handicap(2.0)
         })
         .collect()
 }

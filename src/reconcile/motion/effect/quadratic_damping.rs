@@ -19,7 +19,7 @@ pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
                 link,
                 terms: vec![Term::QuadraticDamping],
             }];
-            Candidate::of("quadratic_damping", place.as_deref(), shapes)
+            Candidate::new("quadratic_damping", place.as_deref(), shapes)
         })
         .collect()
 }

@@ -15,7 +15,7 @@ pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
                 link,
                 terms: vec![Term::Quadratic],
             }];
-            Candidate::of("quadratic_stiffness", place.as_deref(), shapes).handicapped(2.0)
+            Candidate::new("quadratic_stiffness", place.as_deref(), shapes).with_handicap(2.0)
         })
         .collect()
 }

@@ -13,7 +13,7 @@ pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
             let shapes = vec![Change::Flip {
                 channel: channel.clone(),
             }];
-            Candidate::of("sign_flip", Some(&channel), shapes)
+            Candidate::new("sign_flip", Some(&channel), shapes)
         })
         .collect()
 }

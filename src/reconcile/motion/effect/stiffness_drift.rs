@@ -30,7 +30,7 @@ pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
                 let share = i as f64 / (STEPS + 1) as f64;
                 shapes.push(form(start + share * length, 0.0));
             }
-            Candidate::of("stiffness_drift", place.as_deref(), shapes)
+            Candidate::new("stiffness_drift", place.as_deref(), shapes)
         })
         .collect()
 }

@@ -12,7 +12,7 @@ pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
             let shapes = vec![Change::Delay {
                 channel: channel.clone(),
             }];
-            Candidate::of("time_offset", Some(&channel), shapes)
+            Candidate::new("time_offset", Some(&channel), shapes)
         })
         .collect()
 }

@@ -15,7 +15,7 @@ pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
                 link,
                 terms: vec![Term::Damping],
             }];
-            Candidate::of("viscous_damper", place.as_deref(), shapes).positive()
+            Candidate::new("viscous_damper", place.as_deref(), shapes).with_positive_parameter()
         })
         .collect()
 }

@@ -48,7 +48,7 @@ fn columns(
 }
 
 /// Returns the natural log of the factor from each accelerometer's reading to the truth; a reversed sign counts as a factor of e.
-pub(super) fn turned_over(frame: &MotionFrame, fit: &MotionFit) -> Rows {
+pub(super) fn turn_over(frame: &MotionFrame, fit: &MotionFit) -> Rows {
     let own = accelerometers(frame, fit);
     let adjust = adjustments(frame, &fit.parts);
     let name = |row: usize| fit.design.channels[own[row]].name.as_str();
@@ -79,9 +79,9 @@ pub(super) fn turned_over(frame: &MotionFrame, fit: &MotionFit) -> Rows {
 
 /// Returns how late each accelerometer reads a stroke at the beginning and one at the end of a record as long as the present one. The times of the
 /// strokes are unknown.
-pub(super) fn struck(frame: &MotionFrame, fit: &MotionFit) -> Rows {
+pub(super) fn stroke_delay_rows(frame: &MotionFrame, fit: &MotionFit) -> Rows {
     let own = accelerometers(frame, fit);
-    let adjust = Adjustment::elsewhere(&adjustments(frame, &fit.parts));
+    let adjust = Adjustment::without_slips(&adjustments(frame, &fit.parts));
     let start_s = frame.data.start_s;
     let length_s = frame.data.duration_s();
     let sigma = STRUCK / frame.data.rate_hz;

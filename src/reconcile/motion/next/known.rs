@@ -30,7 +30,7 @@ pub(super) struct Known<'a> {
 }
 
 impl<'a> Known<'a> {
-    pub(super) fn of(frame: &MotionFrame, fit: &'a MotionFit) -> Self {
+    pub(super) fn from_fit(frame: &MotionFrame, fit: &'a MotionFit) -> Self {
         let v = &fit.assembled.vehicle;
         let names = v.parameters();
         let known = |i: &usize| frame.known.contains_key(&names[*i].name);

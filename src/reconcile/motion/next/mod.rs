@@ -18,7 +18,7 @@ use self::worth::expected_evidence;
 use super::fitted::MotionFit;
 use super::found::other_sets;
 use super::scorer::MotionScorer;
-use crate::finding::capital;
+use crate::finding::capitalize;
 use crate::reconcile::outcome::Verdict;
 use crate::reconcile::search::{Scored, Scorer};
 
@@ -84,7 +84,7 @@ pub(super) fn next_measurement(
         )
     });
     match (verdict, said) {
-        (Verdict::Named, Some((words, each))) => format!("{} ({each}).", capital(&words)),
+        (Verdict::Named, Some((words, each))) => format!("{} ({each}).", capitalize(&words)),
         (Verdict::Named, None) if !others.is_empty() => format!(
             "No tested road, sensor or mass separates {first} from {others}: treat them as one cause."
         ),
@@ -93,13 +93,13 @@ pub(super) fn next_measurement(
         }
         (Verdict::Unknown, Some((words, each))) => format!(
             "{}. This separates most of the nearest explanations ({each}). Or {LEFT_OUT}.",
-            capital(&words)
+            capitalize(&words)
         ),
-        (Verdict::Unknown, None) => format!("{}.", capital(LEFT_OUT)),
+        (Verdict::Unknown, None) => format!("{}.", capitalize(LEFT_OUT)),
         (Verdict::BelowDetectability, Some((words, each))) => {
             format!(
                 "{}. This confirms or excludes the indicated effect ({each}).",
-                capital(&words)
+                capitalize(&words)
             )
         }
         (Verdict::None | Verdict::BelowDetectability, _) => {
@@ -148,7 +148,10 @@ fn explanations<'a>(
 /// Returns the measurement that separates most; `None` if no measurement is worth its effort.
 fn best_of(scorer: &MotionScorer, list: &[&Scored<MotionFit>]) -> Option<Weighed> {
     let frame = scorer.frame;
-    let known: Vec<Known> = list.iter().map(|s| Known::of(frame, &s.fit)).collect();
+    let known: Vec<Known> = list
+        .iter()
+        .map(|s| Known::from_fit(frame, &s.fit))
+        .collect();
     let mut best: Option<Weighed> = None;
     for measurement in measurements(frame, known.first()?.fit) {
         if scorer.is_stopped() {

@@ -80,7 +80,7 @@ fn errors(
         }
     }
     let r: Option<Vec<Complex64>> = old.iter().map(|&i| residual(i)).collect();
-    let x = solved(a, r?)?;
+    let x = solve_linear(a, r?)?;
     let error = |&(c, _): &(usize, usize)| -> Complex64 {
         let heard = old.iter().zip(&x);
         heard
@@ -91,7 +91,7 @@ fn errors(
 }
 
 /// x of a x = b, rows of a one after the other, by elimination with pivots; `None` where a is singular.
-fn solved(mut a: Vec<Complex64>, mut b: Vec<Complex64>) -> Option<Vec<Complex64>> {
+fn solve_linear(mut a: Vec<Complex64>, mut b: Vec<Complex64>) -> Option<Vec<Complex64>> {
     let n = b.len();
     for k in 0..n {
         let best = (k..n).max_by(|&i, &j| {
@@ -131,7 +131,11 @@ mod tests {
     }
 
     /// Equations of one bin that are linear in three channels: residual = rows times readings.
-    fn recorded(rows: &[[Complex64; 3]], readings: [Complex64; 3], is_new: &[bool]) -> Recorded {
+    fn linear_record(
+        rows: &[[Complex64; 3]],
+        readings: [Complex64; 3],
+        is_new: &[bool],
+    ) -> Recorded {
         let left = rows.iter().map(|row| {
             let sum: Complex64 = row.iter().zip(&readings).map(|(h, y)| h * y).sum();
             vec![sum]
@@ -146,7 +150,7 @@ mod tests {
             left: left.collect(),
             is_new: is_new.to_vec(),
             channels: (0..3).map(channel).collect(),
-            whitener: Whitener::of(&[vec![c(1.0, 0.0)]], 1),
+            whitener: Whitener::from_covariance(&[vec![c(1.0, 0.0)]], 1),
             own: vec![],
             fresh: vec![],
             scale: vec![],
@@ -166,8 +170,8 @@ mod tests {
         let turned = [rows[0].map(|h| h * 1.07), rows[1].map(|h| h * c(0.0, -3.0))];
         let old = [false, false];
         let (truth, other) = (
-            recorded(&rows, readings, &old),
-            recorded(&turned, readings, &old),
+            linear_record(&rows, readings, &old),
+            linear_record(&turned, readings, &old),
         );
         let missed = residual_of_other(&other, &truth).unwrap();
         assert!(truth.left.iter().flatten().all(|l| l.norm() > 0.1));
@@ -185,8 +189,8 @@ mod tests {
         // Obeys the truth: c0 = -c1 / 2.
         let readings = [c(-1.0, 0.0), c(2.0, 0.0), c(3.0, 0.0)];
         let (truth, other) = (
-            recorded(&truth_rows, readings, &[false]),
-            recorded(&other_rows, readings, &[false]),
+            linear_record(&truth_rows, readings, &[false]),
+            linear_record(&other_rows, readings, &[false]),
         );
         let missed = residual_of_other(&other, &truth).unwrap();
         // -1 + 1.8 + 0.6 j.
@@ -200,8 +204,8 @@ mod tests {
         let other_rows = [[c(1.1, 0.0), c(0.0, 0.0), c(0.0, 0.0)]; 1];
         let readings = [c(2.0, 0.0), c(0.0, 0.0), c(0.0, 0.0)];
         let (truth, other) = (
-            recorded(&truth_rows, readings, &[true]),
-            recorded(&other_rows, readings, &[true]),
+            linear_record(&truth_rows, readings, &[true]),
+            linear_record(&other_rows, readings, &[true]),
         );
         let missed = residual_of_other(&other, &truth).unwrap();
         assert!((missed[0][0] - c(0.2, 0.0)).norm() < 1e-12, "{missed:?}");

@@ -1,6 +1,6 @@
 //! Residual of a measurement under an explanation, and how readings, faults and tolerances enter it.
 
-use super::bench::{struck, turned_over};
+use super::bench::{stroke_delay_rows, turn_over};
 use super::known::{Known, Rows};
 use super::measurement::{Measurement, is_driven};
 use crate::linalg::tall::left_inverse;
@@ -86,15 +86,15 @@ pub(super) fn view(
     background: &Background,
 ) -> Option<View> {
     match measurement {
-        Measurement::TurnOver => Some(View::AtRest(turned_over(frame, known.fit))),
-        Measurement::Strike => Some(View::AtRest(struck(frame, known.fit))),
-        Measurement::Beside(at) => beside(frame, known.fit, *at).map(View::record),
+        Measurement::TurnOver => Some(View::AtRest(turn_over(frame, known.fit))),
+        Measurement::Strike => Some(View::AtRest(stroke_delay_rows(frame, known.fit))),
+        Measurement::Beside(at) => form_sensor_equation(frame, known.fit, *at).map(View::record),
         Measurement::Road(_)
         | Measurement::Part { .. }
         | Measurement::Longer(_)
         | Measurement::Forces(_)
         | Measurement::KnownMass { .. } => {
-            driven(frame, measurement, known, background).map(View::record)
+            form_drive_equations(frame, measurement, known, background).map(View::record)
         }
     }
 }
@@ -110,7 +110,7 @@ impl View {
 /// The motion is the present one with the same filter at every channel, less the channel errors that explain its residual under one explanation
 /// ([`super::obeying`]). It obeys that explanation to first order in the difference of two explanations. The residual of the other explanation is
 /// the difference of the forces of both at that motion.
-fn driven(
+fn form_drive_equations(
     frame: &MotionFrame,
     measurement: &Measurement,
     known: &Known,
@@ -119,11 +119,11 @@ fn driven(
     let fit = known.fit;
     let mut frame = frame.clone();
     let whole = frame.data.n_samples();
-    frame.data = beginning(&frame.data);
+    frame.data = truncate_record(&frame.data);
     let shorter = whole as f64 / frame.data.n_samples().max(1) as f64;
     frame.data = match measurement {
         Measurement::Road(_) | Measurement::Part { .. } => {
-            shaped(&frame.data, |f| measurement.gain(f))
+            apply_gain(&frame.data, |f| measurement.gain(f))
         }
         _ => frame.data,
     };
@@ -153,8 +153,9 @@ fn driven(
     let sets_scale = !forces.is_empty() && !is_driven(&fit.design);
     give_forces(&frame, &mut d, &left, forces, sets_scale)?;
     let h = responses(&d, &values);
-    let louder = scaled(&frame, &fit.design, &d, background, |f| measurement.gain(f));
-    let whitener = Whitener::of(&covariance(&frame, &d, &h, &louder), d.equations.len());
+    let louder = scale_background(&frame, &fit.design, &d, background, |f| measurement.gain(f));
+    let whitener =
+        Whitener::from_covariance(&covariance(&frame, &d, &h, &louder), d.equations.len());
     let mut out = with_columns(&frame, fit, &d, &h, left, whitener);
     out.repeats = measurement.repeats() * shorter;
     out.is_new = (d.equations.iter())
@@ -274,7 +275,7 @@ fn weight(
 }
 
 /// Forms the equation for the reading of one more accelerometer at `at`, predicted from the other sensors of the rigid body.
-fn beside(frame: &MotionFrame, fit: &MotionFit, at: Point) -> Option<Recorded> {
+fn form_sensor_equation(frame: &MotionFrame, fit: &MotionFit, at: Point) -> Option<Recorded> {
     let mut d = (*fit.design).clone();
     let v = d.vehicle.clone();
     let own: Vec<usize> = (0..v.sensors.len())
@@ -293,7 +294,7 @@ fn beside(frame: &MotionFrame, fit: &MotionFit, at: Point) -> Option<Recorded> {
             vec![Complex64::new(share, 0.0); n]
         })
         .collect();
-    let mut window = Windowed::of(d.motion.n_samples(), d.motion.rate_hz, d.band);
+    let mut window = Windowed::new(d.motion.n_samples(), d.motion.rate_hz, d.band);
     let mut reading: Bins = vec![Complex64::default(); n];
     for (phi, q) in phi.iter().zip(d.motion.bodies.get(at.body)?) {
         reading
@@ -318,7 +319,7 @@ fn beside(frame: &MotionFrame, fit: &MotionFit, at: Point) -> Option<Recorded> {
     }];
     let h = vec![h];
     let s = covariance(frame, &d, &h, &Background::default());
-    let whitener = Whitener::of(&s, 1);
+    let whitener = Whitener::from_covariance(&s, 1);
     Some(with_columns(frame, fit, &d, &h, vec![reading], whitener))
 }
 
@@ -378,7 +379,7 @@ fn with_columns(
     Recorded {
         left,
         is_new: vec![true; d.equations.len()],
-        channels: entered(d, h, &adjust),
+        channels: channel_entries(d, h, &adjust),
         whitener,
         own,
         fresh: (tolerances.into_iter().flatten())
@@ -391,14 +392,15 @@ fn with_columns(
 }
 
 /// Returns the channels of a design with their noise, their responses and the corrections `adjust`.
-fn entered(d: &Design, h: &[Vec<Vec<Complex64>>], adjust: &[Adjustment]) -> Vec<Entered> {
+fn channel_entries(d: &Design, h: &[Vec<Vec<Complex64>>], adjust: &[Adjustment]) -> Vec<Entered> {
     let one = |(c, channel): (usize, &BinChannel)| {
         let n = channel.bins.len().max(1) as f64;
         let assumed = UNDECLARED * size(&channel.bins) / n.sqrt();
         let own = Adjustment::of_channel(adjust, &channel.name);
         let undone = |f: &f64| {
             let one = Complex64::new(1.0, 0.0);
-            own.as_ref().map_or(one, |a| a.undone(2.0 * PI * f))
+            own.as_ref()
+                .map_or(one, |a| a.inverse_response(2.0 * PI * f))
         };
         Entered {
             name: channel.name.clone(),
@@ -412,13 +414,13 @@ fn entered(d: &Design, h: &[Vec<Vec<Complex64>>], adjust: &[Adjustment]) -> Vec<
 
 impl Recorded {
     /// Unit-variance rows of a column, or of a residual.
-    pub(super) fn whitened(&self, bins: &[Bins]) -> Vec<f64> {
+    pub(super) fn whiten_bins(&self, bins: &[Bins]) -> Vec<f64> {
         self.whitener.rows(&slices(bins))
     }
 }
 
 /// Returns at most the first 65 536 samples of a record. They represent the rest, since a road is similar from mile to mile.
-fn beginning(record: &Channels) -> Channels {
+fn truncate_record(record: &Channels) -> Channels {
     const SAMPLES: usize = 65_536;
     let mut out = record.clone();
     out.list
@@ -428,7 +430,7 @@ fn beginning(record: &Channels) -> Channels {
 }
 
 /// Returns a record with every motion multiplied by a real gain at each frequency. Means do not change.
-fn shaped(record: &Channels, gain: impl Fn(f64) -> f64) -> Channels {
+fn apply_gain(record: &Channels, gain: impl Fn(f64) -> f64) -> Channels {
     let (mut out, _) = record.with_gaps_filled();
     let mut fourier = Fourier::default();
     for c in &mut out.list {
@@ -444,7 +446,7 @@ fn shaped(record: &Channels, gain: impl Fn(f64) -> f64) -> Channels {
 }
 
 /// Scales the power of the unexplained background by the mean squared gain of the motion in each band.
-fn scaled(
+fn scale_background(
     frame: &MotionFrame,
     now: &Design,
     d: &Design,

@@ -75,7 +75,7 @@ impl Recorded {
     fn rows(&self, truth: &Self) -> Option<Rows> {
         let times = self.repeats.sqrt();
         let rows = |bins: &[Bins], at_rest: Option<f64>| {
-            let mut rows = self.whitened(bins);
+            let mut rows = self.whiten_bins(bins);
             rows.iter_mut().for_each(|v| *v *= times);
             if self.weight.is_some() {
                 rows.push(at_rest.unwrap_or(0.0));

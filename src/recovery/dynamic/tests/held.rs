@@ -1,7 +1,7 @@
 //! Tests intervals against errors of frequency, of modes outside the model, and of the gauges that read.
 
 use super::{
-    Matrix, N_GAUGES, STRUCTURE, Structure, TAU, Waves, load, load_weights, loads_at, normal,
+    Matrix, N_GAUGES, STRUCTURE, Structure, TAU, Waves, draw_normal, load, load_weights, loads_at,
     strain, variance, waves,
 };
 use crate::recovery::dynamic::readings_at_rest;
@@ -10,16 +10,16 @@ use rand_chacha::ChaCha8Rng;
 
 /// Returns the share of weighted loads within their intervals, the mean square error over the predicted variance, that variance, and its part from
 /// noise. Frequencies of the real structures differ randomly from the model. `blank` removes readings; `judged` selects the samples.
-fn held(
+fn simulate_coverage(
     weights: [f64; 2],
     of_loads: impl Fn(&mut ChaCha8Rng) -> Waves,
     blank: impl Fn(&mut [Vec<f64>]),
     judged: impl Fn(usize) -> bool,
 ) -> [f64; 4] {
     let mut random = ChaCha8Rng::seed_from_u64(15);
-    let mut normal = || normal(&mut random);
+    let mut normal = || draw_normal(&mut random);
     let (told, sd, noise, rate, samples) = (STRUCTURE, [0.01, 0.0], 1e-4, 250.0, 1500);
-    let (s, dynamics) = told.told(20.0, sd);
+    let (s, dynamics) = told.build_model(20.0, sd);
     let (mut inside, mut all, mut errors, mut variances) = (0, 0, 0.0, 0.0);
     let mut by_noise = 0.0;
     for trial in 0..100 {
@@ -75,7 +75,7 @@ fn held(
     ]
 }
 
-fn shaken(random: &mut ChaCha8Rng) -> Waves {
+fn random_waves(random: &mut ChaCha8Rng) -> Waves {
     waves(
         [&[1.0, 3.1, 6.2, 10.7, 17.0], &[0.7, 4.9, 9.8, 15.1, 18.9]],
         random,
@@ -86,7 +86,7 @@ fn shaken(random: &mut ChaCha8Rng) -> Waves {
 #[test]
 fn intervals_of_sums_of_loads_hold_what_one_mode_puts_into_all() {
     for weights in [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, -1.0]] {
-        let [share, squares, ..] = held(weights, shaken, |_| (), |_| true);
+        let [share, squares, ..] = simulate_coverage(weights, random_waves, |_| (), |_| true);
         // As above; the mean square of 100 structures scatters by 14 % and by what their loads differ in, three times that.
         assert!((0.90..=0.99).contains(&share), "{weights:?} {share}");
         assert!((0.55..=1.6).contains(&squares), "{weights:?} {squares}");
@@ -103,7 +103,8 @@ fn intervals_hold_for_the_gauges_that_read() {
     };
     for part in [0..750, 750..1500] {
         for weights in [[1.0, 0.0], [0.0, 1.0]] {
-            let [share, squares, ..] = held(weights, shaken, halves, |i| part.contains(&i));
+            let [share, squares, ..] =
+                simulate_coverage(weights, random_waves, halves, |i| part.contains(&i));
             assert!(
                 (0.90..=0.99).contains(&share),
                 "{part:?} {weights:?} {share}"
@@ -133,10 +134,10 @@ fn intervals_follow_a_record_that_rests_and_then_shakes() {
     let shakes = |i: usize| (i as f64 / 250.0 - 3.0).abs() < 0.3;
     let rests = |i: usize| i < 375;
     for weights in [[1.0, 0.0], [0.0, 1.0]] {
-        let [share, squares, wide, noise] = held(weights, burst, |_| (), shakes);
+        let [share, squares, wide, noise] = simulate_coverage(weights, burst, |_| (), shakes);
         assert!((0.88..=1.0).contains(&share), "{weights:?} {share}");
         assert!((0.4..=2.0).contains(&squares), "{weights:?} {squares}");
-        let [share, _, narrow, same] = held(weights, burst, |_| (), rests);
+        let [share, _, narrow, same] = simulate_coverage(weights, burst, |_| (), rests);
         assert!((0.88..=1.0).contains(&share), "{weights:?} {share}");
         // The burst is a Gaussian of .3 s: five of its widths before it there is noise alone, which is the same all the time.
         assert!(
@@ -155,8 +156,8 @@ fn what_modes_that_are_not_told_answer_is_in_the_intervals() {
         hz: [8.0, 13.0, 31.0, 60.0],
         ..STRUCTURE
     };
-    let (s, mut dynamics) = real.told(20.0, [0.0, 0.0]);
-    let waves = shaken(&mut ChaCha8Rng::seed_from_u64(8));
+    let (s, mut dynamics) = real.build_model(20.0, [0.0, 0.0]);
+    let waves = random_waves(&mut ChaCha8Rng::seed_from_u64(8));
     let of_gauge = |g| {
         let reading = |i| strain(&real, &waves, g, f64::from(i) / 250.0);
         (0..1500).map(reading).collect()

@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 
 /// Mean 0, variance 1 (Box and Muller).
-fn normal(random: &mut ChaCha8Rng) -> f64 {
+fn draw_normal(random: &mut ChaCha8Rng) -> f64 {
     let (a, b): (f64, f64) = (
         random.random_range(1e-12..1.0),
         random.random_range(0.0..TAU),
@@ -17,7 +17,7 @@ fn normal(random: &mut ChaCha8Rng) -> f64 {
 }
 
 fn sensitivity(values: Matrix) -> Sensitivity {
-    let loads = (0..values.ncols()).map(|l| Load::named(format!("F{l}")));
+    let loads = (0..values.ncols()).map(|l| Load::from_name(format!("F{l}")));
     Sensitivity {
         gauges: (0..values.nrows()).map(|g| format!("G{g}")).collect(),
         loads: loads.collect(),
@@ -117,7 +117,7 @@ const STRUCTURE: Structure = Structure {
 };
 
 impl Structure {
-    fn moved(&self, j: usize, l: usize, hz: f64) -> Complex<f64> {
+    fn modal_response(&self, j: usize, l: usize, hz: f64) -> Complex<f64> {
         let (own, w) = (TAU * self.hz[j], TAU * hz);
         let x = Complex::new(own * own - w * w, 2.0 * self.damping * own * w);
         x.inv() * self.work[j][l]
@@ -126,11 +126,11 @@ impl Structure {
     /// Modal superposition: strain of gauge `g` under load `l` of the frequency.
     fn response(&self, g: usize, l: usize, hz: f64) -> Complex<f64> {
         (0..4)
-            .map(|j| self.moved(j, l, hz) * self.strain[j][g])
+            .map(|j| self.modal_response(j, l, hz) * self.strain[j][g])
             .sum()
     }
 
-    fn told(&self, up_to_hz: f64, sd: [f64; 2]) -> (Sensitivity, Dynamics) {
+    fn build_model(&self, up_to_hz: f64, sd: [f64; 2]) -> (Sensitivity, Dynamics) {
         let s = Matrix::from_fn(N_GAUGES, 2, |g, l| self.response(g, l, 0.0).re);
         let modes = (0..3).map(|j| ElasticMode {
             hz: self.hz[j],
@@ -213,7 +213,7 @@ fn loads_about_three_modes_are_those_that_modal_superposition_was_given() {
                 .collect()
         })
         .collect();
-    let (s, dynamics) = STRUCTURE.told(25.0, [0.0, 0.0]);
+    let (s, dynamics) = STRUCTURE.build_model(25.0, [0.0, 0.0]);
     let rested = readings_at_rest(&s, &dynamics, 0.0, &record, rate).unwrap();
     let at_rest = AtRest {
         readings: record,
@@ -244,7 +244,7 @@ fn a_gap_takes_what_hangs_on_it_and_the_rest_stays() {
                 .collect()
         })
         .collect();
-    let (s, dynamics) = STRUCTURE.told(25.0, [0.0, 0.0]);
+    let (s, dynamics) = STRUCTURE.build_model(25.0, [0.0, 0.0]);
     let whole = readings_at_rest(&s, &dynamics, 0.0, &record, 500.0).unwrap();
     assert_eq!(whole.blank, 2 * whole.reach);
     record.iter_mut().for_each(|c| c[1500..1600].fill(f64::NAN));
@@ -273,9 +273,9 @@ fn a_gap_takes_what_hangs_on_it_and_the_rest_stays() {
 #[test]
 fn intervals_hold_what_frequencies_damping_and_noise_make() {
     let mut random = ChaCha8Rng::seed_from_u64(5);
-    let mut normal = || normal(&mut random);
+    let mut normal = || draw_normal(&mut random);
     let (told, sd, noise, rate) = (STRUCTURE, [0.02, 0.3], 2e-5, 250.0);
-    let (s, dynamics) = told.told(20.0, sd);
+    let (s, dynamics) = told.build_model(20.0, sd);
     let (mut held, mut all) = (0, 0);
     for trial in 0..100 {
         let mut real = STRUCTURE;
@@ -317,8 +317,8 @@ fn intervals_hold_what_frequencies_damping_and_noise_make() {
 #[test]
 fn noise_alone_keeps_the_variance_that_is_told() {
     let mut random = ChaCha8Rng::seed_from_u64(6);
-    let mut normal = || normal(&mut random);
-    let (s, dynamics) = STRUCTURE.told(20.0, [0.0, 0.0]);
+    let mut normal = || draw_normal(&mut random);
+    let (s, dynamics) = STRUCTURE.build_model(20.0, [0.0, 0.0]);
     let record: Vec<Vec<f64>> = (0..N_GAUGES)
         .map(|_| (0..40_000).map(|_| normal()).collect())
         .collect();

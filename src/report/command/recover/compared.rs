@@ -3,7 +3,7 @@
 use crate::host::fault::Faults;
 use crate::host::output::Output;
 use crate::report::csv_cell;
-use crate::report::figure::{CrossPlot, cross};
+use crate::report::figure::{CrossPlot, cross_plot};
 use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::units::{format_fixed, percent};
 use crate::workflow::recover::{Comparison, LoadComparison, Recovered, Sections};
@@ -182,7 +182,7 @@ fn comparison_section(comparison: &Comparison) -> Section {
         &head,
         comparison.loads.iter().map(row).collect(),
     ));
-    blocks.push(Block::Figure(cross(&plots)));
+    blocks.push(Block::Figure(cross_plot(&plots)));
     blocks.push(Block::Note(
         "Bias and rms: mean and root mean square of recovered minus recorded load. Damage ratio: pseudo-damage of the recovered over that \
          of the recorded load between the same times. The plot shows some of the points."

@@ -15,7 +15,7 @@ pub(super) fn console(outcome: &Outcome<Recovered>) -> Console {
         States::Record(r) => (usize::MAX, count_of(r.samples as usize, "sample")),
     };
     let by_load = by_load(&spans, &of_what);
-    let compact = compact(&spans, n, &of_what);
+    let compact = peak_load_table(&spans, n, &of_what);
     let mut tables = match &outcome.states {
         _ if !outcome.comparison.loads.is_empty() => vec![against_recorded(outcome, &spans)],
         States::Runs(runs) if n > 1 => vec![by_run(runs, &spans)],
@@ -108,7 +108,7 @@ fn by_load(spans: &[LoadSpan], of_what: &str) -> ConsoleTable {
 }
 
 /// A row a load with one value.
-fn compact(spans: &[LoadSpan], n: usize, of_what: &str) -> ConsoleTable {
+fn peak_load_table(spans: &[LoadSpan], n: usize, of_what: &str) -> ConsoleTable {
     let row = |s: &LoadSpan| {
         let value = plus_minus(s.peak(), s.half);
         vec![s.name.clone(), format!("{value} {}", s.unit)]

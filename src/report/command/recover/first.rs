@@ -33,7 +33,10 @@ pub(super) fn key_numbers(outcome: &Outcome<Recovered>) -> Vec<KeyNumber> {
     };
     let (gauges, of_what) = match &outcome.states {
         States::Runs(runs) => {
-            numbers.push(residual(runs.residual_rms_microstrain, expected(runs)));
+            numbers.push(residual(
+                runs.residual_rms_microstrain,
+                format_expected_residual(runs),
+            ));
             (&runs.gauges, format!("{}", runs.runs.len()))
         }
         States::Record(record) => {
@@ -63,7 +66,7 @@ pub(super) fn key_numbers(outcome: &Outcome<Recovered>) -> Vec<KeyNumber> {
 }
 
 /// The expected residual in words.
-fn expected(runs: &RecoveredRuns) -> String {
+fn format_expected_residual(runs: &RecoveredRuns) -> String {
     let chi2: f64 = runs.runs.iter().map(|r| r.chi2).sum();
     let dof: usize = runs.runs.iter().map(|r| r.degrees_of_freedom).sum();
     match dof {

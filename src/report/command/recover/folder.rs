@@ -18,7 +18,7 @@ pub struct RecordFolder {
 
 impl RecordFolder {
     /// Into this folder.
-    pub fn at(folder: &Path) -> Self {
+    pub fn new(folder: &Path) -> Self {
         Self {
             tables: None,
             out: None,
@@ -66,7 +66,7 @@ impl RecordSink for RecordFolder {
     fn samples(&self) -> Result<Box<dyn Samples + '_>, Fault> {
         let nothing = || {
             let remedy = "report this as an error of the program";
-            Fault::of("loads.bin", "samples", "no record was read", remedy)
+            Fault::new("loads.bin", "samples", "no record was read", remedy)
         };
         let out = self.out.as_ref().ok_or_else(nothing)?;
         Ok(Box::new(LoadsFile::read_back(out)?))

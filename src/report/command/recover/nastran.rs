@@ -40,7 +40,7 @@ fn unit_sets(recovered: &Recovered, names: &[String]) -> (String, Vec<Unit>, u32
         let Some(load) = recovered.job.loads.iter().find(|l| &l.name == name) else {
             continue;
         };
-        text.push_str(&format!("$ {}\n", plain(name)));
+        text.push_str(&format!("$ {}\n", clean_text(name)));
         let set = match load.acts {
             LoadActs::Named => continue,
             LoadActs::Set(set) => set,
@@ -75,7 +75,7 @@ fn unit_card(model: Option<&Model>, load: &JobLoad, sid: u32) -> String {
 }
 
 /// Text for a comment or a label.
-fn plain(text: &str) -> String {
+fn clean_text(text: &str) -> String {
     text.chars()
         .filter(|c| !c.is_control() && *c != '$')
         .take(60)
@@ -85,7 +85,7 @@ fn plain(text: &str) -> String {
 fn heading(recovered: &Recovered, what: &str) -> String {
     format!(
         "$ Recovered loads of {}, units {}\n$ {what}\n",
-        plain(&recovered.job.title),
+        clean_text(&recovered.job.title),
         recovered.job.units.name()
     )
 }
@@ -108,9 +108,9 @@ pub(super) fn write_runs(
     for (number, run) in (1..).zip(&runs.recovery.runs) {
         let values: Vec<(f64, u32)> = units
             .iter()
-            .map(|u| (rounded(run.estimate.values[u.column], 9), u.set))
+            .map(|u| (round_to_digits(run.estimate.values[u.column], 9), u.set))
             .collect();
-        let label = plain(&run.estimate.run);
+        let label = clean_text(&run.estimate.run);
         if values.iter().any(|v| !v.0.is_finite()) {
             bulk.push_str(&format!("$ Run {label}: not recovered\n"));
             continue;
@@ -194,8 +194,11 @@ fn table(
         let to = (from + PIECE).min(h.samples);
         loads.read(from, to, &[column], &mut values);
         for (i, v) in (from..).zip(&values).filter(|(_, v)| v.is_finite()) {
-            let time = rounded(h.t0 + h.dt * i as f64, 10);
-            fields.extend([Field::Real(time), Field::Real(rounded(v / unit.factor, 7))]);
+            let time = round_to_digits(h.t0 + h.dt * i as f64, 10);
+            fields.extend([
+                Field::Real(time),
+                Field::Real(round_to_digits(v / unit.factor, 7)),
+            ]);
         }
     }
     fields.push(Field::from("ENDT"));
@@ -203,6 +206,6 @@ fn table(
 }
 
 /// The number with so many significant digits; the 32-bit reals of `loads.bin` hold 7.
-fn rounded(x: f64, digits: usize) -> f64 {
+fn round_to_digits(x: f64, digits: usize) -> f64 {
     format!("{x:.*e}", digits - 1).parse().unwrap_or(x)
 }

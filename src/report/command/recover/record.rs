@@ -47,7 +47,7 @@ pub(super) fn write(
         out.write("rainflow.csv", |w| rainflow_csv(w, damage))?;
     }
     if head.is_read_again() && out.holds(BIN) {
-        derived(out, outcome, record)?;
+        write_derived_files(out, outcome, record)?;
     }
     let loads: Vec<HistoryLoad> = record.loads.iter().map(of_history).collect();
     write_page(out, outcome)?;
@@ -59,7 +59,7 @@ pub(super) fn write(
 }
 
 /// Files that are made of `loads.bin`.
-fn derived(
+fn write_derived_files(
     out: &mut Output,
     outcome: &Outcome<Recovered>,
     record: &RecoveredRecord,

@@ -40,7 +40,7 @@ pub(super) fn write(
         nastran::write_runs(out, outcome, runs)?;
     }
     vtu::write(out, outcome, runs)?;
-    let shown = shown(runs);
+    let shown = shown_runs(runs);
     write_page(out, outcome)?;
     let sheets = [runs_sheet(&shown), residual_sheet(&by_gauge(&runs.gauges))];
     write_book(out, outcome, job, "loads.xlsx", &sheets)
@@ -68,7 +68,7 @@ fn loads_csv(w: &mut dyn Write, runs: &RecoveredRuns) -> std::io::Result<()> {
     Ok(())
 }
 
-fn shown(runs: &RecoveredRuns) -> Vec<RecoveredRun> {
+fn shown_runs(runs: &RecoveredRuns) -> Vec<RecoveredRun> {
     let of = |r| shown_run(runs, r);
     runs.recovery.runs.iter().map(of).collect()
 }
@@ -90,7 +90,7 @@ fn shown_run(runs: &RecoveredRuns, r: &RunEstimate) -> RecoveredRun {
 
 /// The page.
 pub(super) fn page(outcome: &Outcome<Recovered>, runs: &RecoveredRuns) -> Page {
-    let shown = shown(runs);
+    let shown = shown_runs(runs);
     let (job, s) = (&outcome.job, &outcome.prepared.sensitivity);
     let numbers = vec![
         ("Runs".to_owned(), runs.recovery.runs.len().to_string()),

@@ -61,7 +61,7 @@ impl LoadTables {
         let (sender, texts) = sync_channel::<Vec<Text>>(1);
         let writer = std::thread::Builder::new().spawn(move || {
             for text in texts.into_iter().flatten() {
-                tables.put(&text)?;
+                tables.write_rows(&text)?;
             }
             Ok(tables)
         });
@@ -139,7 +139,7 @@ impl Tables {
             .map_err(|e| (BIN, e))
     }
 
-    fn put(&mut self, text: &Text) -> Result<(), WriteError> {
+    fn write_rows(&mut self, text: &Text) -> Result<(), WriteError> {
         self.csv.write_all(&text.rows).map_err(|e| (CSV, e))?;
         match &mut self.bin {
             Some(bin) => bin.write_all(&text.numbers).map_err(|e| (BIN, e)),
@@ -225,7 +225,7 @@ impl LoadsFile {
         let header = binary::read_header(&bytes);
         let header = header.map_err(|e| {
             let remedy = "report this as an error of the program";
-            Fault::of(BIN, "header", e.to_string(), remedy)
+            Fault::new(BIN, "header", e.to_string(), remedy)
         })?;
         Ok(Self { bytes, header })
     }

@@ -15,13 +15,13 @@ impl Numbers {
     }
 
     /// Mean 0, standard deviation 1.
-    fn normal(&mut self) -> f64 {
+    fn normal_number(&mut self) -> f64 {
         (0..12).map(|_| 0.5 * self.even()).sum()
     }
 }
 
 fn tally(rows: &[f64], k: usize, load: usize, noise: f64) -> Tally {
-    let mut counter = Counter::new(load, k, noise, 0.25, Law::straight(5.0));
+    let mut counter = Counter::new(load, k, noise, 0.25, Law::from_slope(5.0));
     // In blocks of uneven size, as records come.
     for block in rows.chunks(k * 37) {
         push(&mut counter, block, &vec![noise; k]);
@@ -31,7 +31,7 @@ fn tally(rows: &[f64], k: usize, load: usize, noise: f64) -> Tally {
 
 fn push(counter: &mut Counter, rows: &[f64], noise: &[f64]) {
     let mut marks = Vec::new();
-    Marks::new(noise).put(rows, &mut marks);
+    Marks::new(noise).append_marks(rows, &mut marks);
     counter.push(rows, &marks);
 }
 
@@ -41,8 +41,8 @@ fn history(n: usize) -> Vec<f64> {
     let (mut a, mut b) = (0.0, 0.0);
     (0..n)
         .flat_map(|i| {
-            a = 0.9 * a + numbers.normal();
-            b = 0.5 * b + 0.3 * a + numbers.normal();
+            a = 0.9 * a + numbers.normal_number();
+            b = 0.5 * b + 0.3 * a + numbers.normal_number();
             let gap = i % 977 < 3;
             [
                 if gap {
@@ -74,7 +74,7 @@ fn parts_join_to_the_whole_to_the_last_cycle_wherever_they_are_cut() {
                 .windows(2)
                 .map(|w| tally(&rows[w[0] * k..w[1] * k], k, load, 0.0))
                 .collect();
-            let joined = Tally::joined(&parts.iter().collect::<Vec<_>>()).unwrap();
+            let joined = Tally::join_parts(&parts.iter().collect::<Vec<_>>()).unwrap();
             assert_eq!(joined.cycles, whole.cycles, "{cuts}");
             assert_eq!(joined.levels, whole.levels, "{cuts}");
             assert_eq!(joined.range_pairs(), whole.range_pairs(), "{cuts}");
@@ -123,12 +123,12 @@ fn what_is_kept_as_json_comes_back_whole_gaps_and_an_endless_slope_too() {
 fn joining_in_two_steps_is_joining_at_once() {
     let rows = history(9000);
     let parts: Vec<Tally> = rows.chunks(2 * 1000).map(|c| tally(c, 2, 0, 0.1)).collect();
-    let all = Tally::joined(&parts.iter().collect::<Vec<_>>()).unwrap();
+    let all = Tally::join_parts(&parts.iter().collect::<Vec<_>>()).unwrap();
     let halves: Vec<Tally> = parts
         .chunks(4)
-        .map(|c| Tally::joined(&c.iter().collect::<Vec<_>>()).unwrap())
+        .map(|c| Tally::join_parts(&c.iter().collect::<Vec<_>>()).unwrap())
         .collect();
-    let twice = Tally::joined(&halves.iter().collect::<Vec<_>>()).unwrap();
+    let twice = Tally::join_parts(&halves.iter().collect::<Vec<_>>()).unwrap();
     assert_eq!(
         (all.cycles, all.levels, all.max),
         (twice.cycles, twice.levels, twice.max)
@@ -144,7 +144,7 @@ fn damage_of_a_sine_in_noise_is_that_of_the_sine_and_never_above_what_was_counte
         let mut numbers = Numbers(seed);
         let sine = |i: i32| -2.0 * (std::f64::consts::TAU * f64::from(i) / 64.0).cos();
         let rows: Vec<f64> = (0..=400 * 64)
-            .map(|i| sine(i) + sigma * numbers.normal())
+            .map(|i| sine(i) + sigma * numbers.normal_number())
             .collect();
         let d = damage_interval(&tally(&rows, 1, 0, sigma), &[0.0], sigma);
         let ratio = d.value / truth;
@@ -179,7 +179,7 @@ fn damage_without_the_bias_of_noise_is_the_same_however_the_record_is_cut() {
             tally(&loads, k, 0, noise)
         };
         let parts: Vec<Tally> = at.windows(2).map(part).collect();
-        let joined = Tally::joined(&parts.iter().collect::<Vec<_>>()).unwrap();
+        let joined = Tally::join_parts(&parts.iter().collect::<Vec<_>>()).unwrap();
         let d = damage_interval(&joined, &[0.0; 4], noise);
         for (a, b) in [
             (d.value, whole.value),
@@ -192,13 +192,16 @@ fn damage_without_the_bias_of_noise_is_the_same_however_the_record_is_cut() {
 }
 
 /// Ratio of the bias taken off to the bias there is, `periods` of a sine of `length` samples.
-fn taken(length: f64, periods: f64, share: f64, slope: f64) -> f64 {
+fn removed_bias_ratio(length: f64, periods: f64, share: f64, slope: f64) -> f64 {
     let mut numbers = Numbers(length as u64);
-    let law = Law::straight(slope);
+    let law = Law::from_slope(slope);
     let sigma = 4.0 * share;
     let sine = |i: usize| 2.0 * (std::f64::consts::TAU * i as f64 / length).sin();
     let clean: Vec<f64> = (0..(length * periods) as usize).map(sine).collect();
-    let noisy: Vec<f64> = clean.iter().map(|v| v + sigma * numbers.normal()).collect();
+    let noisy: Vec<f64> = clean
+        .iter()
+        .map(|v| v + sigma * numbers.normal_number())
+        .collect();
     let damage = |rows: &[f64], noise: f64| {
         let mut counter = Counter::new(0, 1, noise, 0.25, law);
         push(&mut counter, rows, &[noise]);
@@ -220,7 +223,7 @@ fn of_smooth_loads_as_much_is_taken_off_as_noise_adds() {
         (200.7, 0.01, 5.0),
         (200.7, 0.02, 9.0),
     ] {
-        let ratio = taken(length, 5000.0, share, slope);
+        let ratio = removed_bias_ratio(length, 5000.0, share, slope);
         assert!(
             (0.85..1.15).contains(&ratio),
             "{length} {share} {slope}: {ratio}"
@@ -323,7 +326,7 @@ fn day(numbers: &mut Numbers, n: usize) -> Vec<f64> {
     for _ in 0..n {
         // A lightly damped oscillator a load, some 25 samples a period, driven by noise.
         for w in &mut waves {
-            let next = 1.9 * w[0] - 0.96 * w[1] + 0.1 * numbers.normal();
+            let next = 1.9 * w[0] - 0.96 * w[1] + 0.1 * numbers.normal_number();
             *w = [next, w[0]];
         }
         rows.extend([waves[0][0], 0.5 * waves[0][0] + waves[1][0]]);
@@ -345,7 +348,10 @@ fn the_interval_of_damage_holds_over_thirty_days_with_one_error_of_scale() {
     let covariance = [SCALE * SCALE, 0.0, 0.0, SCALE * SCALE];
     let (mut held, mut held_apart) = (0, 0);
     for _ in 0..VEHICLES {
-        let c = [SCALE * numbers.normal(), SCALE * numbers.normal()];
+        let c = [
+            SCALE * numbers.normal_number(),
+            SCALE * numbers.normal_number(),
+        ];
         let mut truth = Vec::new();
         let mut seen = Vec::new();
         for _ in 0..DAYS {
@@ -356,14 +362,14 @@ fn the_interval_of_damage_holds_over_thirty_days_with_one_error_of_scale() {
                 .flat_map(|r| {
                     let first = r[0] * (1.0 + c[0]) + c[1] * r[1];
                     [
-                        first + noise * numbers.normal(),
-                        r[1] + noise * numbers.normal(),
+                        first + noise * numbers.normal_number(),
+                        r[1] + noise * numbers.normal_number(),
                     ]
                 })
                 .collect();
             seen.push(tally(&read, 2, 0, noise));
         }
-        let of = |days: &[Tally]| Tally::joined(&days.iter().collect::<Vec<_>>()).unwrap();
+        let of = |days: &[Tally]| Tally::join_parts(&days.iter().collect::<Vec<_>>()).unwrap();
         let real = damage_interval(&of(&truth), &covariance, 0.0).value;
         let d = damage_interval(&of(&seen), &covariance, noise);
         held += usize::from((d.low..=d.high).contains(&real));

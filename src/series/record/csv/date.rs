@@ -27,7 +27,7 @@ fn without_offset(time: &str) -> Option<(&str, f64)> {
         (None, 4) => offset.split_at_checked(2)?,
         (None, _) => (offset, "0"),
     };
-    let (hours, minutes) = (whole(hours)?, whole(minutes)?);
+    let (hours, minutes) = (parse_whole_number(hours)?, parse_whole_number(minutes)?);
     let size = (hours <= 14 && minutes < 60).then_some((hours * 3600 + minutes * 60) as f64)?;
     Some((before.trim_end(), if sign == "-" { -size } else { size }))
 }
@@ -37,7 +37,7 @@ pub fn is_ambiguous(field: &[u8]) -> bool {
     let text = std::str::from_utf8(field).unwrap_or_default().trim();
     let date = text.split([' ', 'T']).next().unwrap_or_default();
     let parts: Vec<&str> = date.split('/').collect();
-    matches!(parts[..], [a, b, c] if c.len() == 4 && [a, b].iter().all(|p| whole(p).is_some_and(|n| (1..=12).contains(&n))))
+    matches!(parts[..], [a, b, c] if c.len() == 4 && [a, b].iter().all(|p| parse_whole_number(p).is_some_and(|n| (1..=12).contains(&n))))
 }
 
 /// Seconds since 1970 of a date in one field and a time of day in the other.
@@ -61,7 +61,11 @@ fn days_of(date: &str) -> Option<i64> {
     let mark = ['.', '/', '-'].into_iter().find(|m| date.contains(*m))?;
     let mut parts = date.split(mark);
     let [a, b, c] = [parts.next()?, parts.next()?, parts.next()?];
-    let [x, y, z] = [whole(a)?, whole(b)?, whole(c)?];
+    let [x, y, z] = [
+        parse_whole_number(a)?,
+        parse_whole_number(b)?,
+        parse_whole_number(c)?,
+    ];
     let (year, month, day) = match (mark, a.len(), c.len()) {
         ('.', _, 4) => (z, y, x),
         ('/' | '-', 4, _) => (x, y, z),
@@ -87,7 +91,10 @@ fn seconds_of_day(time: &str) -> Option<f64> {
         _ => (time, None),
     };
     let mut parts = time.split(':');
-    let (hour, minute) = (whole(parts.next()?)?, whole(parts.next()?)?);
+    let (hour, minute) = (
+        parse_whole_number(parts.next()?)?,
+        parse_whole_number(parts.next()?)?,
+    );
     let second: f64 = match parts.next() {
         Some(t)
             if t.bytes()
@@ -109,7 +116,7 @@ fn seconds_of_day(time: &str) -> Option<f64> {
 }
 
 /// A whole number of four digits at most.
-fn whole(text: &str) -> Option<i64> {
+fn parse_whole_number(text: &str) -> Option<i64> {
     let is_short = !text.is_empty() && text.len() <= 4;
     (is_short && text.bytes().all(|b| b.is_ascii_digit())).then(|| text.parse().ok())?
 }

@@ -113,7 +113,7 @@ fn exponent(field: &[u8]) -> Option<usize> {
 
 /// Where the last line begins; it and some lines before it, the last first.
 fn last_lines(bytes: &[u8]) -> (usize, Vec<Vec<u8>>) {
-    let (encoding, begin) = Encoding::of(bytes);
+    let (encoding, begin) = Encoding::detect(bytes);
     let last = last_line(encoding, bytes, bytes.len());
     let mut starts = vec![last];
     while let Some(at) = starts.last().copied().filter(|at| *at > begin)
@@ -140,7 +140,7 @@ fn delimiter_of(line: &[u8]) -> u8 {
 /// Where the line begins that ends before `end`.
 fn last_line(encoding: Encoding, bytes: &[u8], end: usize) -> usize {
     let unit = encoding.unit();
-    let begin = Encoding::of(bytes).1;
+    let begin = Encoding::detect(bytes).1;
     let text = bytes.get(begin..end).unwrap_or_default();
     match encoding {
         Encoding::Bytes => memchr::memrchr(b'\n', text).map_or(begin, |n| begin + n + 1),

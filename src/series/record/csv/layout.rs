@@ -76,8 +76,8 @@ impl Layout {
     ///
     /// # Errors
     /// No header, a header without rows, times in an unknown unit.
-    pub fn of(bytes: &[u8]) -> Result<Self, SeriesError> {
-        let (encoding, begin) = Encoding::of(bytes);
+    pub fn detect(bytes: &[u8]) -> Result<Self, SeriesError> {
+        let (encoding, begin) = Encoding::detect(bytes);
         if has_bare_returns(bytes) {
             return Err(SeriesError::Line {
                 line: 1,
@@ -87,7 +87,7 @@ impl Layout {
         }
         let lines = first_lines(encoding, bytes, begin);
         let delimiter = delimiter_of(&lines);
-        let mark = DecimalMark::beside(delimiter);
+        let mark = DecimalMark::from_delimiter(delimiter);
         let fields: Vec<Vec<&[u8]>> = lines.iter().map(|l| split(&l.text, delimiter)).collect();
         let header = header_of(&fields, mark)?;
         let names = fields.get(header).map_or(&[][..], Vec::as_slice);

@@ -44,7 +44,7 @@ impl Csv {
     /// # Errors
     /// No header, a header without rows, a time column in a unit that is not a unit of time.
     pub fn new(bytes: Bytes) -> Result<Self, SeriesError> {
-        let layout = Layout::of((*bytes).as_ref())?;
+        let layout = Layout::detect((*bytes).as_ref())?;
         let left_out = unsure_end((*bytes).as_ref()).filter(|at| *at > layout.start);
         let whole = (*bytes).as_ref();
         let whole = left_out.and_then(|at| whole.get(..at)).unwrap_or(whole);

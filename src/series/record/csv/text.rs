@@ -20,7 +20,7 @@ fn eight_bit_text(bytes: &[u8]) -> Option<String> {
 
 /// Returns a table as text: UTF-8 or UTF-16 with or without its mark, else the eight-bit code of Windows; `None` for bytes that no text has.
 pub fn table_text(bytes: &[u8]) -> Option<String> {
-    let (encoding, begin) = Encoding::of(bytes);
+    let (encoding, begin) = Encoding::detect(bytes);
     let raw = bytes.get(begin..)?;
     let text = match encoding {
         Encoding::Bytes => Cow::Borrowed(raw),
@@ -45,7 +45,7 @@ pub enum Encoding {
 
 impl Encoding {
     /// How these bytes are coded, and where the text begins.
-    pub fn of(bytes: &[u8]) -> (Self, usize) {
+    pub fn detect(bytes: &[u8]) -> (Self, usize) {
         match bytes {
             [0xef, 0xbb, 0xbf, ..] => (Self::Bytes, 3),
             [0xff, 0xfe, ..] => (Self::Utf16Le, 2),
@@ -144,7 +144,7 @@ pub fn has_bare_returns(bytes: &[u8]) -> bool {
     /// Bytes looked at: the first lines of any table.
     const BEGINNING: usize = 1 << 20;
     let beginning = bytes.get(..BEGINNING).unwrap_or(bytes);
-    let (encoding, _) = Encoding::of(bytes);
+    let (encoding, _) = Encoding::detect(bytes);
     let of = |end: u8| match encoding {
         Encoding::Bytes => memchr::memchr(end, beginning).is_some(),
         Encoding::Utf16Le => beginning.chunks_exact(2).any(|b| b == [end, 0]),

@@ -30,19 +30,19 @@ pub(super) struct Batch {
 
 impl Batch {
     /// Returns the buffers of a field, decompressed.
-    pub(super) fn all<'a>(
+    pub(super) fn field_buffers<'a>(
         &self,
         at: usize,
         file: &'a [u8],
     ) -> Result<Vec<Cow<'a, [u8]>>, SeriesError> {
         let buffers = self.buffers.get(at).map(Vec::as_slice).unwrap_or_default();
-        let raw = buffers.iter().map(|r| self.raw(file, r));
+        let raw = buffers.iter().map(|r| self.buffer_bytes(file, r));
         raw.map(|b| b.ok_or_else(|| read_error("a compressed column is damaged")))
             .collect()
     }
 
     /// Returns the bytes of a buffer. A compressed one begins with its length; the length -1 marks one that is stored as it is.
-    fn raw<'a>(&self, file: &'a [u8], range: &Range<usize>) -> Option<Cow<'a, [u8]>> {
+    fn buffer_bytes<'a>(&self, file: &'a [u8], range: &Range<usize>) -> Option<Cow<'a, [u8]>> {
         let part = file.get(range.clone())?;
         let Some(codec) = self.codec.filter(|_| !part.is_empty()) else {
             return Some(Cow::Borrowed(part));

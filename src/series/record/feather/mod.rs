@@ -41,7 +41,7 @@ pub struct Feather {
 }
 
 impl Feather {
-    /// Returns the table in a file. Columns of numbers alone are channels; a null is NaN. [`Typed::of`] determines the column of time.
+    /// Returns the table in a file. Columns of numbers alone are channels; a null is NaN. [`Typed::from_columns`] determines the column of time.
     ///
     /// # Errors
     /// A file that is cut off or damaged.
@@ -53,8 +53,9 @@ impl Feather {
         let (fields, batches, dictionaries) =
             parts(file).ok_or_else(|| read_error("its list of columns or batches is damaged"))?;
         let numbers = fields.iter().enumerate();
-        let typed =
-            Typed::of(numbers.filter_map(|(at, f)| Some((at, &*f.name, f.meaning()?, &*f.unit))));
+        let typed = Typed::from_columns(
+            numbers.filter_map(|(at, f)| Some((at, &*f.name, f.meaning()?, &*f.unit))),
+        );
         let (leaves, columns) = typed.channels.into_iter().unzip();
         let pieces = batches.iter().enumerate().flat_map(|(b, batch)| {
             // A compressed batch is decompressed whole.
@@ -136,7 +137,7 @@ impl Feather {
         for batch in &self.batches {
             let mut numbers = vec![f64::NAN; batch.rows];
             let values = self.values(batch, at, field.stored)?;
-            values.put(0, 1.0, 0.0, &mut numbers);
+            values.write_rows(0, 1.0, 0.0, &mut numbers);
             let word = |n: f64| words.get(n as usize).filter(|_| n >= 0.0).cloned();
             out.extend(numbers.into_iter().map(|n| word(n).unwrap_or_default()));
         }
@@ -150,7 +151,7 @@ impl Feather {
         stored: Stored,
         out: &mut Vec<String>,
     ) -> Result<(), SeriesError> {
-        let buffers: Vec<Cow<'_, [u8]>> = batch.all(at, (*self.bytes).as_ref())?;
+        let buffers: Vec<Cow<'_, [u8]>> = batch.field_buffers(at, (*self.bytes).as_ref())?;
         let [validity, places, data @ ..] = buffers.as_slice() else {
             return Err(read_error("a column of text has no buffers"));
         };
@@ -197,7 +198,7 @@ impl Feather {
         at: usize,
         stored: Stored,
     ) -> Result<Values<'a>, SeriesError> {
-        let buffers = batch.all(at, (*self.bytes).as_ref())?;
+        let buffers = batch.field_buffers(at, (*self.bytes).as_ref())?;
         let [validity, data]: [Cow<'a, [u8]>; 2] = buffers
             .try_into()
             .map_err(|_| read_error("a column of numbers has too few buffers"))?;
@@ -231,7 +232,7 @@ impl Feather {
                 let entries = self.values(batch, 0, stored)?;
                 let first = all.len();
                 all.resize(first + batch.rows, f64::NAN);
-                entries.put(0, 1.0, 0.0, all.get_mut(first..).unwrap_or_default());
+                entries.write_rows(0, 1.0, 0.0, all.get_mut(first..).unwrap_or_default());
             }
             values.dictionary = Some(all);
         }
@@ -284,7 +285,7 @@ impl RecordReader for Feather {
             let count = BLOCK.min(rows.end - from);
             for (j, column, worth, off) in &columns {
                 let place = tile.column(*j, count, &mut values, k);
-                column.put(from, *worth, *off, place);
+                column.write_rows(from, *worth, *off, place);
             }
             tile.lay_out(&mut values, k);
             let block = Block {

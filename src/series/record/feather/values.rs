@@ -16,7 +16,7 @@ pub(super) struct Values<'a> {
 
 impl Values<'_> {
     /// Writes the rows from number `first` on, times `worth` less `off`; NaN for a null.
-    pub(super) fn put(&self, first: usize, worth: f64, off: f64, out: &mut [f64]) {
+    pub(super) fn write_rows(&self, first: usize, worth: f64, off: f64, out: &mut [f64]) {
         let data = &*self.data;
         match self.stored {
             Stored::Bits => {
@@ -27,22 +27,26 @@ impl Values<'_> {
             Stored::Integer {
                 bytes, is_signed, ..
             } => match (bytes, is_signed) {
-                (1, true) => each(data, first, out, |b| f64::from(i8::from_le_bytes(b))),
-                (1, false) => each(data, first, out, |b| f64::from(u8::from_le_bytes(b))),
-                (2, true) => each(data, first, out, |b| f64::from(i16::from_le_bytes(b))),
-                (2, false) => each(data, first, out, |b| f64::from(u16::from_le_bytes(b))),
-                (4, true) => each(data, first, out, |b| f64::from(i32::from_le_bytes(b))),
-                (4, false) => each(data, first, out, |b| f64::from(u32::from_le_bytes(b))),
-                (_, true) => each(data, first, out, |b| i64::from_le_bytes(b) as f64),
-                (_, false) => each(data, first, out, |b| u64::from_le_bytes(b) as f64),
+                (1, true) => decode_numbers(data, first, out, |b| f64::from(i8::from_le_bytes(b))),
+                (1, false) => decode_numbers(data, first, out, |b| f64::from(u8::from_le_bytes(b))),
+                (2, true) => decode_numbers(data, first, out, |b| f64::from(i16::from_le_bytes(b))),
+                (2, false) => {
+                    decode_numbers(data, first, out, |b| f64::from(u16::from_le_bytes(b)))
+                }
+                (4, true) => decode_numbers(data, first, out, |b| f64::from(i32::from_le_bytes(b))),
+                (4, false) => {
+                    decode_numbers(data, first, out, |b| f64::from(u32::from_le_bytes(b)))
+                }
+                (_, true) => decode_numbers(data, first, out, |b| i64::from_le_bytes(b) as f64),
+                (_, false) => decode_numbers(data, first, out, |b| u64::from_le_bytes(b) as f64),
             },
             Stored::Real { bytes: 2 } => {
-                each(data, first, out, |b| of_half(u16::from_le_bytes(b)));
+                decode_numbers(data, first, out, |b| of_half(u16::from_le_bytes(b)));
             }
             Stored::Real { bytes: 4 } => {
-                each(data, first, out, |b| f64::from(f32::from_le_bytes(b)));
+                decode_numbers(data, first, out, |b| f64::from(f32::from_le_bytes(b)));
             }
-            Stored::Real { .. } => each(data, first, out, f64::from_le_bytes),
+            Stored::Real { .. } => decode_numbers(data, first, out, f64::from_le_bytes),
             Stored::Text { .. } | Stored::TextView | Stored::Other => {}
         }
         for (slot, i) in out.iter_mut().zip(first..) {
@@ -63,7 +67,12 @@ impl Values<'_> {
     }
 }
 
-fn each<const N: usize>(data: &[u8], first: usize, out: &mut [f64], of: impl Fn([u8; N]) -> f64) {
+fn decode_numbers<const N: usize>(
+    data: &[u8],
+    first: usize,
+    out: &mut [f64],
+    of: impl Fn([u8; N]) -> f64,
+) {
     let stored = data.as_chunks().0.get(first..).unwrap_or_default();
     for (slot, bytes) in out.iter_mut().zip(stored) {
         *slot = of(*bytes);

@@ -38,7 +38,7 @@ pub(super) struct Field {
 
 impl Field {
     /// Returns the field of a channel; `None` for a channel that is not a plain number of fixed length.
-    pub(super) fn of(c: &Channel) -> Option<Self> {
+    pub(super) fn from_channel(c: &Channel) -> Option<Self> {
         let index = matches!(
             c.channel_type,
             ChannelType::VirtualMaster | ChannelType::VirtualData
@@ -105,7 +105,7 @@ impl Field {
     }
 
     /// The largest error of a value by what it is stored as: half a count, or the last bit of a real of 32 bits at a day's end.
-    pub(super) fn rounding(&self) -> f64 {
+    pub(super) fn rounding_error(&self) -> f64 {
         let one = self.conversion.convert(1.0, self.is_float)
             - self.conversion.convert(0.0, self.is_float);
         match self.kind {
@@ -151,7 +151,7 @@ impl Field {
         let raw = if self.kind == Kind::Index {
             index as f64
         } else {
-            self.raw(row.get(self.at..self.at + self.bytes).unwrap_or_default())
+            self.raw_value(row.get(self.at..self.at + self.bytes).unwrap_or_default())
         };
         match &self.conversion {
             Conversion::None => raw,
@@ -161,7 +161,7 @@ impl Field {
     }
 
     #[inline]
-    fn raw(&self, b: &[u8]) -> f64 {
+    fn raw_value(&self, b: &[u8]) -> f64 {
         match (self.kind, b) {
             (Kind::F32, &[a, b, c, d]) if self.big_endian => {
                 f64::from(f32::from_be_bytes([a, b, c, d]))

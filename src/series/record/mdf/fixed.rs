@@ -40,7 +40,7 @@ impl Group {
     ///
     /// # Errors
     /// Fewer bytes than the group states records, or blocks that lie outside of the file.
-    pub(super) fn of(
+    pub(super) fn from_channel_group(
         file: &Mf4File,
         bytes: &Bytes,
         group: &ChannelGroup,
@@ -87,7 +87,7 @@ impl Group {
         let mut fields = Vec::new();
         let mut columns = Vec::new();
         for c in values(group) {
-            match Field::of(c).filter(|f| f.fits(data, invalidation)) {
+            match Field::from_channel(c).filter(|f| f.fits(data, invalidation)) {
                 Some(f) => {
                     fields.push(f);
                     columns.push(Column::of_channel(&c.name, &c.unit));
@@ -96,7 +96,7 @@ impl Group {
             }
         }
         let time = match group.channels.iter().find(|c| c.is_time_channel()) {
-            Some(c) => match Field::of(c).filter(|f| f.fits(data, invalidation)) {
+            Some(c) => match Field::from_channel(c).filter(|f| f.fits(data, invalidation)) {
                 Some(f) => Some(f),
                 None => return Ok(None),
             },
@@ -310,7 +310,7 @@ impl RecordReader for Fixed {
         &self.columns
     }
 
-    fn others(&self) -> &[OtherChannel] {
+    fn other_channels(&self) -> &[OtherChannel] {
         &self.others
     }
 
@@ -318,7 +318,7 @@ impl RecordReader for Fixed {
         let main = self.groups.first();
         match main.and_then(|g| g.time.as_ref()) {
             Some(t) => Times::Stored {
-                rounding_s: t.rounding(),
+                rounding_s: t.rounding_error(),
                 epoch_s: None,
                 unit_stated: true,
             },

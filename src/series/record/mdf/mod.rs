@@ -67,14 +67,14 @@ pub(super) fn open(bytes: Bytes, wanted: &[String]) -> Result<Box<dyn RecordRead
     let finished = file.unfinalized().is_none();
     let mut plain: Vec<Option<Group>> = Vec::new();
     for g in &groups {
-        plain.push(Group::of(&file, &bytes, g, finished)?);
+        plain.push(Group::from_channel_group(&file, &bytes, g, finished)?);
     }
     let at = |g: &ChannelGroup| groups.iter().position(|o| std::ptr::eq(*o, g));
     let main_at = at(main).unwrap_or(0);
     let Some(clock) = plain.get_mut(main_at).and_then(Option::take) else {
-        let mut read = whole(&file, main)?;
+        let mut read = decode_group(&file, main)?;
         let rest = groups.iter().filter(|g| !std::ptr::eq(**g, main));
-        read.others = rest.flat_map(|g| others(g)).collect();
+        read.others = rest.flat_map(|g| list_other_channels(g)).collect();
         return Ok(Box::new(read));
     };
     let mut apart: Vec<OtherChannel> = Vec::new();
@@ -91,7 +91,7 @@ pub(super) fn open(bytes: Bytes, wanted: &[String]) -> Result<Box<dyn RecordRead
             {
                 list.push(group);
             }
-            _ => apart.extend(others(other)),
+            _ => apart.extend(list_other_channels(other)),
         }
     }
     let names = apart.iter().map(|c| c.name.clone());
@@ -103,7 +103,7 @@ pub(super) fn open(bytes: Bytes, wanted: &[String]) -> Result<Box<dyn RecordRead
 }
 
 /// Channels of a group that is not read.
-fn others(group: &ChannelGroup) -> impl Iterator<Item = OtherChannel> {
+fn list_other_channels(group: &ChannelGroup) -> impl Iterator<Item = OtherChannel> {
     values(group).map(|c| OtherChannel {
         group: group.acquisition_name.clone(),
         name: c.name.clone(),
@@ -114,7 +114,7 @@ fn others(group: &ChannelGroup) -> impl Iterator<Item = OtherChannel> {
 }
 
 /// A group decoded whole.
-fn whole(file: &Mf4File, group: &ChannelGroup) -> Result<Whole, SeriesError> {
+fn decode_group(file: &Mf4File, group: &ChannelGroup) -> Result<Whole, SeriesError> {
     let mut columns = Vec::new();
     let mut samples = Vec::new();
     let decode = |c: &falcon_mdf::Channel| -> Result<Vec<f64>, SeriesError> {
@@ -137,7 +137,7 @@ fn whole(file: &Mf4File, group: &ChannelGroup) -> Result<Whole, SeriesError> {
         columns,
         times: match (&stored, clock) {
             (Some(_), Some(c)) => Times::Stored {
-                rounding_s: Field::of(c).map_or(0.0, |f| f.rounding()),
+                rounding_s: Field::from_channel(c).map_or(0.0, |f| f.rounding_error()),
                 epoch_s: None,
                 unit_stated: true,
             },

@@ -29,7 +29,7 @@ pub(super) fn samplings(all: &[Channel], file: &[u8]) -> Vec<Sampling> {
     };
     let begin = all.iter().filter_map(|c| c.time("wf_start_time")).min();
     let since = |c: &Channel| match (begin, c.time("wf_start_time")) {
-        (Some(begin), Some(start)) => start.since(begin),
+        (Some(begin), Some(start)) => start.seconds_since(begin),
         _ => 0.0,
     };
     let sampling = |c: &Channel| match step(c) {
@@ -122,7 +122,7 @@ pub(super) fn check_restarts(c: &Channel) -> Result<(), SeriesError> {
             continue;
         }
         let since = match (begin, start) {
-            (Some(begin), Some(start)) => start.since(begin),
+            (Some(begin), Some(start)) => start.seconds_since(begin),
             _ => 0.0,
         };
         let begins = since + second(c) * (now - offset);

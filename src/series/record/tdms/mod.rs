@@ -68,7 +68,7 @@ impl Tdms {
         for (at, ((c, together), sampling)) in sampled.enumerate() {
             let is_times = main.times == Some(at);
             if !(together || is_times) || c.kind == Kind::Time && !is_times {
-                others.push(other(&c, Some(sampling.step_s)));
+                others.push(describe_other_channel(&c, Some(sampling.step_s)));
                 continue;
             }
             check_restarts(&c)?;
@@ -89,7 +89,12 @@ impl Tdms {
             groups.push(c.group.clone());
             channels.push((c, scale));
         }
-        others.extend(texts.iter().chain(&spectra).map(|c| other(c, None)));
+        others.extend(
+            texts
+                .iter()
+                .chain(&spectra)
+                .map(|c| describe_other_channel(c, None)),
+        );
         let samples = main.samples;
         let mut file = Self {
             bytes,
@@ -175,7 +180,7 @@ fn over_time(
 }
 
 /// Returns the description of a channel that is not read; `step_s`: time between its samples, s, 0 where it states none.
-fn other(c: &Channel, step_s: Option<f64>) -> OtherChannel {
+fn describe_other_channel(c: &Channel, step_s: Option<f64>) -> OtherChannel {
     OtherChannel {
         group: c.group.clone(),
         name: c.name.clone(),
@@ -224,7 +229,7 @@ impl RecordReader for Tdms {
         self.groups.get(column).map_or("", String::as_str)
     }
 
-    fn others(&self) -> &[OtherChannel] {
+    fn other_channels(&self) -> &[OtherChannel] {
         &self.others
     }
 

@@ -37,7 +37,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    fn of(code: u32) -> Option<Self> {
+    fn from_code(code: u32) -> Option<Self> {
         Some(match code {
             1 => Self::I8,
             2 => Self::I16,
@@ -72,7 +72,7 @@ impl Kind {
 
     fn value(self, b: &[u8], big: bool) -> f64 {
         if self == Self::Time {
-            return Stamp::of(b, big).map_or(f64::NAN, Stamp::since_1970);
+            return Stamp::from_bytes(b, big).map_or(f64::NAN, Stamp::since_1970);
         }
         let mut w = [0_u8; 8];
         for (i, slot) in w.iter_mut().enumerate().take(self.size()) {
@@ -207,10 +207,10 @@ impl<'a> Cursor<'a> {
 
     fn value(&mut self) -> Result<Value, SeriesError> {
         let code = self.u32()?;
-        match Kind::of(code) {
+        match Kind::from_code(code) {
             Some(Kind::Text) => self.text().map(Value::Text),
             Some(Kind::Time) => {
-                let stamp = Stamp::of(self.take(Kind::Time.size())?, self.big);
+                let stamp = Stamp::from_bytes(self.take(Kind::Time.size())?, self.big);
                 let stamp = stamp.ok_or_else(|| read_error("the file is cut off"))?;
                 Ok(Value::Time(stamp))
             }
@@ -351,7 +351,7 @@ fn object(
         0x1269 | 0x1369 => return Err(read_error("it contains DAQmx raw data")),
         _ => {
             let code = c.u32()?;
-            let kind = Kind::of(code).ok_or_else(|| {
+            let kind = Kind::from_code(code).ok_or_else(|| {
                 read_error(format!("`{path}` has the unsupported type {code:#x}"))
             })?;
             c.u32()?;

@@ -11,7 +11,7 @@ pub struct Stamp {
 
 impl Stamp {
     /// Reads one; `None` where there are too few bytes.
-    pub fn of(bytes: &[u8], big: bool) -> Option<Self> {
+    pub fn from_bytes(bytes: &[u8], big: bool) -> Option<Self> {
         let (a, b) = bytes.split_first_chunk::<8>()?;
         let b = b.first_chunk::<8>()?;
         Some(match big {
@@ -27,7 +27,7 @@ impl Stamp {
     }
 
     /// Returns the seconds from `begin` to this one.
-    pub fn since(self, begin: Self) -> f64 {
+    pub fn seconds_since(self, begin: Self) -> f64 {
         let fraction = self.fraction as f64 - begin.fraction as f64;
         self.seconds.saturating_sub(begin.seconds) as f64 + fraction * 2_f64.powi(-64)
     }
@@ -36,7 +36,7 @@ impl Stamp {
     pub fn since_1970(self) -> f64 {
         /// 66 years, of which 17 have 366 days.
         const FROM_1904: i64 = (66 * 365 + 17) * 86_400;
-        self.since(Self {
+        self.seconds_since(Self {
             seconds: FROM_1904,
             fraction: 0,
         })

@@ -197,7 +197,7 @@ fn channels_at_other_times_and_channels_without_samples_are_listed_by_group() {
         other("slow", "battery", "V", 3, Some(1.0)),
         other("notes", "remark", "", 0, None),
     ];
-    assert_eq!(record.others(), expected);
+    assert_eq!(record.other_channels(), expected);
 }
 
 /// A channel of a waveform, 10 units between its samples.
@@ -257,7 +257,10 @@ fn a_waveform_over_frequency_is_refused_and_left_out_beside_others() {
         waveform("/'g'/'P2'", Vec::new()),
     ];
     let record = open(&both, &["P2"]).unwrap();
-    assert_eq!((record.columns().len(), record.others().len()), (1, 1));
+    assert_eq!(
+        (record.columns().len(), record.other_channels().len()),
+        (1, 1)
+    );
 }
 
 #[test]

@@ -97,7 +97,7 @@ impl RecordReader for Uff {
         &self.columns
     }
 
-    fn others(&self) -> &[OtherChannel] {
+    fn other_channels(&self) -> &[OtherChannel] {
         &self.others
     }
 

@@ -8,8 +8,8 @@ pub(super) use runs::runs;
 
 use crate::estimate::Deviations;
 use crate::finding::{Finding, Severity};
-use crate::host::outcome::finite;
-use crate::host::words::short;
+use crate::host::outcome::finite_or_none;
+use crate::host::words::format_number;
 use crate::units::percent;
 use serde::Serialize;
 
@@ -129,7 +129,7 @@ impl Differences {
     }
 
     /// The comparison of a load; `None` where nothing is compared.
-    fn found(self, load: &str, unit: &str) -> Option<LoadComparison> {
+    fn into_comparison(self, load: &str, unit: &str) -> Option<LoadComparison> {
         let n = self.n as f64;
         (self.n > 0).then(|| LoadComparison {
             load: load.to_owned(),
@@ -155,10 +155,10 @@ impl Differences {
         let filled = self.blocks.iter().filter(|b| b.1 > 0);
         let means: Vec<f64> = filled.clone().map(|b| b.0 / b.1 as f64).collect();
         let n: u64 = filled.clone().map(|b| b.1).sum();
-        let mean_square = finite(filled.map(|b| b.0).sum::<f64>() / n as f64)?;
+        let mean_square = finite_or_none(filled.map(|b| b.0).sum::<f64>() / n as f64)?;
         let effective = match each_independent || means.len() < 2 {
             true => n as f64,
-            false => Deviations::effective(&means).min(n as f64),
+            false => Deviations::effective_count(&means).min(n as f64),
         };
         Some(Deviations {
             mean_square,
@@ -170,15 +170,15 @@ impl Differences {
 
 impl LoadComparison {
     /// The warning of a load whose differences exceed its intervals.
-    fn outside(&self, deviations: Option<Deviations>) -> Option<Finding> {
-        let deviations = deviations.filter(Deviations::exceed)?;
+    fn outside_intervals_finding(&self, deviations: Option<Deviations>) -> Option<Finding> {
+        let deviations = deviations.filter(Deviations::is_significant)?;
         let message = format!(
             "{} of the recorded values are inside the 95 % interval of the recovered load, 95 % expected. The difference is {} {unit} rms, {} times \
              its standard deviation; its mean is {} {unit}",
             percent(self.share_within),
-            short(self.rms),
-            short(deviations.mean_square.sqrt()),
-            short(self.bias),
+            format_number(self.rms),
+            format_number(deviations.mean_square.sqrt()),
+            format_number(self.bias),
             unit = self.unit
         );
         let remedy = "compare sign, unit, place and direction of the recorded load with the job. If they agree, the model or the gauges err by more than \

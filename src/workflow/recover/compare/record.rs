@@ -4,8 +4,8 @@ use super::{Comparison, ComparisonShift, Differences, POINTS, Pair};
 use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, Faults};
-use crate::host::outcome::finite;
-use crate::host::words::short;
+use crate::host::outcome::finite_or_none;
+use crate::host::words::format_number;
 use crate::host::work::Work;
 use crate::job::{Compare, Job, TimeShift};
 use crate::measured::recorded_loads::{LoadRecord, RecordedLoads, quantity_of, read_recorded};
@@ -47,7 +47,7 @@ pub fn record_of_job(
             work.findings.extend(record.findings.iter().cloned());
             Ok(Some(*record))
         }
-        RecordedLoads::Runs(_) => Err(Fault::at(
+        RecordedLoads::Runs(_) => Err(Fault::with_line(
             &*job.file,
             compare.line,
             "compare.file",
@@ -114,7 +114,7 @@ pub fn record(
         columns,
         noise,
     };
-    let range = both.common(head);
+    let range = both.common_samples(head);
     if range.len() < 2 {
         return Err(both.nothing_common(job, compare).into());
     }
@@ -125,20 +125,25 @@ pub fn record(
     for (i, (sums, curved)) in both.differences(&range).into_iter().enumerate() {
         let (sigma, deviations) = (sums.sigma(), sums.deviations(false));
         let column = both.columns[i];
-        let Some(mut found) = sums.found(&head.names[column], &head.units[column].name) else {
+        let Some(mut found) = sums.into_comparison(&head.names[column], &head.units[column].name)
+        else {
             continue;
         };
         both.compare_damage(i, &range, &mut found);
-        work.findings.extend(found.outside(deviations));
         work.findings
-            .extend(coarse(&both.recorded, &found.load, (curved, sigma)));
+            .extend(found.outside_intervals_finding(deviations));
+        work.findings.extend(coarse_samples_finding(
+            &both.recorded,
+            &found.load,
+            (curved, sigma),
+        ));
         out.loads.push(found);
     }
     Ok(out)
 }
 
 impl Both<'_> {
-    fn sampled(&self) -> Sampled<'_> {
+    fn recorded_samples(&self) -> Sampled<'_> {
         Sampled {
             start_s: self.start_s,
             rate_hz: self.recorded.clock.rate_hz,
@@ -147,7 +152,7 @@ impl Both<'_> {
     }
 
     /// Recovered samples between the first and the last recorded one.
-    fn common(&self, head: &RecordHead) -> Range<usize> {
+    fn common_samples(&self, head: &RecordHead) -> Range<usize> {
         let n = self.counting.samples.n_samples();
         let last = self.recorded.clock.samples.saturating_sub(1) as f64;
         let end_s = self.start_s + last / self.recorded.clock.rate_hz;
@@ -165,13 +170,13 @@ impl Both<'_> {
         let clock = &self.recorded.clock;
         let wrong = format!(
             "no time in common: the strain record covers {} to {} s, the recorded loads {} to {} s with this shift",
-            short(head.first_s),
-            short(end(head.first_s, n, head.step_s)),
-            short(self.start_s),
-            short(end(self.start_s, clock.samples, 1.0 / clock.rate_hz)),
+            format_number(head.first_s),
+            format_number(end(head.first_s, n, head.step_s)),
+            format_number(self.start_s),
+            format_number(end(self.start_s, clock.samples, 1.0 / clock.rate_hz)),
         );
         let remedy = "state another number, or shift_s = \"estimate\"";
-        Fault::at(&*job.file, compare.line, "compare.shift_s", wrong, remedy)
+        Fault::with_line(&*job.file, compare.line, "compare.shift_s", wrong, remedy)
     }
 
     /// By recorded load: sums of the differences, and the root mean square difference between curve and line through recorded samples.
@@ -204,7 +209,7 @@ impl Both<'_> {
         let nothing = || (Differences::of_blocks(BLOCKS), 0.0);
         let mut out: Vec<_> = self.columns.iter().map(|_| nothing()).collect();
         let stride = range.len().div_ceil(POINTS).max(1);
-        let sampled = self.sampled();
+        let sampled = self.recorded_samples();
         let wider = head.filter.coverage_factor() / NORMAL_95;
         for (at, row) in piece.zip(values.chunks_exact(k)) {
             let of_job: Vec<f64> = row
@@ -222,7 +227,7 @@ impl Both<'_> {
             let place = at - range.start;
             let block = place * BLOCKS / range.len();
             for (i, (column, (sums, curved))) in self.columns.iter().zip(&mut out).enumerate() {
-                let Some(between) = sampled.at(i, time) else {
+                let Some(between) = sampled.value_at(i, time) else {
                     continue;
                 };
                 let (recorded, noise) = (between.value, between.noise * self.noise[i]);
@@ -260,7 +265,8 @@ impl Both<'_> {
         let slope = self.counting.slope;
         let recorded = damage_of_recorded(values, self.noise[i], slope);
         let recovered = self.counting.damage(self.columns[i], 0.0, range.clone());
-        let Some(ratio) = finite(recovered.value / recorded.value).filter(|r| *r > 0.0) else {
+        let Some(ratio) = finite_or_none(recovered.value / recorded.value).filter(|r| *r > 0.0)
+        else {
             return;
         };
         // The relative errors of both damages are independent: their squares add up.
@@ -270,8 +276,8 @@ impl Both<'_> {
         let upper =
             below(recovered.value, recovered.high).hypot(below(recorded.low, recorded.value));
         found.damage_ratio = Some(ratio);
-        found.damage_ratio_low = finite(ratio * (-lower).exp());
-        found.damage_ratio_high = finite(ratio * upper.exp());
+        found.damage_ratio_low = finite_or_none(ratio * (-lower).exp());
+        found.damage_ratio_high = finite_or_none(ratio * upper.exp());
     }
 }
 
@@ -346,13 +352,13 @@ fn no_shift(job: &Job, compare: &Compare, file: &str, e: NoShift) -> Fault {
         NoShift::Ambiguous([first, second]) => (
             format!(
                 "the loads of `{file}` agree with the recovered loads at a time shift of {} s and equally at {} s: they are periodic",
-                short(first),
-                short(second)
+                format_number(first),
+                format_number(second)
             ),
             "state the shift as a number of seconds",
         ),
     };
-    Fault::at(&*job.file, compare.line, "compare.shift_s", wrong, remedy)
+    Fault::with_line(&*job.file, compare.line, "compare.shift_s", wrong, remedy)
 }
 
 fn shift_found(shift: &ComparisonShift) -> Option<Finding> {
@@ -373,7 +379,11 @@ fn shift_found(shift: &ComparisonShift) -> Option<Finding> {
 }
 
 /// The warning of a load recorded at so low a rate that values between samples are not known to the interval of the recovered load.
-fn coarse(recorded: &LoadRecord, load: &str, (curved, sigma): (f64, f64)) -> Option<Finding> {
+fn coarse_samples_finding(
+    recorded: &LoadRecord,
+    load: &str,
+    (curved, sigma): (f64, f64),
+) -> Option<Finding> {
     (curved > sigma).then(|| {
         Finding::new(
             Severity::Warning,
@@ -383,9 +393,9 @@ fn coarse(recorded: &LoadRecord, load: &str, (curved, sigma): (f64, f64)) -> Opt
                 "`{}` has {} samples per second. The interpolation error of the load is {} rms, more than the standard deviation {} of the \
                  recovered load: differences and damage include it",
                 recorded.file,
-                short(recorded.clock.rate_hz),
-                short(curved),
-                short(sigma)
+                format_number(recorded.clock.rate_hz),
+                format_number(curved),
+                format_number(sigma)
             ),
             "export the recorded loads at a higher rate",
         )

@@ -37,7 +37,7 @@ pub fn runs(
             file.file.given
         );
         let remedy = "give the runs the same names in both files";
-        return Err(Fault::at(&*job.file, file.line, "compare.file", wrong, remedy).into());
+        return Err(Fault::with_line(&*job.file, file.line, "compare.file", wrong, remedy).into());
     }
     let taught = |row: &RunRow| job.compare.is_none() && is_calibration_run(job, s, row);
     let left_out: Vec<&str> = readings
@@ -83,8 +83,9 @@ pub fn runs(
             }
         }
         let deviations = sums.deviations(true);
-        if let Some(found) = sums.found(&load.name, &unit.name) {
-            work.findings.extend(found.outside(deviations));
+        if let Some(found) = sums.into_comparison(&load.name, &unit.name) {
+            work.findings
+                .extend(found.outside_intervals_finding(deviations));
             out.loads.push(found);
         }
     }
@@ -107,7 +108,7 @@ fn rows<'a>(
     let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
     match read_recorded(&mut work.inputs, job, compare, &names)? {
         RecordedLoads::Runs(rows) => Ok(Some((&compare.recorded, rows))),
-        RecordedLoads::Record(_) => Err(Fault::at(
+        RecordedLoads::Record(_) => Err(Fault::with_line(
             &*job.file,
             compare.line,
             "compare.file",

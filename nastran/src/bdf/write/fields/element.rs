@@ -26,27 +26,27 @@ impl ToFields for Shell {
             .iter()
             .take(self.shape.n_grids())
             .map(|&g| id_or_blank(g));
-        let row = Row::default().add(self.id).add(self.pid).all(grids);
+        let row = Row::default().add(self.id).add(self.pid).add_all(grids);
         let (angle, t) = (angle(self.angle), self.thickness);
         match self.shape {
             ShellShape::Quad4 | ShellShape::QuadR => row
                 .add(angle)
                 .add(self.zoffs)
-                .blank(1)
+                .add_blanks(1)
                 .add(tflag(self.tflag))
-                .all(t)
+                .add_all(t)
                 .end(),
             ShellShape::Tria3 | ShellShape::TriaR => {
                 let row = row
                     .add(angle)
                     .add(self.zoffs)
                     .next_line()
-                    .blank(1)
+                    .add_blanks(1)
                     .add(tflag(self.tflag));
-                row.all(t.into_iter().take(3)).end()
+                row.add_all(t.into_iter().take(3)).end()
             }
             ShellShape::Quad8 => row
-                .all(t)
+                .add_all(t)
                 .add(angle)
                 .add(self.zoffs)
                 .add(tflag(self.tflag))
@@ -54,7 +54,7 @@ impl ToFields for Shell {
             ShellShape::Tria6 => row
                 .add(angle)
                 .add(self.zoffs)
-                .all(t.into_iter().take(3))
+                .add_all(t.into_iter().take(3))
                 .add(tflag(self.tflag))
                 .end(),
         }
@@ -70,7 +70,7 @@ impl ToFields for ShearPanel {
         Row::default()
             .add(self.id)
             .add(self.pid)
-            .all(self.grids)
+            .add_all(self.grids)
             .end()
     }
 }
@@ -78,9 +78,9 @@ impl ToFields for ShearPanel {
 /// Three fields.
 fn orientation(row: Row, v: Orientation) -> Row {
     match v {
-        Orientation::Vector(x) => row.all(x),
-        Orientation::Grid(g) => row.add(g).blank(2),
-        Orientation::Blank => row.blank(3),
+        Orientation::Vector(x) => row.add_all(x),
+        Orientation::Grid(g) => row.add(g).add_blanks(2),
+        Orientation::Blank => row.add_blanks(3),
     }
 }
 
@@ -92,11 +92,11 @@ fn offt(flag: Option<[u8; 3]>) -> Field {
 
 fn bar(b: &Bar, flag: Field) -> Row {
     let row = orientation(
-        Row::default().add(b.id).add(b.pid).all(b.grids),
+        Row::default().add(b.id).add(b.pid).add_all(b.grids),
         b.orientation,
     )
     .add(flag);
-    let row = row.all(b.pins.map(dofs_or_blank));
+    let row = row.add_all(b.pins.map(dofs_or_blank));
     b.offsets.iter().fold(row, |row, w| row.reals(w, 0.0))
 }
 
@@ -117,7 +117,7 @@ impl ToFields for Beam {
 
     fn to_fields(&self) -> Vec<Field> {
         let flag = self.bit.map_or(offt(self.bar.offt), Field::Real);
-        bar(&self.bar, flag).all(self.warping).end()
+        bar(&self.bar, flag).add_all(self.warping).end()
     }
 }
 
@@ -130,7 +130,7 @@ impl ToFields for Rod {
         Row::default()
             .add(self.id)
             .add(self.pid)
-            .all(self.grids)
+            .add_all(self.grids)
             .end()
     }
 }
@@ -143,7 +143,7 @@ impl ToFields for Conrod {
     fn to_fields(&self) -> Vec<Field> {
         let row = Row::default()
             .add(self.id)
-            .all(self.grids)
+            .add_all(self.grids)
             .add(self.mid)
             .add(self.area);
         row.reals(&[self.torsion, self.c, self.nsm], 0.0).end()
@@ -205,7 +205,7 @@ impl ToFields for Solid {
         Row::default()
             .add(self.id)
             .add(self.pid)
-            .all(self.grids.map(id_or_blank))
+            .add_all(self.grids.map(id_or_blank))
             .end()
     }
 }
@@ -235,7 +235,7 @@ impl ToFields for Snorm {
 
     fn to_fields(&self) -> Vec<Field> {
         let row = Row::default().add(self.grid).add(self.cid);
-        row.all(self.n).end()
+        row.add_all(self.n).end()
     }
 }
 
@@ -243,6 +243,6 @@ impl ToFields for Snorm {
 fn ends(row: Row, ends: &[Option<(u32, u8)>; 2]) -> Row {
     ends.iter().fold(row, |row, end| match end {
         Some((grid, c)) => row.add(*grid).add(u32::from(*c)),
-        None => row.blank(2),
+        None => row.add_blanks(2),
     })
 }

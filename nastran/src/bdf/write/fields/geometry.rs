@@ -12,7 +12,7 @@ impl ToFields for Grid {
         Row::default()
             .add(self.id)
             .add(self.cp)
-            .all(self.x)
+            .add_all(self.x)
             .add(self.cd)
             .add(self.ps.map_or(Field::Blank, dofs))
             .add(self.seid)
@@ -26,7 +26,11 @@ impl ToFields for Grdset {
     }
 
     fn to_fields(&self) -> Vec<Field> {
-        let row = Row::default().blank(1).add(self.cp).blank(3).add(self.cd);
+        let row = Row::default()
+            .add_blanks(1)
+            .add(self.cp)
+            .add_blanks(3)
+            .add(self.cd);
         row.add(self.ps.map_or(Field::Blank, dofs))
             .add(self.seid)
             .end()
@@ -48,8 +52,10 @@ impl ToFields for Coord {
     fn to_fields(&self) -> Vec<Field> {
         let row = Row::default().add(self.id);
         match self.definition {
-            CoordDefinition::Grids(grids) => row.all(grids).end(),
-            CoordDefinition::Points { rid, a, b, c } => row.add(rid).all(a).all(b).all(c).end(),
+            CoordDefinition::Grids(grids) => row.add_all(grids).end(),
+            CoordDefinition::Points { rid, a, b, c } => {
+                row.add(rid).add_all(a).add_all(b).add_all(c).end()
+            }
         }
     }
 }
@@ -81,7 +87,7 @@ impl ToFields for Conm2 {
             .add(self.cid)
             .add(self.mass);
         row.reals(&self.offset, 0.0)
-            .blank(1)
+            .add_blanks(1)
             .reals(&self.inertia, 0.0)
             .end()
     }

@@ -13,7 +13,7 @@ impl Force {
             .add(self.grid)
             .add(self.cid)
             .add(self.scale)
-            .all(self.n)
+            .add_all(self.n)
             .end()
     }
 
@@ -51,7 +51,7 @@ impl ToFields for Pload {
         Row::default()
             .add(self.sid)
             .add(self.pressure)
-            .all(self.grids.map(id_or_blank))
+            .add_all(self.grids.map(id_or_blank))
             .end()
     }
 }
@@ -108,14 +108,17 @@ impl ToFields for Pload4 {
             IdList::Thru(a, b) => (Some(*a), Some(*b)),
             IdList::Each(ids) => (ids.first().copied(), None),
         };
-        let row = Row::default().add(self.sid).add(first).all(self.pressure);
+        let row = Row::default()
+            .add(self.sid)
+            .add(first)
+            .add_all(self.pressure);
         let row = match last {
             Some(last) => row.add("THRU").add(last),
-            None => row.all(self.face),
+            None => row.add_all(self.face),
         };
         let row = match self.direction {
-            Some((cid, n)) => row.add(cid).all(n),
-            None => row.blank(4),
+            Some((cid, n)) => row.add(cid).add_all(n),
+            None => row.add_blanks(4),
         };
         row.add(self.sorl.as_str()).add(self.ldir.as_str()).end()
     }
@@ -131,7 +134,7 @@ impl ToFields for Grav {
             .add(self.sid)
             .add(self.cid)
             .add(self.scale)
-            .all(self.n)
+            .add_all(self.n)
             .end()
     }
 }
@@ -147,9 +150,11 @@ impl ToFields for Rforce {
             .add(self.grid)
             .add(self.cid)
             .add(self.speed)
-            .all(self.r);
-        let row = row.add(self.method).real(self.acceleration, 0.0);
-        row.blank(1).add(id_or_blank(self.part)).end()
+            .add_all(self.r);
+        let row = row
+            .add(self.method)
+            .add_unless_default(self.acceleration, 0.0);
+        row.add_blanks(1).add(id_or_blank(self.part)).end()
     }
 }
 
@@ -183,7 +188,7 @@ impl ToFields for Accel {
     }
 
     fn to_fields(&self) -> Vec<Field> {
-        let row = Row::default().add(self.sid).add(self.cid).all(self.n);
+        let row = Row::default().add(self.sid).add(self.cid).add_all(self.n);
         let row = row.add(self.direction.as_str()).next_line();
         let pairs = self.table.iter();
         pairs
@@ -199,7 +204,7 @@ impl ToFields for Accel1 {
 
     fn to_fields(&self) -> Vec<Field> {
         let row = Row::default().add(self.sid).add(self.cid).add(self.scale);
-        let row = row.all(self.n).next_line();
+        let row = row.add_all(self.n).next_line();
         self.grids.iter().fold(row, ids).end()
     }
 }

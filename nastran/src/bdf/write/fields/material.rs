@@ -15,7 +15,7 @@ impl ToFields for Mat1 {
             .add(self.g)
             .add(self.nu);
         row.reals(&[self.rho, self.alpha, self.tref, self.ge], 0.0)
-            .all(self.limits)
+            .add_all(self.limits)
             .end()
     }
 }
@@ -26,7 +26,10 @@ impl ToFields for Mat2 {
     }
 
     fn to_fields(&self) -> Vec<Field> {
-        let row = Row::default().add(self.id).all(self.g).real(self.rho, 0.0);
+        let row = Row::default()
+            .add(self.id)
+            .add_all(self.g)
+            .add_unless_default(self.rho, 0.0);
         row.reals(&self.alpha, 0.0)
             .reals(&[self.tref, self.ge], 0.0)
             .end()
@@ -41,9 +44,14 @@ impl ToFields for Mat8 {
     fn to_fields(&self) -> Vec<Field> {
         let row = Row::default()
             .add(self.id)
-            .all([self.e1, self.e2, self.nu12, self.g12]);
-        let row = row.add(self.g1z).add(self.g2z).real(self.rho, 0.0);
-        row.reals(&self.alpha, 0.0).real(self.tref, 0.0).end()
+            .add_all([self.e1, self.e2, self.nu12, self.g12]);
+        let row = row
+            .add(self.g1z)
+            .add(self.g2z)
+            .add_unless_default(self.rho, 0.0);
+        row.reals(&self.alpha, 0.0)
+            .add_unless_default(self.tref, 0.0)
+            .end()
     }
 }
 
@@ -56,7 +64,7 @@ impl ToFields for Mat9 {
         let row = Row::default()
             .add(self.id)
             .reals(&self.g, 0.0)
-            .real(self.rho, 0.0);
+            .add_unless_default(self.rho, 0.0);
         row.reals(&self.alpha, 0.0)
             .reals(&[self.tref, self.ge], 0.0)
             .end()
@@ -76,7 +84,7 @@ impl ToFields for Param {
         };
         Row::default()
             .add(self.name.as_str())
-            .all(self.values.iter().map(value))
+            .add_all(self.values.iter().map(value))
             .end()
     }
 }
@@ -87,7 +95,7 @@ impl ToFields for Matt1 {
     }
 
     fn to_fields(&self) -> Vec<Field> {
-        Row::default().add(self.id).all(self.tables).end()
+        Row::default().add(self.id).add_all(self.tables).end()
     }
 }
 
@@ -110,8 +118,10 @@ impl ToFields for MaterialTable {
         let row = match &self.form {
             MaterialTableForm::Replaces(points) => pairs(row, points),
             MaterialTableForm::Shifted { x1, points } => pairs(row.add(*x1), points),
-            MaterialTableForm::Scaled { x, points } => pairs(row.all(*x), points),
-            MaterialTableForm::Series { x, a } => row.all(*x).next_line().all(a.iter().copied()),
+            MaterialTableForm::Scaled { x, points } => pairs(row.add_all(*x), points),
+            MaterialTableForm::Series { x, a } => {
+                row.add_all(*x).next_line().add_all(a.iter().copied())
+            }
         };
         row.add("ENDT").end()
     }

@@ -42,7 +42,7 @@ pub trait ToFields {
 struct Row(Vec<Field>);
 
 impl Row {
-    fn of(fields: impl IntoIterator<Item = Field>) -> Row {
+    fn from_fields(fields: impl IntoIterator<Item = Field>) -> Row {
         Row(fields.into_iter().collect())
     }
 
@@ -51,27 +51,29 @@ impl Row {
         self
     }
 
-    fn all<T: Into<Field>>(mut self, values: impl IntoIterator<Item = T>) -> Row {
+    fn add_all<T: Into<Field>>(mut self, values: impl IntoIterator<Item = T>) -> Row {
         self.0.extend(values.into_iter().map(Into::into));
         self
     }
 
-    fn blank(mut self, n: usize) -> Row {
+    fn add_blanks(mut self, n: usize) -> Row {
         self.0.extend(std::iter::repeat_n(Field::Blank, n));
         self
     }
 
     /// A real that is left blank where it is the default.
-    fn real(self, x: f64, default: f64) -> Row {
+    fn add_unless_default(self, x: f64, default: f64) -> Row {
         if x == default {
-            self.blank(1)
+            self.add_blanks(1)
         } else {
             self.add(x)
         }
     }
 
     fn reals(self, values: &[f64], default: f64) -> Row {
-        values.iter().fold(self, |row, &x| row.real(x, default))
+        values
+            .iter()
+            .fold(self, |row, &x| row.add_unless_default(x, default))
     }
 
     /// Blanks up to field 2 of the next line.

@@ -29,15 +29,18 @@ impl ToFields for Pcomp {
         let row = Row::default()
             .add(self.id)
             .add(self.z0)
-            .real(self.nsm, 0.0)
+            .add_unless_default(self.nsm, 0.0)
             .add(self.sb)
-            .blank(1)
+            .add_blanks(1)
             .add(self.tref);
-        let row = row.real(self.ge, 0.0).add(self.lam.as_str());
+        let row = row.add_unless_default(self.ge, 0.0).add(self.lam.as_str());
         self.plies
             .iter()
             .fold(row, |row, ply| {
-                let row = row.add(ply.mid).add(ply.t).real(ply.theta_deg, 0.0);
+                let row = row
+                    .add(ply.mid)
+                    .add(ply.t)
+                    .add_unless_default(ply.theta_deg, 0.0);
                 row.add(if ply.output { "YES" } else { "" })
             })
             .end()
@@ -64,10 +67,10 @@ impl ToFields for Pbar {
         let row = Row::default().add(self.id).add(self.mid);
         let row = row
             .reals(&[self.area, self.i1, self.i2, self.j, self.nsm], 0.0)
-            .blank(1);
+            .add_blanks(1);
         row.reals(self.recovery.as_flattened(), 0.0)
-            .all(self.k)
-            .real(self.i12, 0.0)
+            .add_all(self.k)
+            .add_unless_default(self.i12, 0.0)
             .end()
     }
 }
@@ -81,10 +84,12 @@ impl ToFields for Pbarl {
         let row = Row::default()
             .add(self.id)
             .add(self.mid)
-            .blank(1)
+            .add_blanks(1)
             .add(self.section.as_str())
             .next_line();
-        row.all(self.dims.iter().copied()).real(self.nsm, 0.0).end()
+        row.add_all(self.dims.iter().copied())
+            .add_unless_default(self.nsm, 0.0)
+            .end()
     }
 }
 
@@ -97,14 +102,16 @@ impl ToFields for Pbeaml {
         let mut row = Row::default()
             .add(self.id)
             .add(self.mid)
-            .blank(1)
+            .add_blanks(1)
             .add(self.section.as_str())
             .next_line();
         for (i, s) in self.stations.iter().enumerate() {
             if i > 0 {
                 row = row.add(if s.output { "YES" } else { "NO" }).add(s.x_xb);
             }
-            row = row.all(s.dims.iter().copied()).real(s.nsm, 0.0);
+            row = row
+                .add_all(s.dims.iter().copied())
+                .add_unless_default(s.nsm, 0.0);
         }
         row.end()
     }
@@ -121,18 +128,18 @@ impl ToFields for Pbeam {
             if i > 0 {
                 row = row.add(if s.output { "YES" } else { "NO" }).add(s.x_xb);
             }
-            row = row.all([s.area, s.i1, s.i2, s.i12, s.j, s.nsm]);
+            row = row.add_all([s.area, s.i1, s.i2, s.i12, s.j, s.nsm]);
             if i == 0 || s.output {
-                row = row.all(s.recovery.as_flattened().iter().copied());
+                row = row.add_all(s.recovery.as_flattened().iter().copied());
             }
         }
         let row = row
-            .all(self.k)
+            .add_all(self.k)
             .reals(&self.s, 0.0)
-            .all(self.nsi)
-            .all(self.cw);
-        row.all(self.m.as_flattened().iter().copied())
-            .all(self.n.as_flattened().iter().copied())
+            .add_all(self.nsi)
+            .add_all(self.cw);
+        row.add_all(self.m.as_flattened().iter().copied())
+            .add_all(self.n.as_flattened().iter().copied())
             .end()
     }
 }
@@ -159,7 +166,7 @@ impl ToFields for Ptube {
             .add(self.mid)
             .add(self.od)
             .add(self.t);
-        row.real(self.nsm, 0.0).add(self.od2).end()
+        row.add_unless_default(self.nsm, 0.0).add(self.od2).end()
     }
 }
 
@@ -174,20 +181,24 @@ impl ToFields for Pbush {
             row = if rigid {
                 row.add("RIGID")
             } else {
-                row.real(k, 0.0)
+                row.add_unless_default(k, 0.0)
             };
         }
         if self.b != [0.0; 6] {
-            row = row.next_line().blank(1).add("B").reals(&self.b, 0.0);
+            row = row.next_line().add_blanks(1).add("B").reals(&self.b, 0.0);
         }
         if self.ge != [0.0; 6] {
-            row = row.next_line().blank(1).add("GE").all(self.ge);
+            row = row.next_line().add_blanks(1).add("GE").add_all(self.ge);
         }
         if self.recovery != [1.0; 4] {
-            row = row.next_line().blank(1).add("RCV").all(self.recovery);
+            row = row
+                .next_line()
+                .add_blanks(1)
+                .add("RCV")
+                .add_all(self.recovery);
         }
         if self.mass != 0.0 {
-            row = row.next_line().blank(1).add("M").add(self.mass);
+            row = row.next_line().add_blanks(1).add("M").add(self.mass);
         }
         row.end()
     }
@@ -214,7 +225,7 @@ impl ToFields for Psolid {
 
     fn to_fields(&self) -> Vec<Field> {
         let row = Row::default().add(self.id).add(self.mid).add(self.cordm);
-        row.all(self.options.iter().map(|o| o.as_deref())).end()
+        row.add_all(self.options.iter().map(|o| o.as_deref())).end()
     }
 }
 

@@ -13,8 +13,8 @@ impl ToFields for Rbe2 {
             .add(self.id)
             .add(self.independent)
             .add(dofs(self.dofs));
-        row.all(self.dependent.iter().copied())
-            .real(self.alpha, 0.0)
+        row.add_all(self.dependent.iter().copied())
+            .add_unless_default(self.alpha, 0.0)
             .end()
     }
 }
@@ -27,21 +27,21 @@ impl ToFields for Rbe3 {
     fn to_fields(&self) -> Vec<Field> {
         let mut row = Row::default()
             .add(self.id)
-            .blank(1)
+            .add_blanks(1)
             .add(self.reference)
             .add(dofs(self.refc));
         for g in &self.groups {
             row = row
                 .add(g.weight)
                 .add(dofs(g.dofs))
-                .all(g.grids.iter().copied());
+                .add_all(g.grids.iter().copied());
         }
         if !self.um.is_empty() {
             row = row.next_line().add("UM");
             for (i, (grid, d)) in self.um.iter().enumerate() {
                 // three pairs a line, field 2 holds UM or is blank
                 if i > 0 && i % 3 == 0 {
-                    row = row.next_line().blank(1);
+                    row = row.next_line().add_blanks(1);
                 }
                 row = row.add(*grid).add(dofs(*d));
             }
@@ -62,7 +62,7 @@ impl ToFields for Rbe1 {
         let pairs = |mut row: Row, terms: &[(u32, Dofs)]| {
             for (i, (grid, d)) in terms.iter().enumerate() {
                 if i > 0 && i % 3 == 0 {
-                    row = row.next_line().blank(1);
+                    row = row.next_line().add_blanks(1);
                 }
                 row = row.add(*grid).add(dofs(*d));
             }
@@ -86,10 +86,10 @@ impl ToFields for Rbar {
     fn to_fields(&self) -> Vec<Field> {
         let row = Row::default()
             .add(self.id)
-            .all(self.grids)
-            .all(self.independent.map(dofs_or_blank));
-        row.all(self.dependent.map(dofs_or_blank))
-            .real(self.alpha, 0.0)
+            .add_all(self.grids)
+            .add_all(self.independent.map(dofs_or_blank));
+        row.add_all(self.dependent.map(dofs_or_blank))
+            .add_unless_default(self.alpha, 0.0)
             .end()
     }
 }
@@ -103,7 +103,7 @@ impl ToFields for Mpc {
         let mut row = Row::default().add(self.sid);
         for (i, (grid, c, a)) in self.terms.iter().enumerate() {
             if i > 0 && i % 2 == 0 {
-                row = row.next_line().blank(1);
+                row = row.next_line().add_blanks(1);
             }
             row = row.add(*grid).add(u32::from(*c)).add(*a);
         }
@@ -122,7 +122,7 @@ impl ToFields for Spc {
             .iter()
             .take(2)
             .fold(row, |row, (grid, d, x)| {
-                row.add(*grid).add(dofs(*d)).real(*x, 0.0)
+                row.add(*grid).add(dofs(*d)).add_unless_default(*x, 0.0)
             })
             .end()
     }
@@ -131,7 +131,7 @@ impl ToFields for Spc {
 /// The ids, or `first THRU last`.
 pub(super) fn ids(row: Row, list: &IdList) -> Row {
     match list {
-        IdList::Each(ids) => row.all(ids.iter().copied()),
+        IdList::Each(ids) => row.add_all(ids.iter().copied()),
         IdList::Thru(a, b) => row.add(*a).add("THRU").add(*b),
     }
 }
@@ -160,7 +160,7 @@ impl ToFields for Suport {
     }
 
     fn to_fields(&self) -> Vec<Field> {
-        let row = Row::of(self.sid.map(Field::from));
+        let row = Row::from_fields(self.sid.map(Field::from));
         self.terms
             .iter()
             .fold(row, |row, (grid, d)| row.add(*grid).add(dofs(*d)))
