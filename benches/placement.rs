@@ -10,7 +10,7 @@
 //!
 //!     cargo bench --bench placement -- anchors ../shared/benchmarks/doptimal
 
-use nastran::bdf::{IncludeRequest, Loaded, Loader, read_deck};
+use nastran::bdf::{IncludeRequest, LoadedFile, Loader, read_deck};
 use std::error::Error;
 use std::io::Write;
 use std::time::Instant;
@@ -57,7 +57,7 @@ fn main() -> Outcome {
 struct NoFiles;
 
 impl Loader for NoFiles {
-    fn load(&mut self, _: &IncludeRequest) -> Result<Loaded, String> {
+    fn load(&mut self, _: &IncludeRequest) -> Result<LoadedFile, String> {
         Err("benchmark decks have no includes".to_owned())
     }
 }

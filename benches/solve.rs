@@ -6,7 +6,7 @@
 //! `--paper`: work and longest chain of the elimination tree, and what many threads come to.
 //! `--zones`: ten zones, a fortieth of the shells each and a tenth thicker, as variants on one factor, over the time of the solution.
 
-use nastran::bdf::{IncludeRequest, Loaded, Loader, read_deck};
+use nastran::bdf::{IncludeRequest, LoadedFile, Loader, read_deck};
 use std::io::Write;
 use std::time::Instant;
 use strainbridge::fe::{
@@ -18,7 +18,7 @@ use strainbridge::model::{GridIx, Model, Vec3};
 struct NoFiles;
 
 impl Loader for NoFiles {
-    fn load(&mut self, _: &IncludeRequest) -> Result<Loaded, String> {
+    fn load(&mut self, _: &IncludeRequest) -> Result<LoadedFile, String> {
         Err("benchmark decks have no includes".to_owned())
     }
 }

@@ -1,11 +1,11 @@
 //! Findings of a stage about its own result.
 
-mod bounded;
 pub mod explain;
+mod name_shortening;
 mod sentence;
 mod severity;
 
-pub use bounded::shorten_names;
+pub use name_shortening::shorten_names;
 pub use sentence::capitalize;
 use serde::{Deserialize, Deserializer, Serialize};
 pub use severity::Severity;

@@ -790,7 +790,8 @@ fn a_folder_is_verified_by_whoever_can_answer_again() {
     };
     answer(&folder.join("job.toml"), &kept);
     let ask = || {
-        let again = |made: &strainbridge::workflow::verify::Made, main: &std::path::Path| {
+        let again = |made: &strainbridge::workflow::verify::ResultProvenance,
+                     main: &std::path::Path| {
             assert_eq!(made.command, "place");
             answer(main, &anew);
             Ok(anew.clone())
@@ -808,7 +809,9 @@ fn a_folder_is_verified_by_whoever_can_answer_again() {
     assert!(files.contains(&"result.json"), "{files:?}");
     assert_eq!(other.findings.worst_severity(), Some(Severity::Error));
     std::fs::remove_file(folder.join("job.toml")).unwrap();
-    let none = |_: &strainbridge::workflow::verify::Made, _: &std::path::Path| Ok(anew.clone());
+    let none = |_: &strainbridge::workflow::verify::ResultProvenance, _: &std::path::Path| {
+        Ok(anew.clone())
+    };
     let fault = strainbridge::verify(&kept, none, &context).unwrap_err();
     assert!(fault.to_string().contains("is not found"), "{fault}");
     std::fs::remove_dir_all(folder).unwrap();

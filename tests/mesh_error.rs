@@ -438,7 +438,10 @@ fn uniform_strain_beside_rods_has_no_mesh_error() {
 struct NoFiles;
 
 impl nastran::bdf::Loader for NoFiles {
-    fn load(&mut self, _: &nastran::bdf::IncludeRequest) -> Result<nastran::bdf::Loaded, String> {
+    fn load(
+        &mut self,
+        _: &nastran::bdf::IncludeRequest,
+    ) -> Result<nastran::bdf::LoadedFile, String> {
         Err("no include here".to_owned())
     }
 }

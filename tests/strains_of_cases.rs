@@ -4,7 +4,7 @@
 #[path = "../nastran/tests/support/mod.rs"]
 mod support;
 
-use nastran::bdf::{IncludeRequest, Loaded, Loader, read_deck};
+use nastran::bdf::{IncludeRequest, LoadedFile, Loader, read_deck};
 use nastran::results::ResultsFile;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -56,12 +56,12 @@ fn cases() -> Vec<(PathBuf, Value, Value)> {
 /// Included files from disk.
 struct Disk;
 impl Loader for Disk {
-    fn load(&mut self, request: &IncludeRequest) -> Result<Loaded, String> {
+    fn load(&mut self, request: &IncludeRequest) -> Result<LoadedFile, String> {
         let paths = request
             .candidates(|_| None)
             .map_err(|s| format!("no value for {s}"))?;
         let found = paths.into_iter().find_map(|path| {
-            Some(Loaded {
+            Some(LoadedFile {
                 bytes: std::fs::read(&path).ok()?,
                 path,
                 differing_path: None,

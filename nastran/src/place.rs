@@ -15,14 +15,14 @@ pub struct Place {
 
 /// A card and its place in the deck.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Placed<T> {
+pub struct PlacedCard<T> {
     /// The card.
     pub card: T,
     /// First line of the card.
     pub at: Place,
 }
 
-impl<T> std::ops::Deref for Placed<T> {
+impl<T> std::ops::Deref for PlacedCard<T> {
     type Target = T;
     fn deref(&self) -> &T {
         &self.card

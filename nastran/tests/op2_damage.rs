@@ -3,7 +3,7 @@
 mod support;
 
 use nastran::op2::Op2;
-use nastran::results::Salvaged;
+use nastran::results::SalvagedFile;
 use std::path::PathBuf;
 
 /// Files of the shared set up to a size, smallest first.
@@ -33,7 +33,7 @@ fn files(largest: u64) -> Vec<(PathBuf, Vec<u8>)> {
 
 /// Reads everything a file holds; the number of rows that came out.
 fn read_all(bytes: &[u8]) -> usize {
-    let Ok(Salvaged { file: op2, .. }) = Op2::salvage(bytes) else {
+    let Ok(SalvagedFile { file: op2, .. }) = Op2::salvage(bytes) else {
         return 0;
     };
     let rows = (0..op2.blocks.len())
@@ -106,7 +106,7 @@ fn a_large_file_cut_after_any_record_keeps_the_blocks_before_it() {
         let ends = record_ends(&bytes);
         let (step, mut before) = (ends.len() / 100 + 1, 0);
         for end in ends.into_iter().step_by(step) {
-            let Ok(Salvaged { file: op2, .. }) = Op2::salvage(&bytes[..end]) else {
+            let Ok(SalvagedFile { file: op2, .. }) = Op2::salvage(&bytes[..end]) else {
                 continue;
             };
             let n = op2.blocks.len();

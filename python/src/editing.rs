@@ -3,7 +3,7 @@
 use crate::fault::argument_fault;
 use nastran::bdf::{Deck, Edits, ToFields};
 use nastran::cards::{Conm2, Grid, MaterialAngle, Shell, ShellShape};
-use nastran::place::Placed;
+use nastran::place::PlacedCard;
 use numpy::PyReadonlyArray1;
 use std::collections::HashMap;
 use strainbridge::{Fault, Faults};
@@ -97,7 +97,7 @@ pub(crate) fn edit(
                 rows.fault("id", "these cards cannot be changed here", remedy)
             })?;
             let list = cards.shells.iter().filter(|c| c.card.shape == shape);
-            let list: Vec<Placed<Shell>> = list.cloned().collect();
+            let list: Vec<PlacedCard<Shell>> = list.cloned().collect();
             lay(
                 deck,
                 edits,
@@ -114,7 +114,7 @@ fn lay<T: ToFields + Clone + PartialEq>(
     deck: &Deck,
     edits: &mut Edits,
     rows: &Rows,
-    list: &[Placed<T>],
+    list: &[PlacedCard<T>],
     id_of: impl Fn(&T) -> u32,
     make: impl Fn(&Rows, usize, Option<&T>) -> Result<T, Fault>,
 ) -> Result<(), Faults> {

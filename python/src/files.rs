@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use strainbridge::Disk;
 use strainbridge::host::context::Files;
-use strainbridge::host::files::{FileBytes, Opened, Stamp};
+use strainbridge::host::files::{FileBytes, OpenedFile, Stamp};
 
 /// The disk with files from memory before it.
 #[derive(Clone, Debug, Default)]
@@ -18,9 +18,9 @@ impl Files for Desk {
         }
     }
 
-    fn open(&self, path: &Path) -> std::io::Result<Opened> {
+    fn open(&self, path: &Path) -> std::io::Result<OpenedFile> {
         match self.0.get(path) {
-            Some(bytes) => Ok(Opened::Whole(FileBytes::from(bytes.clone()))),
+            Some(bytes) => Ok(OpenedFile::Whole(FileBytes::from(bytes.clone()))),
             None => Disk.open(path),
         }
     }

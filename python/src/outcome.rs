@@ -11,9 +11,9 @@ use strainbridge::host::outcome::Answer;
 use strainbridge::report::command::{Report, result_text, save, words};
 use strainbridge::report::notebook::piece;
 use strainbridge::sensitivity::Sensitivity;
-use strainbridge::workflow::calibrate::Calibrated;
-use strainbridge::workflow::recover::Recovered;
-use strainbridge::workflow::sensitivity::Sensed;
+use strainbridge::workflow::calibrate::CalibratedSensitivity;
+use strainbridge::workflow::recover::RecoveredLoads;
+use strainbridge::workflow::sensitivity::ComputedSensitivity;
 use strainbridge::{Faults, Outcome};
 
 /// Methods of an outcome of any type.
@@ -36,10 +36,10 @@ pub(crate) trait Kept: Send {
 }
 
 /// Calibrated S.
-struct OfCalibration(Outcome<Calibrated>);
+struct OfCalibration(Outcome<CalibratedSensitivity>);
 
 /// S of gauges or candidates.
-struct OfModel(Outcome<Sensed>);
+struct OfModel(Outcome<ComputedSensitivity>);
 
 impl Kept for OfModel {
     fn save(&self, folder: &Path) -> Result<String, Faults> {
@@ -70,7 +70,7 @@ impl Kept for OfCalibration {
 }
 
 /// Loads of what was measured, samples among them.
-struct Measured(Outcome<Recovered>);
+struct Measured(Outcome<RecoveredLoads>);
 
 impl Kept for Measured {
     fn save(&self, folder: &Path) -> Result<String, Faults> {
@@ -140,17 +140,21 @@ where
 }
 
 /// Keeps recovered loads for Python.
-pub(crate) fn keep_loads(outcome: Outcome<Recovered>) -> Result<AnyOutcome, Faults> {
+pub(crate) fn keep_loads(outcome: Outcome<RecoveredLoads>) -> Result<AnyOutcome, Faults> {
     keep_as(outcome, |o| Box::new(Measured(o)))
 }
 
 /// Keeps the outcome of a calibration for Python.
-pub(crate) fn keep_calibrated(outcome: Outcome<Calibrated>) -> Result<AnyOutcome, Faults> {
+pub(crate) fn keep_calibrated(
+    outcome: Outcome<CalibratedSensitivity>,
+) -> Result<AnyOutcome, Faults> {
     keep_as(outcome, |o| Box::new(OfCalibration(o)))
 }
 
 /// Keeps S of gauges or candidates for Python.
-pub(crate) fn keep_sensitivity(outcome: Outcome<Sensed>) -> Result<AnyOutcome, Faults> {
+pub(crate) fn keep_sensitivity(
+    outcome: Outcome<ComputedSensitivity>,
+) -> Result<AnyOutcome, Faults> {
     keep_as(outcome, |o| Box::new(OfModel(o)))
 }
 

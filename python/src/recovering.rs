@@ -12,10 +12,10 @@ use strainbridge::finding::Finding;
 use strainbridge::host::context::Progress;
 use strainbridge::linalg::Matrix;
 use strainbridge::recovery::history::{Filter, SampleLoads};
-use strainbridge::recovery::plausible::LARGEST_STRAIN;
+use strainbridge::recovery::reading_plausibility::LARGEST_STRAIN;
 use strainbridge::recovery::{
-    ErrorModel, Gain, Missing, NOT_SOLVABLE, Readings, Recovery, Widening, check_gaps, recover,
-    recover_samples,
+    ErrorModel, Gain, MissingReadings, NOT_SOLVABLE, Readings, Recovery, Widening, check_gaps,
+    recover, recover_samples,
 };
 use strainbridge::sensitivity::{Load, Sensitivity, check_separability};
 use strainbridge::stop::Stop;
@@ -296,12 +296,12 @@ struct Rows {
     /// Rows whose intervals have another width, with these widths.
     others: Vec<(usize, Vec<f64>)>,
     /// Counts of missing readings in the rows.
-    missing: Missing,
+    missing: MissingReadings,
 }
 
 /// Returns the loads of recovered runs, and the widths that differ from `half`.
 fn of_runs(judged: &Recovery, half: &[f64]) -> Rows {
-    let mut missing = Missing::new(half.len());
+    let mut missing = MissingReadings::new(half.len());
     for r in &judged.runs {
         if r.residual.iter().all(|v| v.is_finite()) {
             missing.whole += 1;
@@ -347,7 +347,7 @@ fn of_record(
         Filter::new(s, vec![0.0; n], errors, 1.0, &judged.typical, widening).ok_or_else(|| {
             argument_fault(S.function, "S", "it cannot be solved", "check its numbers")
         })?;
-    let blocks: Vec<(SampleLoads, Missing, usize)> = samples
+    let blocks: Vec<(SampleLoads, MissingReadings, usize)> = samples
         .par_chunks(BLOCK * n)
         .map(|block| {
             let mut out = SampleLoads {
@@ -356,9 +356,9 @@ fn of_record(
             };
             // What is not asked for any more is left empty.
             if stop.is_asked() {
-                return (out, Missing::new(k), 0);
+                return (out, MissingReadings::new(k), 0);
             }
-            let mut missing = Missing::new(k);
+            let mut missing = MissingReadings::new(k);
             filter.loads_of(block, unit, &mut out, &mut missing);
             // An infinite reading is none in any unit.
             let impossible = match missing.impossible {
@@ -374,7 +374,7 @@ fn of_record(
     if blocks.iter().any(|b| b.2 > 0) {
         return Ok(None);
     }
-    let (mut others, mut missing) = (Vec::new(), Missing::new(k));
+    let (mut others, mut missing) = (Vec::new(), MissingReadings::new(k));
     for (number, (block, of_block, _)) in blocks.iter().enumerate() {
         missing.merge(of_block);
         for (at, gain) in &block.gaps {

@@ -2,7 +2,7 @@
 //! every run ([`add_zero_column`]); outside, S has the loads of the task, and readings are less `z`.
 //!
 //! Errors of `S` and `z` go together: what the runs determine best is the strain at loads in their middle. With `c` these loads, `eps = S (f - c) +
-//! (z + S c)`, the two parts are taken as uncorrelated, and their covariances are kept apart ([`Centred`]).
+//! (z + S c)`, the two parts are taken as uncorrelated, and their covariances are kept apart ([`CentredPosterior`]).
 
 use super::posterior::Posterior;
 use super::types::{Calibration, CommonZero, KnownLoads, Task};
@@ -86,14 +86,14 @@ pub(super) fn less_zero(strain: &[f64], zero: &[f64]) -> Vec<f64> {
 }
 
 /// A posterior with a common zero in two independent parts.
-pub(super) struct Centred {
+pub(super) struct CentredPosterior {
     /// `c`, loads of unit size.
     pub center: Vec<f64>,
     /// Covariance of `z + S c`, `n x n` by rows.
     pub covariance: Vec<f64>,
 }
 
-impl Centred {
+impl CentredPosterior {
     /// `c = -(sum_g Cov S_g)^-1 sum_g Cov(S_g, z_g)`, zero where loads are not determined.
     pub fn from_posterior(posterior: &Posterior) -> Self {
         let (n, all) = (posterior.n, posterior.k);

@@ -6,12 +6,12 @@ use crate::linalg::spd;
 
 /// Normal equations of one row from the runs, in loads of unit size: `A = sum phi phi' / v` and `b = sum phi y / v`.
 #[derive(Clone, Debug)]
-pub(super) struct Normal {
+pub(super) struct NormalEquations {
     matrix: Vec<f64>,
     right: Vec<f64>,
 }
 
-impl Normal {
+impl NormalEquations {
     /// Sums the normal equations of gauge `g` over the runs with a reading of it.
     pub fn from_runs(g: usize, k: usize, runs: &[ByGauge]) -> Self {
         let mut out = Self {
@@ -49,7 +49,7 @@ impl Normal {
 /// With `W = B^-1 + A` and `d = b - A s`, up to what does not depend on the prior, it is `L(0) = (d' W^-1 d - ln |B| - ln |W|) / 2`; a row
 /// that is `s + t + e` makes it `L(t) = L(0) + t' B^-1 W^-1 d - t' B^-1 W^-1 A t / 2`.
 pub(super) struct RowEvidence<'a> {
-    normal: &'a Normal,
+    normal: &'a NormalEquations,
     /// `B^-1` and `W^-1`.
     prior: Precision,
     posterior: Precision,
@@ -61,7 +61,11 @@ pub(super) struct RowEvidence<'a> {
 
 impl<'a> RowEvidence<'a> {
     /// With a row of this mean and covariance; `None` where that is not positive definite.
-    pub fn from_row_prior(mean: &[f64], covariance: &[f64], normal: &'a Normal) -> Option<Self> {
+    pub fn from_row_prior(
+        mean: &[f64],
+        covariance: &[f64],
+        normal: &'a NormalEquations,
+    ) -> Option<Self> {
         let k = mean.len();
         let prior = Precision::from_covariance(covariance, k)?;
         let total: Vec<f64> = (0..k * k)

@@ -1,12 +1,12 @@
 //! The whole calibration: one fit of all runs, runs left out, contradicting ones refused, then words.
 
 use super::common_zero::{add_zero_column, remove_zero_column, zero_of};
-use super::exchanged::Exchanged;
+use super::label_exchange::LabelExchange;
 use super::state::State;
 use super::types::{CalibratedRange, Calibration, CommonZero, Coverage, LeftOut, ModelError, Task};
 use super::{
-    exchanged, excluded, glued, held_out, identical, lack_of_fit, recorded, runs, shift,
-    undetermined,
+    excluded_runs, held_out, identical_columns, installed_position, known_load_faults,
+    label_exchange, lack_of_fit, runs, shift, undetermined_combinations,
 };
 use crate::finding::{Finding, Severity};
 
@@ -40,16 +40,16 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
 
 /// Calibrates with the common zero as one more column, if the task asks for it.
 fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
-    let mut fitted = Fitted::from_task(task, &[])?;
+    let mut fitted = ConsistentFit::from_task(task, &[])?;
     let mut shifts = shift::check(task, &fitted.state);
     let mut wrongly_wired = shift::wrongly_wired(&shifts);
     if task.model.is_some() && !wrongly_wired.is_empty() {
         // A gauge that is wired backwards says nothing of the model.
-        fitted = Fitted::from_task(task, &wrongly_wired)?;
+        fitted = ConsistentFit::from_task(task, &wrongly_wired)?;
         shifts = shift::check(task, &fitted.state);
         wrongly_wired = shift::wrongly_wired(&shifts);
     }
-    let Fitted {
+    let ConsistentFit {
         mut state,
         mut left_out,
         refused,
@@ -66,30 +66,34 @@ fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
         uncertainty.is_tested = !left_out.is_empty();
         uncertainty.add_common_scale(&sensitivity.values, task.scale_sd);
     }
-    let undetermined = undetermined::check(task, &state);
+    let undetermined = undetermined_combinations::check(task, &state);
     let model_error = state.error_evidence.as_ref();
     let model_error = model_error.map(|e| e.most_probable(&wrongly_wired));
     let mut findings: Vec<Finding> = exchanged
         .iter()
-        .map(|e| exchanged::finding(task, e))
+        .map(|e| label_exchange::finding(task, e))
         .collect();
     findings.extend(runs::findings(task, &left_out, &refused));
     findings.extend(lack.findings);
-    findings.extend(identical::findings(task));
+    findings.extend(identical_columns::findings(task));
     let gone = exchanged.iter().filter(|e| e.certain).count() + refused.len();
     let suspect = held_out::suspects(&left_out).len();
-    findings.extend(excluded::too_many(gone + suspect, task.runs.len()));
-    findings.extend(excluded::held_too_few(&judged));
+    findings.extend(excluded_runs::too_many(gone + suspect, task.runs.len()));
+    findings.extend(excluded_runs::held_too_few(&judged));
     findings.extend(statements(task, &state, model_error, &judged, &left_out));
-    findings.extend(undetermined::findings(task, &undetermined));
+    findings.extend(undetermined_combinations::findings(task, &undetermined));
     if undetermined.is_empty() || task.model.is_some() {
-        findings.extend(undetermined::too_wide(task, &state, &sensitivity));
+        findings.extend(undetermined_combinations::too_wide(
+            task,
+            &state,
+            &sensitivity,
+        ));
     }
     // Where the known loads are in a wrong unit or of a wrong sign, every gauge is far from the model for that reason.
-    let wrong_loads = recorded::wrong_loads(task, &state.used, wrongly_wired);
+    let wrong_loads = known_load_faults::wrong_loads(task, &state.used, wrongly_wired);
     if wrong_loads.is_empty() {
         findings.extend(shift::findings(task, &shifts));
-        findings.extend(recorded::wrong_gauges(task, &state.used, &shifts));
+        findings.extend(known_load_faults::wrong_gauges(task, &state.used, &shifts));
     }
     findings.extend(wrong_loads);
     let signal = state.lefts.iter().map(|l| l.q2).sum::<f64>() / state.lefts.len().max(1) as f64;
@@ -103,7 +107,7 @@ fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
         range: CalibratedRange::from_runs(task, &state.used, &zero_of(task, &state.posterior)),
         model_error,
         shifts,
-        as_glued: glued::as_glued(task, &state, model_error),
+        as_glued: installed_position::as_glued(task, &state, model_error),
         repeat_scatter_rel: state.scatter.dof.is_finite().then(|| state.scatter.rms()),
         noise_rel: task.noise / signal.sqrt(),
         left_out,
@@ -119,34 +123,34 @@ fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
 }
 
 /// A fit of the runs that don't contradict each other.
-struct Fitted {
+struct ConsistentFit {
     state: State,
     left_out: Vec<LeftOut>,
     /// The others, with their numbers.
     refused: Vec<(usize, LeftOut)>,
     /// Two with each other's label: not used where that is certain.
-    exchanged: Vec<Exchanged>,
+    exchanged: Vec<LabelExchange>,
 }
 
-impl Fitted {
+impl ConsistentFit {
     /// One contradicting run is refused after the other; see [`State::fit_runs`] on `wrongly_wired`.
     fn from_task(task: &Task, wrongly_wired: &[usize]) -> Result<Self, String> {
         let mut used: Vec<usize> = (0..task.runs.len()).collect();
         let most = (MOST_REFUSED * used.len() as f64).floor() as usize;
         let mut refused: Vec<(usize, LeftOut)> = Vec::new();
-        let mut exchanged: Vec<Exchanged> = Vec::new();
+        let mut exchanged: Vec<LabelExchange> = Vec::new();
         loop {
             let state = State::fit_runs(task, &used, wrongly_wired)
                 .ok_or("S cannot be computed: the runs give hardly any information on some gauge (is it blank in the runs of known loads?), or contain values that are not numbers")?;
             let known = exchanged.last().is_none_or(|e| e.certain);
-            let pair = exchanged::find(task, &state).filter(|_| known);
+            let pair = label_exchange::find(task, &state).filter(|_| known);
             if let Some(pair) = pair {
                 let gone = refused.len() + 2 * exchanged.len() + 2;
                 let takes = pair.certain && gone <= most.max(2);
                 if takes {
                     used.retain(|r| !pair.runs.contains(r));
                 }
-                exchanged.push(Exchanged {
+                exchanged.push(LabelExchange {
                     certain: takes,
                     ..pair
                 });

@@ -3,10 +3,10 @@
 use super::common_zero::{less_zero, zero_of};
 use super::posterior::{Equation, Posterior, solve};
 use super::prior::{RowPrior, rows};
-use super::scatter::{Left, Scatter};
+use super::scatter::{RunResiduals, Scatter};
 use super::state::{State, run_residuals, sensitivity_of};
 use super::types::{Coverage, KnownLoads, KnownRun, LeftOut, Task};
-use super::unknown::{SPANNED, UNKNOWN, wide_directions};
+use super::unknown_directions::{SPANNED, UNKNOWN, wide_directions};
 use crate::estimate::COVERAGE;
 use crate::linalg::spd;
 use crate::recovery::{ErrorModel, Readings, RunEstimate, estimate};
@@ -108,7 +108,7 @@ pub(super) fn recover_left_out(
         found.estimate.covariance[at] + loads.covariance[at]
     };
     let covariance: Vec<f64> = (0..w * w).map(entry).collect();
-    let told = Told::from_known_loads(loads, &wanted, &state.scales[..k]);
+    let told = KnownLoadPart::from_known_loads(loads, &wanted, &state.scales[..k]);
     if told.combinations == 0 {
         return None;
     }
@@ -163,14 +163,14 @@ fn recover_run(task: &Task, run: &KnownRun, s: &Sensitivity, zero: &[f64]) -> Ru
 }
 
 /// Known part of a run's wanted loads.
-struct Told {
+struct KnownLoadPart {
     /// Number of independent combinations that are known.
     combinations: usize,
     /// Loads that are known individually, by number among the wanted loads.
     alone: Vec<usize>,
 }
 
-impl Told {
+impl KnownLoadPart {
     fn from_known_loads(known: &KnownLoads, wanted: &[usize], scales: &[f64]) -> Self {
         let (k, w) = (scales.len(), wanted.len());
         let entry = |i: usize| known.covariance[wanted[i / w] * k + wanted[i % w]];
@@ -191,7 +191,12 @@ impl Told {
 const ROUNDS: usize = 2;
 
 /// Returns the residuals of the runs other than `out` under this posterior.
-fn others_left(task: &Task, state: &State, out: &[usize], posterior: &Posterior) -> Vec<Left> {
+fn others_left(
+    task: &Task,
+    state: &State,
+    out: &[usize],
+    posterior: &Posterior,
+) -> Vec<RunResiduals> {
     let others = (0..state.used.len()).filter(|j| !out.contains(j));
     let one = |j: usize| {
         let run = &task.runs[state.used[j]];
@@ -367,7 +372,11 @@ fn region(loads: usize, dof: f64) -> f64 {
 
 /// Chance that a run lies at least as far off, where `scale` widens everything.
 pub(super) fn chance(l: &LeftOut, scale: f64) -> f64 {
-    crate::recovery::unlike::chance_estimated(l.distance / (scale * scale), l.loads, l.dof)
+    crate::recovery::uncalibrated_strain::chance_estimated(
+        l.distance / (scale * scale),
+        l.loads,
+        l.dof,
+    )
 }
 
 /// How much farther than expected the runs in the middle lie: the ratio of medians, at least 1. One wrong run does not move it.

@@ -8,7 +8,7 @@ use super::loading::{Loading, loadings};
 use super::state::{State, sensitivity_of};
 use super::terms_held_out::held_out;
 use super::types::{HeldOutError, LackOfFit, Task, Term, TermTest};
-use super::unknown::project_out;
+use super::unknown_directions::project_out;
 use crate::estimate::f_tail;
 use crate::finding::{Finding, Severity};
 use crate::linalg::spd;
@@ -54,7 +54,7 @@ impl Candidate {
 }
 
 /// Terms found, and what they do.
-pub(super) struct Found {
+pub(super) struct LackOfFitTest {
     pub answer: LackOfFit,
     pub findings: Vec<Finding>,
     /// Covariance of readings that the terms make over the loadings, `n x n` by rows; empty where no term is found.
@@ -62,10 +62,10 @@ pub(super) struct Found {
 }
 
 /// Tests a fit.
-pub(super) fn check(task: &Task, state: &State) -> Found {
+pub(super) fn check(task: &Task, state: &State) -> LackOfFitTest {
     let loadings = loadings(task, state);
     let candidates = candidates(task);
-    let tests = |added: &[Candidate]| -> Vec<Tested> {
+    let tests = |added: &[Candidate]| -> Vec<CandidateTest> {
         let left = candidates.iter().filter(|c| !added.contains(c));
         let left: Vec<Candidate> = left.copied().collect();
         test(&loadings, added, &left)
@@ -92,7 +92,7 @@ pub(super) fn check(task: &Task, state: &State) -> Found {
         found.push(best);
         open = tests(&added);
     }
-    let mut out = Found {
+    let mut out = LackOfFitTest {
         answer,
         findings: Vec::new(),
         covariance: Vec::new(),
@@ -103,7 +103,7 @@ pub(super) fn check(task: &Task, state: &State) -> Found {
     let changes = changes(&loadings, &added);
     out.covariance = covariance(&loadings, &changes, &added);
     for of_zero in [true, false] {
-        let kind: Vec<&Tested> = (found.iter())
+        let kind: Vec<&CandidateTest> = (found.iter())
             .filter(|t| (t.candidate.term == Term::CommonZero) == of_zero)
             .collect();
         out.findings.extend(finding(
@@ -136,7 +136,7 @@ fn candidates(task: &Task) -> Vec<Candidate> {
 }
 
 /// The clearest term of a kind.
-struct Tested {
+struct CandidateTest {
     candidate: Candidate,
     /// Gauge at which it is clearest.
     gauge: usize,
@@ -148,9 +148,9 @@ struct Tested {
 ///
 /// # Reference
 /// N. R. Draper, H. Smith, Applied Regression Analysis (3rd ed., 1998), section 6.1: the extra sum of squares.
-fn test(loadings: &[Loading], added: &[Candidate], candidates: &[Candidate]) -> Vec<Tested> {
+fn test(loadings: &[Loading], added: &[Candidate], candidates: &[Candidate]) -> Vec<CandidateTest> {
     let n = loadings.first().map_or(0, |l| l.strain.len());
-    let mut best: BTreeMap<Term, (Tested, usize)> = BTreeMap::new();
+    let mut best: BTreeMap<Term, (CandidateTest, usize)> = BTreeMap::new();
     for gauge in 0..n {
         let read: Vec<&Loading> = loadings
             .iter()
@@ -178,7 +178,7 @@ fn test(loadings: &[Loading], added: &[Candidate], candidates: &[Candidate]) -> 
             }
             let explained = spd::dot(&column, &rest).powi(2) / apart;
             let ratio = explained / ((all - explained).max(0.0) / free);
-            let tested = Tested {
+            let tested = CandidateTest {
                 candidate: *candidate,
                 gauge,
                 p: f_tail(ratio, 1.0, free),
@@ -196,7 +196,7 @@ fn test(loadings: &[Loading], added: &[Candidate], candidates: &[Candidate]) -> 
             }
         }
     }
-    let corrected = |(tested, count): (Tested, usize)| Tested {
+    let corrected = |(tested, count): (CandidateTest, usize)| CandidateTest {
         p: (tested.p * count as f64).min(1.0),
         ..tested
     };
@@ -313,7 +313,7 @@ fn finding(
     task: &Task,
     state: &State,
     loadings: &[Loading],
-    (added, kind): (&[Candidate], &[&Tested]),
+    (added, kind): (&[Candidate], &[&CandidateTest]),
     held_out: Option<HeldOutError>,
 ) -> Option<Finding> {
     let clearest = kind.first()?;

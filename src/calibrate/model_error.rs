@@ -1,6 +1,6 @@
 //! Error of the model from the readings of the calibration runs: a common error of all gauges, and the error of each gauge.
 
-use super::evidence::{Normal, RowEvidence};
+use super::evidence::{NormalEquations, RowEvidence};
 use super::given_others::ByGauge;
 use super::prior::{FLOORS, RowError, RowPrior, rows};
 use super::types::{ModelError, ModelPrior};
@@ -30,24 +30,24 @@ fn factor(step: i32) -> f64 {
 pub(super) struct ErrorEvidence {
     stated: ModelError,
     /// Normal equations of each gauge's row from the runs.
-    pub normals: Vec<Normal>,
+    pub normals: Vec<NormalEquations>,
     /// By run, gauge by gauge.
     by_run: Vec<ByGauge>,
-    tried: Vec<Tried>,
+    tried: Vec<ErrorHypothesis>,
 }
 
 /// One relative error of the model.
 #[derive(Clone, Debug)]
-struct Tried {
+struct ErrorHypothesis {
     error: ModelError,
     /// Log of its prior.
     prior: f64,
-    by_gauge: Vec<Own>,
+    by_gauge: Vec<GaugeLikelihood>,
 }
 
 /// A gauge, given the error of all.
 #[derive(Clone, Debug)]
-struct Own {
+struct GaugeLikelihood {
     /// Log marginal likelihood of the gauge's readings.
     log: f64,
     /// Error of the gauge's row: mean variance over all errors tried, weighted by their probability given the readings.
@@ -85,7 +85,7 @@ impl ErrorEvidence {
         let n = self.normals.len();
         let run = &self.by_run[left];
         let readings = run.y.iter().zip(&run.variance);
-        let normals: Vec<Normal> = (self.normals.iter().zip(readings))
+        let normals: Vec<NormalEquations> = (self.normals.iter().zip(readings))
             .map(|(normal, (y, v))| normal.without_reading(&run.phi, *y, *v))
             .collect();
         let own = own_steps();
@@ -104,7 +104,7 @@ impl ErrorEvidence {
                 (g, row)
             };
             let rows = rows(model, scales, (0..n).map(row));
-            let log = |(row, normal): (&RowPrior, &Normal)| {
+            let log = |(row, normal): (&RowPrior, &NormalEquations)| {
                 let evidence = RowEvidence::from_row_prior(&row.mean, &row.covariance, normal);
                 evidence.map_or(f64::NEG_INFINITY, |e| e.log())
             };
@@ -118,13 +118,13 @@ impl ErrorEvidence {
             .collect()
     }
 
-    fn find_best_error(&self, without: &[usize]) -> Option<&Tried> {
-        let score = |t: &Tried| {
+    fn find_best_error(&self, without: &[usize]) -> Option<&ErrorHypothesis> {
+        let score = |t: &ErrorHypothesis| {
             let kept = t.by_gauge.iter().enumerate();
             let kept = kept.filter(|(g, _)| !without.contains(g));
             t.prior + kept.map(|(_, own)| own.log).sum::<f64>()
         };
-        let mut best: Option<(f64, &Tried)> = None;
+        let mut best: Option<(f64, &ErrorHypothesis)> = None;
         for t in &self.tried {
             let score = score(t);
             if score > best.map_or(f64::NEG_INFINITY, |b| b.0) {
@@ -151,7 +151,9 @@ pub(super) fn error_evidence(
         entry: model.uncertainty_rel,
     };
     let (n, k) = model.values.shape();
-    let normals: Vec<Normal> = (0..n).map(|g| Normal::from_runs(g, k, &runs)).collect();
+    let normals: Vec<NormalEquations> = (0..n)
+        .map(|g| NormalEquations::from_runs(g, k, &runs))
+        .collect();
     let tables: Vec<Table> = (0..FLOORS.len())
         .into_par_iter()
         .map(|floor| Table::compute(model, scales, &normals, floor))
@@ -166,7 +168,7 @@ pub(super) fn error_evidence(
             common: stated.common * factor(common),
             entry: stated.entry * factor(entry),
         };
-        Tried {
+        ErrorHypothesis {
             error,
             prior: -off(common) - off(entry),
             by_gauge: (0..n)
@@ -199,7 +201,11 @@ fn own_steps() -> Vec<(i32, f64)> {
 }
 
 /// Returns the evidence and error of a gauge for the common error `error`; `log`: log marginal likelihood of its readings by floor and step.
-fn of_gauge(own: &[(i32, f64)], error: ModelError, log: impl Fn(usize, usize) -> f64) -> Own {
+fn of_gauge(
+    own: &[(i32, f64)],
+    error: ModelError,
+    log: impl Fn(usize, usize) -> f64,
+) -> GaugeLikelihood {
     let floors = (FLOORS.len() as f64).ln();
     let steps = || own.iter().enumerate();
     let logs: Vec<Vec<f64>> = (0..FLOORS.len())
@@ -230,7 +236,7 @@ fn of_gauge(own: &[(i32, f64)], error: ModelError, log: impl Fn(usize, usize) ->
             1.0 / FLOORS.len() as f64
         };
     }
-    Own {
+    GaugeLikelihood {
         log: largest + total.ln(),
         error: RowError {
             common: error.common * squares.iter().sum::<f64>().sqrt(),
@@ -249,7 +255,12 @@ impl Table {
     const LEAST: i32 = -STEPS + *OWN_STEPS.start();
     const MOST: i32 = STEPS + *OWN_STEPS.end();
 
-    fn compute(model: &ModelPrior, scales: &[f64], normals: &[Normal], floor: usize) -> Self {
+    fn compute(
+        model: &ModelPrior,
+        scales: &[f64],
+        normals: &[NormalEquations],
+        floor: usize,
+    ) -> Self {
         let stated = model.uncertainty_rel;
         let (n, k) = model.values.shape();
         let drawn: Vec<Vec<f64>> = (0..n)
@@ -264,7 +275,7 @@ impl Table {
             error.entries[floor] = stated * factor(entry);
             let rows = rows(model, scales, (0..n).map(|g| (g, error)));
             // The part common to a gauge is one direction more: with what is known of the rest it costs a few products.
-            let one = |((row, normal), s): ((&RowPrior, &Normal), &Vec<f64>)| {
+            let one = |((row, normal), s): ((&RowPrior, &NormalEquations), &Vec<f64>)| {
                 let e = RowEvidence::from_row_prior(&row.mean, &row.covariance, normal)?;
                 let (first, second) = e.orders(&[s.as_slice()]);
                 Some((e.log(), *first.first()?, *second.first()?))

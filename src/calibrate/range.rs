@@ -1,7 +1,7 @@
 //! Range of what a calibration was made with.
 
 use super::types::{CalibratedRange, Task};
-use super::unknown::known_of;
+use super::unknown_directions::known_of;
 
 impl CalibratedRange {
     /// Range of the runs with these numbers, strain less the zero of each gauge. A run in which a load is not known does not count for the range

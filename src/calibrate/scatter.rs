@@ -22,7 +22,7 @@ pub(super) struct Scatter {
 
 /// Residuals of one run.
 #[derive(Clone, Debug)]
-pub(super) struct Left {
+pub(super) struct RunResiduals {
     /// Reading less prediction by gauge, strain; NaN without reading.
     pub residual: Vec<f64>,
     /// Mean square of the predicted strain.
@@ -69,7 +69,7 @@ impl Scatter {
     /// # Reference
     /// Weight of the target: Y. Chen, A. Wiesel, Y. C. Eldar, A. O. Hero, IEEE Trans. Signal Process. 58 (2010) 5016, eq. 23 (oracle
     /// approximating shrinkage), with degrees of freedom for the number of samples.
-    pub fn from_residuals(runs: &[Left], fitted: f64, columns: &Matrix) -> Self {
+    pub fn from_residuals(runs: &[RunResiduals], fitted: f64, columns: &Matrix) -> Self {
         let n = runs.first().map_or(0, |r| r.residual.len());
         let dof = runs.len() as f64 - fitted;
         if dof < FEWEST || !exceeds_noise(runs, dof) {
@@ -80,7 +80,7 @@ impl Scatter {
 
     /// Returns the largest scatter that the residuals allow, with its degrees of freedom: [`Scatter::from_residuals`] without the test against
     /// noise.
-    pub fn at_most(runs: &[Left], fitted: f64, columns: &Matrix) -> Self {
+    pub fn at_most(runs: &[RunResiduals], fitted: f64, columns: &Matrix) -> Self {
         let n = runs.first().map_or(0, |r| r.residual.len());
         let dof = runs.len() as f64 - fitted;
         if dof < FEWEST || n == 0 {
@@ -149,8 +149,8 @@ impl Sample {
     /// # Reference
     /// S. R. Searle, G. Casella, C. E. McCulloch, Variance Components (1992), chapter 3 (analysis of variance, one way); degrees of freedom
     /// of the sum: F. E. Satterthwaite, Biometrics Bulletin 2 (1946) 110.
-    fn from_residuals(runs: &[Left], n: usize, dof: f64) -> Self {
-        let kept: Vec<&Left> = runs.iter().filter(|r| r.q2 > 0.0).collect();
+    fn from_residuals(runs: &[RunResiduals], n: usize, dof: f64) -> Self {
+        let kept: Vec<&RunResiduals> = runs.iter().filter(|r| r.q2 > 0.0).collect();
         let (mut explained, mut readings) = (0.0, 0.0_f64);
         let mut read = vec![0.0; n];
         for r in &kept {
@@ -219,7 +219,7 @@ impl Sample {
 const ALIKE: f64 = 0.05;
 
 impl Squares {
-    fn from_residuals(runs: &[&Left], n: usize) -> Self {
+    fn from_residuals(runs: &[&RunResiduals], n: usize) -> Self {
         let mut out = Self {
             within: vec![0.0; n * n],
             between: vec![0.0; n * n],
@@ -337,7 +337,7 @@ fn shrinkage(sample: &[f64], n: usize, dof: f64) -> f64 {
 const SHRINK_LEAST: f64 = 0.02;
 
 /// Whether the residuals are larger than noise makes them.
-fn exceeds_noise(runs: &[Left], dof: f64) -> bool {
+fn exceeds_noise(runs: &[RunResiduals], dof: f64) -> bool {
     let (mut chi2, mut readings) = (0.0, 0usize);
     for r in runs {
         for (e, v) in r

@@ -3,7 +3,7 @@
 use super::posterior::{Equation, Posterior, solve};
 use super::prior::RowPrior;
 use super::types::{KnownRun, Task};
-use super::unknown::{SPANNED, UNKNOWN, Unknown, project_out, span_alike};
+use super::unknown_directions::{SPANNED, UNKNOWN, UnknownDirections, project_out, span_alike};
 use crate::linalg::{Matrix, dense, spd};
 
 /// Whether every load of a run is known to better than [`UNKNOWN`] of its size.
@@ -75,7 +75,7 @@ fn with_noise(task: &Task, run: &KnownRun, phi: Vec<f64>) -> Equation {
 pub(super) fn from_parts(
     task: &Task,
     runs: &[&KnownRun],
-    unknown: &Unknown,
+    unknown: &UnknownDirections,
     prior: &[RowPrior],
 ) -> Option<Vec<Vec<f64>>> {
     let n = prior.len();

@@ -1,15 +1,15 @@
 //! One fit of all used runs: posterior of S, error of the model, scatter of repeats and corrected loads in turn.
 
-use super::common_zero::{Centred, less_zero, zero_of};
+use super::common_zero::{CentredPosterior, less_zero, zero_of};
 use super::given_others;
-use super::known::correct;
+use super::load_correction::correct;
 use super::model_error::{ErrorEvidence, error_evidence as learn_error};
 use super::posterior::{Equation, Posterior, solve};
 use super::prior::{FLOORS, RowError, RowPrior, diffuse_prior, rows};
-use super::scatter::{Left, Scatter};
+use super::scatter::{RunResiduals, Scatter};
 use super::start::{from_known, from_parts};
 use super::types::{KnownRun, ModelPrior, Task};
-use super::unknown::{Free, Unknown};
+use super::unknown_directions::{FreeDirections, UnknownDirections};
 use crate::linalg::Matrix;
 use crate::sensitivity::{Sensitivity, Uncertainty, mean_square};
 
@@ -28,7 +28,7 @@ pub(super) struct State {
     /// One a used run.
     pub equations: Vec<Equation>,
     /// Residuals of each used run.
-    pub lefts: Vec<Left>,
+    pub lefts: Vec<RunResiduals>,
     /// Scatter of repeats.
     pub scatter: Scatter,
     /// Scatter and mean squares of the previous round, which the equations use.
@@ -63,7 +63,7 @@ impl State {
         let alike = |r: &&KnownRun| runs.iter().filter(|o| o.group == r.group).count();
         let repeats: Vec<usize> = runs.iter().map(alike).collect();
         let without_model = diffuse_prior(n, k, largest);
-        let begun = Begun::from_runs(task, &runs, &scales, &without_model);
+        let begun = StartValues::from_runs(task, &runs, &scales, &without_model);
         let mut scatter = Scatter::none(n);
         let mut state: Option<Self> = None;
         for _ in 0..ROUNDS {
@@ -80,7 +80,7 @@ impl State {
                 let free = begun
                     .unknown
                     .as_ref()
-                    .map_or(Free::NONE, |u| u.free_directions(i));
+                    .map_or(FreeDirections::NONE, |u| u.free_directions(i));
                 let made = equation(task, (run, free), &scales, &mean, &scatter, times)?;
                 freedom += made.freedom / made.equation.gauges.len().max(1) as f64;
                 by_gauge.push(given_others::by_gauge(&made.equation, &made.spread, &mean));
@@ -95,7 +95,7 @@ impl State {
                 _ => begun.prior(&without_model),
             };
             let posterior = solve(&prior, &equations)?;
-            let lefts: Vec<Left> = runs
+            let lefts: Vec<RunResiduals> = runs
                 .iter()
                 .zip(&equations)
                 .map(|(run, e)| run_residuals(task, run, &posterior, &e.phi))
@@ -170,7 +170,7 @@ pub(super) fn sensitivity_of(
     let mut additive = lack.to_vec();
     let mut center = Vec::new();
     if task.is_extended() {
-        let centred = Centred::from_posterior(posterior);
+        let centred = CentredPosterior::from_posterior(posterior);
         center = centred
             .center
             .iter()
@@ -241,14 +241,14 @@ fn scaled_model_rows(model: &ModelPrior, scales: &[f64]) -> Vec<Vec<f64>> {
 }
 
 /// Start values of a fit without a model.
-struct Begun {
+struct StartValues {
     /// Rows of S; empty with a model.
     rows: Vec<Vec<f64>>,
     /// Directions of the loads that no run determines; `None` if there are no such directions.
-    unknown: Option<Unknown>,
+    unknown: Option<UnknownDirections>,
 }
 
-impl Begun {
+impl StartValues {
     fn from_runs(task: &Task, runs: &[&KnownRun], scales: &[f64], prior: &[RowPrior]) -> Self {
         if task.model.is_some() {
             return Self {
@@ -256,7 +256,8 @@ impl Begun {
                 unknown: None,
             };
         }
-        let unknown = Some(Unknown::from_runs(runs, scales)).filter(Unknown::is_any);
+        let unknown =
+            Some(UnknownDirections::from_runs(runs, scales)).filter(UnknownDirections::is_any);
         let rows = match &unknown {
             Some(unknown) => from_parts(task, runs, unknown, prior),
             None => from_known(task, runs, scales, prior).map(|s| rows_of(&s)),
@@ -280,7 +281,7 @@ impl Begun {
 }
 
 /// Equation of a run for S.
-struct Made {
+struct RunEquation {
     equation: Equation,
     /// Readings' worth of freedom that the correction of its loads takes.
     freedom: f64,
@@ -291,12 +292,12 @@ struct Made {
 /// A run as an equation, with `times` the scatter.
 fn equation(
     task: &Task,
-    (run, free): (&KnownRun, Free),
+    (run, free): (&KnownRun, FreeDirections),
     scales: &[f64],
     mean: &[Vec<f64>],
     scatter: &Scatter,
     times: Option<f64>,
-) -> Option<Made> {
+) -> Option<RunEquation> {
     let n = task.gauges.len();
     let gauges: Vec<usize> = (0..n)
         .filter(|&g| run.strain.get(g).is_some_and(|v| v.is_finite()))
@@ -314,7 +315,7 @@ fn equation(
     let s: Vec<Vec<f64>> = gauges.iter().map(|&g| mean[g].clone()).collect();
     let corrected = correct((&run.loads, free), scales, &s, &y, &own)?;
     let covariance = own.iter().zip(&corrected.spread);
-    Some(Made {
+    Some(RunEquation {
         equation: Equation {
             y: y.iter().zip(&corrected.shift).map(|(y, d)| y + d).collect(),
             covariance: covariance.map(|(a, b)| a + b).collect(),
@@ -332,12 +333,12 @@ pub(super) fn run_residuals(
     run: &KnownRun,
     posterior: &Posterior,
     phi: &[f64],
-) -> Left {
+) -> RunResiduals {
     let predicted = posterior.predict(phi);
     let of_loads = less_zero(&predicted, &zero_of(task, posterior));
     let n = predicted.len();
     let noise = task.noise * task.noise * run.noise_factor;
-    Left {
+    RunResiduals {
         residual: run
             .strain
             .iter()

@@ -245,7 +245,7 @@ pub struct Calibration {
     /// Range of the loads and readings of the runs that were used.
     pub range: CalibratedRange,
     /// Combinations of loads that no run determines.
-    pub undetermined: Vec<Undetermined>,
+    pub undetermined: Vec<UndeterminedCombination>,
     /// Findings on runs, gauges and model.
     pub findings: Vec<Finding>,
 }
@@ -368,7 +368,7 @@ impl AsGlued {
 
 /// A combination that no run determines.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Undetermined {
+pub struct UndeterminedCombination {
     /// Share of each load, in job units, the largest 1.
     pub terms: Vec<f64>,
 }

@@ -15,9 +15,9 @@ use crate::report::command::{
     RecordFolder, Report, check_folder, console_of, finish, result_text, save,
 };
 use crate::report::console::Texts;
-use crate::workflow::check::{Checked, check};
+use crate::workflow::check::{CheckedFiles, check};
 use crate::workflow::init::{init, init_for};
-use crate::workflow::recover::{Recovered, recover_into};
+use crate::workflow::recover::{RecoveredLoads, recover_into};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -108,7 +108,7 @@ impl Run {
     pub fn recover(&self, path: &Path) -> ExitCode {
         let folder = self.folder(path);
         let done = self.run_in_pool(|cx| {
-            check_folder::<Recovered>(&folder)?;
+            check_folder::<RecoveredLoads>(&folder)?;
             recover_and_save(&Job::read(path, cx.files)?, cx, &folder)
         });
         self.print(done, Some(&folder))
@@ -118,7 +118,7 @@ impl Run {
     pub fn check(&self, files: &[PathBuf]) -> ExitCode {
         let folder = self.common.out.as_deref();
         let done = self.run_in_pool(|cx| {
-            folder.map_or(Ok(()), check_folder::<Checked>)?;
+            folder.map_or(Ok(()), check_folder::<CheckedFiles>)?;
             let outcome = check(files, cx)?;
             let json = match folder {
                 Some(folder) => save(&outcome, folder)?,
@@ -267,7 +267,7 @@ pub(super) fn recover_and_save(
     job: &Job,
     cx: &Context,
     folder: &Path,
-) -> Result<(Outcome<Recovered>, String), Faults> {
+) -> Result<(Outcome<RecoveredLoads>, String), Faults> {
     let mut sink = RecordFolder::new(folder);
     let outcome = recover_into(job, cx, &mut sink)?;
     let mut out = sink.into_output()?;

@@ -6,7 +6,7 @@ use super::voice::print;
 use crate::host::fault::{Fault, Faults};
 use crate::host::store::Folder;
 use crate::host::words::count_of;
-use crate::workflow::verify::Made;
+use crate::workflow::verify::ResultProvenance;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
@@ -18,13 +18,19 @@ pub(super) fn verify(a: &VerifyArguments) -> ExitCode {
     let beside = format!(".strainbridge-verify-{}", std::process::id());
     let scratch = Scratch(folder.with_file_name(beside));
     Run::from_arguments(&a.common, &a.folder).question(a.common.out.as_deref(), |cx| {
-        let anew = |made: &Made, main: &Path| rerun_command(&a.folder, made, main, &scratch.0);
+        let anew =
+            |made: &ResultProvenance, main: &Path| rerun_command(&a.folder, made, main, &scratch.0);
         crate::workflow::verify::verify(&a.folder, anew, cx)
     })
 }
 
 /// Runs the command again in a separate process, so that no state of this process affects the answer.
-fn rerun_command(folder: &Path, made: &Made, main: &Path, out: &Path) -> Result<PathBuf, Faults> {
+fn rerun_command(
+    folder: &Path,
+    made: &ResultProvenance,
+    main: &Path,
+    out: &Path,
+) -> Result<PathBuf, Faults> {
     let fault = |wrong: String, remedy: &str| {
         Faults::from(Fault::new(
             folder.display().to_string(),

@@ -13,7 +13,7 @@ pub struct PriorColumn {
 
 /// Solution of the model for one target.
 #[derive(Clone, Debug)]
-pub struct Solved {
+pub struct TargetSolution {
     /// Coefficients, one a column.
     pub x: Vec<f64>,
     /// Covariance of the coefficients `(A'A)^-1`, by rows.
@@ -27,7 +27,7 @@ pub struct Solved {
 }
 
 /// Returns the coefficients that minimise `|A x - target|^2 + sum (x / prior)^2`.
-pub fn solve_with_priors(columns: &[PriorColumn], target: &[f64]) -> Solved {
+pub fn solve_with_priors(columns: &[PriorColumn], target: &[f64]) -> TargetSolution {
     let n = columns.len();
     let priors: Vec<usize> = (0..n).filter(|&i| columns[i].prior.is_some()).collect();
     let mut all: Vec<Vec<f64>> = columns.iter().map(|c| c.rows.clone()).collect();
@@ -65,7 +65,7 @@ pub fn solve_with_priors(columns: &[PriorColumn], target: &[f64]) -> Solved {
         Some(sd) => -s.x[p] / sd,
         None => 0.0,
     }));
-    Solved {
+    TargetSolution {
         chi2,
         penalty: columns
             .iter()

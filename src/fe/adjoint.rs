@@ -11,7 +11,7 @@ use super::element::shell::{AnyShell, Parts, shell_matrices, surfaces};
 use super::error::{FeError, Refusal};
 use super::load_case::LoadCase;
 use super::options::SolveOptions;
-use super::prepared::Prepared;
+use super::prepared_model::PreparedModel;
 use super::shell_frame::ShellPlace;
 use super::solve::solve_displacements;
 use super::strain_tensor::Surface;
@@ -36,7 +36,7 @@ pub struct StrainTerm {
 /// Displacements under loads and under the adjoint forces of readings.
 #[derive(Debug)]
 pub struct Adjoint<'a> {
-    prepared: Prepared<'a>,
+    prepared: PreparedModel<'a>,
     /// By load; empty for temperatures, whose forces are the elements' own and change with them.
     loads: Vec<Vec<[f64; 6]>>,
     /// By reading.
@@ -55,7 +55,7 @@ impl<'a> Adjoint<'a> {
         readings: &[Vec<StrainTerm>],
         options: &SolveOptions,
     ) -> Result<Self, FeError> {
-        let prepared = Prepared::new(model);
+        let prepared = PreparedModel::new(model);
         let mut cases = support.unit_cases(model, loads);
         let Some(first) = cases.first().cloned() else {
             return Err(FeError::Empty);
@@ -134,7 +134,7 @@ impl<'a> Adjoint<'a> {
 
 /// Returns the adjoint forces of a reading: by grid of its shells, the reading per unit of displacement.
 pub(super) fn forces_of(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     terms: &[StrainTerm],
 ) -> Result<Vec<(GridIx, [f64; 6])>, Refusal> {
     let mut out = Vec::new();

@@ -3,7 +3,7 @@
 use super::constraint::{Reduction, State};
 use super::element::ElementMatrix;
 use super::error::FeError;
-use super::prepared::Prepared;
+use super::prepared_model::PreparedModel;
 use crate::linalg::sparse::{BlockGraph, BlockMatrix, DenseTerm, Symbolic};
 use crate::model::{ElementRef, GridIx, Mat3};
 use rayon::prelude::*;
@@ -62,7 +62,7 @@ impl Numbering {
 
 /// Stiffness of the free dofs and its symbolic factor.
 #[derive(Debug)]
-pub(crate) struct Assembled {
+pub(crate) struct AssembledStiffness {
     pub(crate) numbering: Numbering,
     pub(crate) graph: BlockGraph,
     pub(crate) symbolic: Symbolic,
@@ -106,9 +106,9 @@ fn find_reached_dofs(reduction: &Reduction, grids: &[GridIx], dofs: u8) -> Vec<(
 /// # Errors
 /// Elements that can't be formed; nothing to solve.
 pub(crate) fn assemble(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     reduction: &Reduction,
-) -> Result<Assembled, FeError> {
+) -> Result<AssembledStiffness, FeError> {
     let model = prepared.model;
     let elements: Vec<ElementRef> = model.elements().collect();
     let cliques: Vec<Vec<(u32, u8)>> = elements
@@ -151,7 +151,7 @@ pub(crate) fn assemble(
         ))
     })
     .map_err(FeError::Refused)?;
-    Ok(Assembled {
+    Ok(AssembledStiffness {
         numbering,
         graph,
         symbolic,
@@ -184,7 +184,7 @@ pub(super) fn to_displacement_frames(axes: &[Option<Mat3>], k: &mut ElementMatri
 
 /// T' K T of one element over its groups.
 fn reduce_stiffness(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     reduction: &Reduction,
     numbering: &Numbering,
     mut k: ElementMatrix,

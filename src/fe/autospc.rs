@@ -1,6 +1,6 @@
 //! Dofs without stiffness at single grids (PARAM,AUTOSPC), and the loads along them.
 
-use super::assembly::{Assembled, Numbering};
+use super::assembly::{AssembledStiffness, Numbering};
 use crate::finding::{Finding, Severity, list_few};
 use crate::linalg::{DMatrix, sparse::BlockMatrix};
 use crate::model::Model;
@@ -51,7 +51,7 @@ impl Weak {
 ///
 /// With AUTOSPC off, only directions without any stiffness get one: no force acts on them, and a solver removes its null columns.
 /// A direction of negative stiffness gets none: it changes the displacements, and the factor shows whether the rest of the stiffness exceeds it.
-pub(super) fn weak_unknowns(assembled: &Assembled, autospc: bool) -> Vec<Weak> {
+pub(super) fn weak_unknowns(assembled: &AssembledStiffness, autospc: bool) -> Vec<Weak> {
     let limit = if autospc { EPZERO } else { NOTHING };
     let diagonal = assembled.stiffness.diagonal_values(&assembled.symbolic);
     let typical = diagonal.iter().fold(0.0_f64, |a, v| a.max(*v));
@@ -141,7 +141,7 @@ fn describe_unknowns(
 /// That directions were held.
 pub(super) fn autospc_finding(
     model: &Model,
-    assembled: &Assembled,
+    assembled: &AssembledStiffness,
     weak: &[Weak],
 ) -> Option<Finding> {
     let unknowns: Vec<usize> = weak.iter().map(|w| w.unknown).collect();

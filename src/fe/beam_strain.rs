@@ -4,8 +4,8 @@ use super::BeamField;
 use super::beam_field::{BeamShape, SolvedBeams};
 use super::element::beam::{beam_forces, modulus_and_length, strain_at};
 use super::error::{FeError, Refusal};
-use super::line_load::Between;
-use super::prepared::Prepared;
+use super::line_load::BeamLoads;
+use super::prepared_model::PreparedModel;
 use crate::model::{BeamIx, Model};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -15,9 +15,9 @@ use std::sync::Arc;
 /// # Errors
 /// Beams that can't be formed.
 pub(super) fn beam_fields(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     u: &[Vec<[f64; 6]>],
-    between: &[Between<'_>],
+    between: &[BeamLoads<'_>],
 ) -> Result<Vec<BeamField>, FeError> {
     let model = prepared.model;
     let n = model.beams.len();

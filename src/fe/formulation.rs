@@ -1,7 +1,7 @@
 //! Elements that are solved as another element than their card, or in one of the states that their card allows.
 
 use crate::finding::{Finding, Severity, list_few};
-use crate::model::{Joint, JointCard, Model, Rigid, RigidKind};
+use crate::model::{Joint, JointCard, Model, RigidElement, RigidKind};
 use nastran::cards::ShellShape;
 
 /// Returns findings on elements that are solved with another formulation than their card names.
@@ -238,7 +238,7 @@ fn ground_of_rigid_bushes(model: &Model) -> Option<Finding> {
 }
 
 /// Whether a rigid element ties dofs of one grid to each other, and through them to ground.
-pub(super) fn held_off_axes(r: &Rigid) -> bool {
+pub(super) fn held_off_axes(r: &RigidElement) -> bool {
     match &r.kind {
         RigidKind::Equations { equations, .. } => equations.iter().any(|terms| {
             let grid = terms.first().map(|t| t.0);

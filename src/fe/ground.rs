@@ -3,7 +3,7 @@
 use super::constraint::{Reduction, State};
 use super::error::FeError;
 use super::grid_frames::{to_basic, to_local};
-use super::prepared::Prepared;
+use super::prepared_model::PreparedModel;
 use super::scalar_points::carry_to_grids;
 use crate::model::{ElementRef, GridIx, Model};
 use std::collections::BTreeMap;
@@ -136,7 +136,7 @@ pub(super) fn to_anchors(model: &Model, reduction: &Reduction) -> Vec<Ground> {
 /// # Errors
 /// Elements that can't be formed.
 pub(super) fn ground_forces(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     reduction: &Reduction,
     grounds: &[Ground],
     u: &[[f64; 6]],

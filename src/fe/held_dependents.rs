@@ -1,7 +1,7 @@
 //! Degrees of freedom that a support holds and that also follow others.
 
 use crate::finding::{Finding, Severity, list_few};
-use crate::model::{Model, Rigid};
+use crate::model::{Model, RigidElement};
 use std::collections::BTreeMap;
 
 /// Returns the degrees of freedom that an SPC set, or PS of a GRID, holds and that a rigid element, an RBE3 or an equation of the MPC set
@@ -61,6 +61,6 @@ pub fn held_dependents(model: &Model, spc: Option<u32>, mpc: Option<u32>) -> Opt
     })
 }
 
-fn name(rigid: &Rigid) -> String {
+fn name(rigid: &RigidElement) -> String {
     format!("{} {}", rigid.kind.card(), rigid.id)
 }

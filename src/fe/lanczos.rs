@@ -2,7 +2,7 @@
 
 use super::error::FeError;
 use super::mass::Mass;
-use super::prepared::Prepared;
+use super::prepared_model::PreparedModel;
 use super::system::System;
 use crate::linalg::DMatrix;
 use crate::linalg::sparse::Factor;
@@ -33,7 +33,7 @@ pub(super) struct Accuracy {
 
 /// Number, accuracy and content of the modes to compute.
 #[derive(Clone, Copy)]
-pub(super) struct Wanted<'a> {
+pub(super) struct ModeRequest<'a> {
     /// Number of modes.
     pub(super) count: usize,
     /// Required accuracy.
@@ -110,13 +110,13 @@ fn residuals(
 /// # Errors
 /// See [`FeError`].
 pub(super) fn find_lowest_modes(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     mass: &Mass,
     system: &System,
     factor: &Factor<'_>,
-    wanted: Wanted<'_>,
+    wanted: ModeRequest<'_>,
 ) -> Result<Vec<Pair>, FeError> {
-    let Wanted {
+    let ModeRequest {
         count,
         accuracy,
         shapes,

@@ -11,7 +11,7 @@ use std::collections::HashMap;
 
 /// Loads along beams, and temperatures, of one case.
 #[derive(Debug, Default)]
-pub(crate) struct Between<'a> {
+pub(crate) struct BeamLoads<'a> {
     loads: HashMap<usize, Vec<LineLoad>>,
     temperatures: Option<&'a Temperatures>,
     /// Acceleration by grid, basic frame, WTMASS applied, if coupled mass has inertia loads.
@@ -47,7 +47,7 @@ fn scale_line_load(load: &Load, factor: f64) -> Option<(usize, LineLoad)> {
     Some((beam.us(), line))
 }
 
-impl<'a> Between<'a> {
+impl<'a> BeamLoads<'a> {
     /// Returns the loads along the beams in a case. `relief` is the rigid acceleration of inertia relief and the centre of gravity it refers to.
     pub(crate) fn new(
         model: &Model,

@@ -36,7 +36,7 @@ pub(super) fn nothing_acts(
     f: &[[f64; 6]],
     mass: Option<&MassProperties>,
 ) -> Option<Finding> {
-    let enforced = super::applied::enforced_of(model, case);
+    let enforced = super::applied_loads::enforced_of(model, case);
     let moved = enforced.iter().any(|e| e.2 != 0.0) || spc_moves(model, case.spc);
     if moved || f.iter().flatten().any(|v| *v != 0.0) {
         return None;

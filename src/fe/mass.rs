@@ -4,7 +4,7 @@ use super::element::beam::{beam_coupled_mass, beam_lumped_mass};
 use super::element::shell::{many_mass, output_frame, shell_mass};
 use super::element::solid::solid_mass;
 use super::element::{ElementMatrix, between_dofs, point_mass, rod_mass, shear_panel_mass};
-use super::prepared::Prepared;
+use super::prepared_model::PreparedModel;
 use super::rigid_motion::rigid_displacement;
 use crate::linalg::Matrix6;
 use crate::model::{Grid, GridIx, Load, Mat3, Model, ScalarMass, Vec3, Weight};
@@ -41,7 +41,7 @@ pub struct MassProperties {
 impl Mass {
     /// Mass of all elements and concentrated masses: lumped, or with PARAM,COUPMASS consistent for shells, bars, beams and solids (rods and
     /// shear panels stay lumped). Solids with mid-side grids are consistent always: lumped by rows their corners would have negative mass.
-    pub(crate) fn new(prepared: &Prepared<'_>) -> Self {
+    pub(crate) fn new(prepared: &PreparedModel<'_>) -> Self {
         let model = prepared.model;
         let mut mass = Self {
             point: vec![0.0; model.grids.len()],

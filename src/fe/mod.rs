@@ -1,7 +1,7 @@
 //! From a model and loads, or from a result file, to strain fields.
 
 mod adjoint;
-mod applied;
+mod applied_loads;
 mod assembly;
 mod autospc;
 mod beam_field;
@@ -17,7 +17,7 @@ mod free_motions;
 pub mod from_results;
 mod grid_frames;
 mod ground;
-mod hanging;
+mod hanging_points;
 mod held_dependents;
 mod lanczos;
 mod line_load;
@@ -30,7 +30,8 @@ mod modes;
 mod negative;
 mod options;
 mod ply_strain;
-mod prepared;
+mod prepared_model;
+mod reaction_balance;
 mod reactions;
 mod reading_changes;
 mod relief;
@@ -50,7 +51,6 @@ mod support;
 mod system;
 mod temperature;
 mod thermal_force;
-mod unbalanced;
 mod unsupported_cards;
 mod variants;
 mod weight;
@@ -72,7 +72,7 @@ pub use ply_strain::ply_strains;
 pub use reactions::{Reaction, Reactions};
 pub use reading_changes::reading_changes;
 pub use relief::Balance;
-pub use report::{SolveReport, Solved};
+pub use report::{DisplacementSolution, SolveReport};
 pub use shape_checks::check_shapes;
 pub use solution::*;
 pub use solve::{

@@ -1,10 +1,10 @@
 //! Modal loads: work of load cases on the shapes of modes.
 
-use super::applied::applied_forces;
+use super::applied_loads::applied_forces;
 use super::error::FeError;
 use super::load_case::LoadCase;
 use super::mass::Mass;
-use super::prepared::Prepared;
+use super::prepared_model::PreparedModel;
 use crate::model::Model;
 
 /// Returns the work of every case's loads on every mode's shape (by grid, basic frame), `phi_j' f`: by case, then by mode.
@@ -16,7 +16,7 @@ pub fn modal_loads(
     cases: &[LoadCase],
     shapes: &[Vec<[f64; 6]>],
 ) -> Result<Vec<Vec<f64>>, FeError> {
-    let prepared = Prepared::new(model);
+    let prepared = PreparedModel::new(model);
     let mass = Mass::new(&prepared);
     let of_case = |case: &LoadCase| {
         let forces = applied_forces(&prepared, &mass, case)?;

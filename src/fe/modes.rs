@@ -1,14 +1,14 @@
 //! Elastic modes of a free or supported structure.
 
 use super::error::FeError;
-use super::lanczos::{Accuracy, Pair, Wanted, find_lowest_modes};
+use super::lanczos::{Accuracy, ModeRequest, Pair, find_lowest_modes};
 use super::load_case::{LoadCase, Relief};
 use super::mass::{Mass, MassProperties};
 use super::options::SolveOptions;
-use super::prepared::Prepared;
+use super::prepared_model::PreparedModel;
 use super::strain_of_cases::with_strain;
 use super::system::System;
-use super::{Solution, SolveReport, Solved};
+use super::{DisplacementSolution, Solution, SolveReport};
 use crate::finding::{Finding, Severity, list_few};
 use crate::linalg::sparse::Factor;
 use crate::model::{Model, Vec3};
@@ -99,7 +99,7 @@ pub fn solve_modes(
     options: &SolveOptions,
 ) -> Result<ModalSolution, FeError> {
     super::unsupported_cards::refuse(model, &[])?;
-    let prepared = Prepared::new(model);
+    let prepared = PreparedModel::new(model);
     let mass = Mass::new(&prepared);
     let x: Vec<Vec3> = model.grids.iter().map(|g| g.x).collect();
     if mass.is_zero() {
@@ -134,7 +134,7 @@ pub fn solve_modes(
             relief: Relief::None,
         })
         .collect();
-    let solved = Solved {
+    let solved = DisplacementSolution {
         displacements: modes.iter().map(|m| m.shape.clone()).collect(),
         report: SolveReport::default(),
         findings: Vec::new(),
@@ -155,13 +155,13 @@ pub fn solve_modes(
 /// # Errors
 /// Returns every error of [`FeError`].
 pub(super) fn frequencies(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     mass: &Mass,
     system: &System,
     factor: &Factor<'_>,
     (count, stop): (usize, &Stop),
 ) -> Result<Vec<f64>, FeError> {
-    let wanted = Wanted {
+    let wanted = ModeRequest {
         count,
         accuracy: BESIDE_STATICS,
         shapes: false,
@@ -173,7 +173,7 @@ pub(super) fn frequencies(
 
 /// Pairs, rigid motions left free, unknowns.
 fn pairs_of(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     mass: &Mass,
     (spc, mpc): (Option<u32>, Option<u32>),
     (count, stop): (usize, &Stop),
@@ -190,7 +190,7 @@ fn pairs_of(
     }
     let stiffness = std::mem::take(&mut system.stiffness);
     let factor = system.factor(prepared, mass, stiffness)?;
-    let wanted = Wanted {
+    let wanted = ModeRequest {
         count,
         accuracy: ALONE,
         shapes: true,

@@ -4,11 +4,11 @@ use super::constraint::Reduction;
 use super::error::FeError;
 use super::grid_frames::{to_basic, to_local};
 use super::ground::{ground_forces, grounded_points, grounds};
-use super::hanging::find_hanging_points;
+use super::hanging_points::find_hanging_points;
 use super::mass::resultant;
-use super::prepared::Prepared;
+use super::prepared_model::PreparedModel;
+use super::reaction_balance::{LoadImbalance, check_balance};
 use super::system::System;
-use super::unbalanced::{Left, check_balance};
 use crate::finding::Finding;
 use crate::model::{ElementRef, Model, Vec3};
 use rayon::prelude::*;
@@ -53,7 +53,7 @@ pub(super) type SolvedCase<'a> = (u32, &'a [[f64; 6]], &'a [[f64; 6]]);
 /// # Errors
 /// Elements that can't be formed.
 pub(super) fn reactions(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     system: &System,
     cases: &[SolvedCase<'_>],
     mpc: bool,
@@ -72,7 +72,7 @@ pub(super) fn reactions(
         .filter(|e| model.element_grids(*e).iter().any(|g| holds[g.us()]))
         .collect();
     let internal = internal_forces(prepared, &elements, cases)?;
-    let arriving = Arriving::from_cases(prepared, reduction, cases);
+    let arriving = HangingPoints::from_cases(prepared, reduction, cases);
     let x: Vec<Vec3> = model.grids.iter().map(|g| g.x).collect();
     let of_case = |(case, internal): (&SolvedCase<'_>, Vec<[f64; 6]>)| {
         let (subcase, u, f) = *case;
@@ -93,10 +93,10 @@ pub(super) fn reactions(
         }
         let origin = Vec3::zeros();
         let (acts, held) = (without_points(model, f), without_points(model, &held));
-        let largest = super::applied::largest_component(&held);
+        let largest = super::applied_loads::largest_component(&held);
         let (mut applied, total) = (resultant(&x, &acts, &origin), resultant(&x, &held, &origin));
         arriving.add(f, &mut applied);
-        let left = Left::from_forces(&x, &acts, &held, &applied, &total);
+        let left = LoadImbalance::from_forces(&x, &acts, &held, &applied, &total);
         let finding = check_balance(prepared, &elements, (subcase, mpc), &left, u)?;
         let reactions = Reactions {
             subcase,
@@ -117,12 +117,12 @@ pub(super) fn reactions(
 }
 
 /// Scalar points that springs connect to grids. Loads at these points count in the resultant, at the grids that the springs carry them to.
-struct Arriving(Vec<(usize, [f64; 6])>);
+struct HangingPoints(Vec<(usize, [f64; 6])>);
 
-impl Arriving {
+impl HangingPoints {
     /// Returns the points of this model, or none if no case loads a scalar point. Forces of grounded points count as reactions.
     fn from_cases(
-        prepared: &Prepared<'_>,
+        prepared: &PreparedModel<'_>,
         reduction: &Reduction,
         cases: &[SolvedCase<'_>],
     ) -> Self {
@@ -158,7 +158,7 @@ fn without_points(model: &Model, field: &[[f64; 6]]) -> Vec<[f64; 6]> {
 
 /// K u of these elements, basic frame, one field a case.
 fn internal_forces(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     elements: &[ElementRef],
     cases: &[SolvedCase<'_>],
 ) -> Result<Vec<Vec<[f64; 6]>>, FeError> {

@@ -7,7 +7,7 @@ use super::error::FeError;
 use super::load_case::LoadCase;
 use super::mass::Mass;
 use super::options::SolveOptions;
-use super::prepared::Prepared;
+use super::prepared_model::PreparedModel;
 use super::solve::{go_on, prepare};
 use super::support::Support;
 use super::variants::{Base, changed_elements, dot, system_of};
@@ -94,7 +94,7 @@ impl AdjointReadings<'_> {
     /// The first-order change of all readings under all loads.
     fn small_change(
         &self,
-        variant: &Prepared<'_>,
+        variant: &PreparedModel<'_>,
         elements: &[ElementRef],
         cases: &[LoadCase],
         readings: &[Vec<StrainTerm>],
@@ -166,7 +166,7 @@ impl Base<'_> {
     /// Returns the forces that stand for readings on a variant, at the unknowns, a column a reading.
     fn forces_of_readings(
         &self,
-        variant: &Prepared<'_>,
+        variant: &PreparedModel<'_>,
         readings: &[Vec<StrainTerm>],
     ) -> Result<Vec<f64>, FeError> {
         let n = self.system.symbolic.n_unknowns();

@@ -5,7 +5,7 @@ use super::constraint::Reduction;
 use super::error::{FeError, Refusal};
 use super::free_motions::RigidStructure;
 use super::grid_frames::to_local;
-use super::hanging::find_hanging_points;
+use super::hanging_points::find_hanging_points;
 use super::mass::{Mass, MassProperties, resultant};
 use crate::linalg::{DMatrix, DVector};
 use crate::model::{Grid, GridIx, Mat3, Model, ScalarMass, Vec3};

@@ -36,7 +36,7 @@ pub struct SolveReport {
 
 /// Displacements of a solution, with the solver's report, before strain is computed.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Solved {
+pub struct DisplacementSolution {
     /// Displacements by case and grid, basic frame.
     pub displacements: Vec<Vec<[f64; 6]>>,
     /// Report of the solver.

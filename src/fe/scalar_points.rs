@@ -3,7 +3,7 @@
 use super::constraint::{Reduction, State};
 use super::error::{FeError, Refusal};
 use super::grid_frames::{to_basic, to_local};
-use super::prepared::Prepared;
+use super::prepared_model::PreparedModel;
 use crate::model::{Grid, Model};
 
 /// Returns whether each grid is a warping point of a beam: no motion of the body moves it, and a load on it is a bimoment.
@@ -17,7 +17,7 @@ fn warping_points(model: &Model) -> Vec<bool> {
 
 /// Moves loads on scalar points that follow grids (MPC) to these grids by virtual work: f_j += c_j f for u = sum of c_j u_j. Basic frame.
 pub(super) fn carry_to_grids(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     reduction: &Reduction,
     field: &mut [[f64; 6]],
 ) {
@@ -42,7 +42,11 @@ pub(super) fn carry_to_grids(
 }
 
 /// Gives scalar points that follow grids the displacement that these give them. Basic frame.
-pub(super) fn follow_grids(prepared: &Prepared<'_>, reduction: &Reduction, u: &mut [[f64; 6]]) {
+pub(super) fn follow_grids(
+    prepared: &PreparedModel<'_>,
+    reduction: &Reduction,
+    u: &mut [[f64; 6]],
+) {
     for (g, grid) in prepared.model.grids.iter().enumerate() {
         let State::Dependent(r) = reduction.state[6 * g] else {
             continue;

@@ -4,7 +4,7 @@ use super::ShellField;
 use super::element::shell::{AnyShell, Parts, shell_heat, shell_matrices, surfaces};
 use super::error::{FeError, Refusal};
 use super::options::Corners;
-use super::prepared::Prepared;
+use super::prepared_model::PreparedModel;
 use super::temperature::Temperatures;
 use crate::model::{GridIx, ShellIx};
 use rayon::prelude::*;
@@ -31,7 +31,7 @@ fn gather_displacements<const M: usize>(u: &[[f64; 6]], grids: &[GridIx]) -> [f6
 /// # Errors
 /// Shells that can't be formed.
 pub(super) fn shell_fields(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     u: &[Vec<[f64; 6]>],
     temperatures: &[Option<Temperatures>],
     corners: Corners,
@@ -76,7 +76,7 @@ pub(super) fn shell_fields(
 
 /// Strain of shell `i` under every displacement field, put at row `at` of the pieces.
 fn fill(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     i: usize,
     at: usize,
     (u, temperatures): (&[Vec<[f64; 6]>], &[Option<Temperatures>]),

@@ -3,7 +3,7 @@
 use super::SolidField;
 use super::element::solid::{SolidStrain, solid_strain};
 use super::error::{FeError, Refusal};
-use super::prepared::Prepared;
+use super::prepared_model::PreparedModel;
 use super::temperature::Temperatures;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// # Errors
 /// Solids that can't be formed.
 pub(super) fn solid_fields(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     u: &[Vec<[f64; 6]>],
     temperatures: &[Option<Temperatures>],
 ) -> Result<Vec<SolidField>, FeError> {

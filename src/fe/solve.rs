@@ -1,6 +1,6 @@
 //! Linear statics: load cases in, strain fields out.
 
-use super::applied::{applied_forces, check_sets, enforced_of, largest_component};
+use super::applied_loads::{applied_forces, check_sets, enforced_of, largest_component};
 use super::error::FeError;
 use super::formulation::formulations;
 use super::load_case::{LoadCase, Relief};
@@ -8,10 +8,10 @@ use super::load_checks::{check_finite, load_into_support, nothing_acts};
 use super::mass::{Mass, MassProperties};
 use super::modes::frequencies;
 use super::options::SolveOptions;
-use super::prepared::Prepared;
+use super::prepared_model::PreparedModel;
 use super::reactions::{SolvedCase, reactions};
 use super::relief::{Balance, RigidBody};
-use super::report::{Clock, SolveReport, Solved};
+use super::report::{Clock, DisplacementSolution, SolveReport};
 use super::scalar_points::{carry_to_grids, check_free_points, follow_grids};
 use super::shape_checks::check_shapes;
 use super::strain_of_cases::with_strain;
@@ -97,7 +97,7 @@ pub fn solve_displacements(
     model: &Model,
     cases: &[LoadCase],
     options: &SolveOptions,
-) -> Result<Solved, FeError> {
+) -> Result<DisplacementSolution, FeError> {
     displacements(&prepare(model, cases)?, cases, options)
 }
 
@@ -108,22 +108,25 @@ pub fn solve_displacements(
 pub fn solution_of(
     model: &Model,
     cases: &[LoadCase],
-    solved: Solved,
+    solved: DisplacementSolution,
     options: &SolveOptions,
 ) -> Result<(Solution, SolveReport), FeError> {
     with_strain(&prepare(model, cases)?, cases, solved, options)
 }
 
-pub(super) fn prepare<'a>(model: &'a Model, cases: &[LoadCase]) -> Result<Prepared<'a>, FeError> {
+pub(super) fn prepare<'a>(
+    model: &'a Model,
+    cases: &[LoadCase],
+) -> Result<PreparedModel<'a>, FeError> {
     super::unsupported_cards::refuse(model, cases)?;
-    Ok(Prepared::new(model))
+    Ok(PreparedModel::new(model))
 }
 
 pub(super) fn displacements(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     cases: &[LoadCase],
     options: &SolveOptions,
-) -> Result<Solved, FeError> {
+) -> Result<DisplacementSolution, FeError> {
     let model = prepared.model;
     let mass = Mass::new(prepared);
     let x: Vec<_> = model.grids.iter().map(|g| g.x).collect();
@@ -159,7 +162,7 @@ pub(super) fn displacements(
             fields[i] = u;
         }
     }
-    Ok(Solved {
+    Ok(DisplacementSolution {
         displacements: fields,
         report,
         findings,
@@ -168,7 +171,7 @@ pub(super) fn displacements(
 
 /// Displacements (basic frame) of cases with the same constraints.
 fn solve_group(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     mass: &Mass,
     cases: &[&LoadCase],
     options: &SolveOptions,
@@ -193,7 +196,7 @@ fn solve_group(
     let n = system.symbolic.n_unknowns();
     let mut columns = vec![0.0; n * cases.len()];
     let held = (&system, system.body.as_ref());
-    let acting: Vec<Acting> = cases
+    let acting: Vec<CaseForces> = cases
         .par_iter()
         .map(|case| form_case_loads(prepared, mass, held, report.mass.as_ref(), case))
         .collect::<Result<_, FeError>>()?;
@@ -324,7 +327,7 @@ fn check_accuracy(subcase: u32, epsilon: f64) -> Option<Finding> {
 }
 
 /// Forces on the structure in a case.
-pub(super) struct Acting {
+pub(super) struct CaseForces {
     /// Forces by grid, basic frame, inertia included if it balances.
     pub(super) forces: Vec<[f64; 6]>,
     pub(super) balance: Option<Balance>,
@@ -336,12 +339,12 @@ pub(super) struct Acting {
 /// # Errors
 /// Loads on nothing; numbers beyond all bounds; sets that the deck lacks.
 pub(super) fn form_case_loads(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     mass: &Mass,
     (system, body): (&System, Option<&RigidBody>),
     weight: Option<&MassProperties>,
     case: &LoadCase,
-) -> Result<Acting, FeError> {
+) -> Result<CaseForces, FeError> {
     let model = prepared.model;
     let mut f = applied_forces(prepared, mass, case)?;
     check_finite(case.subcase, "loads", f.iter().flatten().copied())?;
@@ -369,7 +372,7 @@ pub(super) fn form_case_loads(
             ));
         }
     }
-    Ok(Acting {
+    Ok(CaseForces {
         forces: f,
         balance,
         findings,
@@ -381,7 +384,7 @@ pub(super) fn form_case_loads(
 /// # Errors
 /// Returns every error of [`FeError`].
 pub fn factor_on_paper(model: &Model) -> Result<(TreeWork, Vec<(usize, f64)>), FeError> {
-    let prepared = Prepared::new(model);
+    let prepared = PreparedModel::new(model);
     let mass = Mass::new(&prepared);
     let sets = (None, None, [].as_slice());
     let system = System::new(&prepared, &mass, sets, Relief::Automatic, &mut Vec::new())?;
@@ -397,7 +400,7 @@ pub type Triplets = (usize, Vec<(usize, usize, f64)>);
 /// # Errors
 /// Returns every error of [`FeError`].
 pub fn supported_stiffness(model: &Model) -> Result<Triplets, FeError> {
-    let prepared = Prepared::new(model);
+    let prepared = PreparedModel::new(model);
     let mass = Mass::new(&prepared);
     let system = System::new(
         &prepared,

@@ -1,12 +1,12 @@
 //! Strain fields of solved load cases.
 
 use super::error::FeError;
-use super::line_load::Between;
+use super::line_load::BeamLoads;
 use super::load_case::LoadCase;
 use super::load_checks::check_finite;
 use super::options::{HeatedStrain, SolveOptions};
-use super::prepared::Prepared;
-use super::report::{SolveReport, Solved};
+use super::prepared_model::PreparedModel;
+use super::report::{DisplacementSolution, SolveReport};
 use super::shell_strain::shell_fields;
 use super::temperature::Temperatures;
 use super::{BeamField, CaseResult, ShellField, SolidField, Solution};
@@ -17,9 +17,9 @@ use crate::model::Model;
 /// # Errors
 /// Elements that can't be formed; temperature sets that the deck lacks.
 pub(super) fn with_strain(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     cases: &[LoadCase],
-    solved: Solved,
+    solved: DisplacementSolution,
     options: &SolveOptions,
 ) -> Result<(Solution, SolveReport), FeError> {
     let u = solved.displacements;
@@ -33,10 +33,10 @@ pub(super) fn with_strain(
         let balance = balance.find(|b| b.subcase == case.subcase)?;
         Some((balance.acceleration, report.mass.as_ref()?.cg))
     };
-    let between: Vec<Between<'_>> = cases
+    let between: Vec<BeamLoads<'_>> = cases
         .iter()
         .zip(&temperatures)
-        .map(|(case, t)| Between::new(prepared.model, case, t.as_ref(), relief(case)))
+        .map(|(case, t)| BeamLoads::new(prepared.model, case, t.as_ref(), relief(case)))
         .collect();
     let shells = shell_fields(prepared, &u, &temperatures, options.corners)?;
     let beams = super::beam_strain::beam_fields(prepared, &u, &between)?;

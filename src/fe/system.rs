@@ -1,7 +1,7 @@
 //! The constrained stiffness of a model, ready to be factored: what statics and free modes share.
 
-use super::applied::largest_component;
-use super::assembly::{Assembled, Numbering, assemble};
+use super::applied_loads::largest_component;
+use super::assembly::{AssembledStiffness, Numbering, assemble};
 use super::autospc::{EPZERO, Weak, autospc_finding, held_loads, load_sizes, weak_unknowns};
 use super::constraint::{Reduction, Sets, State, reduce};
 use super::error::{FeError, FreeDof};
@@ -10,7 +10,7 @@ use super::grid_frames::{to_basic, to_local};
 use super::load_case::Relief;
 use super::mass::Mass;
 use super::negative::negative_springs;
-use super::prepared::Prepared;
+use super::prepared_model::PreparedModel;
 use super::relief::RigidBody;
 use super::what_hangs::what_hangs;
 use crate::finding::{Finding, LISTED, Severity};
@@ -41,7 +41,7 @@ impl System {
     /// # Errors
     /// See [`FeError`].
     pub(super) fn new(
-        prepared: &Prepared<'_>,
+        prepared: &PreparedModel<'_>,
         mass: &Mass,
         sets: Sets<'_>,
         relief: Relief,
@@ -93,7 +93,7 @@ impl System {
                 .stiffness
                 .add_to_diagonal(&assembled.symbolic, *unknown, diagonal[*unknown]);
         }
-        let Assembled {
+        let AssembledStiffness {
             numbering,
             graph,
             symbolic,
@@ -117,7 +117,7 @@ impl System {
     /// See [`RigidBody::new`].
     pub(super) fn body_of(
         &self,
-        prepared: &Prepared<'_>,
+        prepared: &PreparedModel<'_>,
         mass: &Mass,
         relief: Relief,
     ) -> Result<Option<RigidBody>, FeError> {
@@ -130,7 +130,7 @@ impl System {
     /// Mechanisms, each dof named; entries that are not numbers; springs of negative stiffness that outweigh the rest.
     pub(super) fn factor(
         &self,
-        prepared: &Prepared<'_>,
+        prepared: &PreparedModel<'_>,
         mass: &Mass,
         stiffness: BlockMatrix,
     ) -> Result<Factor<'_>, FeError> {
@@ -214,7 +214,7 @@ impl System {
     /// it is free, is taken out: the lighter part is left, and that is what hangs loose.
     fn loose_dofs(
         &self,
-        prepared: &Prepared<'_>,
+        prepared: &PreparedModel<'_>,
         mass: &Mass,
         factor: &Factor<'_>,
     ) -> Vec<(usize, usize)> {
@@ -279,7 +279,7 @@ impl System {
     /// Elements that can't be formed.
     pub(super) fn pack(
         &self,
-        prepared: &Prepared<'_>,
+        prepared: &PreparedModel<'_>,
         mut f: Vec<[f64; 6]>,
         out: &mut [f64],
     ) -> Result<(), FeError> {
@@ -294,7 +294,7 @@ impl System {
     }
 
     /// Displacements of all grids, basic frame, from the unknowns.
-    pub(super) fn unpack(&self, prepared: &Prepared<'_>, values: &[f64]) -> Vec<[f64; 6]> {
+    pub(super) fn unpack(&self, prepared: &PreparedModel<'_>, values: &[f64]) -> Vec<[f64; 6]> {
         let mut u = self.reduction.expand(&self.numbering.unpack(values));
         for (u, axes) in u.iter_mut().zip(&prepared.axes) {
             *u = to_basic(axes, *u);
@@ -370,7 +370,7 @@ impl System {
 
 /// The free rigid motions, where inertia balances loads.
 fn body(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     mass: &Mass,
     reduction: &Reduction,
     relief: Relief,
@@ -398,7 +398,7 @@ fn relief_without_motion(spc: Option<u32>) -> Finding {
 
 /// f - K u0 for enforced displacements, displacement frames.
 fn subtract_enforced(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     reduction: &Reduction,
     f: &mut [[f64; 6]],
 ) -> Result<(), FeError> {
@@ -420,7 +420,11 @@ fn subtract_enforced(
     Ok(())
 }
 
-fn ties(prepared: &Prepared<'_>, assembled: &Assembled, body: &RigidBody) -> Option<Finding> {
+fn ties(
+    prepared: &PreparedModel<'_>,
+    assembled: &AssembledStiffness,
+    body: &RigidBody,
+) -> Option<Finding> {
     let diagonal = assembled.stiffness.diagonal_values(&assembled.symbolic);
     let worst = (0..body.n_free())
         .into_par_iter()

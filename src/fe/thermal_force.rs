@@ -5,7 +5,7 @@ use super::element::rod_thermal_force;
 use super::element::shell::shell_thermal_force;
 use super::element::solid::solid_thermal_force;
 use super::error::FeError;
-use super::prepared::Prepared;
+use super::prepared_model::PreparedModel;
 use super::temperature::{Temperatures, beam_expansion};
 use rayon::prelude::*;
 
@@ -14,7 +14,7 @@ use rayon::prelude::*;
 /// # Errors
 /// Elements that can't be formed.
 pub(super) fn thermal_forces(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     t: &Temperatures,
     f: &mut [[f64; 6]],
 ) -> Result<(), FeError> {

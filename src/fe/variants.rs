@@ -9,15 +9,15 @@
 //! M. R. Hestenes, E. Stiefel, Methods of conjugate gradients for solving linear systems, J. Res. NBS 49 (1952). U. Kirsch, Combined
 //! approximations, Struct. Optim. 20 (2000): the same subspace as reanalysis.
 
-use super::applied::{check_sets, enforced_of};
+use super::applied_loads::{check_sets, enforced_of};
 use super::element::ElementMatrix;
 use super::error::FeError;
 use super::load_case::{LoadCase, Relief};
 use super::load_checks::check_finite;
 use super::mass::Mass;
 use super::options::SolveOptions;
-use super::prepared::Prepared;
-use super::report::{SolveReport, Solved};
+use super::prepared_model::PreparedModel;
+use super::report::{DisplacementSolution, SolveReport};
 use super::scalar_points::follow_grids;
 use super::solve::{displacements, form_case_loads, go_on, prepare};
 use super::strain_of_cases::with_strain;
@@ -83,7 +83,7 @@ pub fn solve_variants<T>(
 
 /// The constrained stiffness that all cases share; `None` where they don't, where something is enforced, or nothing is free.
 pub(super) fn system_of(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     mass: &Mass,
     cases: &[LoadCase],
 ) -> Result<Option<System>, FeError> {
@@ -107,7 +107,7 @@ pub(super) fn system_of(
 /// The structure that variants differ from, solved.
 pub(super) struct Base<'a> {
     pub(super) model: &'a Model,
-    pub(super) prepared: &'a Prepared<'a>,
+    pub(super) prepared: &'a PreparedModel<'a>,
     pub(super) system: &'a System,
     pub(super) factor: Factor<'a>,
     /// Balanced loads at the unknowns, a column a case.
@@ -118,7 +118,7 @@ pub(super) struct Base<'a> {
 
 impl<'a> Base<'a> {
     pub(super) fn new(
-        prepared: &'a Prepared<'a>,
+        prepared: &'a PreparedModel<'a>,
         mass: &Mass,
         system: &'a System,
         matrix: BlockMatrix,
@@ -142,10 +142,10 @@ impl<'a> Base<'a> {
     /// Returns the loads of cases on a variant at the unknowns, and the report on these loads.
     pub(super) fn forces_on(
         &self,
-        variant: &Prepared<'_>,
+        variant: &PreparedModel<'_>,
         mass: &Mass,
         cases: &[LoadCase],
-    ) -> Result<(Vec<f64>, Loaded), FeError> {
+    ) -> Result<(Vec<f64>, VariantLoadReport), FeError> {
         let relief = cases.first().map_or(Relief::None, |c| c.relief);
         let body = self.system.body_of(variant, mass, relief)?;
         let x: Vec<_> = variant.model.grids.iter().map(|g| g.x).collect();
@@ -170,7 +170,7 @@ impl<'a> Base<'a> {
             report.balance.extend(acting.balance);
             findings.extend(acting.findings);
         }
-        let loaded = Loaded {
+        let loaded = VariantLoadReport {
             body,
             report,
             findings,
@@ -181,10 +181,10 @@ impl<'a> Base<'a> {
     /// Displacements of a variant; `None` where this factor doesn't serve it.
     fn displacements(
         &self,
-        variant: &Prepared<'_>,
+        variant: &PreparedModel<'_>,
         cases: &[LoadCase],
         options: &SolveOptions,
-    ) -> Result<Option<Solved>, FeError> {
+    ) -> Result<Option<DisplacementSolution>, FeError> {
         let Some(elements) = changed_elements(self.model, variant.model) else {
             return Ok(None);
         };
@@ -207,7 +207,7 @@ impl<'a> Base<'a> {
                 check_finite(case.subcase, "displacements", u.iter().flatten().copied())?;
                 Ok(u)
             });
-        Ok(Some(Solved {
+        Ok(Some(DisplacementSolution {
             displacements: fields.collect::<Result<_, FeError>>()?,
             report: loaded.report,
             findings: loaded.findings,
@@ -217,7 +217,7 @@ impl<'a> Base<'a> {
     /// Returns the change of the stiffness of each element in a variant, basic frame.
     pub(super) fn change(
         &self,
-        variant: &Prepared<'_>,
+        variant: &PreparedModel<'_>,
         elements: &[ElementRef],
     ) -> Result<Vec<ElementMatrix>, FeError> {
         let of = |e: &ElementRef| {
@@ -304,7 +304,7 @@ impl<'a> Base<'a> {
 }
 
 /// Inertia, report and findings of a variant's load cases, without their forces.
-pub(super) struct Loaded {
+pub(super) struct VariantLoadReport {
     body: Option<super::relief::RigidBody>,
     report: SolveReport,
     findings: Vec<crate::finding::Finding>,

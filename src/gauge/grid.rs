@@ -47,7 +47,7 @@ struct Grid {
 }
 
 /// Arms of a gauge, and how far its grids reach past the edge of the part at most.
-pub(super) struct Laid {
+pub(super) struct PlacedArms {
     pub(super) arms: Vec<Arm>,
     pub(super) past_edge: f64,
 }
@@ -68,13 +68,13 @@ impl Site<'_> {
     ///
     /// # Errors
     /// A pair on a missing shell or normal to its axis; a grid longer than the part.
-    pub(super) fn lay(&self, here: Seat, axis: Vec3, z: Vec3) -> Result<Laid, GaugeError> {
+    pub(super) fn lay(&self, here: Seat, axis: Vec3, z: Vec3) -> Result<PlacedArms, GaugeError> {
         let (mut arms, mut past_edge) = (Vec::new(), 0.0_f64);
         for grid in self.grids(here, axis, z)? {
             past_edge = past_edge.max(self.past_edge(&grid)?);
             arms.extend(self.average(&grid));
         }
-        Ok(Laid {
+        Ok(PlacedArms {
             arms: merge_arms(arms),
             past_edge,
         })

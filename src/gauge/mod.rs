@@ -6,35 +6,35 @@
 mod arms;
 mod bar_run;
 mod beam;
-mod beside;
 mod build;
+mod element_distance;
 mod error;
-mod glued;
 mod grid;
 mod grid_average;
-mod moved;
+mod installed_position;
 mod off_skin;
 mod on_refined;
 mod side;
 mod spec;
 mod stated_side;
+mod strain_gradient;
 mod surface;
-mod unverified;
+mod unverified_elements;
 
 pub use arms::{Arm, Gauge, Spot, gauge_reading, shell_strain, strain_terms};
-pub use beside::{Beside, beside_beam, beside_shell};
 pub use build::build;
+pub use element_distance::{ElementDistance, beside_beam, beside_shell};
 pub use error::GaugeError;
-pub use glued::{Drawn, Offset};
 pub use grid_average::SMOOTH;
-pub use moved::strain_gradient_gauge;
+pub use installed_position::{NominalGauge, Offset};
 pub use off_skin::off_skin;
 pub use on_refined::{change_by_refining, on_refined};
 pub use side::{away_from, opposite_side};
 pub use spec::{Bridge, CornerRows, GaugePlace, GaugeSpec, Pair, Rosette};
 pub use stated_side::{BetweenSkins, between_skins};
+pub use strain_gradient::strain_gradient_gauge;
 pub use surface::{Foot, centre, nearest_skin, to_side};
-pub use unverified::on_unverified_elements;
+pub use unverified_elements::on_unverified_elements;
 
 #[cfg(test)]
 mod tests;

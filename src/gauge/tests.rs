@@ -553,7 +553,7 @@ fn a_gauge_at_a_free_edge_has_the_slope_of_a_linear_field_as_one_inside_has() {
             ..GaugeSpec::place_on_shell("g", ShellIx(0))
         };
         let (gauges, _) = build(&m, &spec, corner).unwrap();
-        let drawn = Drawn::new(&m, &spec, &gauges[0], corner, 20.0).unwrap();
+        let drawn = NominalGauge::new(&m, &spec, &gauges[0], corner, 20.0).unwrap();
         let read = |g: &Gauge| Some(vec![gauge_reading(g, &case)?]);
         let along = drawn.slope(Offset::shift_along, 3.0, read).unwrap();
         let across = drawn.slope(Offset::shift_across, 3.0, read).unwrap();

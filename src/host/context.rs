@@ -1,7 +1,7 @@
 //! Surroundings of a command: source of files, store of solutions, receiver of progress.
 
 use crate::host::store::SolutionStore;
-use crate::host::whole_file::{FileBytes, Opened, Stamp, load, open};
+use crate::host::whole_file::{FileBytes, OpenedFile, Stamp, load, open};
 use crate::stop::Stop;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -19,8 +19,8 @@ pub trait Files: Sync {
     ///
     /// # Errors
     /// Returns the errors of [`Files::load`].
-    fn open(&self, path: &Path) -> std::io::Result<Opened> {
-        self.load(path).map(Opened::Whole)
+    fn open(&self, path: &Path) -> std::io::Result<OpenedFile> {
+        self.load(path).map(OpenedFile::Whole)
     }
 
     /// Returns size and time of the last change of a file.
@@ -62,7 +62,7 @@ impl Files for Disk {
         load(path)
     }
 
-    fn open(&self, path: &Path) -> std::io::Result<Opened> {
+    fn open(&self, path: &Path) -> std::io::Result<OpenedFile> {
         open(path)
     }
 
@@ -140,9 +140,9 @@ pub trait Progress: Sync {
 
 /// Receiver that ignores progress and never stops the work.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Silent;
+pub struct SilentProgress;
 
-impl Progress for Silent {}
+impl Progress for SilentProgress {}
 
 /// Surroundings of a command: files, store of solutions, and progress. Every command takes one.
 ///
@@ -188,7 +188,7 @@ impl<'a> Context<'a> {
         Self {
             files,
             store: None,
-            progress: &Silent,
+            progress: &SilentProgress,
         }
     }
 

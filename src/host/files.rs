@@ -6,7 +6,7 @@ use crate::host::fault::Fault;
 use crate::host::file_read::FileRead;
 use crate::host::sheet::{csv_of_sheet, is_sheet};
 use crate::host::what_is::no_table;
-pub use crate::host::whole_file::{FileBytes, Opened, Stamp};
+pub use crate::host::whole_file::{FileBytes, OpenedFile, Stamp};
 use crate::series::record::csv::{Layout, is_cut, unsure_end};
 #[cfg(feature = "parquet")]
 use crate::series::record::runs_as_csv;
@@ -28,7 +28,7 @@ pub struct Input {
 /// The files that one question read, in order. Hashes are computed on a thread of their own.
 pub struct Inputs<'a> {
     files: &'a dyn Files,
-    entries: Vec<(String, PathBuf, Hashing)>,
+    entries: Vec<(String, PathBuf, PendingDigest)>,
     /// Tables named by the job whose last line may be cut.
     unsure: BTreeMap<String, Severity>,
     /// Findings on tables, other than on their ends, each with its table.
@@ -40,19 +40,19 @@ pub struct Inputs<'a> {
 /// Bytes of tables that are kept at most: tables of runs and gauges are far smaller, records far larger.
 const KEPT: usize = 32 << 20;
 
-enum Hashing {
+enum PendingDigest {
     Running(JoinHandle<String>),
     Done(String),
 }
 
-impl Hashing {
+impl PendingDigest {
     /// The digest, waited for.
     fn finish(&mut self) -> String {
-        let hex = match std::mem::replace(self, Hashing::Done(String::new())) {
-            Hashing::Done(hex) => hex,
-            Hashing::Running(thread) => thread.join().unwrap_or_default(),
+        let hex = match std::mem::replace(self, PendingDigest::Done(String::new())) {
+            PendingDigest::Done(hex) => hex,
+            PendingDigest::Running(thread) => thread.join().unwrap_or_default(),
         };
-        *self = Hashing::Done(hex.clone());
+        *self = PendingDigest::Done(hex.clone());
         hex
     }
 }
@@ -72,7 +72,7 @@ impl<'a> Inputs<'a> {
     /// Files that were read before, such as the job with its tables.
     pub fn resume(files: &'a dyn Files, read: &[FileRead]) -> Self {
         let entry = |f: &FileRead| {
-            let done = Hashing::Done(f.sha256.clone());
+            let done = PendingDigest::Done(f.sha256.clone());
             (f.given.clone(), f.path.clone(), done)
         };
         let noted = |f: &FileRead| {
@@ -210,10 +210,10 @@ impl<'a> Inputs<'a> {
         }
         const SMALL: usize = 1 << 20;
         let hashing = if bytes.len() <= SMALL {
-            Hashing::Done(sha256_hex(bytes))
+            PendingDigest::Done(sha256_hex(bytes))
         } else {
             let bytes = bytes.clone();
-            Hashing::Running(std::thread::spawn(move || sha256_hex(&bytes)))
+            PendingDigest::Running(std::thread::spawn(move || sha256_hex(&bytes)))
         };
         self.entries.push((given.to_owned(), path, hashing));
     }
@@ -366,9 +366,9 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     /// Counts how often it is asked.
-    struct Counted(AtomicUsize, Vec<u8>);
+    struct CountingFiles(AtomicUsize, Vec<u8>);
 
-    impl Files for Counted {
+    impl Files for CountingFiles {
         fn load(&self, _: &Path) -> std::io::Result<FileBytes> {
             self.0.fetch_add(1, Ordering::Relaxed);
             Ok(self.1.clone().into())
@@ -382,7 +382,7 @@ mod tests {
             ("model.op2", 100, 3),
             ("record.csv", KEPT + 1, 3),
         ] {
-            let files = Counted(AtomicUsize::new(0), vec![b'1'; size]);
+            let files = CountingFiles(AtomicUsize::new(0), vec![b'1'; size]);
             let mut inputs = Inputs::new(&files);
             for _ in 0..3 {
                 assert_eq!(inputs.read(Path::new("a"), given).unwrap().len(), size);

@@ -278,9 +278,9 @@ mod tests {
     use super::*;
 
     #[derive(Serialize)]
-    struct Asked(#[serde(skip)] Vec<Fault>);
+    struct TestAnswer(#[serde(skip)] Vec<Fault>);
 
-    impl Answer for Asked {
+    impl Answer for TestAnswer {
         const COMMAND: &'static str = "asked";
         const RESULT: &'static str = "The answer";
 
@@ -305,7 +305,7 @@ mod tests {
             findings: Findings(findings.iter().map(finding).collect()),
             seconds: Seconds::default(),
             notes: Vec::new(),
-            answer: Asked((0..faults).map(|_| fault()).collect()),
+            answer: TestAnswer((0..faults).map(|_| fault()).collect()),
         }
         .summary()
     }

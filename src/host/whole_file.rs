@@ -61,14 +61,14 @@ fn rest_of((file, before, mut bytes): (File, Metadata, Vec<u8>)) -> std::io::Res
 }
 
 /// A file that is open.
-pub enum Opened {
+pub enum OpenedFile {
     /// Bytes, in memory.
     Whole(FileBytes),
     /// One whose format is [read in parts](is_read_in_parts).
     Parts(Arc<InParts>),
 }
 
-impl Opened {
+impl OpenedFile {
     /// Returns the source from which a record is opened.
     pub fn source(&self) -> Source {
         match self {
@@ -162,7 +162,7 @@ fn fill_from_file(file: &File, mut from: u64, mut out: &mut [u8]) -> std::io::Re
 ///
 /// # Errors
 /// As [`load`].
-pub fn open(path: &Path) -> std::io::Result<Opened> {
+pub fn open(path: &Path) -> std::io::Result<OpenedFile> {
     // Before it is opened: opening a pipe waits for its writer.
     check_kind(&std::fs::metadata(path)?)?;
     let mut file = File::open(path)?;
@@ -171,9 +171,9 @@ pub fn open(path: &Path) -> std::io::Result<Opened> {
     let mut begin = Vec::new();
     (&mut file).take(8).read_to_end(&mut begin)?;
     if !is_read_in_parts(&begin) {
-        return load(path).map(Opened::Whole);
+        return load(path).map(OpenedFile::Whole);
     }
-    Ok(Opened::Parts(Arc::new(InParts {
+    Ok(OpenedFile::Parts(Arc::new(InParts {
         file,
         before,
         failed: AtomicBool::new(false),
@@ -271,7 +271,7 @@ mod tests {
             assert!(*load(&path).unwrap() == *bytes);
             let read = open(&path).unwrap();
             let hash = read.sha256().unwrap();
-            assert!(matches!(read, Opened::Whole(_)));
+            assert!(matches!(read, OpenedFile::Whole(_)));
             let whole = read.source().read_all().unwrap();
             assert!((*whole).as_ref() == bytes.as_slice());
             assert_eq!(hash, hex(&Sha256::digest(&bytes)));
@@ -292,7 +292,7 @@ mod tests {
         let read = open(&path).unwrap();
         let hash = read.sha256().unwrap();
         assert_eq!(hash, hex(&Sha256::digest(&bytes)));
-        let Opened::Parts(file) = &read else {
+        let OpenedFile::Parts(file) = &read else {
             panic!("read whole")
         };
         let mut part = [0; 5];

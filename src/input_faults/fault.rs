@@ -239,7 +239,7 @@ impl InputFault {
 
 /// A fault that was found.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found {
+pub struct DetectedFault {
     /// The fault.
     pub fault: InputFault,
     /// Share of the reduced sum of squares that is left, once it is undone.
@@ -260,18 +260,18 @@ pub struct Found {
 
 /// Treatment of the gauges of a fault by the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Handling {
+pub enum FaultTreatment {
     /// The result is that of the readings as they are.
     AsMeasured,
     /// The readings of these gauges are left out.
     LeftOut,
 }
 
-impl Found {
+impl DetectedFault {
     /// Returns the finding on a fault of gauges with these names: an error where the result holds it and moves by more than its interval, or
     /// where that is not known.
-    pub fn finding(&self, names: &[String], handling: Handling) -> Finding {
-        let left_out = handling == Handling::LeftOut && !self.fault.gauges().is_empty();
+    pub fn finding(&self, names: &[String], handling: FaultTreatment) -> Finding {
+        let left_out = handling == FaultTreatment::LeftOut && !self.fault.gauges().is_empty();
         let severity = match self.moves {
             _ if left_out => Severity::Warning,
             Some(ratio) if ratio <= 1.0 => Severity::Warning,

@@ -1,7 +1,7 @@
 //! How well readings fit loads that are known.
 
 use super::fault::Inputs;
-use super::search::{Fitted, Misfit};
+use super::search::{InputFit, Misfit};
 
 /// Readings of runs whose loads are known.
 pub struct KnownLoads {
@@ -30,8 +30,8 @@ impl Misfit for KnownLoads {
         true
     }
 
-    fn fit(&self, inputs: &Inputs) -> Fitted {
-        let mut out = Fitted::default();
+    fn fit(&self, inputs: &Inputs) -> InputFit {
+        let mut out = InputFit::default();
         for (strain, loads) in inputs.strain.iter().zip(&self.loads) {
             let rows = inputs.rows.row_iter();
             let predicted: Vec<f64> = rows

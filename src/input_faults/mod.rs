@@ -6,7 +6,7 @@
 //! vehicle.
 
 mod fault;
-pub mod identical;
+pub mod identical_columns;
 mod known_loads;
 mod motion;
 mod recorded_loads;
@@ -15,7 +15,8 @@ mod search;
 mod tests;
 
 pub use fault::{
-    AlternativeRows, Channels, Found, Handling, InputFault, Inputs, SIGN_OF_ALL, not_explained_by,
+    AlternativeRows, Channels, DetectedFault, FaultTreatment, InputFault, Inputs, SIGN_OF_ALL,
+    not_explained_by,
 };
 pub use known_loads::KnownLoads;
 pub use motion::{
@@ -27,4 +28,4 @@ pub use recorded_loads::{
     RecordFault, RecordedRuns, faults_of_recorded_loads, findings_of_recorded_loads,
     recorded_mass_contradicted,
 };
-pub use search::{Fitted, Misfit, Rules, search_faults};
+pub use search::{InputFit, Misfit, Rules, search_faults};

@@ -1,6 +1,6 @@
 //! The search for faults of measured channels: each is undone in turn, and the one named that makes the rest agree.
 
-use super::fault::{AlternativeRows, Channels, Found, InputFault, Inputs};
+use super::fault::{AlternativeRows, Channels, DetectedFault, InputFault, Inputs};
 use crate::estimate::{chi_square_tail, median};
 use rayon::prelude::*;
 
@@ -11,7 +11,7 @@ pub trait Misfit: Sync {
     /// Returns the noise of a reading, strain, 1 sd.
     fn noise(&self) -> f64;
     /// Returns how well changed inputs fit.
-    fn fit(&self, inputs: &Inputs) -> Fitted;
+    fn fit(&self, inputs: &Inputs) -> InputFit;
     /// Returns whether the loads are known, so that a fault of all readings shows.
     fn knows_loads(&self) -> bool {
         false
@@ -20,7 +20,7 @@ pub trait Misfit: Sync {
 
 /// A fit of inputs.
 #[derive(Clone, Debug, Default)]
-pub struct Fitted {
+pub struct InputFit {
     /// Sum of squares that is left, in units of the errors.
     pub chi2: f64,
     /// Degrees of freedom of the sum of squares.
@@ -31,7 +31,7 @@ pub struct Fitted {
     pub loads: Vec<Vec<[f64; 2]>>,
 }
 
-impl Fitted {
+impl InputFit {
     /// Returns the sum of squares over its degrees of freedom; infinite where there are none.
     pub fn reduced_chi2(&self) -> f64 {
         match self.dof {
@@ -107,7 +107,7 @@ impl Rules {
         self.named.min(sigmas * excess.max(1.0).sqrt())
     }
 
-    fn explains(&self, fit: &Fitted, runs: usize) -> bool {
+    fn explains(&self, fit: &InputFit, runs: usize) -> bool {
         match self.sigmas {
             None => {
                 let by_chance = chi_square_tail(fit.chi2, fit.dof as f64) > self.explained[1];
@@ -119,7 +119,7 @@ impl Rules {
     }
 
     /// Returns whether the fault of `step` is one, of what `base` leaves.
-    fn accepts(&self, base: &Fitted, step: &Step) -> bool {
+    fn accepts(&self, base: &InputFit, step: &Step) -> bool {
         match step.found.sigmas {
             Some(sigmas) => sigmas > step.found.limit,
             None => step.after.reduced_chi2() < self.remains * base.reduced_chi2(),
@@ -136,7 +136,7 @@ pub fn search_faults(
     misfit: &dyn Misfit,
     alternatives: &mut dyn FnMut() -> Vec<AlternativeRows>,
     rules: &Rules,
-) -> Vec<Found> {
+) -> Vec<DetectedFault> {
     let mut inputs = misfit.inputs();
     let runs = inputs.strain.len();
     let mut now = misfit.fit(&inputs);
@@ -148,7 +148,8 @@ pub fn search_faults(
         rules,
         alternatives: alternatives(),
     };
-    let (mut found, mut pending): (Vec<Found>, Vec<Found>) = (Vec::new(), Vec::new());
+    let (mut found, mut pending): (Vec<DetectedFault>, Vec<DetectedFault>) =
+        (Vec::new(), Vec::new());
     let mut base = now.clone();
     while found.len() + pending.len() < rules.most && !rules.explains(&now, runs) {
         let Some(step) = search.step(&inputs, &now) else {
@@ -190,32 +191,32 @@ struct Search<'a> {
 
 /// One fault undone.
 struct Step {
-    found: Found,
-    after: Fitted,
+    found: DetectedFault,
+    after: InputFit,
 }
 
 /// A fault that may explain the readings.
-struct Tried {
+struct CandidateFault {
     fault: InputFault,
-    fit: Fitted,
+    fit: InputFit,
     /// 0: a fault with a definite correction; 1: one with a fitted size; 2: no cause.
     rank: u8,
 }
 
 impl Search<'_> {
-    fn try_fault(&self, inputs: &Inputs, fault: InputFault, rank: u8) -> Tried {
+    fn try_fault(&self, inputs: &Inputs, fault: InputFault, rank: u8) -> CandidateFault {
         let fit = self
             .misfit
             .fit(&fault.correct_inputs(inputs, &self.alternatives));
-        Tried { fault, fit, rank }
+        CandidateFault { fault, fit, rank }
     }
 
     /// Returns the fault that explains most of what `now` leaves.
-    fn step(&self, inputs: &Inputs, now: &Fitted) -> Option<Step> {
+    fn step(&self, inputs: &Inputs, now: &InputFit) -> Option<Step> {
         let n = inputs.rows.nrows();
         let reads = |g: &usize| inputs.strain.iter().any(|r| r[*g].is_finite());
         let gauges: Vec<usize> = (0..n).filter(reads).collect();
-        let mut order: Vec<(usize, Fitted)> = gauges
+        let mut order: Vec<(usize, InputFit)> = gauges
             .into_par_iter()
             .map(|g| (g, self.try_fault(inputs, InputFault::Unlike(g), 2).fit))
             .filter(|(_, fit)| fit.dof > 0)
@@ -224,7 +225,7 @@ impl Search<'_> {
         order.truncate(self.rules.tried);
         let (worst, least) = order.first().map(|(g, fit)| (*g, fit.clone()))?;
         let scale = least.reduced_chi2().max(1.0);
-        let mut tried: Vec<Tried> = Vec::new();
+        let mut tried: Vec<CandidateFault> = Vec::new();
         for (i, (g, without)) in order.iter().enumerate() {
             let best = tried.iter().filter(|t| t.rank < 2).map(|t| t.fit.chi2);
             let best = best.fold(f64::INFINITY, f64::min).min(now.chi2);
@@ -263,7 +264,7 @@ impl Search<'_> {
         let sizes = sizes_of(inputs, without, at);
         let by_scatter = self.rules.sigmas.filter(|_| !of.is_empty());
         Some(Step {
-            found: Found {
+            found: DetectedFault {
                 fault: best.fault,
                 share: best.fit.reduced_chi2() / now.reduced_chi2(),
                 limit: by_scatter.map_or(self.rules.remains, |s| {
@@ -280,7 +281,13 @@ impl Search<'_> {
     }
 
     /// Returns the causes that explain as much as leaving the gauge out; that it contradicts the others where there are none.
-    fn causes(&self, inputs: &Inputs, now: &Fitted, g: usize, without: &Fitted) -> Vec<Tried> {
+    fn causes(
+        &self,
+        inputs: &Inputs,
+        now: &InputFit,
+        g: usize,
+        without: &InputFit,
+    ) -> Vec<CandidateFault> {
         let (rules, noise) = (self.rules, self.misfit.noise());
         let pairs: Vec<[f64; 2]> = pairs_of(inputs, without, g);
         let sum = |f: &dyn Fn(&[f64; 2]) -> f64| pairs.iter().map(f).sum::<f64>();
@@ -289,7 +296,7 @@ impl Search<'_> {
         let [reads, expected] = sizes_of(inputs, without, g);
         let nothing = rules.dead[0] * noise;
         let live = expected > rules.dead[1] * noise;
-        let without = |fault: InputFault, rank| Tried {
+        let without = |fault: InputFault, rank| CandidateFault {
             fault,
             fit: without.clone(),
             rank,
@@ -320,13 +327,19 @@ impl Search<'_> {
         let tried = faults
             .into_iter()
             .map(|(f, rank)| self.try_fault(inputs, f, rank));
-        let mut out: Vec<Tried> = tried.filter(|t| t.fit.chi2 < limit).collect();
+        let mut out: Vec<CandidateFault> = tried.filter(|t| t.fit.chi2 < limit).collect();
         out.push(left);
         out
     }
 
     /// Returns the faults of all gauges that explain the readings as well as a single one.
-    fn of_all(&self, inputs: &Inputs, now: &Fitted, scale: f64, least: &Fitted) -> Vec<Tried> {
+    fn of_all(
+        &self,
+        inputs: &Inputs,
+        now: &InputFit,
+        scale: f64,
+        least: &InputFit,
+    ) -> Vec<CandidateFault> {
         let installed = self
             .alternatives
             .iter()
@@ -347,10 +360,10 @@ impl Search<'_> {
     fn exchange(
         &self,
         inputs: &Inputs,
-        now: &Fitted,
-        order: &[(usize, Fitted)],
-        singles: &[Tried],
-    ) -> Option<Tried> {
+        now: &InputFit,
+        order: &[(usize, InputFit)],
+        singles: &[CandidateFault],
+    ) -> Option<CandidateFault> {
         let gauges: Vec<usize> = order.iter().map(|o| o.0).collect();
         let pairs: Vec<(usize, usize)> = (gauges.iter().enumerate())
             .flat_map(|(i, a)| gauges[i + 1..].iter().map(move |b| (*a.min(b), *a.max(b))))
@@ -377,14 +390,14 @@ impl Search<'_> {
 }
 
 /// Returns reading and prediction of a gauge by run, where both are known.
-fn pairs_of(inputs: &Inputs, fit: &Fitted, g: usize) -> Vec<[f64; 2]> {
+fn pairs_of(inputs: &Inputs, fit: &InputFit, g: usize) -> Vec<[f64; 2]> {
     let runs = inputs.strain.iter().zip(&fit.predicted);
     let pairs = runs.map(|(y, p)| [y[g], p[g]]);
     pairs.filter(|p| p.iter().all(|v| v.is_finite())).collect()
 }
 
 /// Returns the median size of a gauge's readings and of the predictions, in the last half of the runs, which shows gauges that failed in between.
-fn sizes_of(inputs: &Inputs, fit: &Fitted, g: usize) -> [f64; 2] {
+fn sizes_of(inputs: &Inputs, fit: &InputFit, g: usize) -> [f64; 2] {
     let pairs = pairs_of(inputs, fit, g);
     let last = &pairs[pairs.len() / 2..];
     [0, 1].map(|i| median(last.iter().map(|p| p[i].abs()).collect()).unwrap_or(f64::NAN))

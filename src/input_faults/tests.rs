@@ -11,13 +11,13 @@ const LOADS: [&str; 4] = ["A.FZ", "B.FZ", "A.FY", "B.FY"];
 const NOISE: f64 = 1.0;
 
 /// Influence of four loads at twelve gauges, ten runs of recorded loads, and readings of a structure that is off the model by 3 %.
-struct Planted {
+struct SyntheticRuns {
     influence: Matrix,
     records: Vec<Vec<f64>>,
     readings: Vec<Vec<f64>>,
 }
 
-impl Planted {
+impl SyntheticRuns {
     fn new(seed: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut within = |size: f64| random.random_range(-size..size);
@@ -66,7 +66,7 @@ impl Planted {
 #[test]
 fn right_records_of_a_model_that_is_off_by_three_percent_are_no_fault() {
     for seed in 0..200 {
-        let planted = Planted::new(seed);
+        let planted = SyntheticRuns::new(seed);
         assert_eq!(faults_of_recorded_loads(&planted.runs()), [], "{seed}");
     }
 }
@@ -74,13 +74,13 @@ fn right_records_of_a_model_that_is_off_by_three_percent_are_no_fault() {
 #[test]
 fn reversed_records_are_named_and_no_others() {
     for seed in 0..50 {
-        let planted = Planted::new(seed).scale_records([1.0, 1.0, -1.0, -1.0]);
+        let planted = SyntheticRuns::new(seed).scale_records([1.0, 1.0, -1.0, -1.0]);
         let found = findings_of_recorded_loads(&planted.runs(), "runs.csv");
         assert_eq!(found.len(), 1, "{seed}: {found:?}");
         assert_eq!(found[0].code, "input-sign-reversed");
         assert_eq!(found[0].subject, "A.FY, B.FY");
         assert_eq!(found[0].severity, Severity::Error);
-        let all = Planted::new(seed).scale_records([-1.0; 4]);
+        let all = SyntheticRuns::new(seed).scale_records([-1.0; 4]);
         let found = findings_of_recorded_loads(&all.runs(), "runs.csv");
         assert_eq!(found[0].subject, "all", "{seed}: {found:?}");
         assert_eq!(found.len(), 1);
@@ -95,7 +95,7 @@ fn records_in_another_unit_are_named_with_the_pair_of_units() {
             (1e-3, "kN were read as N"),
             (1.0 / 4.448, "lbf were read as N"),
         ] {
-            let planted = Planted::new(seed).scale_records([factor; 4]);
+            let planted = SyntheticRuns::new(seed).scale_records([factor; 4]);
             let found = findings_of_recorded_loads(&planted.runs(), "runs.csv");
             assert_eq!(found.len(), 1, "{seed} {factor}: {found:?}");
             assert_eq!(
@@ -110,7 +110,7 @@ fn records_in_another_unit_are_named_with_the_pair_of_units() {
 #[test]
 fn exchanged_records_are_named_as_pairs() {
     for seed in 0..50 {
-        let mut planted = Planted::new(seed);
+        let mut planted = SyntheticRuns::new(seed);
         planted.records.iter_mut().for_each(|f| f.swap(0, 1));
         let found = faults_of_recorded_loads(&planted.runs());
         assert!(
@@ -132,7 +132,7 @@ fn exchanged_records_are_named_as_pairs() {
 fn an_effect_that_no_record_explains_is_left_to_others() {
     // Half of the gauges read another structure.
     for seed in 0..50 {
-        let (mut planted, other) = (Planted::new(seed), Planted::new(seed + 1000));
+        let (mut planted, other) = (SyntheticRuns::new(seed), SyntheticRuns::new(seed + 1000));
         for (run, strange) in planted.readings.iter_mut().zip(&other.readings) {
             run[..6].copy_from_slice(&strange[..6]);
         }

@@ -1,8 +1,8 @@
 //! Collecting faults at places of the job's text.
 
 use super::parse::line_column;
-use super::raw::S;
-use super::spanned::Spanned;
+use super::raw_job::S;
+use super::spanned_value::SpannedValue;
 use super::suggest;
 use super::types::NamedFile;
 use crate::host::fault::{Fault, FaultList};
@@ -32,7 +32,7 @@ impl<'a> Collector<'a> {
     }
 
     /// Line of a value.
-    pub(super) fn line<T>(&self, at: &Spanned<T>) -> u32 {
+    pub(super) fn line<T>(&self, at: &SpannedValue<T>) -> u32 {
         let start = at.span().start;
         self.ends.partition_point(|end| *end < start) as u32 + 1
     }
@@ -40,7 +40,7 @@ impl<'a> Collector<'a> {
     /// Notes a fault at a value.
     pub(super) fn fault<T>(
         &mut self,
-        at: &Spanned<T>,
+        at: &SpannedValue<T>,
         field: &str,
         wrong: impl Into<String>,
         remedy: impl Into<String>,
@@ -55,7 +55,7 @@ impl<'a> Collector<'a> {
     pub(super) fn require<T: Clone, U>(
         &mut self,
         value: &S<T>,
-        section: &Spanned<U>,
+        section: &SpannedValue<U>,
         key: &str,
         example: &str,
     ) -> Option<T> {
@@ -76,7 +76,7 @@ impl<'a> Collector<'a> {
     }
 
     /// A named file.
-    pub(super) fn named_at(&self, v: &Spanned<String>, key: &str) -> NamedFile {
+    pub(super) fn named_at(&self, v: &SpannedValue<String>, key: &str) -> NamedFile {
         NamedFile {
             given: v.value().clone(),
             key: key.to_owned(),
@@ -99,7 +99,7 @@ impl<'a> Collector<'a> {
     /// The choice that a word names.
     pub(super) fn choose_at<T: Copy>(
         &mut self,
-        word: &Spanned<String>,
+        word: &SpannedValue<String>,
         key: &str,
         choices: &[(&str, T)],
     ) -> Option<T> {

@@ -3,7 +3,7 @@
 use super::same_name::is_same_name;
 use super::suggest;
 use super::table::Table;
-use super::unread::note_unread;
+use super::unread_columns::note_unread;
 use crate::host::fault::{Fault, FaultList};
 use crate::host::files::Inputs;
 use crate::series::record::name_and_unit;
@@ -94,7 +94,7 @@ pub(super) struct GaugeColumns {
 }
 
 /// Name and unit that a header may state.
-struct Stated<'a> {
+struct ColumnHeader<'a> {
     name: &'a str,
     unit: &'a str,
     bracket: &'a str,
@@ -275,7 +275,7 @@ fn holds_words(t: &Table, at: usize, name: &str) -> bool {
 }
 
 /// Returns name and unit of a header: `angle_deg [rad]`, `x [mm]`, `x_mm`.
-fn stated_in(header: &str, measures: Measures) -> Stated<'_> {
+fn stated_in(header: &str, measures: Measures) -> ColumnHeader<'_> {
     let column = name_and_unit(header);
     let name = match column.header.bracket.is_empty() {
         true => header,
@@ -295,12 +295,12 @@ fn stated_in(header: &str, measures: Measures) -> Stated<'_> {
         Nothing => false,
     };
     match split.filter(|(_, unit)| is_unit(unit)) {
-        Some((name, unit)) => Stated {
+        Some((name, unit)) => ColumnHeader {
             name,
             unit,
             bracket,
         },
-        None => Stated {
+        None => ColumnHeader {
             name,
             unit: "",
             bracket,
@@ -308,7 +308,7 @@ fn stated_in(header: &str, measures: Measures) -> Stated<'_> {
     }
 }
 
-impl Stated<'_> {
+impl ColumnHeader<'_> {
     /// Whether this is an angle with its unit.
     fn is_angle(&self) -> bool {
         let has_unit = !self.unit.is_empty() || degrees_in(self.bracket).is_some();

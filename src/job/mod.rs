@@ -3,6 +3,7 @@
 //! a job to editors.
 
 pub mod calibrated_range;
+mod candidate_lists;
 pub mod correct;
 mod faults;
 mod gauge_table;
@@ -13,22 +14,21 @@ mod not_a_job;
 mod parse;
 pub mod payload_loads;
 pub mod payload_signature;
-mod picked;
 mod property_names;
 pub mod quantity;
-mod raw;
+mod raw_job;
 pub mod readings;
 mod resolve;
 mod roles;
 pub(crate) mod same_name;
 pub mod schema;
 mod shapes;
-mod spanned;
+mod spanned_value;
 mod spots;
 pub mod suggest;
 pub mod table;
 mod types;
-pub mod unread;
+pub mod unread_columns;
 
 #[cfg(test)]
 pub(crate) mod tests;
@@ -114,7 +114,7 @@ pub fn read_job(inputs: &mut Inputs, path: &Path) -> Result<Job, Faults> {
     let mut job = resolve::resolve_job(&given, &text, &folder, raw, &mut faults);
     job.gauges
         .extend(gauges::read_gauge_file(inputs, &job, &mut faults));
-    picked::read_picked(inputs, &mut job, &mut faults);
+    candidate_lists::read_picked(inputs, &mut job, &mut faults);
     spots::read_spots(inputs, &mut job, &mut faults);
     resolve::check_names(&job, &mut faults);
     resolve::check_named(&job, &mut faults);

@@ -1,6 +1,6 @@
 //! Text to raw job, with every fault rather than the first: an entry at fault is taken out and the rest is tried again.
 
-use super::raw::RawJob;
+use super::raw_job::RawJob;
 use super::suggest;
 use crate::host::fault::{Fault, FaultList};
 use serde::Deserialize;

@@ -1,7 +1,7 @@
 //! Columns of the table of a payload's signature.
 
 use super::table::Table;
-use super::unread;
+use super::unread_columns;
 use crate::host::files::Inputs;
 
 /// Columns of the signature, each by its names: microstrain per mass, per mass and length along x, along y, and along both.
@@ -17,5 +17,5 @@ pub fn note_unread(inputs: &mut Inputs, table: &Table, key: usize) {
     let is_read = |c: usize| c == key || COLUMNS.iter().flatten().any(|n| table.header[c] == *n);
     let lacking = COLUMNS.iter().map(|n| n[0]);
     let lacking: Vec<&str> = lacking.filter(|n| table.column(&[n]).is_none()).collect();
-    unread::note_unread(inputs, table, is_read, &lacking);
+    unread_columns::note_unread(inputs, table, is_read, &lacking);
 }

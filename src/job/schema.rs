@@ -1,6 +1,6 @@
 //! The JSON schema of a job: keys and types from `super::raw`, words and meanings from here.
 
-use super::raw::RawJob;
+use super::raw_job::RawJob;
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 

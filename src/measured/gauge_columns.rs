@@ -131,14 +131,14 @@ enum Holds {
 }
 
 /// Reasons why a column can't be read as a gauge's.
-enum Wrong {
+enum ColumnUnitFault {
     /// The unit is not a unit of strain.
     NoStrain,
     /// Two units.
     Clash,
 }
 
-impl Wrong {
+impl ColumnUnitFault {
     fn fault(&self, file: &str, column: &Column) -> Fault {
         match self {
             Self::NoStrain => no_strain(file, column),
@@ -154,13 +154,13 @@ impl Wrong {
 }
 
 /// Whose a column is.
-fn holder(column: &Column, names: &Names) -> Result<Holds, Wrong> {
+fn holder(column: &Column, names: &Names) -> Result<Holds, ColumnUnitFault> {
     let header = &column.header;
     let clash = column.clash();
     let (gauge, microstrain) = if names.known.is_empty() {
         let (name, microstrain) = by_itself(column);
         match microstrain {
-            _ if clash == Some(Clash::Size) => return Err(Wrong::Clash),
+            _ if clash == Some(Clash::Size) => return Err(ColumnUnitFault::Clash),
             None => return Ok(Holds::Other),
             some => (name, some),
         }
@@ -180,10 +180,10 @@ fn holder(column: &Column, names: &Names) -> Result<Holds, Wrong> {
         return Ok(Holds::Other);
     };
     match microstrain {
-        _ if clash == Some(Clash::Size) => Err(Wrong::Clash),
+        _ if clash == Some(Clash::Size) => Err(ColumnUnitFault::Clash),
         Some(microstrain) => Ok(Holds::Gauge(gauge, microstrain)),
         None if names.held.contains(gauge.as_str()) => Ok(Holds::Other),
-        None => Err(Wrong::NoStrain),
+        None => Err(ColumnUnitFault::NoStrain),
     }
 }
 

@@ -8,14 +8,14 @@ use crate::host::work::Work;
 use crate::job::{Job, Measured};
 use crate::recovery::{ErrorModel, noise_without_load};
 use crate::sensitivity::Sensitivity;
-use crate::strain_chain::{Prepared, prepare};
+use crate::strain_chain::{JobSensitivity, prepare};
 use crate::units::MICROSTRAIN;
 
 /// S of the job's gauges, with the noise that the job states or its zero record shows.
 ///
 /// # Errors
 /// Faults of [`prepare`] and of the zero file.
-pub(crate) fn prepare_with_noise(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
+pub(crate) fn prepare_with_noise(work: &mut Work, job: &Job) -> Result<JobSensitivity, Faults> {
     let mut prepared = prepare(work, job)?;
     if let Some(measured) = &job.measured {
         take_noise_of_zero(work, job, measured, &mut prepared.sensitivity)?;

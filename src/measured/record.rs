@@ -8,11 +8,11 @@ use crate::host::files::FileBytes;
 use crate::job::Job;
 use crate::job::correct::{Channel, channel_of, column_of};
 use crate::recovery::clock;
+use crate::recovery::dead_gauges::DeadGaugeSpan;
 use crate::recovery::net::Series;
-use crate::recovery::plausible::LARGEST_STRAIN;
-use crate::recovery::stuck::Stuck;
+use crate::recovery::reading_plausibility::LARGEST_STRAIN;
+use crate::series::constant_columns::{self, ColumnContents, Gives};
 use crate::series::record::{self as series, Clock, Options, Times, open_record};
-use crate::series::still::{self, Gives, Still};
 use crate::units::MICROSTRAIN;
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
@@ -122,9 +122,10 @@ impl Record {
     ///
     /// # Errors
     /// A piece that can't be read.
-    pub fn extent(&self, stuck: &Stuck) -> Result<Range<usize>, Fault> {
+    pub fn extent(&self, stuck: &DeadGaugeSpan) -> Result<Range<usize>, Fault> {
         let column = self.columns.get(stuck.gauge).and_then(|c| c.0);
-        let found = still::extent(&self.inner, column, stuck.gives, stuck.span, stuck.within);
+        let found =
+            constant_columns::extent(&self.inner, column, stuck.gives, stuck.span, stuck.within);
         found.map_err(|e| record_fault(&self.file, &e))
     }
 
@@ -132,7 +133,7 @@ impl Record {
     ///
     /// # Errors
     /// A piece that can't be read.
-    pub fn column_contents(&self, looked: &Still) -> Result<Vec<Gives>, Fault> {
+    pub fn column_contents(&self, looked: &ColumnContents) -> Result<Vec<Gives>, Fault> {
         let columns: Vec<Option<usize>> = self.columns.iter().map(|c| c.0).collect();
         let found = looked.columns_in_record(&self.inner, &columns);
         found.map_err(|e| record_fault(&self.file, &e))
@@ -169,7 +170,7 @@ impl Record {
             .flatten()
             .for_each(|v| *v /= MICROSTRAIN);
         let n = readings.len();
-        let whole = series::Whole {
+        let whole = series::MemoryRecord {
             columns: Vec::new(),
             times: Times::Even {
                 start_s,
@@ -244,7 +245,7 @@ impl Record {
         let n = self.columns.len().max(1);
         self.each_microstrain(i, |first, values| {
             values.iter_mut().for_each(|v| *v *= MICROSTRAIN);
-            still::blank_readings(values, n, first, &self.blank);
+            constant_columns::blank_readings(values, n, first, &self.blank);
             sink(values);
         })
     }

@@ -6,14 +6,14 @@ use crate::host::fault::{Fault, Faults};
 use crate::job::{Job, Measured, Reference};
 use crate::measured::wheels::{floor_fault, wheels_of};
 use crate::model::Model;
-use crate::strain_chain::Prepared;
-use crate::strain_chain::solved::stands_on_wheels;
+use crate::strain_chain::JobSensitivity;
+use crate::strain_chain::built_in_solver::stands_on_wheels;
 
 /// Strain of the reference state by gauge: it is added to the readings, so that loads are totals.
 pub(crate) fn reference_strain(
     job: &Job,
     measured: &Measured,
-    prepared: &Prepared,
+    prepared: &JobSensitivity,
 ) -> Result<Vec<f64>, Faults> {
     let n = prepared.sensitivity.gauges.len();
     let fault = |wrong: String, remedy: &str| {
@@ -63,7 +63,11 @@ pub(crate) fn reference_strain(
 
 /// Strain by gauge of the model standing on its wheels under its own weight: `S R`, `R` the reactions at the job's wheels on a flat floor.
 /// A free structure that gravity and its reactions hold in balance is strained by the reactions with their inertia relief alone.
-fn standing_strain(job: &Job, model: &Model, prepared: &Prepared) -> Result<Vec<f64>, Faults> {
+fn standing_strain(
+    job: &Job,
+    model: &Model,
+    prepared: &JobSensitivity,
+) -> Result<Vec<f64>, Faults> {
     stands_on_wheels(job, model, "the reference \"gravity\"")?;
     let wheels = wheels_of(job, model)?;
     let standing = solve_standing(model, wheels.axis, &wheels.grids, &[], None)

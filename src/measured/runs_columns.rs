@@ -5,7 +5,7 @@ use crate::host::files::Inputs;
 use crate::job::same_name::{is_same_name, is_same_word};
 use crate::job::suggest;
 use crate::job::table::Table;
-use crate::job::unread::note_unread;
+use crate::job::unread_columns::note_unread;
 use crate::job::{Job, NamedFile, Runs};
 use crate::series::number::DecimalMark;
 use crate::series::record::csv::is_units;

@@ -16,18 +16,18 @@ use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
 use crate::job::{HoldOut, Job, Measured, NamedFile};
-use crate::recovery::{ErrorModel, Readings, plausible};
+use crate::recovery::{ErrorModel, Readings, reading_plausibility};
 use crate::units::MICROSTRAIN;
 
 /// A strain table less its zero.
-pub(crate) struct Zeroed {
+pub(crate) struct ZeroedTable {
     /// A reading without a zero is not a number.
     pub table: StrainTable,
     /// Noise variance of each row's readings, in units of that of a single one.
     pub noise_factor: Vec<f64>,
 }
 
-impl Zeroed {
+impl ZeroedTable {
     /// Returns the names of the runs.
     ///
     /// # Errors
@@ -74,7 +74,7 @@ pub(crate) fn read_zeroed(
     job: &Job,
     measured: &Measured,
     named: &NamedFile,
-) -> Result<Zeroed, Faults> {
+) -> Result<ZeroedTable, Faults> {
     let bytes = work.inputs.read_named(job, named)?;
     if is_long_record(&bytes) {
         return Err(no_runs(&named.given).into());
@@ -95,7 +95,7 @@ pub(crate) fn read_zeroed(
         Some(z) => z.noise_factor,
         None => vec![own; table.n_rows()],
     };
-    Ok(Zeroed {
+    Ok(ZeroedTable {
         table,
         noise_factor,
     })
@@ -137,7 +137,7 @@ pub(crate) fn subtract_and_test_zero(
         noise: measured.noise_microstrain * MICROSTRAIN,
         model_rel: 0.0,
     };
-    let (kept, findings) = plausible::check(gauges, readings, errors);
+    let (kept, findings) = reading_plausibility::check(gauges, readings, errors);
     for finding in findings {
         let said = |f: &Finding| f.code == finding.code && f.subject == finding.subject;
         if !work.findings.iter().any(said) {
@@ -168,7 +168,7 @@ pub(crate) fn judged_to_learn(
         model_rel: 0.0,
     };
     work.findings
-        .extend(plausible::check_signal(&readings, errors));
+        .extend(reading_plausibility::check_signal(&readings, errors));
     readings
 }
 
@@ -276,7 +276,7 @@ pub(crate) fn zeros_by_row(
     let (mut zero, mut noise_factor) = (Vec::new(), Vec::new());
     for i in 0..names.len() {
         let others: Vec<usize> = at.iter().copied().filter(|a| *a != i).collect();
-        let Between {
+        let ZeroWeights {
             weights,
             wander,
             outside,
@@ -376,32 +376,32 @@ pub(crate) fn no_zero_runs(job: &Job, measured: &Measured, file: &str) -> Result
 }
 
 /// Rows whose readings make a zero, with their weights, and the variance of a walk there in units of that of one step.
-struct Between {
+struct ZeroWeights {
     weights: Vec<(usize, f64)>,
     wander: f64,
     /// Steps over which a steady drift goes on unseen: none between two rows.
     outside: f64,
 }
 
-fn zero_run_weights(at: &[usize], i: usize) -> Between {
+fn zero_run_weights(at: &[usize], i: usize) -> ZeroWeights {
     let after = at.partition_point(|a| *a < i);
     let steps = |a: usize| (i as f64 - a as f64).abs();
     match (after.checked_sub(1).and_then(|b| at.get(b)), at.get(after)) {
         (Some(&a), Some(&b)) => {
             let (from, to) = (steps(a), steps(b));
             let w = from / (from + to);
-            Between {
+            ZeroWeights {
                 weights: vec![(a, 1.0 - w), (b, w)],
                 wander: from * to / (from + to),
                 outside: 0.0,
             }
         }
-        (Some(&a), None) | (None, Some(&a)) => Between {
+        (Some(&a), None) | (None, Some(&a)) => ZeroWeights {
             weights: vec![(a, 1.0)],
             wander: steps(a),
             outside: steps(a),
         },
-        (None, None) => Between {
+        (None, None) => ZeroWeights {
             weights: Vec::new(),
             wander: 0.0,
             outside: 0.0,

@@ -5,7 +5,7 @@ use super::fault::FaultKind;
 use super::frame::unit;
 use super::types::*;
 use nastran::cards::{Bar, BarDefaults, Orientation};
-use nastran::place::Placed;
+use nastran::place::PlacedCard;
 use std::collections::HashMap;
 
 /// Sine of the angle between orientation vector and element under which they count as parallel.
@@ -29,7 +29,7 @@ impl Builder<'_> {
             if !self.element(bar.id, card, at) {
                 continue;
             }
-            let placed = Placed { card: *bar, at };
+            let placed = PlacedCard { card: *bar, at };
             let Some(mut beam) = self.beam(&placed, card, defaults.as_ref().map(|d| &d.card), &ix)
             else {
                 continue;
@@ -47,7 +47,7 @@ impl Builder<'_> {
 
     fn beam(
         &mut self,
-        b: &Placed<Bar>,
+        b: &PlacedCard<Bar>,
         card: &'static str,
         defaults: Option<&BarDefaults>,
         ix: &HashMap<(bool, u32), BeamPropertyIx>,

@@ -5,7 +5,7 @@ use super::fault::FaultKind;
 use super::section::{SectionFault, bar_section};
 use super::types::*;
 use nastran::cards::{BeamStation, Pbar, Pbarl, Pbeam, Pbeaml};
-use nastran::place::{Place, Placed};
+use nastran::place::{Place, PlacedCard};
 use std::collections::HashMap;
 
 impl Builder<'_> {
@@ -83,7 +83,7 @@ impl Builder<'_> {
         }
     }
 
-    fn pbar(&mut self, p: &Placed<Pbar>) -> Option<BeamProperty> {
+    fn pbar(&mut self, p: &PlacedCard<Pbar>) -> Option<BeamProperty> {
         let name = format!("PBAR {}", p.id);
         let material = self.material(p.mid, &name, "MID", p.at)?;
         // A bar without area carries bending and torsion alone.
@@ -120,7 +120,7 @@ impl Builder<'_> {
         })
     }
 
-    fn pbarl(&mut self, p: &Placed<Pbarl>) -> Option<BeamProperty> {
+    fn pbarl(&mut self, p: &PlacedCard<Pbarl>) -> Option<BeamProperty> {
         let name = format!("PBARL {}", p.id);
         let material = self.material(p.mid, &name, "MID", p.at)?;
         let shape = self.section(&p.section, &p.dims, &name, p.at)?;
@@ -145,7 +145,7 @@ impl Builder<'_> {
         })
     }
 
-    fn pbeam(&mut self, p: &Placed<Pbeam>) -> Option<BeamProperty> {
+    fn pbeam(&mut self, p: &PlacedCard<Pbeam>) -> Option<BeamProperty> {
         let name = format!("PBEAM {}", p.id);
         let material = self.material(p.mid, &name, "MID", p.at)?;
         let end = |pair: &[Option<f64>; 2], other: &[Option<f64>; 2]| -> [f64; 2] {
@@ -205,7 +205,7 @@ impl Builder<'_> {
         })
     }
 
-    fn pbeaml(&mut self, p: &Placed<Pbeaml>) -> Option<BeamProperty> {
+    fn pbeaml(&mut self, p: &PlacedCard<Pbeaml>) -> Option<BeamProperty> {
         let name = format!("PBEAML {}", p.id);
         let material = self.material(p.mid, &name, "MID", p.at)?;
         let mut sections = Vec::new();

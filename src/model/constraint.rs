@@ -5,7 +5,7 @@ use super::fault::FaultKind;
 use super::set_sum::{MOST_TERMS, SumOrder, sum_order};
 use super::types::*;
 use nastran::cards::{Dofs, IdList, SetSum};
-use nastran::place::{Place, Placed};
+use nastran::place::{Place, PlacedCard};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Terms of an equation: grid, dof (0-based), coefficient.
@@ -120,11 +120,11 @@ impl Builder<'_> {
     /// Sets of single terms for the sums of a deck.
     fn sums<T: Clone>(
         &mut self,
-        cards: &[Placed<SetSum>],
+        cards: &[PlacedCard<SetSum>],
         card: &str,
         sets: &BTreeMap<u32, Vec<T>>,
     ) -> BTreeMap<u32, Vec<T>> {
-        let mut by_sid: BTreeMap<u32, Vec<&Placed<SetSum>>> = BTreeMap::new();
+        let mut by_sid: BTreeMap<u32, Vec<&PlacedCard<SetSum>>> = BTreeMap::new();
         for sum in cards {
             by_sid.entry(sum.sid).or_default().push(sum);
         }
@@ -185,7 +185,7 @@ impl Builder<'_> {
         &mut self,
         card: &str,
         sid: u32,
-        by_sid: &BTreeMap<u32, Vec<&Placed<SetSum>>>,
+        by_sid: &BTreeMap<u32, Vec<&PlacedCard<SetSum>>>,
     ) {
         if let Some(sum) = by_sid.get(&sid).and_then(|cards| cards.first()) {
             let what =

@@ -15,9 +15,9 @@ struct Words<'a> {
 }
 
 /// Cards seen so far, with their content and place.
-struct Seen<K, T>(HashMap<K, (T, Place)>);
+struct SeenCards<K, T>(HashMap<K, (T, Place)>);
 
-impl<K: Hash + Eq, T: PartialEq> Seen<K, T> {
+impl<K: Hash + Eq, T: PartialEq> SeenCards<K, T> {
     fn new() -> Self {
         Self(HashMap::new())
     }
@@ -57,7 +57,7 @@ impl Builder<'_> {
         }
         for (card, sums) in [("SPCADD", &cards.spcadds), ("MPCADD", &cards.mpcadds)] {
             // One card defines a set: which of two a solver takes, or whether it adds them, is not documented.
-            let mut seen = Seen::new();
+            let mut seen = SeenCards::new();
             for sum in sums {
                 let words = Words {
                     card: &|| format!("{card} {}", sum.sid),
@@ -67,7 +67,7 @@ impl Builder<'_> {
                 seen.add(self, sum.sid, (&sum.card.sets, sum.at), &words);
             }
         }
-        let mut moved = Seen::new();
+        let mut moved = SeenCards::new();
         for s in &cards.spcds {
             for (grid, dofs, value) in &s.terms {
                 for dof in dofs.iter0() {
@@ -83,9 +83,9 @@ impl Builder<'_> {
     }
 
     fn repeated_params(&mut self) {
-        let mut seen = Seen::<&str, &Param>::new();
+        let mut seen = SeenCards::<&str, &Param>::new();
         let cards = self.cards;
-        let acting = |p: &&nastran::place::Placed<Param>| {
+        let acting = |p: &&nastran::place::PlacedCard<Param>| {
             super::case_params::OF_STRUCTURE.contains(&p.name.as_str())
         };
         for p in cards.params.iter().filter(acting) {
@@ -100,7 +100,7 @@ impl Builder<'_> {
 
     fn repeated_temperatures(&mut self) {
         let cards = self.cards;
-        let mut defaults = Seen::new();
+        let mut defaults = SeenCards::new();
         for t in &cards.tempds {
             let words = Words {
                 card: &|| format!("TEMPD {}", t.sid),
@@ -109,7 +109,7 @@ impl Builder<'_> {
             };
             defaults.add(self, t.sid, (t.t, t.at), &words);
         }
-        let mut grids = Seen::new();
+        let mut grids = SeenCards::new();
         for t in &cards.temps {
             let words = Words {
                 card: &|| format!("TEMP {} of grid {}", t.sid, t.grid),
@@ -122,7 +122,7 @@ impl Builder<'_> {
 
     fn repeated_materials(&mut self) {
         let cards = self.cards;
-        let mut tables = Seen::<u32, &MaterialTable>::new();
+        let mut tables = SeenCards::<u32, &MaterialTable>::new();
         for t in &cards.material_tables {
             let words = Words {
                 card: &|| format!("TABLEM {}", t.id),
@@ -131,7 +131,7 @@ impl Builder<'_> {
             };
             tables.add(self, t.id, (&t.card, t.at), &words);
         }
-        let mut dependent = Seen::<u32, &Matt1>::new();
+        let mut dependent = SeenCards::<u32, &Matt1>::new();
         for m in &cards.matt1s {
             let words = Words {
                 card: &|| format!("MATT1 {}", m.id),

@@ -4,7 +4,7 @@ use super::build::Builder;
 use super::fault::FaultKind;
 use super::types::*;
 use nastran::cards::{self, CoordDefinition, Dofs, IdList};
-use nastran::place::{Place, Placed};
+use nastran::place::{Place, PlacedCard};
 use std::collections::{BTreeMap, HashMap, VecDeque};
 
 /// Longest SPOINT range that is written out; a longer one is a slip of the pen.
@@ -21,7 +21,7 @@ impl<'a> Builder<'a> {
     pub(super) fn frames_and_grids(&mut self) {
         let cards = self.cards;
         let grids = self.unique_grids();
-        let grid_of: HashMap<u32, &Placed<cards::Grid>> =
+        let grid_of: HashMap<u32, &PlacedCard<cards::Grid>> =
             grids.iter().map(|g| (g.id, *g)).collect();
         let default_cp = cards.grdset.as_ref().and_then(|g| g.cp).unwrap_or(0);
         let cp = |g: &cards::Grid| g.cp.unwrap_or(default_cp);
@@ -90,7 +90,11 @@ impl<'a> Builder<'a> {
     }
 
     /// Scalar points: of SPOINT, and those that springs, masses and dampers name without a component where there is no grid of that id.
-    fn scalar_points(&mut self, grid_of: &HashMap<u32, &Placed<cards::Grid>>, out: &mut Vec<Grid>) {
+    fn scalar_points(
+        &mut self,
+        grid_of: &HashMap<u32, &PlacedCard<cards::Grid>>,
+        out: &mut Vec<Grid>,
+    ) {
         let cards = self.cards;
         let mut named: BTreeMap<u32, Place> = BTreeMap::new();
         for s in &cards.spoints {
@@ -148,9 +152,9 @@ impl<'a> Builder<'a> {
     }
 
     /// Returns the grids in file order, the first of each id; adds a fault if a second one differs.
-    fn unique_grids(&mut self) -> Vec<&'a Placed<cards::Grid>> {
+    fn unique_grids(&mut self) -> Vec<&'a PlacedCard<cards::Grid>> {
         let cards = self.cards;
-        let mut first: HashMap<u32, &Placed<cards::Grid>> =
+        let mut first: HashMap<u32, &PlacedCard<cards::Grid>> =
             HashMap::with_capacity(cards.grids.len());
         let mut out = Vec::with_capacity(cards.grids.len());
         for g in &cards.grids {
@@ -175,12 +179,12 @@ impl<'a> Builder<'a> {
     /// Every coordinate system to basic, those first that others are defined in.
     fn frames(
         &mut self,
-        grid_of: &HashMap<u32, &Placed<cards::Grid>>,
+        grid_of: &HashMap<u32, &PlacedCard<cards::Grid>>,
         cp: &dyn Fn(&cards::Grid) -> u32,
     ) {
         self.model.frames.push(Frame::basic());
         self.frame_ix.insert(0, FrameIx(0));
-        let mut card_of: HashMap<u32, &'a Placed<cards::Coord>> = HashMap::new();
+        let mut card_of: HashMap<u32, &'a PlacedCard<cards::Coord>> = HashMap::new();
         let cards = self.cards;
         for c in &cards.coords {
             match card_of.get(&c.id) {
@@ -200,7 +204,7 @@ impl<'a> Builder<'a> {
         let mut waiting: HashMap<u32, usize> = HashMap::new();
         let mut users: HashMap<u32, Vec<u32>> = HashMap::new();
         let mut ready: VecDeque<u32> = VecDeque::new();
-        let mut order: Vec<&'a Placed<cards::Coord>> = card_of.values().copied().collect();
+        let mut order: Vec<&'a PlacedCard<cards::Coord>> = card_of.values().copied().collect();
         order.sort_by_key(|c| c.id);
         for c in &order {
             let name = format!("coordinate system {}", c.id);
@@ -284,8 +288,8 @@ impl<'a> Builder<'a> {
 
     fn resolve(
         &mut self,
-        c: &Placed<cards::Coord>,
-        grid_of: &HashMap<u32, &Placed<cards::Grid>>,
+        c: &PlacedCard<cards::Coord>,
+        grid_of: &HashMap<u32, &PlacedCard<cards::Grid>>,
         cp: &dyn Fn(&cards::Grid) -> u32,
         done: &[Frame],
     ) -> Option<Frame> {
@@ -326,8 +330,8 @@ impl<'a> Builder<'a> {
 /// Whether the system is reached again from itself.
 fn circle(
     start: u32,
-    card_of: &HashMap<u32, &Placed<cards::Coord>>,
-    grid_of: &HashMap<u32, &Placed<cards::Grid>>,
+    card_of: &HashMap<u32, &PlacedCard<cards::Coord>>,
+    grid_of: &HashMap<u32, &PlacedCard<cards::Grid>>,
     cp: &dyn Fn(&cards::Grid) -> u32,
 ) -> bool {
     let mut seen = std::collections::HashSet::new();

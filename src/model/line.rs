@@ -5,7 +5,7 @@ use super::build::Builder;
 use super::fault::FaultKind;
 use super::types::*;
 use nastran::cards::{self, Orientation, Pbush, Prod, Ptube, SpringStiffness};
-use nastran::place::{Place, Placed};
+use nastran::place::{Place, PlacedCard};
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
@@ -13,11 +13,11 @@ impl<'a> Builder<'a> {
     /// Cards by id; a second card of one id is a fault.
     pub(super) fn by_id<T>(
         &mut self,
-        list: &'a [Placed<T>],
+        list: &'a [PlacedCard<T>],
         id: impl Fn(&T) -> u32,
         card: &str,
-    ) -> HashMap<u32, &'a Placed<T>> {
-        let mut out: HashMap<u32, &'a Placed<T>> = HashMap::with_capacity(list.len());
+    ) -> HashMap<u32, &'a PlacedCard<T>> {
+        let mut out: HashMap<u32, &'a PlacedCard<T>> = HashMap::with_capacity(list.len());
         for p in list {
             let key = id(&p.card);
             match out.get(&key).map(|f| f.at) {
@@ -268,7 +268,7 @@ impl<'a> Builder<'a> {
     ///
     /// # Reference
     /// MSC Nastran Quick Reference Guide, CBUSH, remarks 3 to 7.
-    fn bush(&mut self, b: &Placed<cards::Bush>, p: &Pbush, name: &str) -> Option<Bush> {
+    fn bush(&mut self, b: &PlacedCard<cards::Bush>, p: &Pbush, name: &str) -> Option<Bush> {
         let ga = self.grid(b.grids.0, name, "GA", b.at)?;
         let gb = match b.grids.1 {
             Some(g) => Some(self.grid(g, name, "GB", b.at)?),

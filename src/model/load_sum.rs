@@ -5,7 +5,7 @@ use super::fault::FaultKind;
 use super::load::Sets;
 use super::set_sum::{MOST_TERMS, SumOrder, sum_order};
 use nastran::cards::LoadSum;
-use nastran::place::Placed;
+use nastran::place::PlacedCard;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Sets of primitive loads with their factors, each set once, in the order in which they were first named.
@@ -30,7 +30,7 @@ impl Builder<'_> {
     /// LOAD combinations written out: `scale * sum(factor * set)`, where a set may be another combination.
     pub(super) fn combinations(&mut self, sets: &Sets) -> Sets {
         let cards = self.cards;
-        let mut by_sid: BTreeMap<u32, Vec<&Placed<LoadSum>>> = BTreeMap::new();
+        let mut by_sid: BTreeMap<u32, Vec<&PlacedCard<LoadSum>>> = BTreeMap::new();
         for l in &cards.loads {
             by_sid.entry(l.sid).or_default().push(l);
         }
@@ -66,7 +66,7 @@ impl Builder<'_> {
     /// The sets of primitive loads of the cards of one combination.
     fn weights(
         &mut self,
-        cards: &[&Placed<LoadSum>],
+        cards: &[&PlacedCard<LoadSum>],
         sets: &Sets,
         known: &BTreeMap<u32, Weights>,
     ) -> Weights {
@@ -93,7 +93,7 @@ impl Builder<'_> {
 
     fn written_out_sums(
         &mut self,
-        by_sid: &BTreeMap<u32, Vec<&Placed<LoadSum>>>,
+        by_sid: &BTreeMap<u32, Vec<&PlacedCard<LoadSum>>>,
         sets: &Sets,
         weights: BTreeMap<u32, Weights>,
     ) -> Sets {
@@ -118,7 +118,7 @@ impl Builder<'_> {
         out
     }
 
-    fn too_many_loads(&mut self, sid: u32, by_sid: &BTreeMap<u32, Vec<&Placed<LoadSum>>>) {
+    fn too_many_loads(&mut self, sid: u32, by_sid: &BTreeMap<u32, Vec<&PlacedCard<LoadSum>>>) {
         if let Some(l) = by_sid.get(&sid).and_then(|cards| cards.first()) {
             let what = format!("LOAD combinations of more than {MOST_TERMS} loads");
             let remedy = "write fewer combinations that name combinations";

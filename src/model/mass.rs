@@ -54,7 +54,7 @@ impl Model {
         let Some(s) = self.shells.get(i) else {
             return 0.0;
         };
-        super::curved::shell_area(s.shape, &self.places_of(s)).unwrap_or(0.0)
+        super::shape_functions::shell_area(s.shape, &self.places_of(s)).unwrap_or(0.0)
     }
 
     /// Returns the area of shear panel `i`: the mean of both divisions into triangles.

@@ -8,7 +8,6 @@ mod build;
 mod case_params;
 mod connector;
 mod constraint;
-mod curved;
 mod duplicates;
 mod elements;
 mod face;
@@ -37,6 +36,7 @@ mod rigid_bush;
 mod scalar_mass;
 mod section;
 mod set_sum;
+mod shape_functions;
 mod shell;
 mod solid;
 mod spline;
@@ -48,7 +48,6 @@ mod unsupported_cards;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use curved::{face_edges, face_functions, solid_edges, solid_functions};
 pub(crate) use elements::ElementRef;
 #[cfg(feature = "report")]
 pub(crate) use face::faces as solid_faces;
@@ -56,4 +55,5 @@ pub use fault::*;
 pub use fibre::Fibres;
 pub use mass::Weight;
 pub use refine::RefinedModel;
+pub(crate) use shape_functions::{face_edges, face_functions, solid_edges, solid_functions};
 pub use types::*;

@@ -5,7 +5,7 @@ use super::own_property::change_properties;
 use super::types::*;
 use nastran::bdf::Deck;
 use nastran::cards::{Cards, IdList, NonstructuralMass};
-use nastran::place::{Place, Placed};
+use nastran::place::{Place, PlacedCard};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Adds the mass of the set that case control selects to the elements that it names, one by one or by their property. A total is spread over
@@ -90,7 +90,7 @@ pub(super) fn add_selected(
     (refused, faults)
 }
 
-fn not_carried(card: &Placed<NonstructuralMass>, what: String) -> UnsupportedCard {
+fn not_carried(card: &PlacedCard<NonstructuralMass>, what: String) -> UnsupportedCard {
     UnsupportedCard {
         card: what,
         id: Some(card.sid),
@@ -207,7 +207,7 @@ impl Carriers {
 
 /// Returns property ids by type of NSM. PBAR and PBARL are one type, and so are PBEAM and PBEAML, PCOMP and PCOMPG.
 fn properties(cards: &Cards) -> BTreeMap<&'static str, BTreeSet<u32>> {
-    fn ids<T>(list: &[Placed<T>], id: impl Fn(&T) -> u32) -> BTreeSet<u32> {
+    fn ids<T>(list: &[PlacedCard<T>], id: impl Fn(&T) -> u32) -> BTreeSet<u32> {
         list.iter().map(|p| id(&p.card)).collect()
     }
     let mut bars = ids(&cards.pbars, |p| p.id);

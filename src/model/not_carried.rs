@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Kind of object that a card defines under its id.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Defined {
+enum ObjectKind {
     Grid,
     Frame,
     Material,
@@ -84,7 +84,7 @@ pub(super) fn name_cards(
 
 /// Drops the notes of unattached grids that an element without a struct names: an element uses them, though the model lacks it.
 pub(super) fn attach_grids(deck: &Deck, faults: &mut Vec<ModelFault>) {
-    let is_element = |c: &&OtherCard| defined_by(&c.name) == Some(Defined::Element);
+    let is_element = |c: &&OtherCard| defined_by(&c.name) == Some(ObjectKind::Element);
     let elements = deck.others.iter().filter(is_element);
     let mut named: HashSet<String> = HashSet::new();
     for card in elements {
@@ -100,7 +100,7 @@ pub(super) fn attach_grids(deck: &Deck, faults: &mut Vec<ModelFault>) {
 }
 
 /// Cards without a struct by what they define and its id, the first of each.
-fn by_id(deck: &Deck) -> HashMap<(Defined, u32), &OtherCard> {
+fn by_id(deck: &Deck) -> HashMap<(ObjectKind, u32), &OtherCard> {
     let mut cards = HashMap::new();
     for card in &deck.others {
         if let (Some(defined), Some(id)) = (defined_by(&card.name), card.first) {
@@ -110,7 +110,7 @@ fn by_id(deck: &Deck) -> HashMap<(Defined, u32), &OtherCard> {
     cards
 }
 
-fn defined_by(name: &str) -> Option<Defined> {
+fn defined_by(name: &str) -> Option<ObjectKind> {
     let is_material = |rest: &str| {
         rest.starts_with(|c: char| c.is_ascii_digit())
             || [
@@ -120,14 +120,14 @@ fn defined_by(name: &str) -> Option<Defined> {
             .any(|m| rest.starts_with(m))
     };
     Some(match name {
-        "GRIDB" | "GRIDF" | "EGRID" | "RINGAX" | "RINGFL" => Defined::Grid,
+        "GRIDB" | "GRIDF" | "EGRID" | "RINGAX" | "RINGFL" => ObjectKind::Grid,
         // A misspelt name: the reference to its id is not another fault.
-        n if n.starts_with("MAT") && effect_of_card(n).is_none() => Defined::Material,
-        n if n.starts_with("CORD") || n == "GMCORD" => Defined::Frame,
-        n if n.strip_prefix("MAT").is_some_and(is_material) => Defined::Material,
+        n if n.starts_with("MAT") && effect_of_card(n).is_none() => ObjectKind::Material,
+        n if n.starts_with("CORD") || n == "GMCORD" => ObjectKind::Frame,
+        n if n.strip_prefix("MAT").is_some_and(is_material) => ObjectKind::Material,
         n if n.starts_with("PLOAD") || NO_PROPERTIES.contains(&n) => return None,
-        n if n.starts_with('P') => Defined::Property,
-        n if n.starts_with('C') => Defined::Element,
+        n if n.starts_with('P') => ObjectKind::Property,
+        n if n.starts_with('C') => ObjectKind::Element,
         _ => return None,
     })
 }
@@ -136,7 +136,7 @@ fn defined_by(name: &str) -> Option<Defined> {
 fn card_of<'d>(
     kind: &FaultKind,
     deck: &'d Deck,
-    cards: &HashMap<(Defined, u32), &'d OtherCard>,
+    cards: &HashMap<(ObjectKind, u32), &'d OtherCard>,
     generator: Option<&'d OtherCard>,
 ) -> Option<(&'static str, &'d OtherCard)> {
     let FaultKind::Missing { what, id } = kind else {
@@ -144,17 +144,17 @@ fn card_of<'d>(
     };
     let id = u32::try_from(*id).ok()?;
     let defined = match *what {
-        "grid" => Defined::Grid,
-        "coordinate system" => Defined::Frame,
-        "material" => Defined::Material,
-        "shell" | "shell or solid" | "CBAR or CBEAM" => Defined::Element,
-        w if w.ends_with("property") || w.starts_with('P') => Defined::Property,
+        "grid" => ObjectKind::Grid,
+        "coordinate system" => ObjectKind::Frame,
+        "material" => ObjectKind::Material,
+        "shell" | "shell or solid" | "CBAR or CBEAM" => ObjectKind::Element,
+        w if w.ends_with("property") || w.starts_with('P') => ObjectKind::Property,
         _ => return None,
     };
     let exact = cards.get(&(defined, id)).copied();
     let card = exact.or_else(|| match defined {
-        Defined::Grid => extra_point(deck, id).or(generator),
-        Defined::Element => generator,
+        ObjectKind::Grid => extra_point(deck, id).or(generator),
+        ObjectKind::Element => generator,
         _ => None,
     })?;
     Some((*what, card))

@@ -1,6 +1,6 @@
 //! Names of properties from the comments of a deck.
 
-use nastran::bdf::{Deck, Named};
+use nastran::bdf::{Deck, NameOwner};
 use std::collections::BTreeMap;
 
 /// Returns the name of each property by ascending id: its own name first, else that of the component which uses it.
@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 /// A component that states no property has the id of its property.
 pub(super) fn property_names(deck: &Deck) -> Vec<(u32, String)> {
     let mut names: BTreeMap<u32, &str> = BTreeMap::new();
-    for wanted in [Named::Property, Named::Component] {
+    for wanted in [NameOwner::Property, NameOwner::Component] {
         for label in deck.labels.iter().filter(|l| l.kind == wanted) {
             names
                 .entry(label.property.unwrap_or(label.id))

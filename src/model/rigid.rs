@@ -5,13 +5,13 @@ use super::fault::FaultKind;
 use super::types::*;
 use crate::linalg::{Matrix6, SymmetricEigen, Vector6};
 use nastran::cards::{Dofs, Rbe3};
-use nastran::place::{Place, Placed};
+use nastran::place::{Place, PlacedCard};
 use std::collections::HashMap;
 
 impl Builder<'_> {
     pub(super) fn rigids(&mut self) {
         let cards = self.cards;
-        let mut out: Vec<Rigid> = Vec::new();
+        let mut out: Vec<RigidElement> = Vec::new();
         for r in &cards.rbe2s {
             if !self.element(r.id, "RBE2", r.at) {
                 continue;
@@ -92,7 +92,7 @@ impl Builder<'_> {
         }
     }
 
-    fn rbe3(&mut self, r: &Placed<Rbe3>) -> Option<Rigid> {
+    fn rbe3(&mut self, r: &PlacedCard<Rbe3>) -> Option<RigidElement> {
         let name = format!("RBE3 {}", r.id);
         let reference = self.grid(r.reference, &name, "REFGRID", r.at);
         let mut arms = Vec::new();
@@ -115,7 +115,7 @@ impl Builder<'_> {
             um,
             alpha: r.alpha,
         };
-        Some(Rigid {
+        Some(RigidElement {
             id: r.id,
             kind,
             at: r.at,
@@ -214,8 +214,8 @@ fn body(
     dependent: Vec<(GridIx, Dofs)>,
     alpha: f64,
     at: Place,
-) -> Rigid {
-    Rigid {
+) -> RigidElement {
+    RigidElement {
         id,
         kind: RigidKind::Body {
             card,

@@ -47,7 +47,7 @@ impl Builder<'_> {
             };
             let first = equations.iter().filter_map(|terms| terms.first());
             taken.extend(first.map(|t| (t.0, t.1)));
-            self.model.rigids.push(Rigid {
+            self.model.rigids.push(RigidElement {
                 id: bush.id,
                 kind: RigidKind::Equations {
                     card: "CBUSH",

@@ -5,7 +5,7 @@ use super::fault::FaultKind;
 use super::frame::unit;
 use super::types::*;
 use nastran::cards::{self, MaterialAngle, Pcomp, Pshell};
-use nastran::place::{Place, Placed};
+use nastran::place::{Place, PlacedCard};
 use std::collections::{HashMap, HashSet};
 
 /// Default of TS/T: 5/6 as the manual prints it.
@@ -72,7 +72,7 @@ impl Builder<'_> {
 
     fn shell(
         &mut self,
-        s: &Placed<cards::Shell>,
+        s: &PlacedCard<cards::Shell>,
         name: &str,
         property: ShellPropertyIx,
         properties: &[ShellProperty],
@@ -193,7 +193,7 @@ impl Builder<'_> {
         out
     }
 
-    fn pshell(&mut self, p: &Placed<Pshell>) -> ShellProperty {
+    fn pshell(&mut self, p: &PlacedCard<Pshell>) -> ShellProperty {
         let name = format!("PSHELL {}", p.id);
         if let Some(value) = p.t.filter(|t| !(*t > 0.0)) {
             self.fault(
@@ -242,7 +242,7 @@ impl Builder<'_> {
         }
     }
 
-    fn pcomp(&mut self, p: &Placed<Pcomp>) -> ShellProperty {
+    fn pcomp(&mut self, p: &PlacedCard<Pcomp>) -> ShellProperty {
         let name = format!("PCOMP {}", p.id);
         let mut plies = Vec::with_capacity(2 * p.plies.len());
         for ply in &p.plies {

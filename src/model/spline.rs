@@ -5,7 +5,7 @@ use super::fault::FaultKind;
 use super::types::*;
 use crate::linalg::{DMatrix, Matrix6};
 use nastran::cards::{Dofs, Rspline};
-use nastran::place::Placed;
+use nastran::place::PlacedCard;
 
 /// Grids between two independent ones beyond which a spline is refused: its equations are dense.
 const MOST_BETWEEN: usize = 200;
@@ -17,7 +17,7 @@ impl Builder<'_> {
     ///
     /// # Reference
     /// NASTRAN Theoretical Manual (CRSPLINE); MSC Nastran Quick Reference Guide, RSPLINE.
-    pub(super) fn rspline(&mut self, r: &Placed<Rspline>) -> Option<Rigid> {
+    pub(super) fn rspline(&mut self, r: &PlacedCard<Rspline>) -> Option<RigidElement> {
         let name = format!("RSPLINE {}", r.id);
         let mut line = Vec::with_capacity(r.grids.len());
         for (g, dofs) in &r.grids {
@@ -66,7 +66,7 @@ impl Builder<'_> {
             equations.extend(self.piece_of_spline(piece, diameter)?);
             first = last;
         }
-        Some(Rigid {
+        Some(RigidElement {
             id: r.id,
             kind: RigidKind::Equations {
                 card: "RSPLINE",

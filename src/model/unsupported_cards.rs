@@ -4,7 +4,7 @@ use super::types::UnsupportedCard;
 use nastran::bdf::vocabulary::{CaseWord, Effect, case_word, effect_of_card};
 use nastran::bdf::{CaseLine, Deck};
 use nastran::cards::{Cards, UnreadEntry};
-use nastran::place::{Place, Placed};
+use nastran::place::{Place, PlacedCard};
 
 /// Solution sequences and rigid formats of linear statics, modes, buckling, flutter, and response to frequencies and time: what this
 /// program solves has the same stiffness, mass and static loads in them.
@@ -48,7 +48,7 @@ pub(super) fn of_deck(deck: &Deck) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard
 /// Returns what [`of_deck`] does, of the geometry blocks of an OP2.
 pub(super) fn of_records(cards: &Cards) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard>) {
     let (loads, structure): (Vec<_>, Vec<_>) = cards.unread.iter().partition(|e| e.is_load);
-    let unsupported = |entries: Vec<&Placed<UnreadEntry>>| {
+    let unsupported = |entries: Vec<&PlacedCard<UnreadEntry>>| {
         let all = entries.into_iter().map(|e| UnsupportedCard {
             card: e.name.clone(),
             id: e.id,

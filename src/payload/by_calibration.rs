@@ -3,13 +3,13 @@
 use super::evidence::{PayloadModel, PayloadRun, Place};
 use crate::finding::Finding;
 use crate::linalg::Matrix;
-use crate::recovery::calibrated::estimate;
-use crate::recovery::unlike::{check, estimate_loosely, is_unlike};
+use crate::recovery::calibrated_loads::estimate;
+use crate::recovery::uncalibrated_strain::{check, estimate_loosely, is_unlike};
 use crate::recovery::{ErrorModel, Readings};
 use crate::sensitivity::{Load, Sensitivity, Uncertainty};
 
 /// Payload of one run by a calibrated S.
-pub(super) struct Found {
+pub(super) struct CalibratedPayload {
     /// Components of `p = (F, F dx, F dy)` with a column in the calibration: number and value.
     pub p: Vec<(usize, f64)>,
     /// Covariance of these components, by rows.
@@ -30,7 +30,7 @@ pub(super) fn estimate_payload(
     run: &PayloadRun,
     place: Place,
     used: impl Fn(usize) -> bool,
-) -> Option<Found> {
+) -> Option<CalibratedPayload> {
     let n = model.gauges.len();
     let present = |k: &usize| model.payload.column(*k).iter().any(|v| *v != 0.0);
     let columns: Vec<usize> = match place {
@@ -77,7 +77,7 @@ pub(super) fn estimate_payload(
     if is_unlike(&run, &known) {
         run = estimate_loosely(&s, &readings, errors, &known);
     }
-    (run.rank == columns.len()).then(|| Found {
+    (run.rank == columns.len()).then(|| CalibratedPayload {
         p: columns.into_iter().zip(run.estimate.values).collect(),
         covariance: run.estimate.covariance,
         dof: known.dof,

@@ -4,7 +4,7 @@
 //! error `c` of the model as a whole. Every gauge has one noise level in all runs: as stated, or up to 10^4 times that.
 
 use super::evidence::{PayloadModel, PayloadRun, Place, WeighSpec};
-use super::one_run::{Balance, Located, solve_run};
+use super::one_run::{Balance, PayloadFit, solve_run};
 use super::robust::{GOOD_FACTOR, LARGEST_FACTOR, N_LEVELS, PRIOR_AS_STATED};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -22,13 +22,13 @@ const DOUBTED: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub struct Location {
     /// By run.
-    pub runs: Vec<Located>,
+    pub runs: Vec<PayloadFit>,
     /// Probability that a gauge is as good as stated.
     pub good: Vec<f64>,
 }
 
 struct State {
-    runs: Vec<Located>,
+    runs: Vec<PayloadFit>,
     weights: Vec<f64>,
     good: Vec<f64>,
     log_likelihood: f64,
@@ -84,7 +84,15 @@ pub fn locate(
 /// Returns whether a run alone determines all unknowns.
 pub fn tells(model: &PayloadModel, run: &PayloadRun, spec: &WeighSpec) -> bool {
     let weights = vec![1.0; model.gauges.len()];
-    solve_run(model, run, spec, Balance::Kept, &weights, &Located::zeros()).is_some()
+    solve_run(
+        model,
+        run,
+        spec,
+        Balance::Kept,
+        &weights,
+        &PayloadFit::zeros(),
+    )
+    .is_some()
 }
 
 fn expectation_maximisation(
@@ -95,7 +103,7 @@ fn expectation_maximisation(
     mut weights: Vec<f64>,
     steps: usize,
 ) -> Option<State> {
-    let mut found: Vec<Located> = runs.iter().map(|_| Located::zeros()).collect();
+    let mut found: Vec<PayloadFit> = runs.iter().map(|_| PayloadFit::zeros()).collect();
     let mut before = f64::NEG_INFINITY;
     let mut end = None;
     for _ in 0..steps {

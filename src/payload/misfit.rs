@@ -2,7 +2,9 @@
 
 use super::evidence::{PayloadModel, PayloadRun, Place, WeighSpec};
 use crate::estimate::{LinearGaussian, NORMAL_95, ReadingErrors};
-use crate::input_faults::{AlternativeRows, Fitted, Found, Inputs, Misfit, Rules, search_faults};
+use crate::input_faults::{
+    AlternativeRows, DetectedFault, InputFit, Inputs, Misfit, Rules, search_faults,
+};
 use crate::linalg::Matrix;
 use rayon::prelude::*;
 
@@ -10,7 +12,7 @@ use rayon::prelude::*;
 const ROUNDS: usize = 3;
 
 /// Strain of a payload and of measured wheel forces.
-struct Weighing<'a> {
+struct WeighingMisfit<'a> {
     model: &'a PayloadModel,
     runs: Vec<&'a PayloadRun>,
     spec: &'a WeighSpec,
@@ -23,11 +25,11 @@ pub fn faults_of_gauges(
     runs: &[PayloadRun],
     spec: &WeighSpec,
     alternatives: &mut dyn FnMut() -> Vec<AlternativeRows>,
-) -> Vec<Found> {
+) -> Vec<DetectedFault> {
     let reads = |r: &&PayloadRun| r.strain.iter().any(|v| v.is_finite());
     let runs: Vec<&PayloadRun> = runs.iter().filter(reads).collect();
     let noise = runs.iter().flat_map(|r| &r.sigma).filter(|s| s.is_finite());
-    let misfit = Weighing {
+    let misfit = WeighingMisfit {
         noise: noise.fold(0.0, |a: f64, s| a.max(*s)),
         model,
         runs,
@@ -48,7 +50,7 @@ pub fn payload_rows(model: &PayloadModel) -> Matrix {
     })
 }
 
-impl Misfit for Weighing<'_> {
+impl Misfit for WeighingMisfit<'_> {
     fn inputs(&self) -> Inputs {
         Inputs {
             strain: self.runs.iter().map(|r| r.strain.clone()).collect(),
@@ -60,16 +62,16 @@ impl Misfit for Weighing<'_> {
         self.noise
     }
 
-    fn fit(&self, inputs: &Inputs) -> Fitted {
+    fn fit(&self, inputs: &Inputs) -> InputFit {
         let runs = self.runs.par_iter().zip(&inputs.strain);
         let each = runs.map(|(run, strain)| self.fit_run(run, strain, &inputs.rows));
-        let each: Vec<Option<Fitted>> = each.collect();
-        let mut out = Fitted::default();
+        let each: Vec<Option<InputFit>> = each.collect();
+        let mut out = InputFit::default();
         for run in each {
-            let run = run.unwrap_or_else(|| Fitted {
+            let run = run.unwrap_or_else(|| InputFit {
                 predicted: vec![vec![f64::NAN; self.model.gauges.len()]],
                 loads: vec![vec![[f64::NAN; 2]]],
-                ..Fitted::default()
+                ..InputFit::default()
             });
             out.chi2 += run.chi2;
             out.dof += run.dof;
@@ -80,9 +82,9 @@ impl Misfit for Weighing<'_> {
     }
 }
 
-impl Weighing<'_> {
+impl WeighingMisfit<'_> {
     /// Returns the least squares of a run; `None` where nothing carries the payload, or nothing is read.
-    fn fit_run(&self, run: &PayloadRun, strain: &[f64], rows: &Matrix) -> Option<Fitted> {
+    fn fit_run(&self, run: &PayloadRun, strain: &[f64], rows: &Matrix) -> Option<InputFit> {
         let (spec, n_wheels) = (self.spec, rows.ncols() - 3);
         let measured = !run.reactions.is_empty();
         let place = [1.0, run.shift[0], run.shift[1]];
@@ -146,7 +148,7 @@ impl Weighing<'_> {
         let found = solved?;
         let predicted = |g: usize| less[g] + (0..q).map(|k| all[(g, k)] * p[k]).sum::<f64>();
         let sigma = found.covariance[(0, 0)].sqrt().hypot(spec.model_rel * p[0]);
-        Some(Fitted {
+        Some(InputFit {
             chi2: found.chi2,
             dof: used.len().saturating_sub(found.rank),
             predicted: vec![(0..rows.nrows()).map(predicted).collect()],

@@ -13,7 +13,7 @@ const SHUT: f64 = 1e-9;
 
 /// One run as found.
 #[derive(Clone, Debug)]
-pub struct Located {
+pub struct PayloadFit {
     /// `(F, F dx, F dy)`.
     pub p: [f64; 3],
     /// Covariance of it by rows, 3 x 3.
@@ -22,7 +22,7 @@ pub struct Located {
     pub reactions: Vec<f64>,
 }
 
-impl Located {
+impl PayloadFit {
     /// Before the first answer.
     pub(super) fn zeros() -> Self {
         Self {
@@ -43,8 +43,8 @@ pub enum Balance {
 }
 
 /// A solved run with the sizes of its residuals.
-pub(super) struct Solved {
-    pub(super) found: Located,
+pub(super) struct SolvedRun {
+    pub(super) found: PayloadFit,
     /// Gauge, stated variance, expected square of its residual.
     pub(super) gauges: Vec<(usize, f64, f64)>,
     /// Log-likelihood of the wheel forces.
@@ -59,8 +59,8 @@ pub(super) fn solve_run(
     spec: &WeighSpec,
     balance: Balance,
     weights: &[f64],
-    old: &Located,
-) -> Option<Solved> {
+    old: &PayloadFit,
+) -> Option<SolvedRun> {
     let u = Unknowns::from_run(model, run, spec);
     let mut rows = gauge_rows(&u, model, run, spec, old)?;
     let wheel_variance = spec.reaction_sigma.powi(2);
@@ -136,7 +136,7 @@ pub(super) fn solve_run(
             None => wheels -= 0.5 * residual * residual / row.variance,
         }
     }
-    Some(Solved {
+    Some(SolvedRun {
         found: u.locate_payload(model, &solved),
         gauges,
         wheels,
@@ -225,7 +225,7 @@ impl Unknowns {
     }
 
     /// The answer in `(F, F dx, F dy)`.
-    fn locate_payload(&self, model: &PayloadModel, solved: &LinearEstimate) -> Located {
+    fn locate_payload(&self, model: &PayloadModel, solved: &LinearEstimate) -> PayloadFit {
         let p: [f64; 3] = std::array::from_fn(|k| {
             let (i, c) = self.back(k);
             c * solved.value[i]
@@ -246,7 +246,7 @@ impl Unknowns {
                     .collect()
             })
         };
-        Located {
+        PayloadFit {
             p,
             covariance,
             reactions,
@@ -260,7 +260,7 @@ fn gauge_rows(
     model: &PayloadModel,
     run: &PayloadRun,
     spec: &WeighSpec,
-    old: &Located,
+    old: &PayloadFit,
 ) -> Option<Vec<Row>> {
     let n_wheels = u.n_wheels;
     let mut rows = Vec::new();
@@ -359,7 +359,7 @@ fn equilibrium(
 }
 
 /// Patterns of wheel forces as far as the model's uncertainty opens them.
-fn patterns_shut(u: &Unknowns, spec: &WeighSpec, old: &Located) -> Vec<Row> {
+fn patterns_shut(u: &Unknowns, spec: &WeighSpec, old: &PayloadFit) -> Vec<Row> {
     let share = spec.model_rel * old.p[0].abs().max(f64::MIN_POSITIVE);
     // Before the first answer there is no size to compare with: the patterns stay shut.
     let sd = if old.p[0] == 0.0 { SHUT } else { share };
@@ -369,7 +369,7 @@ fn patterns_shut(u: &Unknowns, spec: &WeighSpec, old: &Located) -> Vec<Row> {
 }
 
 /// A free place is in the region, as far as its half width goes.
-fn within_region(u: &Unknowns, spec: &WeighSpec, old: &Located) -> Vec<Row> {
+fn within_region(u: &Unknowns, spec: &WeighSpec, old: &PayloadFit) -> Vec<Row> {
     let mut rows = Vec::new();
     if let (Some(region), 3) = (spec.region, u.q) {
         let size = old.p[0].abs();

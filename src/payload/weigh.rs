@@ -3,7 +3,7 @@
 use super::by_calibration;
 use super::evidence::{PayloadModel, PayloadRun, Place, Refusal, Support, WeighSpec, WeighedRun};
 use super::locate::{Location, locate, tells};
-use super::one_run::{Balance, Located};
+use super::one_run::{Balance, PayloadFit};
 use super::robust::{
     GaugeEstimates, GaugeVerdict, RobustSpec, SIGN_SIGMAS, cut_at_zero, doubt, robust_payload,
     verdict_words,
@@ -128,7 +128,7 @@ fn apply_calibration(
             continue;
         };
         weighing.unlike.extend(found.unlike);
-        let mut located = Located::zeros();
+        let mut located = PayloadFit::zeros();
         // As it was, for what has no column.
         let force = w.force;
         for k in 1..3 {
@@ -352,7 +352,7 @@ fn refused_by_itself(estimates: &[f64], sigma: &[f64], largest: f64) -> Option<R
 fn weigh_run(
     model: &PayloadModel,
     run: &PayloadRun,
-    found: &Located,
+    found: &PayloadFit,
     spec: &WeighSpec,
 ) -> WeighedRun {
     let force = found.p[0];
@@ -427,7 +427,7 @@ fn weigh_run(
     }
 }
 
-fn out_of_balance(run: &PayloadRun, alone: &Located, spec: &WeighSpec) -> Option<Refusal> {
+fn out_of_balance(run: &PayloadRun, alone: &PayloadFit, spec: &WeighSpec) -> Option<Refusal> {
     if run.reactions.iter().any(|r| !r.is_finite()) {
         return None;
     }

@@ -5,9 +5,9 @@
 //! Forcing row `j` in replaces the smallest term of `T` by `d_j`, leaving it out replaces `d_j` by the next one: where that falls under
 //! the best layout known, `j` is fixed.
 
-use super::exchange::Chosen;
+use super::exchange::RowSelection;
 use super::relax::relax;
-use super::relaxed::{Active, Relaxed};
+use super::relaxation_solution::{Active, RelaxationSolution};
 use crate::linalg::spd;
 use crate::stop::Stop;
 use rayon::prelude::*;
@@ -35,7 +35,7 @@ pub struct Problem<'a> {
 #[derive(Clone, Debug)]
 pub struct Proof {
     /// A better layout than the incumbent, if there is one.
-    pub best: Option<Chosen>,
+    pub best: Option<RowSelection>,
     /// Upper bound of the criterion of any layout; the criterion of the best layout if proved.
     pub upper: f64,
     /// Nodes visited.
@@ -62,7 +62,7 @@ struct Node {
 }
 
 struct Step {
-    found: Vec<Chosen>,
+    found: Vec<RowSelection>,
     children: Vec<Node>,
     work: f64,
 }
@@ -83,7 +83,7 @@ pub fn prove(
     let n = p.active.len();
     let rules = Rules::from_active(p.active, excludes);
     let mut known = p.incumbent;
-    let mut best: Option<Chosen> = None;
+    let mut best: Option<RowSelection> = None;
     let mut open = vec![Node {
         bound: p.upper,
         inside: Vec::new(),
@@ -160,14 +160,14 @@ fn information(p: &Problem, rows: &[u32]) -> Vec<f64> {
 }
 
 /// The criterion of a complete layout.
-fn layout(p: &Problem, rows: &[u32]) -> Option<Chosen> {
+fn layout(p: &Problem, rows: &[u32]) -> Option<RowSelection> {
     let point = p
         .active
         .criterion
         .evaluate_at(&information(p, rows), p.active.k)?;
     let mut rows: Vec<usize> = rows.iter().map(|&i| i as usize).collect();
     rows.sort_unstable();
-    Some(Chosen {
+    Some(RowSelection {
         rows,
         log_det: point.value,
     })
@@ -267,7 +267,7 @@ fn decide(
     known: f64,
     degree: f64,
     step: &mut Step,
-) -> Option<Relaxed> {
+) -> Option<RelaxationSolution> {
     let k = p.active.k as f64;
     let mut weights = weights.to_vec();
     let mut last = None;
@@ -354,7 +354,7 @@ fn refill(weights: &mut [f64], sub: &Active, s: f64) {
 }
 
 /// The heaviest rows that go together.
-fn choose_heaviest_rows(p: &Problem, rules: &Rules, node: &Node, s: usize) -> Option<Chosen> {
+fn choose_heaviest_rows(p: &Problem, rules: &Rules, node: &Node, s: usize) -> Option<RowSelection> {
     let mut order: Vec<usize> = (0..node.free.len()).collect();
     order.sort_by(|&a, &b| node.weights[b].total_cmp(&node.weights[a]).then(a.cmp(&b)));
     let mut rows = node.inside.clone();
@@ -378,7 +378,7 @@ enum Mark {
     Out,
 }
 
-fn marks(r: &Relaxed, sub: &Active, s: usize, known: f64, degree: f64) -> Vec<Mark> {
+fn marks(r: &RelaxationSolution, sub: &Active, s: usize, known: f64, degree: f64) -> Vec<Mark> {
     let mut largest = vec![f64::NEG_INFINITY; sub.n_groups];
     let mut members = vec![0; sub.n_groups];
     for (&g, &d) in sub.group.iter().zip(&r.d) {

@@ -5,8 +5,8 @@
 use super::candidates::{Angles, Candidates, Choice};
 use super::criterion::Criterion;
 use super::relax::relax;
-use super::relaxed::{Active, Relaxed};
-use super::variance_scan::{Priced, Report, price};
+use super::relaxation_solution::{Active, RelaxationSolution};
+use super::variance_scan::{CandidateVariance, Report, price};
 use crate::stop::Stop;
 use std::collections::{HashMap, HashSet};
 
@@ -48,7 +48,7 @@ pub struct Columns {
     /// Candidates of these rows.
     pub choices: Vec<Choice>,
     /// Weights of these rows, and `M`.
-    pub relaxed: Relaxed,
+    pub relaxed: RelaxationSolution,
     /// Upper bound of the `log det` of any layout.
     pub upper_bound: f64,
     /// `T` and its smallest term at the last pass.
@@ -186,7 +186,7 @@ fn first_angles(angles: &Angles, place: u32) -> Vec<Choice> {
 }
 
 /// Weights that fill every group alike.
-fn start(set: &RowSet, s: usize, prior: &[f64]) -> Option<Relaxed> {
+fn start(set: &RowSet, s: usize, prior: &[f64]) -> Option<RelaxationSolution> {
     let groups = set.active.n_groups;
     if groups < s {
         return None;
@@ -206,7 +206,12 @@ fn start(set: &RowSet, s: usize, prior: &[f64]) -> Option<Relaxed> {
 }
 
 /// `T` over the candidates priced at or above `threshold`: the sum of the `s` largest group maxima, and the least of them.
-pub fn top_of(priced: &[Priced], groups: &Groups, s: usize, threshold: f64) -> (f64, f64) {
+pub fn top_of(
+    priced: &[CandidateVariance],
+    groups: &Groups,
+    s: usize,
+    threshold: f64,
+) -> (f64, f64) {
     let mut best: Vec<f64> = match groups {
         Groups::Rows | Groups::Places => priced.iter().map(|p| p.d).collect(),
         Groups::Cliques(_) => {

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 
 /// A layout of small condition number.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Conditioned {
+pub struct ConditionedLayout {
     /// The gauges, by place and angle.
     pub gauges: Vec<Choice>,
     /// Condition number of its `S`, gauges that stay included.
@@ -47,7 +47,7 @@ pub fn find_least_condition(
     spec: &Spec,
     layout: &Layout,
     base: &[f64],
-) -> Option<Conditioned> {
+) -> Option<ConditionedLayout> {
     let k = c.n_loads();
     let many = usize::from(k > MANY);
     let choices = taking_part(c, &layout.gauges, MOST[many]);
@@ -68,7 +68,7 @@ pub fn find_least_condition(
     };
     let known: Vec<usize> = (0..layout.gauges.len()).collect();
     let [starts, perturbations] = if many == 1 { [2, 2] } else { [6, 6] };
-    let found: Vec<Option<Found>> = (0..starts)
+    let found: Vec<Option<ConditionedRows>> = (0..starts)
         .into_par_iter()
         .map(|n| {
             let seed = spec.effort.seed.wrapping_mul(7919).wrapping_add(n);
@@ -96,7 +96,7 @@ pub fn find_least_condition(
     let best = found.into_iter().fold(None, choose_better)?;
     let mut gauges: Vec<Choice> = best.rows.iter().map(|&i| choices[i]).collect();
     gauges.sort_by(|a, b| a.place.cmp(&b.place).then(a.angle.total_cmp(&b.angle)));
-    Some(Conditioned {
+    Some(ConditionedLayout {
         gauges,
         condition: best.condition,
         least: best.least,
@@ -144,19 +144,22 @@ fn greatest_common_divisor(a: usize, b: usize) -> usize {
     }
 }
 
-struct Found {
+struct ConditionedRows {
     rows: Vec<usize>,
     value: f64,
     condition: f64,
     least: f64,
 }
 
-fn choose_better(a: Option<Found>, b: Option<Found>) -> Option<Found> {
+fn choose_better(
+    a: Option<ConditionedRows>,
+    b: Option<ConditionedRows>,
+) -> Option<ConditionedRows> {
     match (a, b) {
         (Some(a), Some(b)) => {
             let least = a.least.min(b.least);
             let best = if b.value > a.value { b } else { a };
-            Some(Found { least, ..best })
+            Some(ConditionedRows { least, ..best })
         }
         (a, b) => a.or(b),
     }
@@ -204,7 +207,7 @@ impl<E: Fn(usize, usize) -> bool> Search<'_, E> {
         fits(rows, slot, i, self.excludes)
     }
 
-    fn improve(&self, mut rows: Vec<usize>) -> Option<Found> {
+    fn improve(&self, mut rows: Vec<usize>) -> Option<ConditionedRows> {
         let mut now = self
             .value(&self.information(&rows))
             .unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
@@ -234,7 +237,7 @@ impl<E: Fn(usize, usize) -> bool> Search<'_, E> {
                 break;
             }
         }
-        now.0.is_finite().then_some(Found {
+        now.0.is_finite().then_some(ConditionedRows {
             rows,
             value: now.0,
             condition: now.1,

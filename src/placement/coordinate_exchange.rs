@@ -4,8 +4,8 @@
 //! eq. 3.2.4).
 
 use super::criterion::Criterion;
-use super::relaxed::Active;
-use super::variance_table::{Packed, Table};
+use super::relaxation_solution::Active;
+use super::variance_table::{PackedRows, Table};
 use crate::linalg::spd;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -29,7 +29,7 @@ const DRAWS: usize = 12;
 /// Rows to choose from, with their exclusions.
 pub(super) struct List<'a, E> {
     pub active: &'a Active,
-    pub packed: Packed,
+    pub packed: PackedRows,
     pub prior: &'a [f64],
     /// True for two rows that can't both be chosen, and for a row with itself.
     excludes: &'a E,
@@ -41,7 +41,7 @@ impl<'a, E: Fn(usize, usize) -> bool> List<'a, E> {
     pub fn new(active: &'a Active, prior: &'a [f64], excludes: &'a E) -> Self {
         Self {
             active,
-            packed: Packed::from_active(active),
+            packed: PackedRows::from_active(active),
             prior,
             excludes,
             partners: vec![OnceLock::new(); active.len()],

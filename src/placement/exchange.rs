@@ -3,8 +3,8 @@
 //! Several starts and perturbations, all from a fixed seed.
 
 use super::coordinate_exchange::{CoordinateExchange, List};
-use super::relaxed::Active;
-use super::variance_table::Packed;
+use super::relaxation_solution::Active;
+use super::variance_table::PackedRows;
 use crate::linalg::spd;
 use crate::stop::Stop;
 use rand::{RngExt, SeedableRng};
@@ -24,7 +24,7 @@ pub struct Effort {
 
 /// Rows chosen (ascending) and their criterion.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Chosen {
+pub struct RowSelection {
     /// Indices into the rows.
     pub rows: Vec<usize>,
     /// The criterion: `log det` for D.
@@ -42,10 +42,10 @@ pub fn search(
     excludes: &(impl Fn(usize, usize) -> bool + Sync),
     effort: Effort,
     stop: &Stop,
-) -> Option<Chosen> {
+) -> Option<RowSelection> {
     let ridge = ridge(active, prior, weights);
     let list = List::new(active, prior, excludes);
-    let results: Vec<Option<Chosen>> = (0..effort.starts.max(1))
+    let results: Vec<Option<RowSelection>> = (0..effort.starts.max(1))
         .into_par_iter()
         .map(|start| {
             let mut rng = ChaCha8Rng::seed_from_u64(
@@ -96,13 +96,13 @@ pub fn search(
                 }
             }
             let log_det = value(active, prior, &best.1)?;
-            Some(Chosen {
+            Some(RowSelection {
                 rows: best.1,
                 log_det,
             })
         })
         .collect();
-    let mut best: Option<Chosen> = None;
+    let mut best: Option<RowSelection> = None;
     for r in results.into_iter().flatten() {
         if best.as_ref().is_none_or(|b| r.log_det > b.log_det) {
             best = Some(r);
@@ -192,7 +192,7 @@ fn draw_loosest_rows(
 /// Adds the row of largest variance until there are `s`.
 fn complete_layout(
     active: &Active,
-    packed: &Packed,
+    packed: &PackedRows,
     s: usize,
     ridge: &[f64],
     mut chosen: Vec<usize>,

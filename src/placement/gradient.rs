@@ -15,7 +15,7 @@ use std::collections::HashMap;
 const NO_SPREAD: f64 = 1e-6;
 
 /// A neighbouring shell that continues a shell smoothly.
-struct Beside {
+struct SmoothNeighbour {
     shell: ShellIx,
     /// From centre to centre, along the x and y axes of the first.
     way: [f64; 2],
@@ -83,7 +83,7 @@ fn find_adjacent_shells(
     model: &Model,
     edges: &HashMap<[u32; 2], Vec<ShellIx>>,
     shell: ShellIx,
-) -> Vec<Beside> {
+) -> Vec<SmoothNeighbour> {
     let Some(me) = model.shells.get(shell.us()) else {
         return Vec::new();
     };
@@ -112,7 +112,7 @@ fn find_adjacent_shells(
                 continue;
             }
             let way = axes * (there - at);
-            out.push(Beside {
+            out.push(SmoothNeighbour {
                 shell: other,
                 way: [way.x, way.y],
                 turn: [x.x / length, x.y / length],
@@ -124,7 +124,12 @@ fn find_adjacent_shells(
 }
 
 /// Gradients of the tensor along x and y, its components in the frame of the site's shell.
-fn slopes(bridge: Bridge, load: &LoadCaseOf, site: Site, near: &[Beside]) -> Option<[[f64; 3]; 2]> {
+fn slopes(
+    bridge: Bridge,
+    load: &LoadCaseOf,
+    site: Site,
+    near: &[SmoothNeighbour],
+) -> Option<[[f64; 3]; 2]> {
     let here = bridge_strain(bridge, load.case, site)?;
     let (mut a, mut b) = ([0.0; 3], [[0.0; 3]; 2]);
     for n in near {

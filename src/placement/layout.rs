@@ -6,12 +6,12 @@ use super::column_generation::{self, Columns, Groups};
 use super::exchange::Effort;
 use super::robust;
 use super::shortlist::{
-    Found, LIST, better_of, elimination, excluder, largest_variance_rows, list_of, polish, rows_of,
-    run, value_of,
+    LIST, ScoredLayout, better_of, elimination, excluder, largest_variance_rows, list_of, polish,
+    rows_of, run, value_of,
 };
 use super::spacing;
 use super::spec::{Loss, Spec};
-use super::variance_scan::{Priced, Report, price};
+use super::variance_scan::{CandidateVariance, Report, price};
 use std::collections::HashMap;
 use std::fmt;
 
@@ -122,7 +122,7 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
     // Loads asked for.
     let k = spec.criterion.degree(c.n_loads());
     let spaced = spec.spacing > 0.0 && !c.positions().is_empty();
-    let mut bound = Bound::from_candidates(c, spec, spaced)?;
+    let mut bound = LayoutBound::from_candidates(c, spec, spaced)?;
     let quick = Effort {
         starts: if spaced { 4 } else { 2 },
         perturbations: 0,
@@ -191,7 +191,7 @@ fn singular_error(c: &Candidates, spec: &Spec) -> PlaceError {
 }
 
 /// The relaxation: what no layout can pass.
-struct Bound {
+struct LayoutBound {
     /// Candidates of which a layout has one at most.
     groups: Groups,
     /// The relaxation as solved last.
@@ -202,7 +202,7 @@ struct Bound {
     passes: usize,
 }
 
-impl Bound {
+impl LayoutBound {
     fn from_candidates(c: &Candidates, spec: &Spec, spaced: bool) -> Result<Self, PlaceError> {
         let groups = if spaced || *c.angles() == Angles::Continuous {
             Groups::Places
@@ -246,10 +246,10 @@ fn solve_relaxed(c: &Candidates, spec: &Spec, groups: &Groups, warm: &[Choice]) 
 fn tighten(
     c: &Candidates,
     spec: &Spec,
-    bound: &mut Bound,
+    bound: &mut LayoutBound,
     quick: Effort,
-    mut best: Option<Found>,
-) -> Option<Found> {
+    mut best: Option<ScoredLayout>,
+) -> Option<ScoredLayout> {
     let k = spec.criterion.degree(c.n_loads());
     for _ in 0..CLIQUE_ROUNDS {
         if spec.stop.is_asked() {
@@ -289,10 +289,10 @@ fn tighten(
 fn exchange(
     c: &Candidates,
     spec: &Spec,
-    bound: &mut Bound,
-    list: &[Priced],
-    incumbent: Found,
-) -> Found {
+    bound: &mut LayoutBound,
+    list: &[CandidateVariance],
+    incumbent: ScoredLayout,
+) -> ScoredLayout {
     let found = run(c, spec, list, &bound.col, spec.effort, Some(&incumbent));
     let mut best = better_of(Some(incumbent.clone()), found).unwrap_or(incumbent);
     // A list that was cut may lack what this layout lacks.
@@ -321,14 +321,14 @@ fn exchange(
 
 /// A layout and what is known of those that could be better.
 struct End {
-    found: Found,
+    found: ScoredLayout,
     proved: bool,
     alive: Option<usize>,
     nodes: usize,
 }
 
 impl End {
-    fn without_proof(found: Found) -> Self {
+    fn without_proof(found: ScoredLayout) -> Self {
         Self {
             found,
             proved: false,
@@ -339,7 +339,7 @@ impl End {
 }
 
 /// The layout held against the bound, and the proof where the bound leaves room and one is asked for.
-fn certify(c: &Candidates, spec: &Spec, bound: &mut Bound, found: Found) -> End {
+fn certify(c: &Candidates, spec: &Spec, bound: &mut LayoutBound, found: ScoredLayout) -> End {
     let mut end = End::without_proof(found);
     end.proved = end.found.1 >= bound.upper - branch_and_bound::SAME;
     if end.proved || !(spec.proof > 0.0) || *c.angles() == Angles::Continuous {
@@ -359,7 +359,12 @@ fn certify(c: &Candidates, spec: &Spec, bound: &mut Bound, found: Found) -> End 
 }
 
 /// Returns the layout near `gauges` that keeps the most information after the worst loss; `None` if no better layout is found.
-fn robust_of(c: &Candidates, spec: &Spec, list: &[Priced], gauges: &[Choice]) -> Option<Found> {
+fn robust_of(
+    c: &Candidates,
+    spec: &Spec,
+    list: &[CandidateVariance],
+    gauges: &[Choice],
+) -> Option<ScoredLayout> {
     let mut choices: Vec<Choice> = gauges.to_vec();
     choices.extend(
         list.iter()

@@ -30,7 +30,8 @@ mod perturbation;
 pub mod quality;
 pub mod region;
 pub mod relax;
-mod relaxed;
+mod relaxation_solution;
+pub mod required_places;
 pub mod robust;
 mod role;
 mod shortlist;
@@ -39,7 +40,6 @@ pub mod spacing;
 mod spec;
 pub mod variance_scan;
 mod variance_table;
-pub mod wanted;
 
 pub use criterion::Criterion;
 pub use layout::{Layout, PlaceError, place};

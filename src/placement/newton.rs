@@ -4,7 +4,7 @@
 //! weights by moving weight between pairs of rows, which costs a row of the matrix each, and the step goes towards what it gives.
 
 use super::criterion::Criterion;
-use super::relaxed::{Active, FULL, Relaxed, pulls};
+use super::relaxation_solution::{Active, FULL, RelaxationSolution, pulls};
 use crate::linalg::spd;
 
 /// Rows without weight that join a step at most, by loads.
@@ -21,7 +21,7 @@ pub(super) fn step(
     active: &Active,
     prior: &[f64],
     weights: &[f64],
-    state: &Relaxed,
+    state: &RelaxationSolution,
 ) -> Option<Vec<f64>> {
     let mut rows: Vec<usize> = (0..active.len()).filter(|&i| weights[i] > 0.0).collect();
     let mut out: Vec<usize> = (0..active.len()).filter(|&i| weights[i] <= 0.0).collect();
@@ -59,7 +59,7 @@ struct Model {
 }
 
 impl Model {
-    fn from_rows(active: &Active, state: &Relaxed, rows: &[usize]) -> Self {
+    fn from_rows(active: &Active, state: &RelaxationSolution, rows: &[usize]) -> Self {
         let (k, f) = (active.k, rows.len());
         let mut v = vec![0.0; f * k];
         for (&i, out) in rows.iter().zip(v.chunks_exact_mut(k)) {

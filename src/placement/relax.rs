@@ -8,7 +8,7 @@
 
 use super::criterion::Criterion;
 use super::newton;
-use super::relaxed::{Active, FULL, Relaxed, pulls};
+use super::relaxation_solution::{Active, FULL, RelaxationSolution, pulls};
 use crate::linalg::spd;
 
 /// Sum of the `s` largest group maxima, and the least of those `s`.
@@ -35,7 +35,7 @@ pub fn relax(
     mut weights: Vec<f64>,
     tolerance: f64,
     sweeps: usize,
-) -> Option<Relaxed> {
+) -> Option<RelaxationSolution> {
     let (k, n) = (active.k, active.len());
     let mut state = measure(active, s, prior, &weights)?;
     let mut slack = vec![1.0; active.n_groups];
@@ -381,7 +381,12 @@ fn best_step(full: &Pair, nuisance: Option<&Pair>, cap: f64) -> f64 {
     low
 }
 
-fn measure(active: &Active, s: usize, prior: &[f64], weights: &[f64]) -> Option<Relaxed> {
+fn measure(
+    active: &Active,
+    s: usize,
+    prior: &[f64],
+    weights: &[f64],
+) -> Option<RelaxationSolution> {
     let k = active.k;
     let mut m = prior.to_vec();
     for (i, &w) in weights.iter().enumerate() {
@@ -409,7 +414,7 @@ fn measure(active: &Active, s: usize, prior: &[f64], weights: &[f64]) -> Option<
         s,
     );
     let gap = ((prior_trace + top) / active.criterion.degree(k) as f64).ln();
-    Some(Relaxed {
+    Some(RelaxationSolution {
         weights: Vec::new(),
         point,
         prior_trace,

@@ -5,7 +5,7 @@
 use super::coordinate_exchange::LEAST_GAIN;
 use super::exchange::Effort;
 use super::perturbation::move_gauges;
-use super::relaxed::Active;
+use super::relaxation_solution::Active;
 use crate::linalg::spd;
 use crate::stop::Stop;
 use rand::{RngExt, SeedableRng};
@@ -76,9 +76,9 @@ pub fn search(
     found.into_iter().fold(None, choose_better)
 }
 
-type Found = Option<(Vec<usize>, f64)>;
+type ScoredRows = Option<(Vec<usize>, f64)>;
 
-fn choose_better(a: Found, b: Found) -> Found {
+fn choose_better(a: ScoredRows, b: ScoredRows) -> ScoredRows {
     match (a, b) {
         (Some(a), Some(b)) => Some(if b.1 > a.1 { b } else { a }),
         (a, b) => a.or(b),

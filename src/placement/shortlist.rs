@@ -3,10 +3,10 @@
 use super::candidates::{Angles, Candidates, Choice};
 use super::column_generation::{Columns, Groups};
 use super::exchange::{self, Effort};
-use super::relaxed::Active;
+use super::relaxation_solution::Active;
 use super::spacing;
 use super::spec::Spec;
-use super::variance_scan::{Priced, Report, price};
+use super::variance_scan::{CandidateVariance, Report, price};
 use crate::linalg::spd;
 use std::collections::{HashMap, HashSet};
 
@@ -14,10 +14,10 @@ use std::collections::{HashMap, HashSet};
 pub(super) const LIST: usize = 700;
 
 /// A layout with its criterion.
-pub(super) type Found = (Vec<Choice>, f64);
+pub(super) type ScoredLayout = (Vec<Choice>, f64);
 
 /// The better of two.
-pub(super) fn better_of(a: Option<Found>, b: Option<Found>) -> Option<Found> {
+pub(super) fn better_of(a: Option<ScoredLayout>, b: Option<ScoredLayout>) -> Option<ScoredLayout> {
     match (a, b) {
         (Some(a), Some(b)) => Some(if b.1 > a.1 { b } else { a }),
         (a, b) => a.or(b),
@@ -31,7 +31,12 @@ pub(super) fn elimination(col: &Columns, k: usize, incumbent: f64) -> f64 {
 }
 
 /// The rows for an exchange: those with weight, then the best-priced, at most [`LIST`], none under `floor`.
-pub(super) fn list_of(c: &Candidates, col: &Columns, groups: &Groups, floor: f64) -> Vec<Priced> {
+pub(super) fn list_of(
+    c: &Candidates,
+    col: &Columns,
+    groups: &Groups,
+    floor: f64,
+) -> Vec<CandidateVariance> {
     let report = if *c.angles() == Angles::Continuous {
         Report::BestOfPlace
     } else {
@@ -43,7 +48,7 @@ pub(super) fn list_of(c: &Candidates, col: &Columns, groups: &Groups, floor: f64
         threshold = (0.5 * threshold).max(floor);
         priced = price(c, &col.relaxed.point.root, threshold, report, LIST);
     }
-    let order = |a: &Priced, b: &Priced| {
+    let order = |a: &CandidateVariance, b: &CandidateVariance| {
         b.d.total_cmp(&a.d)
             .then((a.choice.place, a.choice.step).cmp(&(b.choice.place, b.choice.step)))
     };
@@ -57,7 +62,7 @@ pub(super) fn list_of(c: &Candidates, col: &Columns, groups: &Groups, floor: f64
         .collect();
     for (i, &choice) in col.choices.iter().enumerate() {
         if col.relaxed.weights[i] > 0.0 && !seen.contains(&(choice.place, choice.angle.to_bits())) {
-            priced.push(Priced {
+            priced.push(CandidateVariance {
                 d: col.relaxed.d[i],
                 choice,
             });
@@ -88,7 +93,11 @@ pub(super) fn list_of(c: &Candidates, col: &Columns, groups: &Groups, floor: f64
 
 /// The rows whose variance in a layout is largest: an exchange of gauge `j` for row `i` can gain only where `d_i > d_j`, because
 /// `(1 + d_i)(1 - d_j) + d_ij^2 <= 1 + d_i - d_j`.
-pub(super) fn largest_variance_rows(c: &Candidates, spec: &Spec, gauges: &[Choice]) -> Vec<Priced> {
+pub(super) fn largest_variance_rows(
+    c: &Candidates,
+    spec: &Spec,
+    gauges: &[Choice],
+) -> Vec<CandidateVariance> {
     let k = c.n_loads();
     let mut m = spec.prior.clone();
     for &g in gauges {
@@ -114,7 +123,7 @@ pub(super) fn largest_variance_rows(c: &Candidates, spec: &Spec, gauges: &[Choic
 }
 
 /// The dearest first.
-fn by_price(a: &Priced, b: &Priced) -> std::cmp::Ordering {
+fn by_price(a: &CandidateVariance, b: &CandidateVariance) -> std::cmp::Ordering {
     b.d.total_cmp(&a.d)
         .then((a.choice.place, a.choice.step).cmp(&(b.choice.place, b.choice.step)))
 }
@@ -123,11 +132,11 @@ fn by_price(a: &Priced, b: &Priced) -> std::cmp::Ordering {
 pub(super) fn run(
     c: &Candidates,
     spec: &Spec,
-    list: &[Priced],
+    list: &[CandidateVariance],
     col: &Columns,
     effort: Effort,
-    known: Option<&Found>,
-) -> Option<Found> {
+    known: Option<&ScoredLayout>,
+) -> Option<ScoredLayout> {
     let mut choices: Vec<Choice> = list.iter().map(|p| p.choice).collect();
     let mut index: HashMap<(u32, u64), usize> = choices
         .iter()
@@ -210,7 +219,7 @@ pub(super) fn polish(
     spec: &Spec,
     mut gauges: Vec<Choice>,
     mut log_det: f64,
-) -> Found {
+) -> ScoredLayout {
     let k = c.n_loads();
     for _ in 0..20 {
         let before = log_det;

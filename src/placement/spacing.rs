@@ -1,6 +1,6 @@
 //! Minimum distance between gauges: which places exclude each other, and a bound that knows of it.
 
-use super::variance_scan::Priced;
+use super::variance_scan::CandidateVariance;
 use std::collections::HashMap;
 
 /// Distance of two places.
@@ -22,7 +22,7 @@ pub fn too_close(a: [f64; 3], b: [f64; 3], spacing: f64) -> bool {
 /// separate groups. Any such partition gives a valid bound.
 pub fn cliques(
     n_places: usize,
-    priced: &[Priced],
+    priced: &[CandidateVariance],
     positions: &[[f64; 3]],
     spacing: f64,
 ) -> Vec<u32> {

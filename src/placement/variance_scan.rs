@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 /// A candidate and its variance (an upper bound within 1e-7 where the angle is continuous).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Priced {
+pub struct CandidateVariance {
     /// `a' M^-1 a`.
     pub d: f64,
     /// The candidate.
@@ -33,7 +33,7 @@ pub fn price(
     threshold: f64,
     report: Report,
     keep: usize,
-) -> Vec<Priced> {
+) -> Vec<CandidateVariance> {
     let k = c.n_loads();
     let comp = c.components();
     let w = pad(linv, k);
@@ -46,7 +46,7 @@ pub fn price(
         angle_variance::phases(std::f64::consts::PI * i as f64 / SAMPLES as f64)
     });
     let arch = pulp::Arch::new();
-    let lists: Vec<Vec<Priced>> = c
+    let lists: Vec<Vec<CandidateVariance>> = c
         .blocks()
         .par_chunks((k * comp * LANES).max(1) * CHUNK)
         .enumerate()
@@ -61,7 +61,7 @@ pub fn price(
                         for (lane, &raw) in d.iter().enumerate().take(lanes) {
                             let d = raw / c.fixed_variance(first + lane);
                             if d >= threshold {
-                                out.push(Priced {
+                                out.push(CandidateVariance {
                                     d,
                                     choice: Choice {
                                         place: (first + lane) as u32,
@@ -82,7 +82,7 @@ pub fn price(
                             if !angle_variance::stays_under(&f, &v, threshold, &samples) {
                                 let (angle, d) = angle_variance::largest_ratio(&f, &v, &samples);
                                 if d >= threshold {
-                                    out.push(Priced {
+                                    out.push(CandidateVariance {
                                         d,
                                         choice: Choice {
                                             place: p as u32,
@@ -94,11 +94,11 @@ pub fn price(
                             }
                             continue;
                         }
-                        let mut best: Option<Priced> = None;
+                        let mut best: Option<CandidateVariance> = None;
                         for (step, cs) in phases.iter().enumerate() {
                             let d = angle_variance::value(&f, cs) / angle_variance::value(&v, cs);
                             if d >= threshold {
-                                let item = Priced {
+                                let item = CandidateVariance {
                                     d,
                                     choice: Choice {
                                         place: p as u32,
@@ -120,7 +120,7 @@ pub fn price(
                 }
             });
             if out.len() > keep {
-                out.select_nth_unstable_by(keep - 1, |a: &Priced, b| {
+                out.select_nth_unstable_by(keep - 1, |a: &CandidateVariance, b| {
                     b.d.total_cmp(&a.d).then(order(a, b))
                 });
                 out.truncate(keep);
@@ -132,7 +132,7 @@ pub fn price(
     lists.concat()
 }
 
-fn order(a: &Priced, b: &Priced) -> std::cmp::Ordering {
+fn order(a: &CandidateVariance, b: &CandidateVariance) -> std::cmp::Ordering {
     (a.choice.place, a.choice.step).cmp(&(b.choice.place, b.choice.step))
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Rows lie in blocks of [`WIDE`], a column after the other, so that products of all rows with a vector run in vector registers.
 
-use super::relaxed::Active;
+use super::relaxation_solution::Active;
 use crate::linalg::spd;
 
 /// Rows handled together.
@@ -10,7 +10,7 @@ const WIDE: usize = 16;
 
 /// The rows of a list in blocks, the last one filled up with zeros.
 #[derive(Clone, Debug)]
-pub(super) struct Packed {
+pub(super) struct PackedRows {
     k: usize,
     /// Rows, a multiple of [`WIDE`].
     n: usize,
@@ -18,7 +18,7 @@ pub(super) struct Packed {
     arch: pulp::Arch,
 }
 
-impl Packed {
+impl PackedRows {
     pub fn from_active(active: &Active) -> Self {
         let k = active.k;
         let n = active.len().next_multiple_of(WIDE);
@@ -93,7 +93,7 @@ pub(super) struct Table {
 }
 
 impl Table {
-    pub fn new(active: &Active, packed: &Packed, inverse: Vec<f64>, chosen: &[usize]) -> Self {
+    pub fn new(active: &Active, packed: &PackedRows, inverse: Vec<f64>, chosen: &[usize]) -> Self {
         let n = packed.len();
         let mut t = Self {
             d: vec![0.0; n],
@@ -132,7 +132,7 @@ impl Table {
     /// The largest factor above `least` of a row in place of `j` in `slot`, and the row; `mask` is added to the factors.
     pub fn find_best_row(
         &self,
-        packed: &Packed,
+        packed: &PackedRows,
         slot: usize,
         j: usize,
         mask: &[f64],
@@ -170,7 +170,7 @@ impl Table {
     pub fn swap(
         &mut self,
         active: &Active,
-        packed: &Packed,
+        packed: &PackedRows,
         chosen: &[usize],
         slot: usize,
         i: usize,

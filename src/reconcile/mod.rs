@@ -6,10 +6,10 @@
 mod cause;
 mod checks;
 pub mod effect;
+mod effect_removal;
 pub mod motion;
 mod observation;
 mod outcome;
-mod proven;
 mod rules;
 mod search;
 pub mod strain;
@@ -17,8 +17,8 @@ pub mod strain;
 pub use cause::{Cause, CauseOutcome, CauseSet, weigh_causes};
 pub use observation::Observations;
 pub use outcome::{
-    ChannelGap, Detectable, Gap, GapBasis, GapNumbers, LoadShift, Misfit, NamedEffect, Outcome,
+    ChannelGap, DetectionLimit, Gap, GapBasis, GapNumbers, LoadShift, Misfit, NamedEffect, Outcome,
     Rival, SmoothAt, Verdict,
 };
 pub use rules::{MotionRules, Rule, StrainRules};
-pub use search::{Addition, Breadth, Scored, Scorer, search, search_near, settle};
+pub use search::{Addition, Breadth, ScoredSet, Scorer, search, search_near, settle};

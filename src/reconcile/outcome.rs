@@ -175,7 +175,7 @@ impl LoadShift {
 
 /// Smallest size of an effect that these data would show.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Detectable {
+pub struct DetectionLimit {
     /// Id with place.
     pub id: String,
     /// Size.
@@ -258,7 +258,7 @@ pub struct Outcome {
     /// Measurement that would separate the first two explanations, as text.
     pub next_measurement: String,
     /// Smallest sizes of effects that these data would show.
-    pub detectable: Vec<Detectable>,
+    pub detectable: Vec<DetectionLimit>,
     /// Findings on wrong recorded loads. If there are any, no effect is searched for.
     pub input_faults: Vec<Finding>,
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 /// A set of effects with its evidence.
 #[derive(Clone, Debug)]
-pub struct Scored<F> {
+pub struct ScoredSet<F> {
     /// Candidate numbers, ascending.
     pub set: Vec<usize>,
     /// Log evidence, prior weights included.
@@ -34,10 +34,10 @@ pub trait Scorer {
     fn score(
         &mut self,
         set: &[usize],
-        from: Option<(&Scored<Self::Fit>, Option<&Addition>)>,
-    ) -> Option<Scored<Self::Fit>>;
+        from: Option<(&ScoredSet<Self::Fit>, Option<&Addition>)>,
+    ) -> Option<ScoredSet<Self::Fit>>;
     /// Candidates to add to `base`, best first.
-    fn screen(&mut self, base: &Scored<Self::Fit>) -> Vec<Addition>;
+    fn screen(&mut self, base: &ScoredSet<Self::Fit>) -> Vec<Addition>;
     /// Returns whether both candidates can be in one set.
     fn is_compatible_pair(&self, a: usize, b: usize) -> bool;
     /// Returns a number that is common to candidates without a relevant difference. The screen keeps few candidates of each number.
@@ -66,8 +66,8 @@ pub struct Breadth {
 }
 
 /// Every set that was scored, best first; the empty set is always among them.
-pub fn search<S: Scorer>(scorer: &mut S, breadth: Breadth) -> Vec<Scored<S::Fit>> {
-    let mut seen: Seen<S::Fit> = BTreeMap::new();
+pub fn search<S: Scorer>(scorer: &mut S, breadth: Breadth) -> Vec<ScoredSet<S::Fit>> {
+    let mut seen: ScoreCache<S::Fit> = BTreeMap::new();
     let Some(null) = scorer.score(&[], None) else {
         return Vec::new();
     };
@@ -102,9 +102,9 @@ pub fn search<S: Scorer>(scorer: &mut S, breadth: Breadth) -> Vec<Scored<S::Fit>
 pub fn search_near<S: Scorer>(
     scorer: &mut S,
     breadth: Breadth,
-    known: &[Scored<S::Fit>],
-) -> Vec<Scored<S::Fit>> {
-    let mut seen: Seen<S::Fit> = BTreeMap::new();
+    known: &[ScoredSet<S::Fit>],
+) -> Vec<ScoredSet<S::Fit>> {
+    let mut seen: ScoreCache<S::Fit> = BTreeMap::new();
     seen.insert(Vec::new(), scorer.score(&[], None));
     for old in known {
         if scorer.is_stopped() {
@@ -123,28 +123,28 @@ pub fn search_near<S: Scorer>(
     best_first(seen)
 }
 
-fn best_first<F>(seen: Seen<F>) -> Vec<Scored<F>> {
+fn best_first<F>(seen: ScoreCache<F>) -> Vec<ScoredSet<F>> {
     let mut all: Vec<_> = seen.into_values().flatten().collect();
     all.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
     all
 }
 
 /// The best set each member of which is decisive: dropping any costs at least `decisive`.
-pub fn settle<F: Clone>(all: &[Scored<F>], decisive: f64) -> Option<Scored<F>> {
-    let penalised = |s: &Scored<F>| s.log_evidence - decisive * s.set.len() as f64;
+pub fn settle<F: Clone>(all: &[ScoredSet<F>], decisive: f64) -> Option<ScoredSet<F>> {
+    let penalised = |s: &ScoredSet<F>| s.log_evidence - decisive * s.set.len() as f64;
     all.iter()
         .max_by(|a, b| penalised(a).total_cmp(&penalised(b)))
         .cloned()
 }
 
-type Seen<F> = BTreeMap<Vec<usize>, Option<Scored<F>>>;
+type ScoreCache<F> = BTreeMap<Vec<usize>, Option<ScoredSet<F>>>;
 
 fn extend<S: Scorer>(
     scorer: &mut S,
-    base: &Scored<S::Fit>,
+    base: &ScoredSet<S::Fit>,
     breadth: Breadth,
-    seen: &mut Seen<S::Fit>,
-) -> Vec<Scored<S::Fit>> {
+    seen: &mut ScoreCache<S::Fit>,
+) -> Vec<ScoredSet<S::Fit>> {
     /// Largest number of candidates tried with one kin number, such as candidates at the same gauge.
     const PER_KIN: usize = 3;
     /// Approximate gains below this have not been seen to turn into decisive ones.
@@ -191,7 +191,7 @@ fn extend<S: Scorer>(
 }
 
 /// Replaces each member of the best set by what explains its absence best, and by its other forms, until nothing improves.
-fn exchange<S: Scorer>(scorer: &mut S, breadth: Breadth, seen: &mut Seen<S::Fit>) {
+fn exchange<S: Scorer>(scorer: &mut S, breadth: Breadth, seen: &mut ScoreCache<S::Fit>) {
     /// Rounds: each strictly improves; two are seen in practice.
     const ROUNDS: usize = 4;
     for _ in 0..ROUNDS {

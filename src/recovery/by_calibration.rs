@@ -1,29 +1,29 @@
 //! Recovers all runs by a calibrated S, and handles suspect gauges, runs that no loads explain, and runs with several loads.
 
-use super::calibrated::estimate;
+use super::calibrated_loads::estimate;
 use super::errors::ErrorModel;
 use super::misfit::Alternatives;
 use super::types::{Readings, RunEstimate};
 use super::verdict::NOT_SOLVABLE;
-use super::{misfit, taught, unlike};
+use super::{misfit, simultaneous_loads, uncalibrated_strain};
 use crate::finding::{Finding, Severity};
-use crate::input_faults::Handling;
+use crate::input_faults::FaultTreatment;
 use crate::sensitivity::{Sensitivity, Uncertainty};
 use rayon::prelude::*;
 
 /// Returns the loads of every run, and findings. Gauges that contradict the other gauges are reported. They are excluded if S was estimated from runs
-/// and `handling` asks for it. A run that no loads explain gets wider intervals ([`unlike::estimate_loosely`]). A run with several loads at once,
-/// after calibration runs with one load each, is widened as well ([`taught::check`]).
+/// and `handling` asks for it. A run that no loads explain gets wider intervals ([`uncalibrated_strain::estimate_loosely`]). A run with several loads at once,
+/// after calibration runs with one load each, is widened as well ([`simultaneous_loads::check`]).
 pub(super) fn recover(
     s: &Sensitivity,
     readings: &[Readings],
     errors: ErrorModel,
-    (known, (handling, alternatives)): (&Uncertainty, (Handling, &mut Alternatives)),
+    (known, (handling, alternatives)): (&Uncertainty, (FaultTreatment, &mut Alternatives)),
 ) -> (Vec<RunEstimate>, Vec<Finding>) {
     // A model with a stated error, of its mesh too, is recovered from as measured.
     let handling = match known.dof.is_finite() {
         true => handling,
-        false => Handling::AsMeasured,
+        false => FaultTreatment::AsMeasured,
     };
     // Without an estimated scatter there is no limit for the deviation of a gauge.
     let (mut findings, readings) = match known.is_tested {
@@ -35,14 +35,14 @@ pub(super) fn recover(
         .map(|r| estimate(s, r, errors, known))
         .collect();
     if known.is_tested {
-        findings.extend(unlike::check(&s.gauges, &runs, known));
+        findings.extend(uncalibrated_strain::check(&s.gauges, &runs, known));
     }
     for (run, r) in runs.iter_mut().zip(&readings) {
-        if unlike::is_unlike(run, known) {
-            *run = unlike::estimate_loosely(s, r, errors, known);
+        if uncalibrated_strain::is_unlike(run, known) {
+            *run = uncalibrated_strain::estimate_loosely(s, r, errors, known);
         }
     }
-    findings.extend(taught::check(&mut runs, known));
+    findings.extend(simultaneous_loads::check(&mut runs, known));
     let unsolved = runs.iter().filter(|r| r.rank < s.loads.len());
     findings.extend(unsolved.map(|r| {
         Finding::new(

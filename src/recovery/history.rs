@@ -4,8 +4,8 @@ use super::dynamic::Doubt;
 use super::errors::ErrorModel;
 use super::gain::Gain;
 use super::kernel::Samples;
-use super::missing::Missing;
-use super::plausible::LARGEST_STRAIN;
+use super::missing_readings::MissingReadings;
+use super::reading_plausibility::LARGEST_STRAIN;
 use super::sums::Sums;
 use super::types::Widening;
 use crate::sensitivity::Sensitivity;
@@ -121,7 +121,7 @@ impl Filter {
         samples: &[f64],
         to_strain: f64,
         out: &mut SampleLoads,
-        missing: &mut Missing,
+        missing: &mut MissingReadings,
     ) {
         missing.merge(&self.recover(samples, to_strain, out, None));
     }
@@ -132,7 +132,7 @@ impl Filter {
         to_strain: f64,
         out: &mut SampleLoads,
         mut sums: Option<&mut Sums>,
-    ) -> Missing {
+    ) -> MissingReadings {
         let (n, k) = (self.n_gauges(), self.n_loads());
         let before = out.values.len() / k.max(1);
         let mut gaps = Vec::new();
@@ -146,7 +146,7 @@ impl Filter {
             gaps: &mut gaps,
             sums: sums.as_deref_mut(),
         });
-        let mut missing = Missing::new(k);
+        let mut missing = MissingReadings::new(k);
         missing.whole = (samples.len() / n.max(1) - gaps.len()) as u64;
         for at in gaps {
             let readings = samples.get(at * n..(at + 1) * n).unwrap_or_default();
@@ -171,7 +171,7 @@ impl Filter {
         out: &mut [f64],
         at: usize,
         sums: Option<&mut Sums>,
-        missing: &mut Missing,
+        missing: &mut MissingReadings,
     ) -> Option<Arc<Gain>> {
         let mut strain: Vec<f64> = readings
             .iter()

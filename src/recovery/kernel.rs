@@ -1,6 +1,6 @@
 //! The arithmetic of a streamed record with the vector instructions that the processor has: `f = G y`, residual `y - S f`.
 
-use super::plausible::LARGEST_STRAIN;
+use super::reading_plausibility::LARGEST_STRAIN;
 use super::sums::Sums;
 use pulp::Simd;
 

@@ -1,13 +1,13 @@
 //! How well readings fit loads, as the search for wrong inputs asks it: by stated errors, or by those of a calibrated S.
 
-use super::calibrated::estimate;
+use super::calibrated_loads::estimate;
 use super::errors::ErrorModel;
-use super::solved::solve;
+use super::run_estimates::solve;
 use super::types::{Readings, RunEstimate};
 use crate::estimate::{NORMAL_95, student};
 use crate::finding::Finding;
 use crate::input_faults::{
-    AlternativeRows, Fitted, Handling, Inputs, Misfit, Rules, search_faults,
+    AlternativeRows, FaultTreatment, InputFit, Inputs, Misfit, Rules, search_faults,
 };
 use crate::linalg::Matrix;
 use crate::sensitivity::{Sensitivity, Uncertainty};
@@ -30,7 +30,7 @@ fn spread_over(readings: &[Readings], most: usize) -> Vec<Readings> {
 }
 
 /// Readings that loads are recovered from.
-struct Recovering<'a> {
+struct RecoveryInput<'a> {
     s: Sensitivity,
     readings: Vec<Readings>,
     errors: ErrorModel,
@@ -38,7 +38,7 @@ struct Recovering<'a> {
     known: Option<&'a Uncertainty>,
 }
 
-impl<'a> Recovering<'a> {
+impl<'a> RecoveryInput<'a> {
     fn new(
         s: &Sensitivity,
         readings: &[Readings],
@@ -70,7 +70,7 @@ fn with_rows(s: &Sensitivity, values: Matrix) -> Sensitivity {
     }
 }
 
-impl Misfit for Recovering<'_> {
+impl Misfit for RecoveryInput<'_> {
     fn inputs(&self) -> Inputs {
         Inputs {
             strain: self.readings.iter().map(|r| r.strain.clone()).collect(),
@@ -82,7 +82,7 @@ impl Misfit for Recovering<'_> {
         self.errors.noise
     }
 
-    fn fit(&self, inputs: &Inputs) -> Fitted {
+    fn fit(&self, inputs: &Inputs) -> InputFit {
         let s = with_rows(&self.s, inputs.rows.clone());
         let changed = self.readings.iter().zip(&inputs.strain);
         let readings: Vec<Readings> = changed
@@ -103,7 +103,7 @@ impl Misfit for Recovering<'_> {
             each.map(|l| [r.estimate.values[*l], NORMAL_95 * r.estimate.sigma(*l)])
                 .collect()
         };
-        Fitted {
+        InputFit {
             chi2: runs.iter().map(|r| r.chi2).sum(),
             dof: runs.iter().map(|r| r.dof).sum(),
             loads: runs.iter().map(loads).collect(),
@@ -119,11 +119,11 @@ pub(super) fn faults_by_stated_errors(
     errors: ErrorModel,
     alternatives: &mut dyn FnMut() -> Vec<AlternativeRows>,
 ) -> Vec<Finding> {
-    let misfit = Recovering::new(s, readings, errors, None);
+    let misfit = RecoveryInput::new(s, readings, errors, None);
     let found = search_faults(&misfit, alternatives, &Rules::STATED);
     found
         .iter()
-        .map(|f| f.finding(&s.gauges, Handling::AsMeasured))
+        .map(|f| f.finding(&s.gauges, FaultTreatment::AsMeasured))
         .collect()
 }
 
@@ -133,7 +133,7 @@ pub(super) fn faults_by_calibration(
     readings: &[Readings],
     errors: ErrorModel,
     known: &Uncertainty,
-    (handling, alternatives): (Handling, &mut dyn FnMut() -> Vec<AlternativeRows>),
+    (handling, alternatives): (FaultTreatment, &mut dyn FnMut() -> Vec<AlternativeRows>),
 ) -> (Vec<Finding>, Vec<Readings>) {
     let mut readings = readings.to_vec();
     // Where S does not tell the loads apart, strain of what it knows nothing of is no gauge's fault.
@@ -141,7 +141,7 @@ pub(super) fn faults_by_calibration(
     if !readings.iter().any(apart) {
         return (Vec::new(), readings);
     }
-    let misfit = Recovering::new(s, &readings, errors, Some(known));
+    let misfit = RecoveryInput::new(s, &readings, errors, Some(known));
     // Student's t with the degrees of freedom of the scatter, one gauge of all (Bonferroni).
     let share = 0.5 * FALSE_ALARM / s.gauges.len().max(1) as f64;
     let sigmas = match known.dof.is_finite() {
@@ -149,7 +149,7 @@ pub(super) fn faults_by_calibration(
         false => Rules::STATED.named,
     };
     let found = search_faults(&misfit, alternatives, &Rules::of_scatter(sigmas));
-    if handling == Handling::LeftOut {
+    if handling == FaultTreatment::LeftOut {
         for g in found.iter().flat_map(|f| f.fault.gauges()) {
             readings.iter_mut().for_each(|r| r.strain[g] = f64::NAN);
         }

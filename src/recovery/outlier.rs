@@ -1,10 +1,10 @@
 //! A gauge with an error larger than the errors of the others, and its effect on the loads.
 
-use super::dynamic::Beyond;
+use super::dynamic::AddedCovariance;
 use super::errors::ErrorModel;
 use super::gain::Gain;
-use super::residuals::{GaugeTest, Judged};
-use super::solved::Solved;
+use super::residuals::{GaugeTest, PatternTest};
+use super::run_estimates::RunEstimates;
 use super::types::{GAUGE_SUSPECT, Readings, Shift, ShiftKind, Widening};
 use crate::estimate::{NORMAL_95, student_95};
 use crate::estimate::{chi_square_tail, student_tail};
@@ -45,9 +45,9 @@ pub(super) struct Suspects {
 pub(super) fn check(
     s: &Sensitivity,
     readings: &[Readings],
-    (solved, beyond): (&Solved, &[Beyond]),
+    (solved, beyond): (&RunEstimates, &[AddedCovariance]),
     errors: ErrorModel,
-    judged: Option<&Judged>,
+    judged: Option<&PatternTest>,
 ) -> Suspects {
     let mut out = Suspects {
         findings: Vec::new(),
@@ -141,7 +141,7 @@ const OF_NOISE: f64 = 0.5;
 fn by_others(
     s: &Sensitivity,
     readings: &[Readings],
-    solved: &Solved,
+    solved: &RunEstimates,
     errors: ErrorModel,
     gauge: usize,
 ) -> Option<[f64; 2]> {
@@ -248,7 +248,7 @@ impl Suspect {
 
 /// The gauge with the largest error relative to its uncertainty. An error shifts the loads, and their covariance with them, which hides a part of it:
 /// the largest ones are weighed with the loads that the corrected reading gives.
-fn suspect(judged: &Judged) -> Option<Suspect> {
+fn suspect(judged: &PatternTest) -> Option<Suspect> {
     let joint = &judged.joint;
     let mut order: Vec<&GaugeTest> = joint.gauges.iter().collect();
     order.sort_by(|a, b| b.t.abs().total_cmp(&a.t.abs()));
@@ -265,8 +265,8 @@ fn suspect(judged: &Judged) -> Option<Suspect> {
 }
 
 /// Returns the error of a gauge computed again with the loads of all runs, after the reading of that gauge is corrected by the error.
-fn put_right(judged: &Judged, first: &GaugeTest) -> Option<Suspect> {
-    let Judged {
+fn put_right(judged: &PatternTest, first: &GaugeTest) -> Option<Suspect> {
+    let PatternTest {
         pattern,
         gain,
         projection,
@@ -305,7 +305,7 @@ fn put_right(judged: &Judged, first: &GaugeTest) -> Option<Suspect> {
 /// The largest shift of a wanted load over the half width of its interval as stated errors make it, and that load.
 fn worst_shift<'a>(
     s: &'a Sensitivity,
-    (solved, beyond): (&Solved, &[Beyond]),
+    (solved, beyond): (&RunEstimates, &[AddedCovariance]),
     shift: &Shift,
 ) -> (f64, &'a str) {
     let mut worst = (0.0, "");

@@ -46,7 +46,7 @@ pub struct CalibratedLoad<'a> {
 
 /// A recovered load.
 #[derive(Clone, Copy, Debug)]
-pub struct Reached<'a> {
+pub struct RunLoad<'a> {
     /// Run.
     pub run: &'a str,
     /// Estimate, job units.
@@ -68,7 +68,7 @@ impl CalibratedLoad<'_> {
     }
 
     /// Whether a load is beyond the range by more than its noise, `factor` half widths.
-    fn is_beyond(&self, reached: &Reached, factor: f64, rules: &RangeRules) -> bool {
+    fn is_beyond(&self, reached: &RunLoad, factor: f64, rules: &RangeRules) -> bool {
         let ([low, high], largest) = self.span_with_zero();
         let beyond = (reached.value - high).max(low - reached.value);
         beyond > factor * reached.half + rules.margin * largest
@@ -79,7 +79,7 @@ impl CalibratedLoad<'_> {
 /// tested. A load that is beyond it by no more than noise makes of so many values is within.
 pub fn check_load(
     load: &CalibratedLoad,
-    runs: &[Reached],
+    runs: &[RunLoad],
     values: usize,
     rules: &RangeRules,
 ) -> Option<Finding> {
@@ -90,7 +90,7 @@ pub fn check_load(
     let quantile = Normal::standard().inverse_cdf(1.0 - share);
     let factor = quantile / NORMAL_95;
     let beyond = runs.iter().filter(|r| load.is_beyond(r, factor, rules));
-    let mut beyond: Vec<(f64, &Reached)> = beyond.map(|r| (load.ratio(r.value), r)).collect();
+    let mut beyond: Vec<(f64, &RunLoad)> = beyond.map(|r| (load.ratio(r.value), r)).collect();
     beyond.sort_by(|a, b| b.0.total_cmp(&a.0));
     let (ratio, farthest) = *beyond.first()?;
     let severity = match ratio {
@@ -175,8 +175,8 @@ mod tests {
     fn check(range: [f64; 2], values: &[(f64, f64)]) -> Option<(Severity, f64, String)> {
         let names: Vec<String> = (0..values.len()).map(|i| format!("R{i}")).collect();
         let runs = values.iter().zip(&names);
-        let runs: Vec<Reached> = runs
-            .map(|(&(value, half), run)| Reached { run, value, half })
+        let runs: Vec<RunLoad> = runs
+            .map(|(&(value, half), run)| RunLoad { run, value, half })
             .collect();
         let found = check_load(&load(range), &runs, runs.len(), &RangeRules::default())?;
         Some((found.severity, found.measured?, found.message))
@@ -220,7 +220,7 @@ mod tests {
         // 0.02 of 12 kN apart, 0.5 kN are 1.96 sd: of one value beyond 3.1 sd is reported, of ten thousand beyond 5.2.
         assert!(check([0.0, 12e3], &[(12.9e3, 500.0)]).is_none());
         assert!(check([0.0, 12e3], &[(13.1e3, 500.0)]).is_some());
-        let run = [Reached {
+        let run = [RunLoad {
             run: "record",
             value: 13.1e3,
             half: 500.0,

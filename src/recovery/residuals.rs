@@ -55,7 +55,7 @@ pub struct Joint {
 }
 
 /// Runs in which one set of gauges reads, with their joint test.
-pub(super) struct Judged<'a> {
+pub(super) struct PatternTest<'a> {
     pub pattern: &'a Pattern,
     pub gain: &'a Gain,
     pub projection: Projection,
@@ -82,7 +82,7 @@ pub(super) struct Projection {
 
 /// Loads that a projection removes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Out {
+pub(super) enum RemovedLoads {
     /// All loads, whatever their stated size.
     All,
     /// Loads without a stated size; loads with one count as scatter of that size.
@@ -96,7 +96,7 @@ impl Projection {
         pattern: &Pattern,
         errors: ErrorModel,
         typical: &[f64],
-        out: Out,
+        out: RemovedLoads,
     ) -> Option<Self> {
         let (n, k) = (pattern.used.len(), s.loads.len());
         let rows = Matrix::from_fn(n, k, |i, l| s.values[(pattern.used[i], l)]);
@@ -111,7 +111,7 @@ impl Projection {
             .collect();
         let priors = s.priors();
         let weighted = Matrix::from_fn(n, k, |i, l| {
-            if out == Out::All || priors[l].is_none() {
+            if out == RemovedLoads::All || priors[l].is_none() {
                 rows[(i, l)] / sd[i]
             } else {
                 0.0
@@ -124,7 +124,7 @@ impl Projection {
             None => (&t * t.transpose()) * noise,
             Some(of_gauges) => &t * of_gauges * t.transpose(),
         };
-        if out == Out::Unstated {
+        if out == RemovedLoads::Unstated {
             for (l, prior) in priors.iter().enumerate() {
                 let Some(p) = prior else { continue };
                 let column = &t * rows.column(l) * *p;
@@ -274,7 +274,7 @@ impl Projection {
         pattern: &Pattern,
         strain: &[&[f64]],
         loads: &[Vec<f64>],
-    ) -> Option<Together> {
+    ) -> Option<WhitenedResiduals> {
         let white: Vec<Vec<f64>> = strain
             .iter()
             .map(|y| {
@@ -288,7 +288,7 @@ impl Projection {
         for block in &turned {
             chi2 += block.chi2 - block.chi2_of_noise;
         }
-        Some(Together {
+        Some(WhitenedResiduals {
             chi2: chi2 * self.share,
             white,
             turned,
@@ -298,7 +298,7 @@ impl Projection {
     /// The error of the `i`-th gauge of the pattern that these residuals suggest; `None` where nothing checks it.
     pub fn test(
         &self,
-        together: &Together,
+        together: &WhitenedResiduals,
         pattern: &Pattern,
         loads: &[Vec<f64>],
         i: usize,
@@ -440,7 +440,7 @@ impl Projection {
 }
 
 /// Residuals of all runs over their covariance.
-pub(super) struct Together {
+pub(super) struct WhitenedResiduals {
     /// Sum of squares.
     pub chi2: f64,
     /// By run, over the covariance of noise and nuisance loads.

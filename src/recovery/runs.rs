@@ -1,15 +1,15 @@
 //! Static states, or samples of a record: one estimate each, with a common test of the residuals.
 
-use super::dynamic::Beyond;
+use super::dynamic::AddedCovariance;
 use super::errors::ErrorModel;
 use super::misfit::Alternatives;
 use super::noise::{ShownNoise, share_of_samples, shown_noise};
-use super::solved::{Solved, root_mean_squares, solve_beyond};
+use super::run_estimates::{RunEstimates, root_mean_squares, solve_beyond};
 use super::types::{GAUGE_SUSPECT, Readings, Recovery, RunEstimate, Widening};
-use super::{by_calibration, determined, misfit, plausible, verdict};
+use super::{by_calibration, load_determinacy, misfit, reading_plausibility, verdict};
 use crate::estimate::student_95;
 use crate::finding::Finding;
-use crate::input_faults::Handling;
+use crate::input_faults::FaultTreatment;
 use crate::sensitivity::{Sensitivity, Uncertainty};
 
 /// Returns the loads of every run with intervals, and findings on the residuals.
@@ -58,7 +58,7 @@ pub fn recover_with_alternatives(
     errors: ErrorModel,
     alternatives: &mut Alternatives,
 ) -> Recovery {
-    let faults = (Handling::LeftOut, alternatives);
+    let faults = (FaultTreatment::LeftOut, alternatives);
     recover_beyond(s, readings, errors, (&[], Order::Runs), faults)
 }
 
@@ -77,10 +77,10 @@ pub(super) fn recover_beyond(
     s: &Sensitivity,
     readings: &[Readings],
     errors: ErrorModel,
-    (beyond, order): (&[Beyond], Order),
-    (handling, alternatives): (Handling, &mut Alternatives),
+    (beyond, order): (&[AddedCovariance], Order),
+    (handling, alternatives): (FaultTreatment, &mut Alternatives),
 ) -> Recovery {
-    let (readings, mut findings) = plausible::check(&s.gauges, readings, errors);
+    let (readings, mut findings) = reading_plausibility::check(&s.gauges, readings, errors);
     // Errors beyond noise are correlated too.
     let shown = match beyond.is_empty() {
         true => shown_noise(s, &readings, errors),
@@ -114,7 +114,7 @@ pub(super) fn recover_beyond(
     // A misfit is stated already, and has its own remedy.
     let is_stated = verdict.misfit && shown.noise.is_none();
     findings.extend(shown.finding.filter(|_| !is_stated));
-    let Solved {
+    let RunEstimates {
         mut runs,
         patterns,
         typical,
@@ -135,7 +135,7 @@ pub(super) fn recover_beyond(
         }
     }
     let (residual_rms, gauge_residual_rms, gauge_leverage) = residual_sizes(s.gauges.len(), &runs);
-    findings.extend(determined::check(s, &runs));
+    findings.extend(load_determinacy::check(s, &runs));
     Recovery {
         runs,
         residual_rms,
@@ -153,13 +153,13 @@ fn recover_calibrated(
     s: &Sensitivity,
     readings: &[Readings],
     errors: ErrorModel,
-    (known, faults): (&Uncertainty, (Handling, &mut Alternatives)),
+    (known, faults): (&Uncertainty, (FaultTreatment, &mut Alternatives)),
     mut findings: Vec<Finding>,
 ) -> Recovery {
     let (runs, judged) = by_calibration::recover(s, readings, errors, (known, faults));
     findings.extend(judged);
     let (residual_rms, gauge_residual_rms, gauge_leverage) = residual_sizes(s.gauges.len(), &runs);
-    findings.extend(determined::check(s, &runs));
+    findings.extend(load_determinacy::check(s, &runs));
     let told = runs.iter().flat_map(|r| {
         let values = r.estimate.values.iter().enumerate();
         values.filter(|(l, _)| r.tells(*l)).map(|(l, v)| (l, *v))

@@ -1,16 +1,16 @@
 //! Recovers loads from the samples of a record. Each sample is a run, except for gaps: a missing reading affects only its own sample.
 
-use super::dynamic::Beyond;
+use super::dynamic::AddedCovariance;
 use super::errors::ErrorModel;
 use super::gain::Gain;
 use super::misfit::Alternatives;
-use super::missing::Missing;
-use super::plausible;
+use super::missing_readings::MissingReadings;
+use super::reading_plausibility;
 use super::runs::{Order, recover_beyond};
 use super::types::{Readings, Recovery};
 use super::verdict::NOT_SOLVABLE;
 use crate::finding::{Finding, Severity, list_few};
-use crate::input_faults::Handling;
+use crate::input_faults::FaultTreatment;
 use crate::sensitivity::Sensitivity;
 
 /// Recovers the loads of samples of a record. Samples without any reading are dropped, unless all samples lack readings.
@@ -27,20 +27,20 @@ pub fn recover_samples_with_alternatives(
     s: &Sensitivity,
     samples: Vec<Readings>,
     errors: ErrorModel,
-    (beyond, alternatives): (Vec<Beyond>, &mut Alternatives),
+    (beyond, alternatives): (Vec<AddedCovariance>, &mut Alternatives),
 ) -> Recovery {
     let reads = |r: &Readings| r.strain.iter().any(|v| v.is_finite());
     let taken: Vec<bool> = samples.iter().map(reads).collect();
     let some = taken.contains(&true);
     let samples: Vec<Readings> = samples.into_iter().filter(|r| !some || reads(r)).collect();
     let beyond = beyond.into_iter().zip(taken);
-    let beyond: Vec<Beyond> = beyond.filter(|(_, t)| !some || *t).map(|b| b.0).collect();
+    let beyond: Vec<AddedCovariance> = beyond.filter(|(_, t)| !some || *t).map(|b| b.0).collect();
     let mut recovery = recover_beyond(
         s,
         &samples,
         errors,
         (&beyond, Order::Samples),
-        (Handling::AsMeasured, alternatives),
+        (FaultTreatment::AsMeasured, alternatives),
     );
     if recovery.findings.iter().any(|f| f.code == NOT_SOLVABLE) && all_tell(s, errors, &recovery) {
         recovery.findings.retain(|f| f.code != NOT_SOLVABLE);
@@ -57,7 +57,7 @@ fn all_tell(s: &Sensitivity, errors: ErrorModel, recovery: &Recovery) -> bool {
 }
 
 /// Returns the findings on gaps of a record: their number, impossible readings, and, as an error, loads that no sample determines.
-pub fn check_gaps(subject: &str, s: &Sensitivity, missing: &Missing) -> Vec<Finding> {
+pub fn check_gaps(subject: &str, s: &Sensitivity, missing: &MissingReadings) -> Vec<Finding> {
     let mut out = Vec::new();
     if missing.gaps > 0 {
         let known = missing.known_in_gaps.iter().take(s.loads.len());
@@ -79,7 +79,10 @@ pub fn check_gaps(subject: &str, s: &Sensitivity, missing: &Missing) -> Vec<Find
         );
     }
     if missing.impossible > 0 {
-        out.push(plausible::impossible_in_record(subject, missing.impossible));
+        out.push(reading_plausibility::impossible_in_record(
+            subject,
+            missing.impossible,
+        ));
     }
     let unknown: Vec<&str> = s
         .loads

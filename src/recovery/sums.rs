@@ -1,12 +1,12 @@
 //! Sums over a record.
 
-use super::missing::Missing;
+use super::missing_readings::MissingReadings;
 
 /// Sums over a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sums {
     /// Counts of samples and gaps. In a sample with a silent gauge, only the loads that the other gauges determine are known.
-    pub missing: Missing,
+    pub missing: MissingReadings,
     /// Smallest of each load.
     pub min: Vec<f64>,
     /// Largest of each load.
@@ -27,7 +27,7 @@ impl Sums {
     /// Nothing yet, for `n` gauges and `k` loads.
     pub fn new(n: usize, k: usize) -> Self {
         Self {
-            missing: Missing::new(k),
+            missing: MissingReadings::new(k),
             min: vec![f64::INFINITY; k],
             max: vec![f64::NEG_INFINITY; k],
             sum: vec![0.0; k],

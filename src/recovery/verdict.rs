@@ -1,10 +1,10 @@
 //! Tests whether stated noise and model error explain the residual, and if not, whether the loads are usable.
 
-use super::dynamic::Beyond;
+use super::dynamic::AddedCovariance;
 use super::errors::ErrorModel;
 use super::outlier;
-use super::residuals::{Joint, Judged, Out, Pattern, Projection};
-use super::solved::Solved;
+use super::residuals::{Joint, Pattern, PatternTest, Projection, RemovedLoads};
+use super::run_estimates::RunEstimates;
 use super::types::{Readings, RunEstimate, Widening};
 use crate::estimate::chi_square_tail;
 use crate::estimate::{NORMAL_95, student_95};
@@ -64,9 +64,9 @@ struct Evidence {
 pub(super) fn check(
     s: &Sensitivity,
     readings: &[Readings],
-    solved: &Solved,
+    solved: &RunEstimates,
     errors: ErrorModel,
-    (beyond, share): (&[Beyond], f64),
+    (beyond, share): (&[AddedCovariance], f64),
 ) -> Verdict {
     let runs = &solved.runs;
     let mut verdict = Verdict {
@@ -128,7 +128,7 @@ fn widening_from_birge(birge: f64, dof: f64) -> Widening {
 }
 
 /// Returns the findings on runs whose gauges do not determine some of the loads.
-fn report_undetermined_loads(s: &Sensitivity, solved: &Solved) -> Vec<Finding> {
+fn report_undetermined_loads(s: &Sensitivity, solved: &RunEstimates) -> Vec<Finding> {
     let mut out = Vec::new();
     for (pattern, gain) in &solved.patterns {
         let unseen: Vec<&str> = s
@@ -167,13 +167,13 @@ fn report_undetermined_loads(s: &Sensitivity, solved: &Solved) -> Vec<Finding> {
 fn test_patterns<'a>(
     s: &Sensitivity,
     readings: &'a [Readings],
-    (solved, beyond, share): (&'a Solved, &[Beyond], f64),
+    (solved, beyond, share): (&'a RunEstimates, &[AddedCovariance], f64),
     errors: ErrorModel,
-) -> Vec<Judged<'a>> {
+) -> Vec<PatternTest<'a>> {
     let most = solved.patterns.iter().take(PATTERNS);
     most.filter_map(|(pattern, gain)| {
         let gain = gain.as_ref()?;
-        let projection = Projection::new(s, pattern, errors, &solved.typical, Out::All)?;
+        let projection = Projection::new(s, pattern, errors, &solved.typical, RemovedLoads::All)?;
         // A whole number of independent runs, so that squares and their degrees of freedom count the same.
         let runs = pattern.runs.len() as f64;
         let mut projection = projection.with_share((share * runs).round().max(1.0) / runs);
@@ -191,7 +191,7 @@ fn test_patterns<'a>(
             .map(|&i| solved.runs[i].estimate.values.clone())
             .collect();
         let joint = projection.judge(pattern, &strain, &loads)?;
-        Some(Judged {
+        Some(PatternTest {
             pattern,
             gain,
             projection,
@@ -205,7 +205,7 @@ fn test_patterns<'a>(
 /// Returns a covariance that, if independent in every run, is no smaller than the covariance of errors that the runs of a pattern share. With `x`
 /// over the runs, `(sum_i x_i d_i)^2 <= sum_i x_i^2 sum_j d_j^2` (Cauchy), so the sum over the runs replaces each error. The test then finds only
 /// residuals that shared errors can't cause. `None` without such errors.
-fn bound_shared_covariance(pattern: &Pattern, beyond: &[Beyond]) -> Option<Matrix> {
+fn bound_shared_covariance(pattern: &Pattern, beyond: &[AddedCovariance]) -> Option<Matrix> {
     let mut runs = pattern.runs.iter().filter_map(|&i| beyond.get(i));
     let first = runs.next()?;
     let own = &first.noise + &first.shared;

@@ -11,13 +11,13 @@ const TRIANGLE: u8 = 5;
 const QUAD: u8 = 9;
 
 /// Arrays are appended to the XML as raw little-endian bytes, each after its length in bytes (64 bit).
-pub(super) struct Appended {
+pub(super) struct AppendedArrays {
     pub(super) xml: String,
     offset: u64,
     blocks: Vec<Vec<u8>>,
 }
 
-impl Appended {
+impl AppendedArrays {
     pub(super) fn array(&mut self, name: &str, kind: &str, components: usize, bytes: Vec<u8>) {
         self.xml += &format!(
             "<DataArray type=\"{kind}\" Name=\"{}\" NumberOfComponents=\"{components}\" format=\"appended\" offset=\"{}\"/>\n",
@@ -160,7 +160,7 @@ pub fn vtk_cells(model: &Model) -> Vec<(u8, u32, Vec<GridIx>)> {
 }
 
 /// The document up to the grid numbers among the point data.
-fn mesh(model: &Model) -> (Appended, Cells) {
+fn mesh(model: &Model) -> (AppendedArrays, Cells) {
     let cells = vtk_cells(model);
     let mut a = begin(model.grids.len(), cells.len());
     a.array(
@@ -208,12 +208,12 @@ fn mesh(model: &Model) -> (Appended, Cells) {
 }
 
 /// The document up to the points.
-pub(super) fn begin(points: usize, cells: usize) -> Appended {
+pub(super) fn begin(points: usize, cells: usize) -> AppendedArrays {
     let xml = format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
          header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n<Points>\n"
     );
-    Appended {
+    AppendedArrays {
         xml,
         offset: 0,
         blocks: Vec::new(),
@@ -221,7 +221,7 @@ pub(super) fn begin(points: usize, cells: usize) -> Appended {
 }
 
 /// Ends the point data, begins the cell data with the element numbers.
-fn begin_cell_data(a: &mut Appended, cells: &Cells) {
+fn begin_cell_data(a: &mut AppendedArrays, cells: &Cells) {
     a.xml += "</PointData>\n<CellData>\n";
     a.array(
         "element",
@@ -234,7 +234,7 @@ fn begin_cell_data(a: &mut Appended, cells: &Cells) {
     );
 }
 
-pub(super) fn finish(mut a: Appended, out: &mut dyn Write) -> Result<()> {
+pub(super) fn finish(mut a: AppendedArrays, out: &mut dyn Write) -> Result<()> {
     a.xml += "</CellData>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
     out.write_all(a.xml.as_bytes())?;
     for block in &a.blocks {

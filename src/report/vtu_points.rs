@@ -1,6 +1,6 @@
 //! VTU of points with vectors on them: gauges with their axes, loads as arrows (glyphs of ParaView).
 
-use super::vtu::{Appended, begin, finish, floats};
+use super::vtu::{AppendedArrays, begin, finish, floats};
 use std::io::{Result, Write};
 
 const VERTEX: u8 = 1;
@@ -26,7 +26,7 @@ pub fn write_points_vtu(
     out: &mut dyn Write,
 ) -> Result<()> {
     let n = points.len();
-    let mut a: Appended = begin(n, n);
+    let mut a: AppendedArrays = begin(n, n);
     let xyz = points.iter().flatten().flat_map(|x| x.to_le_bytes());
     a.array("Points", "Float64", 3, xyz.collect());
     a.xml += "</Points>\n<Cells>\n";

@@ -61,7 +61,7 @@ pub fn response_rows(
     loads: &[LoadCaseOf],
     among: impl Fn(u32) -> bool,
 ) -> (Vec<ResponseRow>, Vec<Finding>) {
-    let mut formed = Formed::default();
+    let mut formed = ResponseRows::default();
     for (i, shell) in model.shells.iter().enumerate() {
         if among(shell.id) {
             formed.take(shell_rows(model, loads, ShellIx(i as u32), shell.id));
@@ -79,7 +79,7 @@ pub fn response_rows(
 }
 
 /// Why an element has no rows.
-enum Without {
+enum ExclusionReason {
     /// It is not of one isotropic material.
     Isotropy,
     /// Some load's case has no strain of it.
@@ -88,18 +88,18 @@ enum Without {
 
 /// Rows so far, and how many elements have none.
 #[derive(Default)]
-struct Formed {
+struct ResponseRows {
     rows: Vec<ResponseRow>,
     anisotropic: usize,
     absent: usize,
 }
 
-impl Formed {
-    fn take(&mut self, element: Result<Vec<ResponseRow>, Without>) {
+impl ResponseRows {
+    fn take(&mut self, element: Result<Vec<ResponseRow>, ExclusionReason>) {
         match element {
             Ok(rows) => self.rows.extend(rows),
-            Err(Without::Isotropy) => self.anisotropic += 1,
-            Err(Without::Strain) => self.absent += 1,
+            Err(ExclusionReason::Isotropy) => self.anisotropic += 1,
+            Err(ExclusionReason::Strain) => self.absent += 1,
         }
     }
 }
@@ -110,15 +110,15 @@ fn shell_rows(
     loads: &[LoadCaseOf],
     ix: ShellIx,
     element: u32,
-) -> Result<Vec<ResponseRow>, Without> {
+) -> Result<Vec<ResponseRow>, ExclusionReason> {
     let places: Option<Vec<usize>> = loads
         .iter()
         .map(|l| l.case.shells.elements.binary_search(&ix).ok())
         .collect();
-    let places = places.ok_or(Without::Strain)?;
+    let places = places.ok_or(ExclusionReason::Strain)?;
     let (e, g, nu) = shell_material(model, ix)
         .and_then(|m| isotropic_constants(model, m))
-        .ok_or(Without::Isotropy)?;
+        .ok_or(ExclusionReason::Isotropy)?;
     let side = |surface: Surface| {
         let strain: Vec<[f64; 3]> = loads
             .iter()
@@ -151,16 +151,16 @@ fn beam_rows(
     loads: &[LoadCaseOf],
     ix: BeamIx,
     beam: &Beam,
-) -> Result<Vec<ResponseRow>, Without> {
+) -> Result<Vec<ResponseRow>, ExclusionReason> {
     let fields: Vec<&BeamField> = loads.iter().map(|l| &l.case.beams).collect();
     let absent = |f: &&BeamField| f.elements.binary_search(&ix).is_err();
     if fields.iter().any(absent) {
-        return Err(Without::Strain);
+        return Err(ExclusionReason::Strain);
     }
     let property = model.beam_properties.get(beam.property.us());
     let (e, _, _) = property
         .and_then(|p| isotropic_constants(model, p.material))
-        .ok_or(Without::Isotropy)?;
+        .ok_or(ExclusionReason::Isotropy)?;
     let mut rows = Vec::new();
     for station in stations(&fields, ix) {
         let by_load: Vec<[f64; 4]> = loads

@@ -11,7 +11,7 @@
 //! - [`quality`]: dead, clipped, spiky, drifting channels as findings
 //! - [`detrend`]: mean, line and zero-run removal
 //! - [`plans`]: plans of transforms, kept between calls
-//! - [`still`]: columns that give nothing, or one and the same value
+//! - [`constant_columns`]: columns that give nothing, or one and the same value
 //! - [`spectrum`]: zero-padded transforms, band limiting and integration in one pass
 //! - [`integrate`]: velocity and displacement from acceleration
 //! - [`window`]: tapered transforms with independent bins
@@ -26,6 +26,7 @@ pub mod align;
 pub mod binary;
 pub mod cell;
 pub mod channels;
+pub mod constant_columns;
 pub mod content;
 pub mod csv;
 pub mod detrend;
@@ -43,7 +44,6 @@ pub mod resample;
 pub mod rpc;
 pub mod shift;
 pub mod spectrum;
-pub mod still;
 pub mod welch;
 pub mod window;
 

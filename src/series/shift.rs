@@ -8,7 +8,7 @@ use crate::estimate::student_95;
 
 /// Signals sampled at one clock, each as long as the others; samples that are missing are not a number.
 #[derive(Clone, Copy, Debug)]
-pub struct Sampled<'a> {
+pub struct SampledSignals<'a> {
     /// Time of the first sample, s.
     pub start_s: f64,
     /// Samples a second.
@@ -19,7 +19,7 @@ pub struct Sampled<'a> {
 
 /// A value between samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Between {
+pub struct InterpolatedValue {
     /// By the cubic through the four nearest samples; next to a missing one, and at the ends, by the line.
     pub value: f64,
     /// By the straight line through two samples.
@@ -87,9 +87,9 @@ const SETTLED: f64 = 1e-4;
 /// Share of a sample by which a time may miss a sample and still be its time: times are rounded.
 const ON_SAMPLE: f64 = 1e-6;
 
-impl Sampled<'_> {
+impl SampledSignals<'_> {
     /// Returns signal `s` at a time; `None` outside the recording and next to a missing sample.
-    pub fn value_at(&self, s: usize, time_s: f64) -> Option<Between> {
+    pub fn value_at(&self, s: usize, time_s: f64) -> Option<InterpolatedValue> {
         let x = self.signals.get(s)?;
         let place = (time_s - self.start_s) * self.rate_hz;
         let near = place.round();
@@ -99,7 +99,7 @@ impl Sampled<'_> {
         };
         if (place - near).abs() <= ON_SAMPLE {
             let value = sample(near as isize)?;
-            return Some(Between {
+            return Some(InterpolatedValue {
                 value,
                 line: value,
                 noise: 1.0,
@@ -110,7 +110,7 @@ impl Sampled<'_> {
         let (b, c) = (sample(i)?, sample(i + 1)?);
         let line = b + u * (c - b);
         let Some((a, d)) = sample(i - 1).zip(sample(i + 2)) else {
-            return Some(Between {
+            return Some(InterpolatedValue {
                 value: line,
                 line,
                 noise: (1.0 - u).hypot(u),
@@ -122,7 +122,7 @@ impl Sampled<'_> {
             -(u + 1.0) * u * (u - 2.0) / 2.0,
             (u + 1.0) * u * (u - 1.0) / 6.0,
         ];
-        Some(Between {
+        Some(InterpolatedValue {
             value: weights.iter().zip([a, b, c, d]).map(|(w, v)| w * v).sum(),
             line,
             noise: weights.iter().map(|w| w * w).sum::<f64>().sqrt(),
@@ -184,12 +184,12 @@ impl Sampled<'_> {
 /// assert!(shift.correlation > 0.95);
 /// ```
 pub fn estimate_shift(
-    fixed: Sampled,
-    moving: Sampled,
+    fixed: SampledSignals,
+    moving: SampledSignals,
     rules: &ShiftRules,
 ) -> Result<Shift, NoShift> {
     let coarse = coarse_shift(fixed, moving, rules)?;
-    let fine = Fine::new(fixed, moving, coarse.width_s, rules);
+    let fine = FineSearch::new(fixed, moving, coarse.width_s, rules);
     let (seconds, half_width_s) = fine
         .search(coarse.seconds)
         .filter(|found| (found.0 - coarse.seconds).abs() <= 3.0 * coarse.width_s)
@@ -202,18 +202,22 @@ pub fn estimate_shift(
 }
 
 /// A shift on the grid of bins.
-struct Coarse {
+struct CoarseShift {
     seconds: f64,
     width_s: f64,
     correlation: f64,
 }
 
-fn coarse_shift(fixed: Sampled, moving: Sampled, rules: &ShiftRules) -> Result<Coarse, NoShift> {
+fn coarse_shift(
+    fixed: SampledSignals,
+    moving: SampledSignals,
+    rules: &ShiftRules,
+) -> Result<CoarseShift, NoShift> {
     let step = (1.0 / fixed.rate_hz).max(1.0 / moving.rate_hz);
-    let seconds = |s: &Sampled| s.n_samples() as f64 / s.rate_hz;
+    let seconds = |s: &SampledSignals| s.n_samples() as f64 / s.rate_hz;
     let longest = seconds(&fixed).max(seconds(&moving));
     let width_s = step * (longest / step / rules.most_bins as f64).ceil().max(1.0);
-    let n_of = |s: &Sampled| ((seconds(s) / width_s).ceil() as usize).max(1);
+    let n_of = |s: &SampledSignals| ((seconds(s) / width_s).ceil() as usize).max(1);
     let (n, m) = (n_of(&fixed), n_of(&moving));
     let least = (rules.overlap * n.min(m) as f64).ceil().max(2.0) as isize;
     let (first, last) = (least - m as isize, n as isize - least);
@@ -249,7 +253,7 @@ fn coarse_shift(fixed: Sampled, moving: Sampled, rules: &ShiftRules) -> Result<C
     {
         return Err(NoShift::Ambiguous([of(at), of(other)]));
     }
-    Ok(Coarse {
+    Ok(CoarseShift {
         seconds: of(at),
         width_s,
         correlation: best,
@@ -298,9 +302,9 @@ fn correlation(x: &[f64], y: &[f64], lags: &[isize]) -> Option<Vec<f64>> {
 
 /// The fine search: with residual `r = fixed(t) - moving(t - shift) - mean` and slopes `f'`, `m'` over the same span, the shift is that at
 /// which `sum r f' = 0`; a step is `- sum r f' / sum m' f'`. Noise of the two recordings is in no product twice.
-struct Fine<'a> {
-    fixed: Sampled<'a>,
-    moving: Sampled<'a>,
+struct FineSearch<'a> {
+    fixed: SampledSignals<'a>,
+    moving: SampledSignals<'a>,
     /// Samples to either side over which a slope is taken.
     side: usize,
     /// Samples from one that is looked at to the next.
@@ -318,8 +322,13 @@ struct Sums {
     residuals: Vec<[f64; 3]>,
 }
 
-impl<'a> Fine<'a> {
-    fn new(fixed: Sampled<'a>, moving: Sampled<'a>, width_s: f64, rules: &ShiftRules) -> Self {
+impl<'a> FineSearch<'a> {
+    fn new(
+        fixed: SampledSignals<'a>,
+        moving: SampledSignals<'a>,
+        width_s: f64,
+        rules: &ShiftRules,
+    ) -> Self {
         let side = (0.5 * width_s * fixed.rate_hz).round().max(1.0) as usize;
         let n = fixed.n_samples();
         Self {

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 const TAPER: f64 = 0.15;
 
 /// Windowed transforms of one length.
-pub struct Windowed {
+pub struct WindowedTransform {
     window: Vec<f64>,
     /// Frequencies of the bins in the band, Hz.
     pub f_hz: Vec<f64>,
@@ -17,7 +17,7 @@ pub struct Windowed {
     step_hz: f64,
 }
 
-impl Windowed {
+impl WindowedTransform {
     /// For signals of `n` samples at `rate_hz`; bins within the band.
     ///
     /// The last samples are left out where that makes the transform fast (factors 2, 3 and 5 alone).

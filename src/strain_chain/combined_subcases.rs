@@ -4,8 +4,8 @@ use crate::fe::{
     LoadCase, Relief, Solution, SolveReport, combine_balances, combine_reactions, combine_results,
 };
 use crate::host::fault::{Fault, Faults};
+use crate::strain_chain::built_in_solver::label_of;
 use crate::strain_chain::deck::DeckModel;
-use crate::strain_chain::solved::label_of;
 use nastran::bdf::{Subcase, SubcaseKind};
 
 /// A combination of solved subcases.

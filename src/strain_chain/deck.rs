@@ -11,7 +11,7 @@ use crate::model::{
 };
 use crate::series::record::format_of;
 use crate::strain_chain::not_solved::{not_solved, not_solved_of_op2};
-use nastran::bdf::{Deck, IncludeRequest, Loaded, Loader, read_deck};
+use nastran::bdf::{Deck, IncludeRequest, LoadedFile, Loader, read_deck};
 use nastran::op2::Op2;
 use std::path::{Component, Path, PathBuf};
 
@@ -198,7 +198,9 @@ fn fault_of(deck: &Deck, f: &nastran::bdf::Fault) -> Fault {
     let field = match (f.card.as_str(), f.field) {
         ("", _) => "deck".to_owned(),
         (card, None) => card.to_owned(),
-        (card, Some(field)) if matches!(f.what, nastran::bdf::Wrong::NoSuchField { .. }) => {
+        (card, Some(field))
+            if matches!(f.what, nastran::bdf::DeckFaultKind::NoSuchField { .. }) =>
+        {
             format!("{card} field {}", field.number)
         }
         (card, Some(field)) => format!("{card} {}", field.name),
@@ -333,7 +335,7 @@ struct FileLoader<'a, 'f> {
 }
 
 impl Loader for FileLoader<'_, '_> {
-    fn load(&mut self, request: &IncludeRequest) -> Result<Loaded, String> {
+    fn load(&mut self, request: &IncludeRequest) -> Result<LoadedFile, String> {
         let paths = request.candidates(|s| std::env::var(s).ok()).map_err(|s| {
             format!("the symbol `{s}` has no value: define it as an environment variable")
         })?;
@@ -351,7 +353,7 @@ impl Loader for FileLoader<'_, '_> {
                     self.inputs.record(&name, path.clone(), &bytes);
                     let others = paths.iter().skip(k + 1).filter(|p| *p != path);
                     let differs = |p: &&PathBuf| self.inputs.load(p).is_ok_and(|b| *b != *bytes);
-                    return Ok(Loaded {
+                    return Ok(LoadedFile {
                         differing_path: others
                             .into_iter()
                             .find(differs)

@@ -6,10 +6,10 @@ use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::words::format_number;
 use crate::job::{Job, JobLoad, LoadActs};
 use crate::model::{Load, Model, Vec3};
+use crate::strain_chain::built_in_solver::{is_combination, label_of};
 use crate::strain_chain::combined_subcases::read_combination;
 use crate::strain_chain::deck::DeckModel;
 use crate::strain_chain::other_loads::{OtherLoad, moved_supports, other_loads, thermal_loads};
-use crate::strain_chain::solved::{is_combination, label_of};
 use nastran::bdf::Subcase;
 
 /// Relative difference of forces and moments up to which job and deck agree: cards and jobs state four digits or more.
@@ -49,7 +49,7 @@ pub(super) fn check_deck_loads<'a>(
                 continue;
             }
         };
-        let compared = Compared {
+        let compared = DeckLoadCheck {
             job,
             deck,
             load,
@@ -88,7 +88,7 @@ fn terms_of<'a>(
 }
 
 /// Load of a job with the subcase of the deck that belongs to its results.
-struct Compared<'a> {
+struct DeckLoadCheck<'a> {
     job: &'a Job,
     deck: &'a DeckModel,
     load: &'a JobLoad,
@@ -97,7 +97,7 @@ struct Compared<'a> {
     terms: Vec<(f64, &'a Subcase)>,
 }
 
-impl Compared<'_> {
+impl DeckLoadCheck<'_> {
     /// Returns the fault of a load that is not the one of its subcase.
     fn fault(&self, unit: &UnitLoad) -> Option<Fault> {
         match unit {

@@ -4,9 +4,9 @@ use crate::fe::{CaseResult, SupportChoice};
 use crate::finding::{Finding, Severity, list_few};
 use crate::job::Job;
 use crate::model::Model;
+use crate::strain_chain::built_in_solver::is_combination;
 use crate::strain_chain::deck::DeckModel;
 use crate::strain_chain::deck_loads::subcase_of;
-use crate::strain_chain::solved::is_combination;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Returns a warning if the subcases of the loads have different supports, or another support than the job states.

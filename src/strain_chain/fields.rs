@@ -17,13 +17,13 @@ use crate::host::work::Work;
 use crate::job::{Job, JobLoad, LoadRole, ModelFiles, Reference};
 use crate::model::{BeamIx, Load as ModelLoad, Model};
 use crate::sensitivity::{Load, LoadCaseOf};
-use crate::strain_chain::deck::DeckModel;
-use crate::strain_chain::job_deck::read_deck;
-use crate::strain_chain::named_results::{other_deck, results_fault};
-use crate::strain_chain::solved::{
+use crate::strain_chain::built_in_solver::{
     MODES, cases_of_job, is_combination, label_of, relief_of_job, solve_kept, static_case,
     support_of_job,
 };
+use crate::strain_chain::deck::DeckModel;
+use crate::strain_chain::job_deck::read_deck;
+use crate::strain_chain::named_results::{other_deck, results_fault};
 use crate::strain_chain::solver_check::check_against_solver;
 use nastran::bdf::Subcase;
 use nastran::results::ResultsFile;
@@ -51,7 +51,7 @@ pub struct Fields {
 }
 
 /// Function that returns the loads to solve on a model in addition to the loads of a job.
-pub type Beside<'a> = &'a dyn Fn(&Model) -> Result<Vec<UnitLoad>, Faults>;
+pub type AdditionalUnitLoads<'a> = &'a dyn Fn(&Model) -> Result<Vec<UnitLoad>, Faults>;
 
 impl Fields {
     /// The model.
@@ -139,7 +139,7 @@ pub fn read_fields_beside(
     work: &mut Work,
     job: &Job,
     at: WantedAt,
-    beside: Option<Beside<'_>>,
+    beside: Option<AdditionalUnitLoads<'_>>,
 ) -> Result<Fields, Faults> {
     let Some(files) = &job.model else {
         return Err(Faults::from(Fault::new(
@@ -173,7 +173,7 @@ fn solve_fields(
     job: &Job,
     deck: DeckModel,
     at: WantedAt,
-    beside: Option<Beside<'_>>,
+    beside: Option<AdditionalUnitLoads<'_>>,
 ) -> Result<Fields, Faults> {
     let mut cases = cases_of_job(job, &deck)?;
     work.findings.extend(relief_of_job(job, &deck.model)?);

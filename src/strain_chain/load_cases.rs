@@ -1,6 +1,6 @@
 //! Search for the case of the results in which each load of a job acts.
 
-use crate::fe::from_results::{HOLD_ONCE, Repeated, complete_case, find_repeated_results};
+use crate::fe::from_results::{HOLD_ONCE, RepeatedSubcase, complete_case, find_repeated_results};
 use crate::fe::{CaseResult, Solution};
 use crate::finding::list_few;
 use crate::host::fault::{Fault, FaultList, Faults};
@@ -36,7 +36,7 @@ pub(super) fn find_cases(
     work: &mut Work,
     job: &Job,
     solutions: &mut [Solution],
-    repeated_in: &[Vec<Repeated>],
+    repeated_in: &[Vec<RepeatedSubcase>],
 ) -> Result<Vec<(usize, usize)>, Faults> {
     let files: Vec<&NamedFile> = job.model.iter().flat_map(|m| &m.results).collect();
     let takers = takers(job);

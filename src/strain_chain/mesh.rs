@@ -16,8 +16,8 @@ use crate::host::work::Work;
 use crate::job::{Job, Measured};
 use crate::model::{GridIx, Load as ModelLoad, Model, RefinedModel, ShellIx};
 use crate::sensitivity::{LoadCaseOf, Sensitivity, Uncertainty};
+use crate::strain_chain::built_in_solver::{MOST_GRIDS_TWICE, cases_kept, support_of_job};
 use crate::strain_chain::deck::DeckModel;
-use crate::strain_chain::solved::{MOST_GRIDS_TWICE, cases_kept, support_of_job};
 use serde::Serialize;
 use std::collections::BTreeSet;
 

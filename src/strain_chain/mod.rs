@@ -1,6 +1,7 @@
 //! Common stages of the strain commands: the model with its unit-load strain, its gauges, and S from both or from a table.
 
 mod alternative_rows;
+pub(crate) mod built_in_solver;
 pub(crate) mod combined_subcases;
 mod covariance;
 pub mod deck;
@@ -8,7 +9,7 @@ mod deck_loads;
 mod deck_supports;
 mod fields;
 mod gauges;
-mod given;
+mod given_sensitivity;
 pub(crate) mod job_deck;
 mod load_cases;
 mod mesh;
@@ -16,7 +17,6 @@ pub(crate) mod named_results;
 pub(crate) mod not_solved;
 mod other_loads;
 pub(crate) mod repeated_subcases;
-pub(crate) mod solved;
 mod solver_check;
 mod specs;
 mod stated_noise;
@@ -26,9 +26,9 @@ mod units;
 
 pub use alternative_rows::{alternative_rows, alternatives_of};
 pub use covariance::{covariance_bytes, read_covariance};
-pub use fields::{Beside, Fields, read_fields, read_fields_beside};
+pub use fields::{AdditionalUnitLoads, Fields, read_fields, read_fields_beside};
 pub use gauges::{lay_gauges, not_laid, without_strain};
-pub use given::read_given;
+pub use given_sensitivity::read_given;
 pub use mesh::{
     GaugeMeshError, LoadMeshError, WantedAt, coarse_at_gauges, left_in_reading, left_squared,
     mesh_errors, refined_mesh, take_out_beside,
@@ -48,12 +48,12 @@ use crate::job::correct::{check_channels, report_corrections};
 use crate::job::{Job, Measured};
 use crate::recovery::ErrorModel;
 use crate::sensitivity::{Sensitivity, from_cases};
-use crate::strain_chain::named_results::{Absent, check_named};
+use crate::strain_chain::named_results::{MissingResults, check_named};
 use crate::units::MICROSTRAIN;
 use serde::Serialize;
 
 /// S of the job's gauges with all there is to know of them.
-pub struct Prepared {
+pub struct JobSensitivity {
     /// S.
     pub sensitivity: Sensitivity,
     /// Model and strain fields; `None` where S is given.
@@ -64,7 +64,7 @@ pub struct Prepared {
     pub mesh_error: Vec<GaugeMeshError>,
 }
 
-impl Prepared {
+impl JobSensitivity {
     /// Keeps these rows of S, with what belongs to their gauges.
     pub fn retain(&mut self, rows: &[usize]) {
         if rows.len() == self.sensitivity.gauges.len() {
@@ -81,7 +81,7 @@ impl Prepared {
 ///
 /// # Errors
 /// Every fault of these stages.
-pub fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
+pub fn prepare(work: &mut Work, job: &Job) -> Result<JobSensitivity, Faults> {
     prepare_beside(work, job, None)
 }
 
@@ -92,8 +92,8 @@ pub fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
 pub fn prepare_beside(
     work: &mut Work,
     job: &Job,
-    beside: Option<Beside<'_>>,
-) -> Result<Prepared, Faults> {
+    beside: Option<AdditionalUnitLoads<'_>>,
+) -> Result<JobSensitivity, Faults> {
     work.findings.extend(report_corrections(job));
     let mut prepared = if job.sensitivity.is_some() {
         let sensitivity = given_as_asked(work, job)?;
@@ -106,11 +106,11 @@ pub fn prepare_beside(
                 (Some(fields), gauges)
             }
             _ => {
-                check_named(work, job, Absent::Refused)?;
+                check_named(work, job, MissingResults::Refused)?;
                 (None, Vec::new())
             }
         };
-        Prepared {
+        JobSensitivity {
             sensitivity,
             fields,
             gauges,
@@ -133,7 +133,7 @@ pub fn prepare_beside(
         let mesh_error = mesh_errors(&gauges, &sensitivity, &errors);
         work.findings
             .extend(coarse_at_gauges(&gauges, &mesh_error, fields.mesh_left()));
-        Prepared {
+        JobSensitivity {
             sensitivity,
             fields: Some(fields),
             gauges,

@@ -9,7 +9,7 @@ use nastran::results::{ResultsError, ResultsFile};
 
 /// Results that are not there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Absent {
+pub enum MissingResults {
     /// The job is wrong.
     Refused,
     /// The run that writes them is still to come.
@@ -21,7 +21,7 @@ pub enum Absent {
 ///
 /// # Errors
 /// A fault for each; also for those that are not there, where they have to be.
-pub fn check_named(work: &Work, job: &Job, absent: Absent) -> Result<(), Faults> {
+pub fn check_named(work: &Work, job: &Job, absent: MissingResults) -> Result<(), Faults> {
     let mut faults = FaultList::new();
     for named in job.model.iter().flat_map(|m| &m.results) {
         let path = job.folder.join(&named.given);
@@ -29,7 +29,9 @@ pub fn check_named(work: &Work, job: &Job, absent: Absent) -> Result<(), Faults>
             Ok(bytes) => ResultsFile::read(&bytes, &named.given)
                 .map(drop)
                 .map_err(|e| results_fault(job, named, &e)),
-            Err(e) if absent == Absent::ToCome && e.kind() == std::io::ErrorKind::NotFound => {
+            Err(e)
+                if absent == MissingResults::ToCome && e.kind() == std::io::ErrorKind::NotFound =>
+            {
                 Ok(())
             }
             Err(e) => Err(unreadable_at(job, named, &e)),

@@ -82,7 +82,7 @@ pub(super) fn moved_supports(deck: &DeckModel, subcase: &Subcase) -> Vec<OtherLo
         let sums = cards.spcadds.iter().filter(|s| s.sid == sid);
         sums.flat_map(|s| s.sets.iter().copied()).collect()
     });
-    let moves = |s: &&nastran::place::Placed<nastran::cards::Spc>| {
+    let moves = |s: &&nastran::place::PlacedCard<nastran::cards::Spc>| {
         sets.contains(&s.sid) && s.terms.iter().any(|t| t.2 != 0.0)
     };
     let found = cards.spcs.iter().filter(moves);

@@ -5,8 +5,8 @@ use crate::fe::{CaseResult, Corners, SolveOptions};
 use crate::finding::{Finding, Severity, list_few};
 use crate::host::work::Work;
 use crate::job::Job;
+use crate::strain_chain::built_in_solver::{MOST_GRIDS_TWICE, cases_of_job, solve_kept};
 use crate::strain_chain::deck::DeckModel;
-use crate::strain_chain::solved::{MOST_GRIDS_TWICE, cases_of_job, solve_kept};
 use std::collections::BTreeMap;
 
 /// When results are compared with the built-in solver, and from which difference on they contradict the deck.

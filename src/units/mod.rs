@@ -4,22 +4,22 @@
 
 mod interval;
 mod number;
-mod plausible;
 mod report;
 mod strain;
 mod system;
 mod unit;
+mod unit_plausibility;
 
 #[cfg(test)]
 mod tests;
 
 pub use interval::{half_width, plus_minus};
 pub use number::{format_fixed, number, percent};
-pub use plausible::*;
 pub use report::*;
 pub use strain::microstrain_in;
 pub use system::*;
 pub use unit::*;
+pub use unit_plausibility::*;
 
 /// Strain in one microstrain.
 pub const MICROSTRAIN: f64 = 1e-6;

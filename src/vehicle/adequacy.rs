@@ -22,7 +22,7 @@ const FAR: f64 = 2.0;
 
 /// Declared errors of the channels, one sd each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Declared {
+pub struct DeclaredErrors {
     /// Noise of accelerometers, a sample; `None` if not declared.
     pub noise_acc: Option<f64>,
     /// Noise of wheel forces, a sample; `None` if not declared.
@@ -58,7 +58,7 @@ pub fn channel_floors(
     blend: &Blend,
     record: &Channels,
     treatment: &Treatment,
-    declared: &Declared,
+    declared: &DeclaredErrors,
 ) -> Result<Vec<ChannelFloor>, VehicleError> {
     let sensors = (vehicle.sensors.iter()).map(|s| (&s.channel, declared.noise_acc, s.measures));
     let forces =

@@ -5,7 +5,7 @@ use crate::linalg::tall::{Solution, Triangle, solve, triangle};
 
 /// Range of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Allowed {
+pub enum ParameterRange {
     /// Any value.
     Free,
     /// A value within limits.
@@ -40,7 +40,7 @@ const RESIDUAL_FLOOR: f64 = 1e-6;
 ///
 /// Each equation is weighted by one over its residual RMS, found by repeating the fit. Equations without outside force can't
 /// set a scale; the first round uses the driven ones alone where those suffice.
-pub fn fit(equations: &[Equation], allowed: &[Allowed]) -> Fit {
+pub fn fit(equations: &[Equation], allowed: &[ParameterRange]) -> Fit {
     let n = allowed.len();
     let triangles: Vec<Triangle> = equations
         .iter()
@@ -60,7 +60,7 @@ pub fn fit(equations: &[Equation], allowed: &[Allowed]) -> Fit {
         .iter()
         .map(|s| if *s > 1e-9 * largest { 1.0 / s } else { 0.0 })
         .collect();
-    let held = |i: usize| matches!(allowed[i], Allowed::Known(v) if v != 0.0);
+    let held = |i: usize| matches!(allowed[i], ParameterRange::Known(v) if v != 0.0);
     if largest == 0.0 || weights.contains(&0.0) && !suffices(&triangles, &weights, allowed) {
         // Scale equations without outside force by what is held, or by their own columns.
         for (w, t) in weights
@@ -126,20 +126,20 @@ fn unit_times(n: usize, i: usize, v: f64) -> Vec<f64> {
     x
 }
 
-fn known_value(a: Allowed) -> f64 {
+fn known_value(a: ParameterRange) -> f64 {
     match a {
-        Allowed::Known(v) => v,
+        ParameterRange::Known(v) => v,
         _ => 0.0,
     }
 }
 
 /// Whether the equations with a weight determine every parameter that occurs at all.
-fn suffices(triangles: &[Triangle], weights: &[f64], allowed: &[Allowed]) -> bool {
+fn suffices(triangles: &[Triangle], weights: &[f64], allowed: &[ParameterRange]) -> bool {
     let holds = |t: &Triangle, i: usize| {
         t.columns.contains(&i) && t.norm(&unit(allowed.len() + 1, i)) > 0.0
     };
     let free: Vec<usize> = (0..allowed.len())
-        .filter(|&i| !matches!(allowed[i], Allowed::Known(_)))
+        .filter(|&i| !matches!(allowed[i], ParameterRange::Known(_)))
         .collect();
     let all_held = free.iter().all(|&i| {
         triangles
@@ -200,7 +200,7 @@ fn solve_free(triangles: &[Triangle], weights: &[f64], free: &[usize], fixed: &[
 fn solve_bounded(
     triangles: &[Triangle],
     weights: &[f64],
-    allowed: &[Allowed],
+    allowed: &[ParameterRange],
 ) -> (Vec<f64>, Vec<usize>, Vec<usize>, Solution) {
     let n = allowed.len();
     let occurs = |i: usize| {
@@ -211,7 +211,7 @@ fn solve_bounded(
     };
     let mut fixed: Vec<f64> = allowed.iter().map(|a| known_value(*a)).collect();
     let mut free: Vec<usize> = (0..n)
-        .filter(|&i| !matches!(allowed[i], Allowed::Known(_)) && occurs(i))
+        .filter(|&i| !matches!(allowed[i], ParameterRange::Known(_)) && occurs(i))
         .collect();
     let mut active: Vec<usize> = Vec::new();
     for _ in 0..=n {
@@ -220,15 +220,19 @@ fn solve_bounded(
             .iter()
             .zip(&solution.x)
             .filter_map(|(&i, &x)| match allowed[i] {
-                Allowed::Within(lo, _) if x < lo => Some((i, lo, (lo - x) / lo.abs().max(x.abs()))),
-                Allowed::Within(_, hi) if x > hi => Some((i, hi, (x - hi) / hi.abs().max(x.abs()))),
+                ParameterRange::Within(lo, _) if x < lo => {
+                    Some((i, lo, (lo - x) / lo.abs().max(x.abs())))
+                }
+                ParameterRange::Within(_, hi) if x > hi => {
+                    Some((i, hi, (x - hi) / hi.abs().max(x.abs())))
+                }
                 _ => None,
             })
             .max_by(|a, b| a.2.total_cmp(&b.2));
         let Some((i, bound, _)) = worst else {
             let mut values: Vec<f64> = (0..n)
                 .map(|i| {
-                    if matches!(allowed[i], Allowed::Known(_)) || active.contains(&i) {
+                    if matches!(allowed[i], ParameterRange::Known(_)) || active.contains(&i) {
                         fixed[i]
                     } else {
                         f64::NAN

@@ -1,10 +1,10 @@
 //! Parameters of a vehicle from a record, with intervals, verdicts and checks.
 
-use super::adequacy::{Declared, channel_floors};
+use super::adequacy::{DeclaredErrors, channel_floors};
 use super::adjustment::Adjustment;
 use super::checks::{check_mass_closure, check_sides};
 use super::equations::{Equation, equations};
-use super::fit::{Allowed, Fit, fit};
+use super::fit::{Fit, ParameterRange, fit};
 use super::identifiability::is_known;
 use super::interval::spread;
 use super::known_body::{bodies_of_known_inertia, identify_known};
@@ -116,8 +116,8 @@ fn report_wrong_inputs(task: &IdentifyTask, answer: &mut Identification, record:
     answer.findings.insert(0, wrong);
 }
 
-fn declared_tolerances(task: &IdentifyTask) -> Declared {
-    Declared {
+fn declared_tolerances(task: &IdentifyTask) -> DeclaredErrors {
+    DeclaredErrors {
         noise_acc: task.noise_acc,
         noise_force: task.noise_force,
         gain: task.gain_tolerance,
@@ -177,7 +177,7 @@ fn fit_part(
         values: allow
             .iter()
             .map(|a| {
-                if let Allowed::Known(v) = a {
+                if let ParameterRange::Known(v) = a {
                     *v
                 } else {
                     f64::NAN
@@ -270,7 +270,7 @@ fn add_tolerances(
     part: &Vehicle,
     record: &Channels,
     treatment: &Treatment,
-    allow: &[Allowed],
+    allow: &[ParameterRange],
     base: &Fit,
     covariance: &mut [Vec<f64>],
 ) -> Result<(), VehicleError> {

@@ -1,7 +1,7 @@
 //! The equations of one connected part of a vehicle over a record, with what its parameters may be.
 
 use super::equations::{Equation, equations};
-use super::fit::Allowed;
+use super::fit::ParameterRange;
 use super::identification::IdentifyTask;
 use super::layout::{Parameter, Vehicle};
 use super::motion::{Motion, motion, resolve_constants};
@@ -17,7 +17,7 @@ pub(super) struct PartProblem {
     /// Equations of the part.
     pub equations: Vec<Equation>,
     /// Range of each parameter.
-    pub allowed: Vec<Allowed>,
+    pub allowed: Vec<ParameterRange>,
     /// Reference parameter, to which all other parameters are relative if no force sets the scale.
     pub reference: Option<usize>,
 }
@@ -39,7 +39,7 @@ impl PartProblem {
         let mut allowed = allowed_ranges(task, &names);
         let reference = reference(part, &equations, &allowed);
         if let Some(r) = reference {
-            allowed[r] = Allowed::Known(1.0);
+            allowed[r] = ParameterRange::Known(1.0);
         }
         Ok(Self {
             names,
@@ -57,7 +57,10 @@ impl PartProblem {
                 .equations
                 .iter()
                 .any(|e| e.target.iter().any(|t| *t != 0.0))
-            || self.allowed.iter().any(|a| matches!(a, Allowed::Known(_)));
+            || self
+                .allowed
+                .iter()
+                .any(|a| matches!(a, ParameterRange::Known(_)));
         has_scale && !self.equations.is_empty()
     }
 }
@@ -113,29 +116,29 @@ fn with_measured_sensors(vehicle: &Vehicle, record: &Channels) -> Vehicle {
     out
 }
 
-fn allowed_ranges(task: &IdentifyTask, parameters: &[Parameter]) -> Vec<Allowed> {
+fn allowed_ranges(task: &IdentifyTask, parameters: &[Parameter]) -> Vec<ParameterRange> {
     parameters
         .iter()
         .map(
             |p| match (task.known.get(&p.name), task.bounds.get(&p.name)) {
-                (Some(v), _) => Allowed::Known(*v),
-                (None, Some([lo, hi])) if p.positive => Allowed::Within(lo.max(0.0), *hi),
-                (None, Some([lo, hi])) => Allowed::Within(*lo, *hi),
-                (None, None) if p.positive => Allowed::Within(0.0, f64::INFINITY),
-                (None, None) => Allowed::Free,
+                (Some(v), _) => ParameterRange::Known(*v),
+                (None, Some([lo, hi])) if p.positive => ParameterRange::Within(lo.max(0.0), *hi),
+                (None, Some([lo, hi])) => ParameterRange::Within(*lo, *hi),
+                (None, None) if p.positive => ParameterRange::Within(0.0, f64::INFINITY),
+                (None, None) => ParameterRange::Free,
             },
         )
         .collect()
 }
 
 /// Index of the parameter that all others are measured by when no force sets the scale.
-fn reference(part: &Vehicle, equations: &[Equation], allowed: &[Allowed]) -> Option<usize> {
+fn reference(part: &Vehicle, equations: &[Equation], allowed: &[ParameterRange]) -> Option<usize> {
     let occurs = |i: usize| equations.iter().any(|e| e.columns.iter().any(|c| c.0 == i));
     let driven = equations
         .iter()
         .any(|e| e.driven && e.target.iter().any(|t| *t != 0.0));
     let held = (0..allowed.len())
-        .any(|i| matches!(allowed[i], Allowed::Known(v) if v != 0.0) && occurs(i));
+        .any(|i| matches!(allowed[i], ParameterRange::Known(v) if v != 0.0) && occurs(i));
     if driven || held {
         return None;
     }

@@ -1,7 +1,7 @@
 //! Refines parameters by the error of simulation. This decides on nonlinear terms, since stretch is simulated, not integrated.
 
 use super::layout::{Measures, Vehicle};
-use super::simulate::{Drive, Simulated, SimulationError, simulate};
+use super::simulate::{Drive, SimulatedMotion, SimulationError, simulate};
 use crate::linalg::levenberg::{Minimum, levenberg_marquardt};
 use crate::series::detrend::{rms, without_mean};
 use crate::series::integrate::integrate_in_band;
@@ -198,7 +198,7 @@ impl Comparison {
 }
 
 /// Returns the simulated reading of a sensor.
-pub fn sensor_signal(vehicle: &Vehicle, s: &Simulated, sensor: usize) -> Vec<f64> {
+pub fn sensor_signal(vehicle: &Vehicle, s: &SimulatedMotion, sensor: usize) -> Vec<f64> {
     let at = &vehicle.sensors[sensor].at;
     let motions = match vehicle.sensors[sensor].measures {
         Measures::Acceleration => &s.acceleration[at.body],

@@ -23,7 +23,7 @@ pub struct Drive {
 
 /// Motion of every body, sampled like the drive: `[body][motion][sample]`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Simulated {
+pub struct SimulatedMotion {
     /// Displacement.
     pub displacement: Vec<Vec<Vec<f64>>>,
     /// Velocity.
@@ -64,7 +64,7 @@ pub enum SimulationError {
 }
 
 /// A free body: index of its motions in the state, and its inverse inertia.
-struct Free {
+struct FreeBody {
     body: usize,
     at: usize,
     n: usize,
@@ -73,7 +73,7 @@ struct Free {
 
 /// Data of a time step, in flat lists.
 struct Machine<'a> {
-    free: Vec<Free>,
+    free: Vec<FreeBody>,
     n_state: usize,
     /// Per link: (state index or given index, weight, is given) of each end and motion.
     ends: Vec<Vec<(usize, f64, bool)>>,
@@ -119,7 +119,7 @@ pub fn simulate(
     vehicle: &Vehicle,
     values: &[f64],
     drive: &Drive,
-) -> Result<Simulated, SimulationError> {
+) -> Result<SimulatedMotion, SimulationError> {
     let steps = drive.steps.max(1);
     let n = samples(drive)?;
     let machine = machine(vehicle, values, drive, 2 * steps)?;
@@ -139,7 +139,7 @@ pub fn simulate(
             .map(|b| vec![Vec::with_capacity(n); b.shape.n()])
             .collect::<Vec<_>>()
     };
-    let mut out = Simulated {
+    let mut out = SimulatedMotion {
         displacement: empty(vehicle),
         velocity: empty(vehicle),
         acceleration: empty(vehicle),
@@ -257,7 +257,7 @@ fn machine<'a>(
             .filter(|_| usable)
             .ok_or_else(|| SimulationError::Inertia(body.name.clone()))?;
         place.push((out.n_state, false));
-        out.free.push(Free {
+        out.free.push(FreeBody {
             body: b,
             at: out.n_state,
             n,

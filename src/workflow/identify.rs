@@ -24,7 +24,7 @@ use serde::Serialize;
 
 /// Parameters of a vehicle and its wheel loads.
 #[derive(Serialize)]
-pub struct Identified {
+pub struct IdentifiedParameters {
     /// The vehicle model.
     pub model: String,
     /// The band of every equation, Hz.
@@ -50,10 +50,10 @@ pub struct Identified {
     pub found: Identification,
     /// Wheel forces of the fitted record.
     #[serde(skip)]
-    pub fitted: Driven,
+    pub fitted: WheelForceRecord,
     /// Wheel forces of the held-out record.
     #[serde(skip)]
-    pub held_out: Option<Driven>,
+    pub held_out: Option<WheelForceRecord>,
     /// Force histories on sprung bodies.
     #[serde(skip)]
     pub forces: Vec<ChassisForce>,
@@ -62,7 +62,7 @@ pub struct Identified {
     pub job: Job,
 }
 
-impl Answer for Identified {
+impl Answer for IdentifiedParameters {
     const COMMAND: &'static str = "identify";
     const RESULT: &'static str = "The parameters";
 
@@ -89,7 +89,7 @@ impl Answer for Identified {
 }
 
 /// A record with the wheel forces recovered from it.
-pub struct Driven {
+pub struct WheelForceRecord {
     /// Wheel forces.
     pub loads: LoadHistory,
     /// Accelerations, travels and measured forces.
@@ -162,7 +162,7 @@ pub(crate) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
 /// }
 /// # Ok::<(), strainbridge::Faults>(())
 /// ```
-pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> {
+pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<IdentifiedParameters>, Faults> {
     let mut work = Work::of_job(cx, job);
     check_tables(&work, job)?;
     let records = work.stage("read", |w| read_vehicle(w, job))?;
@@ -177,7 +177,10 @@ pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> 
         .map_err(|e| vehicle_fault(job, data_name, &e))?;
     work.findings.extend(found.findings.iter().cloned());
     work.findings.extend(found.verdict());
-    let drive = |record: &Channels, name: &str, adjust: &[Adjustment]| -> Result<Driven, Faults> {
+    let drive = |record: &Channels,
+                 name: &str,
+                 adjust: &[Adjustment]|
+     -> Result<WheelForceRecord, Faults> {
         let treatment = Treatment {
             keep_every: 1,
             adjust: adjust.to_vec(),
@@ -186,13 +189,14 @@ pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> 
         };
         let motion = motion(&found.vehicle, record, &treatment);
         let motion = motion.map_err(|e| vehicle_fault(job, name, &e))?;
-        Ok(Driven {
+        Ok(WheelForceRecord {
             loads: wheel_force_history(&found, &motion),
             motion,
         })
     };
     let unit = &task.units.force;
-    let rows = |name: &str, d: &Driven| load_rows(&found, task.gravity, unit, name, &d.loads);
+    let rows =
+        |name: &str, d: &WheelForceRecord| load_rows(&found, task.gravity, unit, name, &d.loads);
     let fitted = drive(data, data_name, &task.corrections)?;
     let mut loads = rows(data_name, &fitted);
     let named = job.vehicle.as_ref().and_then(|v| v.hold_out.as_ref());
@@ -209,7 +213,7 @@ pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> 
         _ => None,
     };
     let forces = chassis_forces(task, &found, &fitted.motion);
-    let answer = Identified {
+    let answer = IdentifiedParameters {
         model: found.vehicle.name.clone(),
         band_hz: [task.band.low_hz, task.band.high_hz],
         parameters: found.parameters.clone(),

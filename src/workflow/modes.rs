@@ -11,10 +11,10 @@ use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::model::Model;
+use crate::strain_chain::built_in_solver::{faults_of, support_of_job};
 use crate::strain_chain::deck::{DeckModel, read_model};
 use crate::strain_chain::job_deck::read_deck;
-use crate::strain_chain::named_results::{Absent, check_named};
-use crate::strain_chain::solved::{faults_of, support_of_job};
+use crate::strain_chain::named_results::{MissingResults, check_named};
 use crate::strain_chain::{corrected_spec_of, not_laid};
 use crate::units::{MICROSTRAIN, UnitSystem, number};
 use serde::{Serialize, Serializer};
@@ -129,7 +129,7 @@ pub fn modes(job: &Job, count: usize, cx: &Context) -> Result<Outcome<Modes>, Fa
             "name the deck: [model] deck = \"model.bdf\"",
         )));
     };
-    check_named(&work, job, Absent::Refused)?;
+    check_named(&work, job, MissingResults::Refused)?;
     let read = work.stage("read model", |w| read_deck(w, job, files))?;
     let support = support_of_job(job, &read.model)?;
     let units = StatedUnits::from_units(job.units, &job.report_units);

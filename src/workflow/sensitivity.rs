@@ -10,8 +10,8 @@ use crate::job::{AngleStep, Job};
 use crate::sensitivity::{check_separability, common_shells, from_cases};
 use crate::strain_chain::named_results::check_tables;
 use crate::strain_chain::{
-    Conditioning, GaugeMeshError, Prepared, WantedAt, lay_gauges, load_units, mesh_errors, prepare,
-    read_fields, without_strain,
+    Conditioning, GaugeMeshError, JobSensitivity, WantedAt, lay_gauges, load_units, mesh_errors,
+    prepare, read_fields, without_strain,
 };
 use crate::units::number;
 use crate::workflow::place::allowed_sites;
@@ -19,7 +19,7 @@ use serde::Serialize;
 
 /// S of a job's gauges or candidates.
 #[derive(Serialize)]
-pub struct Sensed {
+pub struct ComputedSensitivity {
     /// Rank and condition numbers.
     #[serde(flatten)]
     pub conditioning: Conditioning,
@@ -34,13 +34,13 @@ pub struct Sensed {
     pub mesh_error: Vec<GaugeMeshError>,
     /// S itself, with the model and the gauges it was made of.
     #[serde(skip)]
-    pub prepared: Prepared,
+    pub prepared: JobSensitivity,
     /// The job.
     #[serde(skip)]
     pub job: Job,
 }
 
-impl Answer for Sensed {
+impl Answer for ComputedSensitivity {
     const COMMAND: &'static str = "sensitivity";
     const RESULT: &'static str = "The sensitivities";
 
@@ -85,14 +85,14 @@ impl Answer for Sensed {
 /// assert!((s / (-l * c / (e * i)) - 1.0).abs() < 1e-9);
 /// # Ok::<(), strainbridge::Faults>(())
 /// ```
-pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<Sensed>, Faults> {
+pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<ComputedSensitivity>, Faults> {
     let mut work = Work::of_job(cx, job);
     check_tables(&work, job)?;
     let prepared = prepare_sensitivity(&mut work, job)?;
     let s = &prepared.sensitivity;
     let loads: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
     let units = load_units(job, &loads).into_iter().map(|u| u.name);
-    let answer = Sensed {
+    let answer = ComputedSensitivity {
         conditioning: Conditioning::from_sensitivity(s),
         gauges: s.gauges.len(),
         report_units_of_loads: units.collect(),
@@ -112,7 +112,7 @@ pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<Sensed>, Faults> {
 ///
 /// # Errors
 /// Every fault of the job and of the files it names.
-pub(crate) fn prepare_sensitivity(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
+pub(crate) fn prepare_sensitivity(work: &mut Work, job: &Job) -> Result<JobSensitivity, Faults> {
     let prepared = if job.gauges.is_empty() && job.sensitivity.is_none() {
         match job.with_spots_as_gauges() {
             Some(as_gauges) => prepare(work, &as_gauges)?,
@@ -128,7 +128,7 @@ pub(crate) fn prepare_sensitivity(work: &mut Work, job: &Job) -> Result<Prepared
 }
 
 /// Returns S of every candidate: each allowed surface at each angle of the grid (every 15 degrees if the job asks for continuous angles).
-fn of_candidates(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
+fn of_candidates(work: &mut Work, job: &Job) -> Result<JobSensitivity, Faults> {
     let fields = read_fields(work, job, WantedAt::Anywhere)?;
     let job = &job.with_property_ids(&fields.model().property_names)?;
     let cases = fields.load_cases(job);
@@ -166,7 +166,7 @@ fn of_candidates(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
     let sensitivity =
         from_cases(&gauges, &cases).map_err(|missing| without_strain(job, &missing))?;
     let mesh_error = mesh_errors(&gauges, &sensitivity, &fields.mesh_cases(job));
-    Ok(Prepared {
+    Ok(JobSensitivity {
         sensitivity,
         fields: Some(fields),
         gauges: Vec::new(),

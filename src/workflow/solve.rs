@@ -13,15 +13,15 @@ use crate::host::work::Work;
 use crate::job::Job;
 use crate::linalg::sparse::OrderingMethod;
 use crate::model::{Model, Shell};
+pub use crate::strain_chain::built_in_solver::MODES;
+use crate::strain_chain::built_in_solver::{
+    cases_of_job, faults_of, is_combination, relief_of_job, solve_kept, static_case, support_of_job,
+};
 use crate::strain_chain::combined_subcases::{CombinedSubcase, add_combinations, read_combination};
 use crate::strain_chain::deck::{DeckModel, read_model};
 use crate::strain_chain::job_deck::read_deck;
-use crate::strain_chain::named_results::{Absent, check_named};
+use crate::strain_chain::named_results::{MissingResults, check_named};
 use crate::strain_chain::repeated_subcases::refuse_repeated_subcases;
-pub use crate::strain_chain::solved::MODES;
-use crate::strain_chain::solved::{
-    cases_of_job, faults_of, is_combination, relief_of_job, solve_kept, static_case, support_of_job,
-};
 use crate::units::{UnitSystem, number};
 use nastran::bdf::Request;
 use nastran::cards::ShellShape;
@@ -261,7 +261,7 @@ fn of_job(work: &mut Work, job: &Job) -> Result<Task, Faults> {
         )
         .into());
     };
-    check_named(work, job, Absent::Refused)?;
+    check_named(work, job, MissingResults::Refused)?;
     let read = read_deck(work, job, files)?;
     let support = support_of_job(job, &read.model)?;
     let cases = cases_of_job(job, &read)?;

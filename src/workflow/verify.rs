@@ -18,14 +18,14 @@ const OF_THE_RUN: [&str; 3] = ["seconds", "peak_memory_bytes", "extended_model"]
 
 /// Result of a recomputation.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Verified {
+pub struct Recomputation {
     /// Inputs with unchanged bytes, and files with the same content as recomputed.
     pub same: Vec<String>,
     /// Inputs and files that differ.
     pub differs: Vec<Difference>,
 }
 
-impl Answer for Verified {
+impl Answer for Recomputation {
     const COMMAND: &'static str = "verify";
     const RESULT: &'static str = "The result folder";
 
@@ -56,7 +56,7 @@ pub struct Difference {
 
 /// Command, inputs and records of a result folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Made {
+pub struct ResultProvenance {
     /// The command.
     pub command: String,
     /// Files read by the command, the job or deck first.
@@ -69,7 +69,7 @@ pub struct Made {
 ///
 /// # Errors
 /// Returns a fault if the folder has no `result.json` of strainbridge.
-pub fn read_made(folder: &Path) -> Result<Made, Fault> {
+pub fn read_made(folder: &Path) -> Result<ResultProvenance, Fault> {
     let file = folder.join("result.json");
     let name = file.display().to_string();
     let fault = |wrong: String| {
@@ -94,7 +94,7 @@ pub fn read_made(folder: &Path) -> Result<Made, Fault> {
             sha256: text_of(v, "sha256")?,
         })
     });
-    Ok(Made {
+    Ok(ResultProvenance {
         command: command.to_owned(),
         inputs: inputs.collect(),
         records: match command {
@@ -150,9 +150,9 @@ fn records_of_fleet(result: &Value) -> Vec<String> {
 /// ```
 pub fn verify(
     folder: &Path,
-    again: impl FnOnce(&Made, &Path) -> Result<PathBuf, Faults>,
+    again: impl FnOnce(&ResultProvenance, &Path) -> Result<PathBuf, Faults>,
     cx: &Context,
-) -> Result<Outcome<Verified>, Faults> {
+) -> Result<Outcome<Recomputation>, Faults> {
     let mut work = Work::new(cx);
     let made = read_made(folder)?;
     work.sources.push(folder.join("result.json"));
@@ -167,7 +167,7 @@ pub fn verify(
 ///
 /// # Errors
 /// Returns a fault if the file is in neither place.
-pub fn main_input(folder: &Path, made: &Made) -> Result<PathBuf, Fault> {
+pub fn main_input(folder: &Path, made: &ResultProvenance) -> Result<PathBuf, Fault> {
     let given = made.inputs.first().map(|i| PathBuf::from(&i.path));
     let beside = |p: &PathBuf| Some(folder.parent()?.join(p.file_name()?));
     let beside = given.as_ref().and_then(beside);
@@ -183,9 +183,9 @@ pub fn main_input(folder: &Path, made: &Made) -> Result<PathBuf, Fault> {
 }
 
 /// Compares a folder with a recomputation of it in another.
-fn compare(folder: &Path, again: &Path) -> Result<Verified, Faults> {
+fn compare(folder: &Path, again: &Path) -> Result<Recomputation, Faults> {
     let (old, new) = (read_made(folder)?, read_made(again)?);
-    let mut out = Verified::default();
+    let mut out = Recomputation::default();
     for (i, input) in old.inputs.iter().enumerate() {
         // The main input may be named from elsewhere now.
         let now = new.inputs.iter().find(|n| n.path == input.path);
@@ -235,7 +235,7 @@ fn names(folder: &Path) -> Result<BTreeSet<String>, Fault> {
         .collect())
 }
 
-impl Made {
+impl ResultProvenance {
     /// The result files among the inputs of a command on deck and results.
     pub fn results(&self) -> Vec<&str> {
         let is_result = |p: &&str| {
@@ -247,7 +247,7 @@ impl Made {
     }
 }
 
-impl Verified {
+impl Recomputation {
     /// An error where anything differs.
     fn findings(&self, folder: &Path) -> Option<Finding> {
         let first = self.differs.first()?;

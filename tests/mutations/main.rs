@@ -10,7 +10,7 @@ mod support;
 
 use folders::{Folder, folders};
 use nastran::bdf::{MemoryLoader, read_deck};
-use nastran::results::{ResultsFile, Salvaged};
+use nastran::results::{ResultsFile, SalvagedFile};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -134,7 +134,7 @@ fn number(bytes: &mut Vec<u8>, at: usize, random: &mut Random) {
 type Reader = fn(&[u8]) -> bool;
 
 fn results(bytes: &[u8]) -> bool {
-    let Ok(Salvaged { file, .. }) = ResultsFile::salvage(bytes, "x.op2") else {
+    let Ok(SalvagedFile { file, .. }) = ResultsFile::salvage(bytes, "x.op2") else {
         return false;
     };
     let _ = (file.cards(), file.grid_point_weight());

@@ -9,7 +9,7 @@ use strainbridge::fe::strain_tensor::Surface;
 use strainbridge::model::{Model, Vec3};
 use strainbridge::report::page::Page;
 use strainbridge::report::scene::{
-    Field, FieldValues, Mark, Places, Pointing, scene_of_model, scene_section,
+    Field, FieldValues, Mark, PickTargets, Places, scene_of_model, scene_section,
 };
 
 /// Squares of 1 mm along x and y: more than a page draws one by one.
@@ -44,7 +44,7 @@ fn sheet() -> Model {
 fn a_gauge_that_is_dragged_over_a_coarser_picture_lands_on_the_elements() {
     let model = sheet();
     let mut scene = scene_of_model(&model, Places::default());
-    scene.pointing = Pointing::Gauges;
+    scene.pointing = PickTargets::Gauges;
     // Many fields to choose from make the picture coarser.
     let field = |i: usize| Field {
         name: format!("F{i}"),

@@ -1,13 +1,13 @@
 //! A folded plate, small enough to look at.
 
-use nastran::bdf::{IncludeRequest, Loaded, Loader};
+use nastran::bdf::{IncludeRequest, LoadedFile, Loader};
 use std::fmt::Write;
 
 /// No INCLUDE.
 pub struct NoFiles;
 
 impl Loader for NoFiles {
-    fn load(&mut self, _: &IncludeRequest) -> Result<Loaded, String> {
+    fn load(&mut self, _: &IncludeRequest) -> Result<LoadedFile, String> {
         Err("no include here".to_owned())
     }
 }

@@ -2,7 +2,7 @@
 
 use super::command::{Outcome, find_shared_path, run, scratch};
 use crate::support::skip;
-use nastran::bdf::{Deck, IncludeRequest, Loaded, Loader, read_deck};
+use nastran::bdf::{Deck, IncludeRequest, LoadedFile, Loader, read_deck};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -52,10 +52,10 @@ const DECKS: [Source; 3] = [
 struct Folder(PathBuf);
 
 impl Loader for Folder {
-    fn load(&mut self, request: &IncludeRequest) -> Result<Loaded, String> {
+    fn load(&mut self, request: &IncludeRequest) -> Result<LoadedFile, String> {
         let path = self.0.join(&request.name);
         let bytes = std::fs::read(&path).map_err(|e| e.to_string())?;
-        Ok(Loaded {
+        Ok(LoadedFile {
             path: path.display().to_string(),
             bytes,
             differing_path: None,

@@ -398,14 +398,16 @@ fn rows_do_not_depend_on_the_numbering_of_shells_or_the_form_of_a_table() {
     all_right(&wrong);
 }
 
-fn recover_job(job: &str) -> Result<Outcome<strainbridge::workflow::recover::Recovered>, String> {
+fn recover_job(
+    job: &str,
+) -> Result<Outcome<strainbridge::workflow::recover::RecoveredLoads>, String> {
     let path = cases("jobs").unwrap_or_default().join(job);
     let job = Job::read(path.display().to_string(), &Disk).map_err(|e| words(&e))?;
     strainbridge::recover(&job, &Context::new(&Disk)).map_err(|e| words(&e))
 }
 
 /// The first run's value of a load.
-fn load_of(got: &Outcome<strainbridge::workflow::recover::Recovered>, name: &str) -> f64 {
+fn load_of(got: &Outcome<strainbridge::workflow::recover::RecoveredLoads>, name: &str) -> f64 {
     let runs = got.runs().expect("runs");
     let load = runs.loads.iter().find(|l| l.name == name);
     load.expect("the load").value

@@ -4,7 +4,7 @@ use super::{S, loads, strain};
 use std::fmt::Write;
 use std::path::PathBuf;
 use strainbridge::host::context::InMemory;
-use strainbridge::workflow::check::Checked;
+use strainbridge::workflow::check::CheckedFiles;
 use strainbridge::{Context, Faults, Job, Outcome, check, sensitivity, strains};
 
 /// A plate of two quads in m, kg, s, pulled by a force.
@@ -67,7 +67,7 @@ fn words(faults: &Faults) -> String {
     faults.iter().map(ToString::to_string).collect()
 }
 
-fn check_files(files: &InMemory, names: &[&str]) -> Outcome<Checked> {
+fn check_files(files: &InMemory, names: &[&str]) -> Outcome<CheckedFiles> {
     let names: Vec<PathBuf> = names.iter().map(PathBuf::from).collect();
     check(&names, &Context::new(files)).unwrap()
 }

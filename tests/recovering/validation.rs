@@ -3,7 +3,7 @@
 use super::{S, loads, strain};
 use std::fmt::Write;
 use strainbridge::host::context::InMemory;
-use strainbridge::workflow::recover::{Recovered, ValidationGauge};
+use strainbridge::workflow::recover::{RecoveredLoads, ValidationGauge};
 use strainbridge::{Context, Job, calibrate, payload, reconcile, recover};
 
 const NOISE: f64 = 0.3;
@@ -41,13 +41,13 @@ fn files(strain: String, role: &str, more: &str) -> InMemory {
         .with_file("strain.csv", strain)
 }
 
-fn recover_job(files: &InMemory) -> Recovered {
+fn recover_job(files: &InMemory) -> RecoveredLoads {
     let job = Job::read("job.toml", files).unwrap();
     recover(&job, &Context::new(files)).unwrap().answer
 }
 
 /// Loads of all runs, or the sums of all samples.
-fn numbers(found: &Recovered) -> Vec<f64> {
+fn numbers(found: &RecoveredLoads) -> Vec<f64> {
     match (found.runs(), found.record()) {
         (Some(runs), _) => runs.loads.iter().map(|l| l.value).collect(),
         (_, Some(record)) => (record.loads.iter())

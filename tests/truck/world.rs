@@ -7,7 +7,7 @@ use nastran::bdf::{MemoryLoader, read_deck};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::sync::OnceLock;
-use strainbridge::fe::floor::{Standing, solve_standing};
+use strainbridge::fe::floor::{FloorSolution, solve_standing};
 use strainbridge::fe::{CaseResult, UnitLoad};
 use strainbridge::model::{FaultWeight, GridIx, Model, Vec3};
 
@@ -22,7 +22,7 @@ pub const PAYLOAD_TONNES: f64 = 5.40717;
 pub struct Truck {
     pub model: Model,
     /// Unit forces up at the wheels; then at the payload FZ, MX, MY; then at each wheel FX FY MX MY MZ.
-    pub standing: Standing,
+    pub standing: FloorSolution,
 }
 
 impl Truck {

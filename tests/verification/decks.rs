@@ -1,6 +1,6 @@
 //! Decks of `../shared`, read and turned into models.
 
-use nastran::bdf::{IncludeRequest, Loaded, Loader, read_deck};
+use nastran::bdf::{IncludeRequest, LoadedFile, Loader, read_deck};
 use strainbridge::model::Model;
 
 pub use crate::support::find_shared_path;
@@ -8,10 +8,10 @@ pub use crate::support::find_shared_path;
 struct Files;
 
 impl Loader for Files {
-    fn load(&mut self, request: &IncludeRequest) -> Result<Loaded, String> {
+    fn load(&mut self, request: &IncludeRequest) -> Result<LoadedFile, String> {
         for path in request.candidates(|_| None)? {
             if let Ok(bytes) = std::fs::read(&path) {
-                return Ok(Loaded {
+                return Ok(LoadedFile {
                     path,
                     bytes,
                     differing_path: None,

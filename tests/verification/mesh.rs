@@ -1,6 +1,6 @@
 //! Decks written by a test, read by the reader, solved by the solver.
 
-use nastran::bdf::{IncludeRequest, Loaded, Loader, read_deck};
+use nastran::bdf::{IncludeRequest, LoadedFile, Loader, read_deck};
 use std::fmt::Write;
 use strainbridge::fe::*;
 use strainbridge::model::{Model, ModelFault};
@@ -8,7 +8,7 @@ use strainbridge::model::{Model, ModelFault};
 struct NoFiles;
 
 impl Loader for NoFiles {
-    fn load(&mut self, _: &IncludeRequest) -> Result<Loaded, String> {
+    fn load(&mut self, _: &IncludeRequest) -> Result<LoadedFile, String> {
         Err("no include here".to_owned())
     }
 }

@@ -193,7 +193,7 @@ impl Solved {
                 c.displacement.iter().map(finite).collect()
             })
             .collect();
-        let solved = strainbridge::fe::Solved {
+        let solved = strainbridge::fe::DisplacementSolution {
             displacements,
             ..Default::default()
         };

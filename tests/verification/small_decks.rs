@@ -20,7 +20,7 @@ pub fn model(case_control: &str, bulk: &str) -> (Model, Vec<ModelFault>) {
 }
 
 /// Solves the first subcase of a deck.
-pub fn try_solve(case_control: &str, bulk: &str) -> Result<(Model, Solved), FeError> {
+pub fn try_solve(case_control: &str, bulk: &str) -> Result<(Model, DisplacementSolution), FeError> {
     let deck = deck(case_control, bulk);
     let (model, faults) = Model::from_deck(&deck);
     let wrong: Vec<&ModelFault> = faults
@@ -35,12 +35,12 @@ pub fn try_solve(case_control: &str, bulk: &str) -> Result<(Model, Solved), FeEr
 }
 
 /// Solves the first subcase of a deck.
-pub fn solve(case_control: &str, bulk: &str) -> (Model, Solved) {
+pub fn solve(case_control: &str, bulk: &str) -> (Model, DisplacementSolution) {
     try_solve(case_control, bulk).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Displacement of a grid.
-pub fn displacement_at((model, solved): &(Model, Solved), grid: u32) -> [f64; 6] {
+pub fn displacement_at((model, solved): &(Model, DisplacementSolution), grid: u32) -> [f64; 6] {
     solved.displacements[0][model.grid_ix(grid).unwrap().us()]
 }
 

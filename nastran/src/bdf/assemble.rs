@@ -2,13 +2,13 @@
 
 use std::sync::atomic::AtomicUsize;
 
-use super::continuation_name::{Claimed, asks, claim, is_marked, key, strip_marks};
+use super::continuation_name::{ContinuationNames, asks, claim, is_marked, key, strip_marks};
 use super::emit::emit;
-use super::fault::{Fault, Wrong};
+use super::fault::{DeckFaultKind, Fault};
 use super::fields::{excerpt, note_fault};
 use super::line::{Line, trim, without_comment};
 use super::names::NameReader;
-use super::part::{Deferred, Name, Orphan, Part, Span};
+use super::part::{DeferredCard, Name, OrphanContinuation, Part, Span};
 use super::replicate::{self, Template};
 use super::split::{Cut, Lead, cut, is_list_word};
 use crate::place::{Place, SourceIx};
@@ -29,7 +29,7 @@ pub(super) struct Assembler<'a, 'b> {
     source: SourceIx,
     budget: &'b AtomicUsize,
     /// Names of continuations that belong to a card other than the card above them.
-    claimed: &'b Claimed,
+    claimed: &'b ContinuationNames,
     pub part: Part,
     open: Open,
     name: Name,
@@ -47,7 +47,11 @@ pub(super) struct Assembler<'a, 'b> {
 }
 
 impl<'a, 'b> Assembler<'a, 'b> {
-    pub(super) fn new(source: SourceIx, budget: &'b AtomicUsize, claimed: &'b Claimed) -> Self {
+    pub(super) fn new(
+        source: SourceIx,
+        budget: &'b AtomicUsize,
+        claimed: &'b ContinuationNames,
+    ) -> Self {
         Assembler {
             source,
             budget,
@@ -135,7 +139,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
         } else {
             String::new()
         };
-        let what = Wrong::NotACard { found };
+        let what = DeckFaultKind::NotACard { found };
         let at = Place {
             source: self.source,
             line: line.number,
@@ -200,7 +204,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
         self.label = cut.fields(&mut scratch);
         let next = key(strip_marks(self.label));
         let asks = is_marked(self.label);
-        self.part.orphans.push(Orphan {
+        self.part.orphans.push(OrphanContinuation {
             label,
             next,
             asks,
@@ -240,7 +244,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
         self.finish();
         self.names.forget();
         if self.before_name == Name::default() {
-            let what = Wrong::Replication {
+            let what = DeckFaultKind::Replication {
                 found: excerpt(trim(line.text)),
                 why: "no card is above it",
             };
@@ -275,7 +279,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
             Open::Nothing | Open::Orphan => {}
             Open::Card => {
                 if let Some(label) = claim(self.label, self.claimed) {
-                    self.part.deferred.push(Deferred {
+                    self.part.deferred.push(DeferredCard {
                         label: key(label),
                         lines: self.spans.clone(),
                     });
@@ -316,7 +320,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
         );
         let card = super::line::text_of(self.before_name.as_bytes());
         let Some(mut template) = self.template.take() else {
-            let what = Wrong::Replication {
+            let what = DeckFaultKind::Replication {
                 found: "=(n)".to_owned(),
                 why: "no line with increments is above it",
             };

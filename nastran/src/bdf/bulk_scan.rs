@@ -5,7 +5,7 @@ use super::line::{Lines, is_blank, trim, without_comment};
 use super::source::Chunk;
 
 /// A line of bulk data that is no card.
-pub(super) enum Special {
+pub(super) enum BulkStatement {
     Include,
     Begin,
     EndData,
@@ -18,7 +18,7 @@ pub(super) fn scan(
     at: usize,
     number: u32,
     mut chunks: Option<&mut Vec<Chunk>>,
-) -> Option<(Special, usize, usize, u32)> {
+) -> Option<(BulkStatement, usize, usize, u32)> {
     let mut chunk = Chunk {
         source,
         start: at,
@@ -66,7 +66,7 @@ fn is_closed(line: &[u8]) -> bool {
 }
 
 #[inline]
-fn parse_special_statement(line: &[u8]) -> Option<Special> {
+fn parse_special_statement(line: &[u8]) -> Option<BulkStatement> {
     let first = *line.first()?;
     if !matches!(
         first,
@@ -79,9 +79,9 @@ fn parse_special_statement(line: &[u8]) -> Option<Special> {
         return None;
     }
     match first_word(line).as_slice() {
-        b"ENDDATA" => Some(Special::EndData),
-        b"INCLUDE" => Some(Special::Include),
-        b"BEGIN" => Some(Special::Begin),
+        b"ENDDATA" => Some(BulkStatement::EndData),
+        b"INCLUDE" => Some(BulkStatement::Include),
+        b"BEGIN" => Some(BulkStatement::Begin),
         _ => None,
     }
 }

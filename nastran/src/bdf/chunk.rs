@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicUsize;
 use rayon::prelude::*;
 
 use super::assemble::Assembler;
-use super::continuation_name::Claimed;
+use super::continuation_name::ContinuationNames;
 use super::line::Lines;
 use super::merge::append;
 use super::part::Part;
@@ -23,7 +23,7 @@ pub(super) fn read_chunks(
     chunks: &[Chunk],
     sources: &[Source],
     budget: &AtomicUsize,
-    claimed: &Claimed,
+    claimed: &ContinuationNames,
 ) -> Part {
     let mut all = Part::default();
     for batch in chunks.chunks(BATCH) {
@@ -45,7 +45,12 @@ pub(super) fn read_chunks(
     all
 }
 
-fn read_chunk(chunk: &Chunk, sources: &[Source], budget: &AtomicUsize, claimed: &Claimed) -> Part {
+fn read_chunk(
+    chunk: &Chunk,
+    sources: &[Source],
+    budget: &AtomicUsize,
+    claimed: &ContinuationNames,
+) -> Part {
     let bytes = sources
         .get(chunk.source as usize)
         .map(|s| s.bytes.as_slice())

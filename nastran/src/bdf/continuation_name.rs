@@ -9,7 +9,7 @@ use super::split::{Lead, cut};
 use crate::place::{Place, SourceIx};
 
 /// Names of continuations, in upper case.
-pub(super) type Claimed = HashSet<Vec<u8>>;
+pub(super) type ContinuationNames = HashSet<Vec<u8>>;
 
 /// Returns the name without the marks of columns 1 and 73, which are no part of it. MSC Nastran writes names that begin with `+`.
 pub(super) fn strip_marks(label: &[u8]) -> &[u8] {
@@ -45,7 +45,7 @@ pub(super) fn asks(label: &[u8], wanted: &[u8]) -> bool {
 
 /// Returns the name of the continuation that a finished card still asks for: one after `+` or `*`, or any that is claimed.
 #[inline]
-pub(super) fn claim<'a>(label: &'a [u8], claimed: &Claimed) -> Option<&'a [u8]> {
+pub(super) fn claim<'a>(label: &'a [u8], claimed: &ContinuationNames) -> Option<&'a [u8]> {
     if let [] | [b'+' | b'*'] = label {
         return None;
     }
@@ -69,7 +69,11 @@ pub(super) struct Asker {
 }
 
 /// Returns every line that asks for one of these names, in file order.
-pub(super) fn askers(names: &Claimed, chunks: &[Chunk], sources: &[Source]) -> Vec<Asker> {
+pub(super) fn askers(
+    names: &ContinuationNames,
+    chunks: &[Chunk],
+    sources: &[Source],
+) -> Vec<Asker> {
     let mut found: Vec<Asker> = Vec::new();
     let mut fields = Vec::new();
     for chunk in chunks {
@@ -112,7 +116,7 @@ pub(super) fn askers(names: &Claimed, chunks: &[Chunk], sources: &[Source]) -> V
 }
 
 /// Returns the names of continuations that the card above them does not ask for.
-pub(super) fn find_unclaimed(loose: &[Span], sources: &[Source]) -> Claimed {
+pub(super) fn find_unclaimed(loose: &[Span], sources: &[Source]) -> ContinuationNames {
     let name = |span: &Span| {
         let text = span.text(sources);
         key(strip_marks(cut(without_comment(text)).head))

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::case::CaseControl;
 use super::fault::Fault;
 use super::line::{is_blank, text_of, without_comment};
-use super::names::{Label, Named};
+use super::names::{Label, NameOwner};
 use super::source::{Note, SectionBounds, Source};
 use super::split::{Lead, cut};
 use crate::cards::{Cards, Param};
@@ -107,7 +107,7 @@ impl Deck {
     }
 
     /// The name that a comment gives this property, component or material.
-    pub fn label(&self, kind: Named, id: u32) -> Option<&str> {
+    pub fn label(&self, kind: NameOwner, id: u32) -> Option<&str> {
         self.labels
             .iter()
             .find(|l| l.kind == kind && l.id == id)

@@ -7,7 +7,7 @@ use super::deck::OtherCard;
 use super::fields::{Fields, Value};
 use super::line::text_of;
 use super::part::{Name, Part, Span};
-use crate::place::{Place, Placed};
+use crate::place::{Place, PlacedCard};
 
 /// Reads a finished card and adds it to the part.
 pub(super) fn emit(
@@ -30,7 +30,7 @@ pub(super) fn emit(
         let points = connected_points(&fields).into_iter();
         part.cards
             .connected_points
-            .extend(points.map(|card| Placed { card, at }));
+            .extend(points.map(|card| PlacedCard { card, at }));
     }
     if !read_card(&mut fields, &mut part.cards)
         && let (Some(first), Some(last)) = (spans.first(), spans.last())

@@ -15,7 +15,7 @@ pub struct Fault {
     /// The field, if the fault is in one.
     pub field: Option<FieldName>,
     /// Kind of the fault, with its values.
-    pub what: Wrong,
+    pub what: DeckFaultKind,
 }
 
 /// A field of a card.
@@ -30,7 +30,7 @@ pub struct FieldName {
 /// Kinds of faults, with their values.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
-pub enum Wrong {
+pub enum DeckFaultKind {
     /// A required field is blank.
     Missing,
     NotInteger {
@@ -117,7 +117,7 @@ pub enum Wrong {
     },
 }
 
-impl Wrong {
+impl DeckFaultKind {
     /// Whether part of the deck was not read: it is cut, an INCLUDE leads nowhere, or a name is unknown.
     pub fn is_incomplete(&self) -> bool {
         match self {
@@ -304,19 +304,19 @@ impl Wrong {
 impl Fault {
     /// `file:line: field: what is wrong: what to do`.
     pub fn show<'a>(&'a self, sources: &'a [Source]) -> impl fmt::Display + 'a {
-        Shown {
+        FaultMessage {
             fault: self,
             sources,
         }
     }
 }
 
-struct Shown<'a> {
+struct FaultMessage<'a> {
     fault: &'a Fault,
     sources: &'a [Source],
 }
 
-impl fmt::Display for Shown<'_> {
+impl fmt::Display for FaultMessage<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let path = self
             .sources

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicUsize;
 
-use super::fault::{Fault, FieldName, Wrong};
+use super::fault::{DeckFaultKind, Fault, FieldName};
 use super::number::{Number, read_number};
 use crate::cards::Dofs;
 use crate::place::Place;
@@ -102,7 +102,7 @@ impl<'a, 'f> Fields<'a, 'f> {
     }
 
     /// Notes a fault at field `i`.
-    pub(super) fn fault(&mut self, i: usize, name: &'static str, what: Wrong) {
+    pub(super) fn fault(&mut self, i: usize, name: &'static str, what: DeckFaultKind) {
         let number = (i / 8 * 10 + i % 8 + 2) as u32;
         let card = super::line::text_of(self.name);
         note_fault(
@@ -128,7 +128,7 @@ impl<'a, 'f> Fields<'a, 'f> {
             Value::Integer(n) => Some(n),
             Value::Real(_) | Value::Text => {
                 let found = self.excerpt_at(i);
-                self.fault(i, name, Wrong::NotInteger { found });
+                self.fault(i, name, DeckFaultKind::NotInteger { found });
                 None
             }
         }
@@ -150,16 +150,16 @@ impl<'a, 'f> Fields<'a, 'f> {
         self.unusable = true;
         let found = self.excerpt_at(i);
         match self.value(i) {
-            Value::Blank => self.fault(i, name, Wrong::Missing),
+            Value::Blank => self.fault(i, name, DeckFaultKind::Missing),
             Value::Integer(_) => self.fault(
                 i,
                 name,
-                Wrong::OutOfRange {
+                DeckFaultKind::OutOfRange {
                     found,
                     allowed: "1 and more",
                 },
             ),
-            _ => self.fault(i, name, Wrong::NotInteger { found }),
+            _ => self.fault(i, name, DeckFaultKind::NotInteger { found }),
         }
         0
     }
@@ -174,7 +174,7 @@ impl<'a, 'f> Fields<'a, 'f> {
             self.fault(
                 i,
                 name,
-                Wrong::OutOfRange {
+                DeckFaultKind::OutOfRange {
                     found,
                     allowed: "0 and more",
                 },
@@ -193,7 +193,7 @@ impl<'a, 'f> Fields<'a, 'f> {
             self.fault(
                 i,
                 name,
-                Wrong::OutOfRange {
+                DeckFaultKind::OutOfRange {
                     found,
                     allowed: "-2147483648 to 2147483647",
                 },
@@ -210,12 +210,12 @@ impl<'a, 'f> Fields<'a, 'f> {
             Value::Real(x) => Some(x),
             Value::Integer(n) => {
                 let found = self.excerpt_at(i);
-                self.fault(i, name, Wrong::IntegerForReal { found });
+                self.fault(i, name, DeckFaultKind::IntegerForReal { found });
                 Some(n as f64)
             }
             Value::Text => {
                 let found = self.excerpt_at(i);
-                self.fault(i, name, Wrong::NotReal { found });
+                self.fault(i, name, DeckFaultKind::NotReal { found });
                 None
             }
         }
@@ -230,7 +230,7 @@ impl<'a, 'f> Fields<'a, 'f> {
     /// A required real; 0 and a fault where blank.
     pub(super) fn required_real(&mut self, i: usize, name: &'static str) -> f64 {
         if self.is_blank(i) {
-            self.fault(i, name, Wrong::Missing);
+            self.fault(i, name, DeckFaultKind::Missing);
         }
         self.opt_real(i, name).unwrap_or(0.0)
     }
@@ -256,7 +256,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         };
         if dofs.is_none() {
             let found = self.excerpt_at(i);
-            self.fault(i, name, Wrong::NotDofs { found });
+            self.fault(i, name, DeckFaultKind::NotDofs { found });
         }
         dofs
     }
@@ -276,7 +276,7 @@ impl<'a, 'f> Fields<'a, 'f> {
                 self.fault(
                     i,
                     name,
-                    Wrong::OutOfRange {
+                    DeckFaultKind::OutOfRange {
                         found,
                         allowed: "0 to 6",
                     },
@@ -301,7 +301,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         }
         let found = excerpt(self.bytes_at(i));
         let allowed = "a shorter range";
-        self.fault(i, name, Wrong::OutOfRange { found, allowed });
+        self.fault(i, name, DeckFaultKind::OutOfRange { found, allowed });
         Vec::new()
     }
 

@@ -15,7 +15,7 @@ pub struct IncludeRequest {
 
 /// A file as the loader found it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Loaded {
+pub struct LoadedFile {
     /// Path; the same file must always get the same path.
     pub path: String,
     /// Bytes of the file.
@@ -31,7 +31,7 @@ pub trait Loader {
     /// # Errors
     ///
     /// A few words for the message of the fault.
-    fn load(&mut self, request: &IncludeRequest) -> Result<Loaded, String>;
+    fn load(&mut self, request: &IncludeRequest) -> Result<LoadedFile, String>;
 }
 
 impl IncludeRequest {
@@ -149,14 +149,14 @@ pub struct MemoryLoader {
 }
 
 impl Loader for MemoryLoader {
-    fn load(&mut self, request: &IncludeRequest) -> Result<Loaded, String> {
+    fn load(&mut self, request: &IncludeRequest) -> Result<LoadedFile, String> {
         let paths = request
             .candidates(|s| self.symbols.get(s).cloned())
             .map_err(|s| format!("the symbol {s} has no value"))?;
         let paths = paths.iter().map(|p| without_dots(p));
         let mut found = paths.filter_map(|p| Some((self.files.get(&p)?, p)));
         let (bytes, path) = found.next().ok_or("no such file")?;
-        Ok(Loaded {
+        Ok(LoadedFile {
             differing_path: found.find(|other| other.0 != bytes).map(|other| other.1),
             path,
             bytes: bytes.clone(),

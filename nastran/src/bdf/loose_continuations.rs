@@ -4,18 +4,18 @@ use std::collections::{HashMap, HashSet};
 use std::sync::atomic::AtomicUsize;
 
 use super::assemble::Assembler;
-use super::continuation_name::{Claimed, askers};
-use super::fault::{Fault, Wrong};
+use super::continuation_name::{ContinuationNames, askers};
+use super::fault::{DeckFaultKind, Fault};
 use super::fields::note_fault;
 use super::line::{Line, text_of};
-use super::part::{Deferred, Orphan, Part, Span};
+use super::part::{DeferredCard, OrphanContinuation, Part, Span};
 use super::source::{Chunk, Source};
 use crate::place::Place;
 
 /// Cards that wait for continuations, continuations that wait for cards, and where both are.
-pub(super) struct Loose<'a> {
-    pub deferred: &'a [Deferred],
-    pub orphans: &'a mut [Orphan],
+pub(super) struct PendingContinuations<'a> {
+    pub deferred: &'a [DeferredCard],
+    pub orphans: &'a mut [OrphanContinuation],
     pub chunks: &'a [Chunk],
     pub sources: &'a [Source],
 }
@@ -24,8 +24,8 @@ pub(super) struct Loose<'a> {
 ///
 /// A continuation goes to the card that names it, within a file before others. A name that is there twice, or that no card has, is a fault.
 /// So is a card that asks for a name which no continuation has.
-pub(super) fn resolve(loose: Loose<'_>, budget: &AtomicUsize) -> Part {
-    let Loose {
+pub(super) fn resolve(loose: PendingContinuations<'_>, budget: &AtomicUsize) -> Part {
+    let PendingContinuations {
         deferred,
         orphans,
         chunks,
@@ -59,25 +59,25 @@ pub(super) fn resolve(loose: Loose<'_>, budget: &AtomicUsize) -> Part {
         if any && asks && !label.is_empty() && !ambiguous.contains(&label) {
             let at = lines.last().map_or(Place::default(), |s| s.at);
             let label = text_of(&label);
-            refuse(&mut rest, at, Wrong::NoContinuation { label });
+            refuse(&mut rest, at, DeckFaultKind::NoContinuation { label });
         }
         chains.push(lines);
         found.push(any);
     }
-    let unused = |o: &&mut Orphan| !o.used && !ambiguous.contains(&o.label);
+    let unused = |o: &&mut OrphanContinuation| !o.used && !ambiguous.contains(&o.label);
     for orphan in orphans.iter_mut().filter(unused) {
         let at = orphan.lines.first().map_or(Place::default(), |s| s.at);
         let label = text_of(&orphan.label);
-        refuse(&mut rest, at, Wrong::Orphan { label });
+        refuse(&mut rest, at, DeckFaultKind::Orphan { label });
     }
     let names = deferred.iter().map(|d| &d.label);
-    let names: Claimed = names.filter(|l| !ambiguous.contains(*l)).cloned().collect();
+    let names: ContinuationNames = names.filter(|l| !ambiguous.contains(*l)).cloned().collect();
     let shared = refuse_shared(&names, chunks, sources, &mut rest);
     let known = |label: &Vec<u8>| ambiguous.contains(label) || shared.contains(label);
     for (card, _) in deferred.iter().zip(&found).filter(|(_, found)| !**found) {
         if let Some(line) = card.lines.last().filter(|_| !known(&card.label)) {
             let label = text_of(&card.label);
-            refuse(&mut rest, line.at, Wrong::NoContinuation { label });
+            refuse(&mut rest, line.at, DeckFaultKind::NoContinuation { label });
         }
     }
     for chain in &chains {
@@ -88,12 +88,12 @@ pub(super) fn resolve(loose: Loose<'_>, budget: &AtomicUsize) -> Part {
 }
 
 /// Returns the next continuation of a list, one of the file of the last line before others.
-fn next_of(list: &mut Vec<usize>, orphans: &[Orphan], lines: &[Span]) -> Option<usize> {
+fn next_of(list: &mut Vec<usize>, orphans: &[OrphanContinuation], lines: &[Span]) -> Option<usize> {
     let source = lines.last().map(|s| s.at.source);
     let of_file = |i: &usize| {
         orphans
             .get(*i)
-            .and_then(Orphan::first_place)
+            .and_then(OrphanContinuation::first_place)
             .map(|at| at.source)
             == source
     };
@@ -103,8 +103,8 @@ fn next_of(list: &mut Vec<usize>, orphans: &[Orphan], lines: &[Span]) -> Option<
 
 /// Refuses the names that several cards and several continuations of a file have, and returns them.
 fn refuse_ambiguous(
-    deferred: &[Deferred],
-    orphans: &[Orphan],
+    deferred: &[DeferredCard],
+    orphans: &[OrphanContinuation],
     sources: &[Source],
     rest: &mut Part,
 ) -> HashSet<Vec<u8>> {
@@ -140,14 +140,14 @@ fn refuse_ambiguous(
         };
         ambiguous.insert(orphan.label.clone());
         let label = text_of(&orphan.label);
-        refuse(rest, at, Wrong::Ambiguous { label, why });
+        refuse(rest, at, DeckFaultKind::Ambiguous { label, why });
     }
     ambiguous
 }
 
 /// Refuses a continuation below its card that another card of the same file names, too. Returns the names.
 fn refuse_shared(
-    names: &Claimed,
+    names: &ContinuationNames,
     chunks: &[Chunk],
     sources: &[Source],
     rest: &mut Part,
@@ -170,7 +170,7 @@ fn refuse_shared(
             let both = lines(waiting.at.min(holder), waiting.at.max(holder), at, sources);
             let why = format!("{both} both name it");
             let label = text_of(&waiting.name);
-            refuse(rest, at, Wrong::Ambiguous { label, why });
+            refuse(rest, at, DeckFaultKind::Ambiguous { label, why });
             shared.insert(waiting.name.clone());
         }
     }
@@ -186,7 +186,7 @@ fn lines(a: Place, b: Place, at: Place, sources: &[Source]) -> String {
     format!("lines {}{} and {}{}", a.line, of(a), b.line, of(b))
 }
 
-fn refuse(rest: &mut Part, at: Place, what: Wrong) {
+fn refuse(rest: &mut Part, at: Place, what: DeckFaultKind) {
     note_fault(
         &mut rest.faults,
         Fault {
@@ -202,7 +202,7 @@ fn read_chain(chain: &[Span], sources: &[Source], budget: &AtomicUsize) -> Part 
     let Some((first, more)) = chain.split_first() else {
         return Part::default();
     };
-    let claimed = Claimed::default();
+    let claimed = ContinuationNames::default();
     let mut assembler = Assembler::new(first.at.source, budget, &claimed);
     let line = |span: &Span| Line {
         text: span.text(sources),

@@ -1,7 +1,7 @@
 //! Statements between the sections of a deck that are missing or misspelt.
 
 use super::bulk_scan::first_word;
-use super::fault::{Fault, Wrong};
+use super::fault::{DeckFaultKind, Fault};
 use super::line::text_of;
 use super::vocabulary::{case_word, effect_of_card};
 use crate::place::Place;
@@ -21,7 +21,7 @@ pub(super) fn missing_statement(card: &str, at: Place, found: &str, why: &'stati
         at,
         card: card.to_owned(),
         field: None,
-        what: Wrong::Statement {
+        what: DeckFaultKind::Statement {
             found: found.trim().to_owned(),
             why,
         },

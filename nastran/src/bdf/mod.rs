@@ -34,9 +34,9 @@ mod tests;
 
 pub use case::{CaseControl, CaseLine, Request, Selection, Set, SetItem, Subcase, SubcaseKind};
 pub use deck::{Deck, OtherCard};
-pub use fault::{Fault, FieldName, Wrong};
-pub use include::{IncludeRequest, Loaded, Loader, MemoryLoader};
-pub use names::{Label, Named};
+pub use fault::{DeckFaultKind, Fault, FieldName};
+pub use include::{IncludeRequest, LoadedFile, Loader, MemoryLoader};
+pub use names::{Label, NameOwner};
 pub use number::{Number, read_number};
 pub use read::read_deck;
 pub use source::{Note, Source};

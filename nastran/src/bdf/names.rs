@@ -7,7 +7,7 @@ use crate::place::Place;
 /// Kind of the item that a name belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
-pub enum Named {
+pub enum NameOwner {
     Property,
     /// A group of elements (HyperMesh component).
     Component,
@@ -20,7 +20,7 @@ pub enum Named {
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub struct Label {
-    pub kind: Named,
+    pub kind: NameOwner,
     pub id: u32,
     /// Property of a component, if the comment states it.
     pub property: Option<u32>,
@@ -32,9 +32,9 @@ pub struct Label {
 #[derive(Debug, Default)]
 pub(super) struct NameReader {
     /// Name for the next property or material card.
-    pending: Option<(Named, String, Place)>,
+    pending: Option<(NameOwner, String, Place)>,
     /// ANSA: the name is on the next comment line.
-    next_line: Option<(Named, u32)>,
+    next_line: Option<(NameOwner, u32)>,
 }
 
 impl NameReader {
@@ -69,13 +69,13 @@ impl NameReader {
             b'E' => self.read_name_after(
                 body,
                 b"Elements and Element Properties for region",
-                (Named::Property, at),
+                (NameOwner::Property, at),
             ),
-            b'P' => self.read_name_after(body, b"Property", (Named::Property, at)),
+            b'P' => self.read_name_after(body, b"Property", (NameOwner::Property, at)),
             b'M' if starts(body, b"Material Record") => {
-                self.read_name_after(body, b"Material Record", (Named::Material, at));
+                self.read_name_after(body, b"Material Record", (NameOwner::Material, at));
             }
-            b'M' => self.read_name_after(body, b"Material", (Named::Material, at)),
+            b'M' => self.read_name_after(body, b"Material", (NameOwner::Material, at)),
             _ => {}
         }
     }
@@ -103,9 +103,9 @@ impl NameReader {
         };
         let field = |i: usize| fields.get(i).and_then(|f| number(f));
         let id = match kind {
-            Named::Material if name.starts_with(b"MAT") => field(0),
-            Named::Property if is_property(name) => field(0),
-            Named::Property if has_property(name) => field(1).or(field(0)),
+            NameOwner::Material if name.starts_with(b"MAT") => field(0),
+            NameOwner::Property if is_property(name) => field(0),
+            NameOwner::Property if has_property(name) => field(1).or(field(0)),
             _ => None,
         };
         labels.extend(id.map(|id| Label {
@@ -127,9 +127,9 @@ impl NameReader {
         let head = trim(&head);
         let head = head.strip_suffix(b" NAME").map_or(head, trim);
         let kind = if head.ends_with(b"PROPERTY") {
-            Named::Property
+            NameOwner::Property
         } else if head.ends_with(b"MATERIAL") {
-            Named::Material
+            NameOwner::Material
         } else {
             return;
         };
@@ -144,7 +144,7 @@ impl NameReader {
     }
 
     /// `HEAD : name`.
-    fn read_name_after(&mut self, body: &[u8], head: &[u8], (kind, at): (Named, Place)) {
+    fn read_name_after(&mut self, body: &[u8], head: &[u8], (kind, at): (NameOwner, Place)) {
         if starts(body, head)
             && let Some(rest) = body.get(head.len()..).map(trim)
             && let Some(name) = rest.strip_prefix(b":").map(trim)
@@ -163,8 +163,8 @@ impl NameReader {
             parts.next().unwrap_or_default(),
         );
         let kind = match card.to_ascii_uppercase().as_slice() {
-            c if c.starts_with(b"MAT") => Named::Material,
-            c if c.starts_with(b"P") => Named::Property,
+            c if c.starts_with(b"MAT") => NameOwner::Material,
+            c if c.starts_with(b"P") => NameOwner::Property,
             _ => return,
         };
         match (id, trim(name)) {
@@ -190,7 +190,7 @@ fn component_at_grid(body: &[u8], at: Place) -> Option<Label> {
     let (name, tail) = (trim(rest.get(..comma)?), trim(rest.get(comma + 1..)?));
     let id = number(tail.get(4..).filter(|_| starts(tail, b"grid"))?)?;
     (!name.is_empty()).then(|| Label {
-        kind: Named::Grid,
+        kind: NameOwner::Grid,
         id,
         property: None,
         name: text_of(name),
@@ -250,9 +250,9 @@ fn read_quoted_names(rest: &[u8], at: Place, labels: &mut Vec<Label>) {
         .to_ascii_uppercase()
         .as_slice()
     {
-        b"COMP" => Named::Component,
-        b"PROP" => Named::Property,
-        b"MAT" => Named::Material,
+        b"COMP" => NameOwner::Component,
+        b"PROP" => NameOwner::Property,
+        b"MAT" => NameOwner::Material,
         _ => return,
     };
     let Some(id) = words.next().and_then(number) else {
@@ -266,10 +266,12 @@ fn read_quoted_names(rest: &[u8], at: Place, labels: &mut Vec<Label>) {
         at,
     };
     let own = quotation(tail).and_then(|(id, name, _)| Some((number(id)?, name)));
-    let property = own.map(|(id, _)| id).filter(|_| kind == Named::Component);
+    let property = own
+        .map(|(id, _)| id)
+        .filter(|_| kind == NameOwner::Component);
     labels.push(label(kind, id, property, name));
     if let Some((id, name)) = own.filter(|(_, name)| !name.is_empty() && property.is_some()) {
-        labels.push(label(Named::Property, id, None, name));
+        labels.push(label(NameOwner::Property, id, None, name));
     }
 }
 
@@ -295,8 +297,8 @@ fn femap(body: &[u8], at: Place) -> Option<Label> {
         .rev();
     let id = number(words.next()?)?;
     let kind = match words.next()?.to_ascii_uppercase().as_slice() {
-        b"PROPERTY" => Named::Property,
-        b"MATERIAL" => Named::Material,
+        b"PROPERTY" => NameOwner::Property,
+        b"MATERIAL" => NameOwner::Material,
         _ => return None,
     };
     Some(Label {

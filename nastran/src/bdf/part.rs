@@ -42,8 +42,8 @@ pub(super) struct Part {
     pub faults: Vec<Fault>,
     pub notes: Vec<Note>,
     pub labels: Vec<Label>,
-    pub deferred: Vec<Deferred>,
-    pub orphans: Vec<Orphan>,
+    pub deferred: Vec<DeferredCard>,
+    pub orphans: Vec<OrphanContinuation>,
     /// Named continuations below a card that has no such continuation: their cards are elsewhere, or missing.
     pub loose: Vec<Span>,
 }
@@ -84,14 +84,14 @@ impl Span {
 
 /// A card that names a continuation which did not follow.
 #[derive(Clone, Debug)]
-pub(super) struct Deferred {
+pub(super) struct DeferredCard {
     pub label: Vec<u8>,
     pub lines: Vec<Span>,
 }
 
 /// Continuation lines that name a card that was not above them.
 #[derive(Clone, Debug)]
-pub(super) struct Orphan {
+pub(super) struct OrphanContinuation {
     pub label: Vec<u8>,
     /// Name in field 10 of the last line.
     pub next: Vec<u8>,
@@ -101,7 +101,7 @@ pub(super) struct Orphan {
     pub used: bool,
 }
 
-impl Orphan {
+impl OrphanContinuation {
     /// Returns the place of the first line.
     pub(super) fn first_place(&self) -> Option<Place> {
         self.lines.first().map(|s| s.at)

@@ -6,13 +6,13 @@ use std::sync::atomic::AtomicUsize;
 use super::budget::BUDGET;
 use super::case;
 use super::chunk::read_chunks;
-use super::continuation_name::{Claimed, find_unclaimed};
+use super::continuation_name::{ContinuationNames, find_unclaimed};
 use super::deck::Deck;
-use super::fault::{Fault, Wrong};
+use super::fault::{DeckFaultKind, Fault};
 use super::fields::MAX_FAULTS;
 use super::include::Loader;
 use super::line::text_of;
-use super::loose_continuations::{Loose, resolve};
+use super::loose_continuations::{PendingContinuations, resolve};
 use super::merge::append;
 use super::part::Part;
 use super::sections::{Statement, read_sections};
@@ -89,7 +89,7 @@ pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> De
             },
             card: String::new(),
             field: None,
-            what: Wrong::NotADeck,
+            what: DeckFaultKind::NotADeck,
         });
     } else {
         deck.faults.extend(faults);
@@ -125,7 +125,7 @@ fn refuse_several_defaults(deck: &mut Deck) {
                 at,
                 card: name.to_owned(),
                 field: None,
-                what: Wrong::Statement {
+                what: DeckFaultKind::Statement {
                     found: format!("{n} cards"),
                     why: "a deck may contain one card of this name",
                 },
@@ -148,7 +148,7 @@ fn program_changes(statements: &[Statement]) -> Vec<Note> {
 /// Reads the cards, each with its continuations wherever they are.
 fn read_bulk(chunks: &[Chunk], sources: &[Source]) -> Part {
     let mut budget = AtomicUsize::new(BUDGET);
-    let mut part = read_chunks(chunks, sources, &budget, &Claimed::default());
+    let mut part = read_chunks(chunks, sources, &budget, &ContinuationNames::default());
     if !part.loose.is_empty() {
         let claimed = find_unclaimed(&part.loose, sources);
         budget = AtomicUsize::new(BUDGET);
@@ -157,7 +157,7 @@ fn read_bulk(chunks: &[Chunk], sources: &[Source]) -> Part {
     if !part.deferred.is_empty() || !part.orphans.is_empty() {
         let deferred = std::mem::take(&mut part.deferred);
         let mut orphans = std::mem::take(&mut part.orphans);
-        let loose = Loose {
+        let loose = PendingContinuations {
             deferred: &deferred,
             orphans: &mut orphans,
             chunks,

@@ -3,7 +3,7 @@
 use std::sync::atomic::AtomicUsize;
 
 use super::budget::{BUDGET, take};
-use super::fault::Wrong;
+use super::fault::DeckFaultKind;
 use super::fields::excerpt;
 use super::number::{Number, read_number};
 
@@ -27,19 +27,23 @@ pub(super) fn count(head: &[u8]) -> Option<usize> {
 }
 
 /// Takes the memory of `n` more cards off the budget: of all or of none.
-pub(super) fn spend(budget: &AtomicUsize, template: &Template, n: usize) -> Result<(), Wrong> {
+pub(super) fn spend(
+    budget: &AtomicUsize,
+    template: &Template,
+    n: usize,
+) -> Result<(), DeckFaultKind> {
     let cost = 200 + 16 * template.card.len().max(template.steps.len());
     if take(budget, n.saturating_mul(cost)) {
         return Ok(());
     }
-    Err(Wrong::TooManyReplicated {
+    Err(DeckFaultKind::TooManyReplicated {
         limit: BUDGET / 200,
     })
 }
 
 impl Template {
     /// Turns the card into the next one.
-    pub(super) fn advance(&mut self) -> Result<(), Wrong> {
+    pub(super) fn advance(&mut self) -> Result<(), DeckFaultKind> {
         let mut next = Vec::with_capacity(self.card.len());
         let steps = self
             .steps
@@ -64,8 +68,8 @@ impl Template {
     }
 }
 
-fn add_increment(above: &[u8], increment: &[u8], step: &[u8]) -> Result<Vec<u8>, Wrong> {
-    let wrong = |why| Wrong::Replication {
+fn add_increment(above: &[u8], increment: &[u8], step: &[u8]) -> Result<Vec<u8>, DeckFaultKind> {
+    let wrong = |why| DeckFaultKind::Replication {
         found: excerpt(step),
         why,
     };

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::bulk_scan::{Special, first_word, scan};
-use super::fault::{Fault, Wrong};
+use super::bulk_scan::{BulkStatement, first_word, scan};
+use super::fault::{DeckFaultKind, Fault};
 use super::fields::note_fault;
-use super::include::{IncludeRequest, Loaded, Loader};
+use super::include::{IncludeRequest, LoadedFile, Loader};
 use super::include_statement::include_name;
 use super::line::{Lines, text_of, without_comment};
 use super::missing_sections::{PARTS, is_bulk_entry, missing_statement};
@@ -103,7 +103,7 @@ impl Sections<'_> {
             .unwrap_or_default()
     }
 
-    fn fault(&mut self, at: Place, what: Wrong) {
+    fn fault(&mut self, at: Place, what: DeckFaultKind) {
         note_fault(
             &mut self.faults,
             Fault {
@@ -151,7 +151,7 @@ impl Sections<'_> {
                     },
                     card: "ENDDATA".to_owned(),
                     field: None,
-                    what: Wrong::CutShort,
+                    what: DeckFaultKind::CutShort,
                 },
             );
         } else {
@@ -160,7 +160,7 @@ impl Sections<'_> {
         }
     }
 
-    fn note_differing_path(&mut self, at: Place, loaded: &Loaded) {
+    fn note_differing_path(&mut self, at: Place, loaded: &LoadedFile) {
         self.notes.extend(loaded.differing_path.as_ref().map(|differing_path| Note {
             at,
             text: format!(
@@ -306,8 +306,8 @@ impl Sections<'_> {
             return (self.bytes(source).len(), number);
         };
         match special {
-            Special::Include => self.include(source, start, line),
-            Special::Begin => {
+            BulkStatement::Include => self.include(source, start, line),
+            BulkStatement::Begin => {
                 let text = text_of(without_comment(
                     self.bytes(source).get(start..end).unwrap_or_default(),
                 ));
@@ -320,7 +320,7 @@ impl Sections<'_> {
                 }
                 (end, line.saturating_add(1))
             }
-            Special::EndData => {
+            BulkStatement::EndData => {
                 self.bounds.enddata = Some(Position {
                     source: source as usize,
                     offset: start,
@@ -352,7 +352,7 @@ impl Sections<'_> {
         let name = match name {
             Ok(name) => name,
             Err(found) => {
-                self.fault(place, Wrong::IncludeName { found });
+                self.fault(place, DeckFaultKind::IncludeName { found });
                 return after;
             }
         };
@@ -361,7 +361,7 @@ impl Sections<'_> {
             if self.includes == MAX_INCLUDES + 1 {
                 self.fault(
                     place,
-                    Wrong::IncludeCount {
+                    DeckFaultKind::IncludeCount {
                         limit: MAX_INCLUDES,
                     },
                 );
@@ -369,7 +369,7 @@ impl Sections<'_> {
             return after;
         }
         if self.stack.len() > MAX_DEPTH {
-            self.fault(place, Wrong::IncludeDepth { limit: MAX_DEPTH });
+            self.fault(place, DeckFaultKind::IncludeDepth { limit: MAX_DEPTH });
             return after;
         }
         let path = |ix: u32| {
@@ -401,11 +401,11 @@ impl Sections<'_> {
                     }
                 };
                 if self.stack.contains(&ix) {
-                    self.fault(place, Wrong::IncludeCycle { name: request.name });
+                    self.fault(place, DeckFaultKind::IncludeCycle { name: request.name });
                 } else if self.repeated > MAX_REPEATED {
                     self.fault(
                         place,
-                        Wrong::IncludeCount {
+                        DeckFaultKind::IncludeCount {
                             limit: MAX_INCLUDES,
                         },
                     );
@@ -415,7 +415,7 @@ impl Sections<'_> {
             }
             Err(why) => self.fault(
                 place,
-                Wrong::IncludeNotFound {
+                DeckFaultKind::IncludeNotFound {
                     name: request.name,
                     why,
                 },

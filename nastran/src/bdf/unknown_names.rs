@@ -1,7 +1,7 @@
 //! Refuses names that no dialect of Nastran has.
 
 use super::deck::Deck;
-use super::fault::{Fault, Wrong};
+use super::fault::{DeckFaultKind, Fault};
 use super::fields::note_fault;
 use super::sections::Statement;
 use super::source::Note;
@@ -21,7 +21,7 @@ pub(super) fn check_names(deck: &mut Deck) {
         if !seen.insert(card.name.as_str()) || effect_of_card(&card.name).is_some() {
             continue;
         }
-        let what = Wrong::UnknownName {
+        let what = DeckFaultKind::UnknownName {
             near: nearest_card(&card.name),
             cards: deck.counts.get(&card.name).copied().unwrap_or(1),
         };
@@ -77,11 +77,11 @@ pub(super) fn check_executive(statements: &[Statement], faults: &mut Vec<Fault>)
         }
         let what = match case_word(&word) {
             Some(known) if matches!(known.effect, Effect::None(_)) => continue,
-            Some(_) => Wrong::Statement {
+            Some(_) => DeckFaultKind::Statement {
                 found: word.clone(),
                 why: "case control begins below CEND",
             },
-            None => Wrong::UnknownName {
+            None => DeckFaultKind::UnknownName {
                 near: nearest_executive(&word),
                 cards: 1,
             },
@@ -105,13 +105,13 @@ fn check_words(deck: &mut Deck) {
             Some(word)
                 if word.effect.is_executive() && !without_cend && line.at.source == first =>
             {
-                Wrong::Statement {
+                DeckFaultKind::Statement {
                     found: line.name.clone(),
                     why: "executive control ends at CEND",
                 }
             }
             Some(_) => continue,
-            None => Wrong::UnknownName {
+            None => DeckFaultKind::UnknownName {
                 near: nearest_word(&line.name),
                 cards: 1,
             },

@@ -7,7 +7,7 @@ use super::table::Table;
 use super::weight::grid_point_weight;
 use super::{H5Error, decode};
 use crate::results::{
-    Analysis, Block, Damage, GridPointWeight, Note, Quantity, Rows, Salvaged, ShellForm,
+    Analysis, Block, Damage, GridPointWeight, Note, Quantity, Rows, SalvagedFile, ShellForm,
 };
 use hdf5_pure::{AttrValue, File};
 use std::collections::BTreeMap;
@@ -52,7 +52,7 @@ impl H5 {
     ///
     /// # Errors
     /// [`H5Error`] if the container is damaged or contains no Nastran results.
-    pub fn salvage(bytes: &[u8]) -> Result<Salvaged<Self>, H5Error> {
+    pub fn salvage(bytes: &[u8]) -> Result<SalvagedFile<Self>, H5Error> {
         let fail = |e: hdf5_pure::Error| H5Error::Container {
             path: "/".to_string(),
             reason: e.to_string(),
@@ -86,7 +86,7 @@ impl H5 {
         this.nodal(&domains)?;
         this.index_elemental_tables(&domains)?;
         let damage = std::mem::take(&mut this.damage);
-        Ok(Salvaged { file: this, damage })
+        Ok(SalvagedFile { file: this, damage })
     }
 
     fn table(&self, path: &str) -> Result<Table<'_>, H5Error> {

@@ -32,7 +32,7 @@ pub enum Op2Error {
         table: String,
         record: usize,
         offset: usize,
-        why: Unsupported,
+        why: UnsupportedRows,
     },
 
     /// A row holds an id that no entity can have.
@@ -61,7 +61,7 @@ impl Op2Error {
 /// Why the rows of a block are not decoded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)]
-pub enum Unsupported {
+pub enum UnsupportedRows {
     #[error("complex results are not decoded; ask for a static or modal run")]
     Complex,
     #[error("SORT2 results are not decoded; ask the solver for SORT1")]

@@ -5,14 +5,14 @@ use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use super::container::{Container, Piece, Record, TableEntry, TableKind, read_container};
-use super::error::{Op2Error, Unsupported};
+use super::error::{Op2Error, UnsupportedRows};
 use super::geom::{Geometry, read_params, read_record, tidy};
 use super::index::{Index, Span, index};
 use super::rows::decode;
 use super::weight::read_weight;
 use super::words::{ByteOrder, Format, Words};
 use crate::cards::Cards;
-use crate::results::{Block, GridPointWeight, Note, Quantity, Rows, Salvaged};
+use crate::results::{Block, GridPointWeight, Note, Quantity, Rows, SalvagedFile};
 
 /// Who wrote a file, by its labels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -69,7 +69,7 @@ impl<'a> Op2<'a> {
     /// # Errors
     ///
     /// [`Op2Error::NotOp2`], or [`Op2Error::NoTable`] if not even one table could be read.
-    pub fn salvage(file: &'a [u8]) -> Result<Salvaged<Op2<'a>>, Op2Error> {
+    pub fn salvage(file: &'a [u8]) -> Result<SalvagedFile<Op2<'a>>, Op2Error> {
         let first = || file.get(..file.len().min(8)).unwrap_or(&[]).to_vec();
         let format = Format::detect(file).ok_or_else(|| Op2Error::NotOp2 { first: first() })?;
         let mut c: Container = read_container(file, format);
@@ -102,7 +102,7 @@ impl<'a> Op2<'a> {
             records: c.records,
             pieces: c.pieces,
         };
-        Ok(Salvaged { file: op2, damage })
+        Ok(SalvagedFile { file: op2, damage })
     }
 
     /// Rows of block `block` (an index of [`Op2::blocks`]).
@@ -120,24 +120,24 @@ impl<'a> Op2<'a> {
         };
         let place = |why| self.unsupported_error(b, span, why);
         if b.complex {
-            return Err(place(Unsupported::Complex));
+            return Err(place(UnsupportedRows::Complex));
         }
         if b.sort2 && span.entity.is_none() {
-            return Err(place(Unsupported::Sort2));
+            return Err(place(UnsupportedRows::Sort2));
         }
         if span.random {
-            return Err(place(Unsupported::Random));
+            return Err(place(UnsupportedRows::Random));
         }
         let Some(layout) = span.layout else {
             return Err(place(match (b.quantity, b.element) {
-                (Quantity::Other, _) => Unsupported::Quantity {
+                (Quantity::Other, _) => UnsupportedRows::Quantity {
                     table_code: span.table_code,
                 },
-                (_, Some(element)) => Unsupported::Layout {
+                (_, Some(element)) => UnsupportedRows::Layout {
                     element,
                     num_wide: b.num_wide,
                 },
-                (_, None) => Unsupported::Nodal {
+                (_, None) => UnsupportedRows::Nodal {
                     num_wide: b.num_wide,
                 },
             }));
@@ -223,7 +223,7 @@ impl<'a> Op2<'a> {
         (span.record.saturating_sub(first).saturating_add(3), offset)
     }
 
-    fn unsupported_error(&self, block: &Block, span: &Span, why: Unsupported) -> Op2Error {
+    fn unsupported_error(&self, block: &Block, span: &Span, why: UnsupportedRows) -> Op2Error {
         let (record, offset) = self.locate(span);
         Op2Error::Unsupported {
             table: block.table.clone(),

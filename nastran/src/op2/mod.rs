@@ -28,7 +28,7 @@ mod words;
 mod write;
 
 pub use container::{TableEntry, TableKind};
-pub use error::{Op2Error, Unsupported};
+pub use error::{Op2Error, UnsupportedRows};
 pub use file::{Op2, Solver};
 pub use words::ByteOrder;
 pub use write::{EncodedBlock, Op2Writer, WriteError, write_blocks};

@@ -3,7 +3,7 @@
 use super::entry::{content, each_entry, is_continuation};
 use super::header::Header;
 use super::{PunchError, decode};
-use crate::results::{Block, Damage, Note, Quantity, Rows, Salvaged, ShellForm};
+use crate::results::{Block, Damage, Note, Quantity, Rows, SalvagedFile, ShellForm};
 
 /// Columns of a line as solvers write it: a line of this length is complete even without a line end.
 const FULL_LINE: usize = 80;
@@ -63,7 +63,7 @@ impl<'a> Punch<'a> {
     ///
     /// # Errors
     /// [`PunchError::NoBlocks`] if no header states a result.
-    pub fn salvage(bytes: &'a [u8]) -> Result<Salvaged<Self>, PunchError> {
+    pub fn salvage(bytes: &'a [u8]) -> Result<SalvagedFile<Self>, PunchError> {
         let mut this = Self {
             bytes,
             blocks: Vec::new(),
@@ -115,7 +115,7 @@ impl<'a> Punch<'a> {
         }
         this.finish();
         let damage = this.cut_at_the_end(open, number).into_iter().collect();
-        Ok(Salvaged { file: this, damage })
+        Ok(SalvagedFile { file: this, damage })
     }
 
     /// Damage where the text ends in a header, within a line or within an entry of the last block. A cut between two whole entries

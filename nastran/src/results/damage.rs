@@ -17,14 +17,14 @@ impl std::fmt::Display for Damage {
 
 /// Readable part of a file, with its damage; an undamaged file has an empty list.
 #[derive(Clone, Debug)]
-pub struct Salvaged<T> {
+pub struct SalvagedFile<T> {
     /// Readable part.
     pub file: T,
     /// Damage in file order.
     pub damage: Vec<Damage>,
 }
 
-impl<T> Salvaged<T> {
+impl<T> SalvagedFile<T> {
     /// Returns the file if it is undamaged.
     ///
     /// # Errors
@@ -37,8 +37,8 @@ impl<T> Salvaged<T> {
     }
 
     /// Converts the file and keeps the damage.
-    pub fn map<U>(self, form: impl FnOnce(T) -> U) -> Salvaged<U> {
-        Salvaged {
+    pub fn map<U>(self, form: impl FnOnce(T) -> U) -> SalvagedFile<U> {
+        SalvagedFile {
             file: form(self.file),
             damage: self.damage,
         }

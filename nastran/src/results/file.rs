@@ -1,6 +1,6 @@
 //! One front for every kind of result file.
 
-use super::{Block, GridPointWeight, Note, Rows, Salvaged};
+use super::{Block, GridPointWeight, Note, Rows, SalvagedFile};
 use crate::cards::Cards;
 use crate::h5::{H5, H5Error, is_h5};
 use crate::op2::{Op2, Op2Error, Solver};
@@ -84,7 +84,7 @@ impl<'a> ResultsFile<'a> {
     /// # Errors
     /// [`ResultsError`]: a file that is cut or damaged ([`ResultsError::is_damage`]), and those of [`ResultsFile::salvage`].
     pub fn read(bytes: &'a [u8], name: &str) -> Result<Self, ResultsError> {
-        let Salvaged { file, damage } = Self::salvage(bytes, name)?;
+        let SalvagedFile { file, damage } = Self::salvage(bytes, name)?;
         let Some(first) = damage.into_iter().next() else {
             return Ok(file);
         };
@@ -99,7 +99,7 @@ impl<'a> ResultsFile<'a> {
     ///
     /// # Errors
     /// [`ResultsError`]: an unknown kind of file, or a file without any readable part.
-    pub fn salvage(bytes: &'a [u8], name: &str) -> Result<Salvaged<Self>, ResultsError> {
+    pub fn salvage(bytes: &'a [u8], name: &str) -> Result<SalvagedFile<Self>, ResultsError> {
         if is_h5(bytes) {
             return Ok(H5::salvage(bytes)?.map(|f| Self::H5(Box::new(f))));
         }

@@ -4,7 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
-use nastran::bdf::{Deck, IncludeRequest, Loaded, Loader, read_deck};
+use nastran::bdf::{Deck, IncludeRequest, LoadedFile, Loader, read_deck};
 
 /// The folder of real cases, where it is present.
 pub(crate) fn cases_folder() -> Option<PathBuf> {
@@ -80,14 +80,14 @@ impl Case {
 pub(crate) struct Disk;
 
 impl Loader for Disk {
-    fn load(&mut self, request: &IncludeRequest) -> Result<Loaded, String> {
+    fn load(&mut self, request: &IncludeRequest) -> Result<LoadedFile, String> {
         let paths = request
             .candidates(|s| std::env::var(s).ok())
             .map_err(|s| format!("no value: {s}"))?;
         paths
             .into_iter()
             .find_map(|path| {
-                std::fs::read(&path).ok().map(|bytes| Loaded {
+                std::fs::read(&path).ok().map(|bytes| LoadedFile {
                     path,
                     bytes,
                     differing_path: None,

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use nastran::bdf::{IncludeRequest, Loaded, Loader, read_deck, write_deck};
+use nastran::bdf::{IncludeRequest, LoadedFile, Loader, read_deck, write_deck};
 
 use crate::common;
 
@@ -12,7 +12,7 @@ use crate::common;
 struct Kept(BTreeMap<String, Vec<u8>>);
 
 impl Loader for Kept {
-    fn load(&mut self, request: &IncludeRequest) -> Result<Loaded, String> {
+    fn load(&mut self, request: &IncludeRequest) -> Result<LoadedFile, String> {
         for path in request.candidates(|_| None)? {
             if !self.0.contains_key(&path)
                 && let Ok(bytes) = std::fs::read(&path)
@@ -21,7 +21,7 @@ impl Loader for Kept {
             }
             if let Some(bytes) = self.0.get(&path) {
                 let bytes = bytes.clone();
-                return Ok(Loaded {
+                return Ok(LoadedFile {
                     path,
                     bytes,
                     differing_path: None,

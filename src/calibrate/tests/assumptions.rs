@@ -1,6 +1,6 @@
 //! Assumptions of the strain model: proportional to the loads, through zero, known loads with independent errors, runs that repeat.
 
-use super::glued::draw_normal;
+use super::installed_position::draw_normal;
 use super::repeats::{lanes, recover_with_intervals, task};
 use super::severe;
 use crate::calibrate::*;

@@ -116,7 +116,7 @@ fn task(b: &Bridge, teach: &[usize]) -> Task {
 
 /// Results of weighing the other half of the runs.
 #[derive(Default)]
-struct Weighed {
+struct WeighingResults {
     /// Error over the true total.
     errors: Vec<f64>,
     /// Half width of the 95 % interval over the true total.
@@ -131,10 +131,10 @@ struct Weighed {
 }
 
 /// Weighs half of the runs by a calibration with the other half, which is drawn at random within each lane by these seeds.
-fn weigh(name: &str, seeds: std::ops::Range<u64>) -> Option<Weighed> {
+fn weigh(name: &str, seeds: std::ops::Range<u64>) -> Option<WeighingResults> {
     let b = bridge(name, |_, fit| fit == "1")?;
     let k = b.lanes.len();
-    let mut out = Weighed::default();
+    let mut out = WeighingResults::default();
     for seed in seeds {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let (mut teach, mut test): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
@@ -377,7 +377,7 @@ fn planted_faults_of_gauges_are_named_and_controls_stay_clean() {
 
 /// Fault of one or two gauges in the readings of consecutive runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Planted {
+enum PlantedFault {
     Nothing,
     Exchanged,
     Turned,
@@ -391,7 +391,7 @@ enum Planted {
 
 /// Half of the whole runs of a bridge are calibration runs. The others are recovered with a fault at gauges drawn among those that read a fifth of
 /// the largest: the gauges at fault, and those named.
-fn with_fault(b: &Bridge, planted: Planted, seed: u64) -> (Vec<String>, Vec<String>) {
+fn with_fault(b: &Bridge, planted: PlantedFault, seed: u64) -> (Vec<String>, Vec<String>) {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let whole = |i: &usize| b.runs[*i].2.iter().all(|v| v.is_finite());
     let (mut teach, mut test): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
@@ -417,13 +417,15 @@ fn with_fault(b: &Bridge, planted: Planted, seed: u64) -> (Vec<String>, Vec<Stri
     let read = |(at, i): (usize, &usize)| {
         let mut strain = b.runs[*i].2.clone();
         match planted {
-            Planted::Nothing => {}
-            Planted::Exchanged => strain.swap(g, h),
-            Planted::Turned => strain[g] *= -1.0,
-            Planted::Weak => strain[g] *= 0.7,
-            Planted::Drifting => strain[g] += 20e-6 * at as f64 / last,
-            Planted::Dead if 2 * at >= test.len() => strain[g] = NOISE * (0.7 - (at % 3) as f64),
-            Planted::Dead => {}
+            PlantedFault::Nothing => {}
+            PlantedFault::Exchanged => strain.swap(g, h),
+            PlantedFault::Turned => strain[g] *= -1.0,
+            PlantedFault::Weak => strain[g] *= 0.7,
+            PlantedFault::Drifting => strain[g] += 20e-6 * at as f64 / last,
+            PlantedFault::Dead if 2 * at >= test.len() => {
+                strain[g] = NOISE * (0.7 - (at % 3) as f64)
+            }
+            PlantedFault::Dead => {}
         }
         Readings {
             run: b.runs[*i].0.clone(),
@@ -443,8 +445,8 @@ fn with_fault(b: &Bridge, planted: Planted, seed: u64) -> (Vec<String>, Vec<Stri
         .filter(|f| f.code.starts_with("gauge") || f.code.starts_with("input"));
     let named = named.flat_map(|f| f.subject.split(", ").map(str::to_owned));
     let faulty = match planted {
-        Planted::Nothing => Vec::new(),
-        Planted::Exchanged => vec![b.gauges[g].clone(), b.gauges[h].clone()],
+        PlantedFault::Nothing => Vec::new(),
+        PlantedFault::Exchanged => vec![b.gauges[g].clone(), b.gauges[h].clone()],
         _ => vec![b.gauges[g].clone()],
     };
     (faulty, named.collect())
@@ -453,7 +455,7 @@ fn with_fault(b: &Bridge, planted: Planted, seed: u64) -> (Vec<String>, Vec<Stri
 /// Five of each fault a bridge and ten without; `STRAINBRIDGE_TRIALS=20` for twenty and forty.
 #[test]
 fn faults_at_gauges_drawn_at_random_are_named_and_sound_gauges_are_not() {
-    use Planted::*;
+    use PlantedFault::*;
     let asked: u64 = std::env::var("STRAINBRIDGE_TRIALS").map_or(5, |t| t.parse().unwrap());
     for name in ["ponca", "ashland"] {
         let Some(b) = bridge(name, |_, fit| fit == "1") else {

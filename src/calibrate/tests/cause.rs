@@ -1,6 +1,6 @@
 //! Words for gauges of the clamped strip that are wrong in one way that is known.
 
-use super::glued::{NOISE, draw_normal, pushes, reading, row, sites};
+use super::installed_position::{NOISE, draw_normal, pushes, reading, row, sites};
 use crate::calibrate::*;
 use crate::linalg::Matrix;
 use crate::sensitivity::Load;

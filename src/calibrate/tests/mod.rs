@@ -1,15 +1,15 @@
 mod assumptions;
 mod bridges;
 mod cause;
-mod glued;
+mod installed_position;
 mod labels;
 mod next;
 mod overfit;
+mod planted_faults;
 mod repeats;
 mod scatter;
+mod single_load_runs;
 mod synthetic;
-mod taught;
-mod wrong;
 
 use super::Calibration;
 use crate::finding::Severity;

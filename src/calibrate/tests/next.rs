@@ -1,6 +1,6 @@
 //! The next known load against plain formulas of dense matrices.
 
-use super::glued::{NOISE, draw_normal, pushes, reading, row, sites};
+use super::installed_position::{NOISE, draw_normal, pushes, reading, row, sites};
 use crate::calibrate::posterior::{Equation, solve};
 use crate::calibrate::state::{State, sensitivity_of};
 use crate::calibrate::*;

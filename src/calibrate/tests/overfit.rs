@@ -1,6 +1,6 @@
 //! Scatter of few runs over many gauges, which is too small without the correction.
 
-use super::glued::draw_normal;
+use super::installed_position::draw_normal;
 use super::repeats::{lanes, recover_with_intervals, task};
 use crate::calibrate::{KnownLoads, KnownRun, Task, calibrate, overfit};
 use crate::linalg::{Matrix, spd};

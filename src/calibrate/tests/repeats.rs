@@ -1,6 +1,6 @@
 //! Runs alike: what they have in common, runs weighed by sums alone, a column that the loads depend on. Truth is drawn; coverage and width are held.
 
-use super::glued::draw_normal;
+use super::installed_position::draw_normal;
 use crate::calibrate::*;
 use crate::linalg::Matrix;
 use crate::recovery::{ErrorModel, Readings, estimate};
@@ -172,7 +172,7 @@ fn by_sum(total: f64, sd: f64) -> KnownLoads {
 
 /// Information that separates the loads of runs of which only the sum is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Apart {
+enum LoadSeparation {
     /// A model.
     Model,
     /// Four more runs that are weighed bay by bay.
@@ -183,7 +183,7 @@ enum Apart {
 
 /// Sixteen runs of three bays weighed by their sum alone; then one to be weighed: its loads, their sum, and the sum as a true S and noise alone
 /// would have it.
-fn by_sums(apart: Apart, seed: u64) -> Vec<[f64; 3]> {
+fn by_sums(apart: LoadSeparation, seed: u64) -> Vec<[f64; 3]> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let model = Matrix::from_fn(GAUGES, 3, |_, _| 1e-6 * draw_normal(&mut random));
     let gains: Vec<f64> = (0..GAUGES)
@@ -213,7 +213,7 @@ fn by_sums(apart: Apart, seed: u64) -> Vec<[f64; 3]> {
         [0.0, 0.0, 20.0],
         [10.0; 3],
     ];
-    for f in bays.into_iter().filter(|_| apart == Apart::Runs) {
+    for f in bays.into_iter().filter(|_| apart == LoadSeparation::Runs) {
         let strain = read(f, &mut random);
         runs.push(run(runs.len(), strain, KnownLoads::from_exact(f.to_vec())));
     }
@@ -229,10 +229,10 @@ fn by_sums(apart: Apart, seed: u64) -> Vec<[f64; 3]> {
         off_drawing: None,
         uncertainty_rel: 0.1,
     };
-    let prior = (apart == Apart::Model).then_some(prior);
+    let prior = (apart == LoadSeparation::Model).then_some(prior);
     let c = calibrate(&task(3, runs, prior)).unwrap();
     // Two of three combinations: what the sum leaves.
-    let untold = if apart == Apart::Runs { 0 } else { 2 };
+    let untold = if apart == LoadSeparation::Runs { 0 } else { 2 };
     assert_eq!(c.undetermined.len(), untold, "{apart:?}");
     let f = draw(&mut random);
     let found = recover_with_intervals(&c.sensitivity, read(f, &mut random), NOISE);
@@ -250,7 +250,7 @@ fn by_sums(apart: Apart, seed: u64) -> Vec<[f64; 3]> {
 fn of_runs_weighed_by_sums_and_nothing_else_the_sum_is_known_and_what_it_is_made_of_is_not() {
     let trials: Vec<Vec<[f64; 3]>> = (0..400)
         .into_par_iter()
-        .map(|seed| by_sums(Apart::Nothing, seed))
+        .map(|seed| by_sums(LoadSeparation::Nothing, seed))
         .collect();
     let sum = tally(&trials, 3);
     // Three sd of a binomial of 400, 3.3 %.
@@ -268,7 +268,7 @@ fn of_runs_weighed_by_sums_and_nothing_else_the_sum_is_known_and_what_it_is_made
 
 #[test]
 fn runs_weighed_by_their_sum_alone_teach_with_intervals_as_wide_as_their_errors() {
-    for apart in [Apart::Model, Apart::Runs] {
+    for apart in [LoadSeparation::Model, LoadSeparation::Runs] {
         let trials: Vec<Vec<[f64; 3]>> = (0..200)
             .into_par_iter()
             .map(|seed| by_sums(apart, seed))

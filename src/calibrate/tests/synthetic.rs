@@ -1,6 +1,6 @@
 //! Structures made of random numbers, whose truth is known.
 
-use super::glued::draw_normal;
+use super::installed_position::draw_normal;
 use crate::calibrate::*;
 use crate::linalg::Matrix;
 use crate::recovery::{ErrorModel, Readings, estimate};

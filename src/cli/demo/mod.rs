@@ -146,7 +146,7 @@ fn solve_and_place(
     folder: &Path,
     work: &mut Work,
     story: &mut Vec<Chapter>,
-) -> Result<Vec<simulated_measurements::Glued>, Faults> {
+) -> Result<Vec<simulated_measurements::InstalledGauge>, Faults> {
     write(folder, "truck.bdf", DECK)?;
     let plan = write(folder, "solve.toml", &jobs::plan())?;
     let step = play(work, "solve", folder, "1-solve", &plan)?;
@@ -169,7 +169,7 @@ fn solve_and_place(
     });
     let place = write(folder, "place.toml", &jobs::plan())?;
     let step = play(work, "place", folder, "2-place", &place)?;
-    let gauges = simulated_measurements::Glued::read_gauges(&step.result);
+    let gauges = simulated_measurements::InstalledGauge::read_gauges(&step.result);
     story.push(Chapter {
         folder: "2-place",
         title: "Place",
@@ -198,7 +198,7 @@ fn run_payload_and_respond(
     work: &mut Work,
     story: &mut Vec<Chapter>,
     corrected: &dyn Fn(String) -> String,
-    measured: &simulated_measurements::Simulated,
+    measured: &simulated_measurements::SimulatedMeasurements,
 ) -> Result<f64, Faults> {
     let strain = "strain.csv";
     let job = write(folder, "payload.toml", &corrected(jobs::payload(strain)))?;

@@ -2,7 +2,7 @@
 
 use super::chapter::DECK;
 use super::jobs::{NOISE, PAYLOAD, WHEELS};
-use crate::fe::floor::{FloorLoad, Standing, solve_standing};
+use crate::fe::floor::{FloorLoad, FloorSolution, solve_standing};
 use crate::fe::strain_tensor::Surface;
 use crate::fe::{CaseResult, UnitLoad};
 use crate::gauge::{CornerRows, Gauge, GaugeSpec, build, gauge_reading, on_refined};
@@ -18,14 +18,14 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 
 /// A gauge as stated in the gluing sheet.
-pub(super) struct Glued {
+pub(super) struct InstalledGauge {
     name: String,
     element: u32,
     surface: Surface,
     direction: Vec3,
 }
 
-impl Glued {
+impl InstalledGauge {
     /// The gauges of a placement's result.
     pub(super) fn read_gauges(result: &Value) -> Vec<Self> {
         let number = |v: &Value| v.as_f64().unwrap_or(f64::NAN);
@@ -33,7 +33,7 @@ impl Glued {
             .as_array()
             .into_iter()
             .flatten()
-            .map(|g| Glued {
+            .map(|g| InstalledGauge {
                 name: g["name"].as_str().unwrap_or_default().to_owned(),
                 element: g["element"].as_u64().unwrap_or(0) as u32,
                 surface: if g["surface"] == "bottom" {
@@ -52,7 +52,7 @@ impl Glued {
 }
 
 /// Simulated measurements, with the true loads that recovery does not see.
-pub(super) struct Simulated {
+pub(super) struct SimulatedMeasurements {
     pub strain_csv: String,
     pub runs_csv: String,
     /// The effect that was hidden.
@@ -61,7 +61,7 @@ pub(super) struct Simulated {
     truth: Vec<(String, Vec<f64>, f64)>,
 }
 
-impl Simulated {
+impl SimulatedMeasurements {
     /// Root mean square error of the recovered wheel loads over that of the loads.
     pub(super) fn error_of(&self, result: &Value) -> f64 {
         let (mut off, mut size) = (0.0, 0.0);
@@ -154,7 +154,7 @@ const SEED: u64 = 11;
 ///
 /// # Errors
 /// Mistakes of the program only: the deck is its own.
-pub(super) fn simulate(glued: &[Glued]) -> Result<Simulated, Faults> {
+pub(super) fn simulate(glued: &[InstalledGauge]) -> Result<SimulatedMeasurements, Faults> {
     let program = |wrong: String| {
         Faults::from(Fault::new(
             "truck.bdf",
@@ -228,7 +228,7 @@ pub(super) fn simulate(glued: &[Glued]) -> Result<Simulated, Faults> {
         .enumerate()
         .map(|(g, _)| (1.0 + GAIN * normal()) * if g == flipped { -1.0 } else { 1.0 })
         .collect();
-    let mut simulated = Simulated {
+    let mut simulated = SimulatedMeasurements {
         strain_csv: "run".into(),
         runs_csv: "run,payload_mass,payload_x,payload_y".into(),
         hidden: format!(
@@ -275,7 +275,12 @@ pub(super) fn simulate(glued: &[Glued]) -> Result<Simulated, Faults> {
 }
 
 /// The gauge that reads most under a payload in the middle on flat ground: the one that is wired the wrong way round.
-fn reads_most(gauges: &[Gauge], standing: &Standing, turns: &[(Vec3, Vec3); 3], at: Vec3) -> usize {
+fn reads_most(
+    gauges: &[Gauge],
+    standing: &FloorSolution,
+    turns: &[(Vec3, Vec3); 3],
+    at: Vec3,
+) -> usize {
     let amounts = [-1.0, 0.0, 0.0];
     let reactions = reactions(standing, turns, at, &amounts, &[0.0; WHEELS.len()]);
     let reading = |g: &Gauge| {
@@ -290,7 +295,7 @@ fn reads_most(gauges: &[Gauge], standing: &Standing, turns: &[(Vec3, Vec3); 3], 
 
 /// Reactions to the payload on ground of these heights.
 fn reactions(
-    standing: &Standing,
+    standing: &FloorSolution,
     turns: &[(Vec3, Vec3); 3],
     at: Vec3,
     amounts: &[f64; 3],

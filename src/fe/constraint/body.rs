@@ -4,7 +4,7 @@ use super::relation::Relation;
 use crate::fe::error::Refusal;
 use crate::fe::rigid_motion::rigid_matrix;
 use crate::linalg::Matrix6;
-use crate::model::{GridIx, Mat3, Model, Rigid};
+use crate::model::{GridIx, Mat3, Model, RigidElement};
 use nastran::cards::Dofs;
 
 /// Relations of the dependent dofs: with S the rows of rigid motions at each dof, u_dep = S_dep S_ind^-1 u_ind.
@@ -14,7 +14,7 @@ use nastran::cards::Dofs;
 pub(super) fn relations(
     model: &Model,
     axes: &[Option<Mat3>],
-    rigid: &Rigid,
+    rigid: &RigidElement,
     independent: &[(GridIx, Dofs)],
     dependent: &[(GridIx, Dofs)],
     claim: u32,

@@ -4,7 +4,7 @@ use super::relation::Relation;
 use crate::fe::error::Refusal;
 use crate::fe::rigid_motion::rigid_matrix;
 use crate::linalg::{DMatrix, Matrix6};
-use crate::model::{GridIx, Mat3, Model, Rigid};
+use crate::model::{GridIx, Mat3, Model, RigidElement};
 use nastran::cards::Dofs;
 
 /// Relations of an RBE3.
@@ -18,7 +18,7 @@ use nastran::cards::Dofs;
 pub(super) fn relations(
     model: &Model,
     axes: &[Option<Mat3>],
-    rigid: &Rigid,
+    rigid: &RigidElement,
     (reference, refc): (GridIx, Dofs),
     arms: &[(f64, Dofs, GridIx)],
     um: &[(GridIx, Dofs)],

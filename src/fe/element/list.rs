@@ -10,10 +10,10 @@ use super::shell::shell_stiffness;
 use super::solid::solid_stiffness;
 use super::spring::spring_stiffness;
 use crate::fe::error::Refusal;
-use crate::fe::prepared::Prepared;
+use crate::fe::prepared_model::PreparedModel;
 use crate::model::ElementRef;
 
-impl Prepared<'_> {
+impl PreparedModel<'_> {
     /// Dofs of an element's grids that it may give stiffness to, a bit each.
     pub(crate) fn dofs(&self, element: ElementRef) -> u8 {
         match element {

@@ -2,18 +2,18 @@
 
 use super::ElementMatrix;
 use crate::fe::grid_frames::to_basic;
-use crate::fe::prepared::Prepared;
+use crate::fe::prepared_model::PreparedModel;
 use crate::model::GridIx;
 
 /// Stiffness of spring `i`, basic frame; its dofs are those of the grids' displacement frames.
-pub(super) fn spring_stiffness(prepared: &Prepared<'_>, i: usize) -> ElementMatrix {
+pub(super) fn spring_stiffness(prepared: &PreparedModel<'_>, i: usize) -> ElementMatrix {
     let spring = &prepared.model.springs[i];
     between_dofs(prepared, &spring.ends, spring.k)
 }
 
 /// `factor` times the square of the difference of two dofs as a matrix, basic frame: stiffness of a spring, mass of a scalar mass.
 pub(crate) fn between_dofs(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     ends: &[Option<(GridIx, u8)>; 2],
     factor: f64,
 ) -> ElementMatrix {

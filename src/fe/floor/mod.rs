@@ -6,7 +6,7 @@ mod reactions;
 mod stand;
 
 pub use reactions::{Floor, FloorError, FloorLoad};
-pub use stand::{Standing, solve_standing};
+pub use stand::{FloorSolution, solve_standing};
 
 #[cfg(test)]
 mod tests;

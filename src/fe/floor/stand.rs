@@ -7,7 +7,7 @@ use crate::model::{GridIx, Model, Vec3};
 
 /// A floor with the free solutions behind it.
 #[derive(Clone, Debug)]
-pub struct Standing {
+pub struct FloorSolution {
     /// Reactions of any load.
     pub floor: Floor,
     /// Unit force up at each contact; displacements hold no rigid motion (in the sense of the mass), so that they are reciprocal.
@@ -26,7 +26,7 @@ pub fn solve_standing(
     contacts: &[GridIx],
     others: &[UnitLoad],
     rate: Option<f64>,
-) -> Result<Standing, FloorError> {
+) -> Result<FloorSolution, FloorError> {
     let motions = Support::without_spc(model).by_springs;
     if motions > 0 {
         let springs = springs_in_words(model);
@@ -61,7 +61,7 @@ pub fn solve_standing(
         .collect::<Option<_>>()
         .ok_or(FloorError::NoDisplacement)?;
     let floor = Floor::new(model, axis, contacts, &lifts, rate)?;
-    Ok(Standing {
+    Ok(FloorSolution {
         floor,
         contacts: all,
         others,
@@ -81,7 +81,7 @@ pub(crate) fn lift(case: &CaseResult, contacts: &[GridIx], axis: usize) -> Optio
         .collect()
 }
 
-impl Standing {
+impl FloorSolution {
     /// Displacement of the contacts in a case of the free structure, NaN where it holds none.
     pub fn lift(&self, case: &CaseResult) -> Vec<f64> {
         lift(case, self.floor.contacts(), self.floor.axis())

@@ -1,7 +1,7 @@
 //! Bar and beam rows of one subcase.
 
 use super::ids::Ids;
-use super::tally::{Met, Tally};
+use super::tally::{Irregularity, Tally};
 use crate::fe::BeamField;
 use crate::fe::element::beam::section_at;
 use crate::linalg::{Matrix, dense};
@@ -60,9 +60,9 @@ impl<'m> BeamCollector<'m> {
                     if new {
                         tally.add(
                             if e.is_some() {
-                                Met::BeamFromStress
+                                Irregularity::BeamFromStress
                             } else {
-                                Met::NotIsotropic
+                                Irregularity::NotIsotropic
                             },
                             id.entity,
                         );

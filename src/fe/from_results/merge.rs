@@ -1,12 +1,12 @@
 //! Several files, one solution.
 
-use super::repeated::Repeated;
+use super::repeated_subcases::RepeatedSubcase;
 use crate::fe::{BeamField, CaseResult, ShellField, Solution};
 use std::sync::Arc;
 
 /// The cases of all files, subcases ascending, file order within a subcase. A subcase whose values differ between files stays a case for each
 /// of them.
-pub(super) fn merge(solutions: Vec<Solution>, repeated: &[Repeated]) -> Solution {
+pub(super) fn merge(solutions: Vec<Solution>, repeated: &[RepeatedSubcase]) -> Solution {
     let differs = |subcase: u32| {
         let mut found = repeated.iter().filter(|r| r.subcase == subcase);
         found.any(|r| r.files.len() > 1)

@@ -12,7 +12,7 @@ mod displacement;
 mod ids;
 mod merge;
 mod read;
-mod repeated;
+mod repeated_subcases;
 mod shells;
 mod tally;
 
@@ -20,7 +20,7 @@ pub use merge::complete_case;
 pub use read::{
     Displacements, ReadOptions, solution_from_file, solution_from_results, subcase_labels,
 };
-pub use repeated::{HOLD_ONCE, Repeated, find_repeated_results};
+pub use repeated_subcases::{HOLD_ONCE, RepeatedSubcase, find_repeated_results};
 pub use tally::other_element_types;
 
 #[cfg(test)]

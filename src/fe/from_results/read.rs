@@ -4,9 +4,9 @@ use super::beams::BeamCollector;
 use super::blocks::{is_bar, is_shell_or_bar};
 use super::displacement::to_basic;
 use super::merge::merge;
-use super::repeated::find_repeated_results;
+use super::repeated_subcases::find_repeated_results;
 use super::shells::ShellCollector;
-use super::tally::{Met, Tally};
+use super::tally::{Irregularity, Tally};
 use crate::fe::deck_result_consistency::{Supports, check_consistency, check_coordinates};
 use crate::fe::{CaseResult, Solution};
 use crate::finding::{Finding, Severity};
@@ -288,7 +288,7 @@ fn note_plies(model: &Model, rows: &Rows, case: &CaseResult, tally: &mut Tally) 
                 .binary_search(&crate::model::ShellIx(ix))
                 .is_err()
         {
-            tally.add(Met::PliesOnly, id.entity);
+            tally.add(Irregularity::PliesOnly, id.entity);
         }
     }
 }

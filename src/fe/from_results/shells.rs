@@ -2,7 +2,7 @@
 
 use super::blocks::shell_corners;
 use super::ids::Ids;
-use super::tally::{Met, Tally};
+use super::tally::{Irregularity, Tally};
 use crate::fe::strain_tensor::{strain_from_curvature, strain_from_stress};
 use crate::fe::{PlaneStrain, ShellField};
 use crate::model::{Fibres, MaterialKind, Model, Shell, ShellIx, ShellKind};
@@ -56,7 +56,7 @@ impl<'m> ShellCollector<'m> {
                     && (first.entity, first.at) == (second.entity, second.at)
             });
             if pair.is_none() {
-                tally.add(Met::Unpaired, first.entity);
+                tally.add(Irregularity::Unpaired, first.entity);
                 i += 1;
                 continue;
             }
@@ -88,7 +88,7 @@ impl<'m> ShellCollector<'m> {
     ) -> Option<Target> {
         let shell = self.model.shells.get(ix)?;
         if shell_corners(block).is_some_and(|n| n != shell.shape.n_corners()) {
-            tally.add(Met::OtherType, shell.id);
+            tally.add(Irregularity::OtherType, shell.id);
             return None;
         }
         let z = self.model.fibres(shell);
@@ -97,9 +97,9 @@ impl<'m> ShellCollector<'m> {
                 let law = isotropic_constants(self.model, shell);
                 tally.add(
                     if law.is_some() {
-                        Met::ShellFromStress
+                        Irregularity::ShellFromStress
                     } else {
-                        Met::NotIsotropic
+                        Irregularity::NotIsotropic
                     },
                     shell.id,
                 );
@@ -115,7 +115,7 @@ impl<'m> ShellCollector<'m> {
             let known = thickness > 0.0;
             for (fibre, z) in fibres.iter().zip(z).filter(|_| known) {
                 if (fibre[0] - z).abs() > FIBRE_TOLERANCE * thickness {
-                    tally.add_measured(Met::OtherFibres, shell.id, fibre[0], z);
+                    tally.add_measured(Irregularity::OtherFibres, shell.id, fibre[0], z);
                     break;
                 }
             }
@@ -166,7 +166,7 @@ impl<'m> ShellCollector<'m> {
                     *place = target.strain(fibres, Some(corner));
                 }
             }
-            None => tally.add(Met::ForeignCorner, shell.id),
+            None => tally.add(Irregularity::ForeignCorner, shell.id),
         }
     }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 /// Kinds of irregularities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Met {
+pub(super) enum Irregularity {
     /// Corner rows of a grid that is no corner of the element.
     ForeignCorner,
     /// Fibre rows at other distances than the deck's Z1, Z2.
@@ -25,7 +25,7 @@ pub(super) enum Met {
 
 /// Counts by kind with the first ids and the largest number.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Tally(BTreeMap<Met, Entry>);
+pub(super) struct Tally(BTreeMap<Irregularity, Entry>);
 
 #[derive(Clone, Debug, Default)]
 struct Entry {
@@ -35,7 +35,7 @@ struct Entry {
 }
 
 impl Tally {
-    pub(super) fn add(&mut self, met: Met, id: u32) {
+    pub(super) fn add(&mut self, met: Irregularity, id: u32) {
         let entry = self.0.entry(met).or_default();
         entry.count += 1;
         if entry.ids.len() < LISTED && !entry.ids.contains(&id) {
@@ -44,7 +44,7 @@ impl Tally {
     }
 
     /// Counts an irregularity with a measured and an expected number; the largest difference remains.
-    pub(super) fn add_measured(&mut self, met: Met, id: u32, measured: f64, wanted: f64) {
+    pub(super) fn add_measured(&mut self, met: Irregularity, id: u32, measured: f64, wanted: f64) {
         self.add(met, id);
         if let Some(entry) = self.0.get_mut(&met) {
             let worse = entry
@@ -85,7 +85,7 @@ pub fn other_element_types(findings: &[Finding]) -> Option<&Finding> {
     findings.find(|f| f.code == "element-not-in-deck" && f.severity == Severity::Error)
 }
 
-fn finding(met: Met, entry: &Entry, name: &str) -> Finding {
+fn finding(met: Irregularity, entry: &Entry, name: &str) -> Finding {
     let n = entry.count;
     let mut ids = entry
         .ids
@@ -98,7 +98,7 @@ fn finding(met: Met, entry: &Entry, name: &str) -> Finding {
     }
     use Severity::{Error, Info, Warning};
     let (severity, code, message, remedy) = match met {
-        Met::ForeignCorner => (
+        Irregularity::ForeignCorner => (
             Warning,
             "corner-not-of-element",
             format!(
@@ -106,7 +106,7 @@ fn finding(met: Met, entry: &Entry, name: &str) -> Finding {
             ),
             "give the deck of this run: its connectivity differs",
         ),
-        Met::OtherFibres => (
+        Irregularity::OtherFibres => (
             Warning,
             "fibre-distance-differs",
             format!(
@@ -114,7 +114,7 @@ fn finding(met: Met, entry: &Entry, name: &str) -> Finding {
             ),
             "give the deck of this run: thickness or Z1, Z2 differ",
         ),
-        Met::ShellFromStress => (
+        Irregularity::ShellFromStress => (
             Info,
             "strain-from-stress",
             format!(
@@ -122,7 +122,7 @@ fn finding(met: Met, entry: &Entry, name: &str) -> Finding {
             ),
             "request STRAIN(FIBER) output",
         ),
-        Met::BeamFromStress => (
+        Irregularity::BeamFromStress => (
             Info,
             "bar-strain-from-stress",
             format!(
@@ -130,7 +130,7 @@ fn finding(met: Met, entry: &Entry, name: &str) -> Finding {
             ),
             "request STRAIN output",
         ),
-        Met::NotIsotropic => (
+        Irregularity::NotIsotropic => (
             Warning,
             "stress-not-turned-to-strain",
             format!(
@@ -138,13 +138,13 @@ fn finding(met: Met, entry: &Entry, name: &str) -> Finding {
             ),
             "request STRAIN(FIBER) output",
         ),
-        Met::Unpaired => (
+        Irregularity::Unpaired => (
             Warning,
             "shell-rows-unpaired",
             format!("{n} shell rows have no second fibre and were left out: elements {ids}"),
             "export the results again",
         ),
-        Met::OtherType => (
+        Irregularity::OtherType => (
             Error,
             "element-not-in-deck",
             format!(
@@ -152,7 +152,7 @@ fn finding(met: Met, entry: &Entry, name: &str) -> Finding {
             ),
             "give the deck of this run: its elements differ",
         ),
-        Met::PliesOnly => (
+        Irregularity::PliesOnly => (
             Info,
             "plies-only",
             format!(

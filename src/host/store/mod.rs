@@ -13,7 +13,7 @@ mod tests;
 pub use folder::Folder;
 pub use key::Key;
 
-use crate::fe::Solved;
+use crate::fe::DisplacementSolution;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -41,7 +41,7 @@ pub(crate) fn read_solution(
     key: &Key,
     grids: usize,
     cases: usize,
-) -> Result<Option<Solved>, String> {
+) -> Result<Option<DisplacementSolution>, String> {
     let Some(bytes) = store.read(key)? else {
         return Ok(None);
     };
@@ -57,7 +57,7 @@ pub(crate) fn read_solution(
 pub(crate) fn write_solution(
     store: &dyn SolutionStore,
     key: &Key,
-    solved: &Solved,
+    solved: &DisplacementSolution,
 ) -> Result<(), String> {
     store.write(key, solution_file::encode(solved, key))
 }

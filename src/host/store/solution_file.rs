@@ -3,7 +3,7 @@
 //! A mark, the key's hash, little-endian numbers, and the SHA-256 of all bytes before; what does not add up is no solution.
 
 use super::key::Key;
-use crate::fe::{Balance, MassProperties, Reaction, Reactions, SolveReport, Solved};
+use crate::fe::{Balance, DisplacementSolution, MassProperties, Reaction, Reactions, SolveReport};
 use crate::finding::{Finding, Severity, explain};
 use crate::linalg::Matrix6;
 use crate::linalg::sparse::OrderingMethod;
@@ -13,7 +13,7 @@ use sha2::{Digest, Sha256};
 const MARK: &[u8] = b"strainbridge solution 2\n";
 
 /// A solution as bytes.
-pub(super) fn encode(solved: &Solved, Key(hash): &Key) -> Vec<u8> {
+pub(super) fn encode(solved: &DisplacementSolution, Key(hash): &Key) -> Vec<u8> {
     let fields = &solved.displacements;
     let numbers = fields.first().map_or(0, |f| 6 * f.len()) * fields.len();
     let mut out = Vec::with_capacity(8 * numbers + (1 << 14));
@@ -94,7 +94,12 @@ fn reals(out: &mut Vec<u8>, values: &[f64]) {
 }
 
 /// `None` for bytes that are no solution of this hash, number of grids and of cases.
-pub(super) fn decode(bytes: &[u8], Key(hash): &Key, grids: usize, cases: usize) -> Option<Solved> {
+pub(super) fn decode(
+    bytes: &[u8],
+    Key(hash): &Key,
+    grids: usize,
+    cases: usize,
+) -> Option<DisplacementSolution> {
     let (body, sum) = bytes.split_at_checked(bytes.len().checked_sub(32)?)?;
     let mut at = Cursor(body);
     if at.take(MARK.len())? != MARK
@@ -164,7 +169,7 @@ pub(super) fn decode(bytes: &[u8], Key(hash): &Key, grids: usize, cases: usize) 
     })?;
     let displacements: Vec<Vec<[f64; 6]>> =
         at.list(|at| at.list(|at| at.array()).filter(|f| f.len() == grids))?;
-    (at.0.is_empty() && displacements.len() == cases).then_some(Solved {
+    (at.0.is_empty() && displacements.len() == cases).then_some(DisplacementSolution {
         displacements,
         report,
         findings,

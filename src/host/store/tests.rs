@@ -1,6 +1,6 @@
 use super::solution_file::{decode, encode};
 use super::{Folder, Key, SolutionStore};
-use crate::fe::{Balance, MassProperties, Reaction, Reactions, SolveReport, Solved};
+use crate::fe::{Balance, DisplacementSolution, MassProperties, Reaction, Reactions, SolveReport};
 use crate::finding::explain::codes;
 use crate::finding::{Finding, Severity};
 use crate::host::half_written::name_of_part;
@@ -8,8 +8,8 @@ use crate::linalg::Matrix6;
 use crate::linalg::sparse::OrderingMethod;
 use crate::model::Vec3;
 
-fn example_solution() -> Solved {
-    Solved {
+fn example_solution() -> DisplacementSolution {
+    DisplacementSolution {
         displacements: vec![vec![[0.1, -0.2, 1e-300, 4.0, 5.0, 1.0 / 3.0]; 7]; 3],
         report: SolveReport {
             grids: 7,

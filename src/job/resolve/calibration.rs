@@ -1,8 +1,8 @@
 //! `[calibration]`.
 
 use super::super::faults::Collector;
-use super::super::raw::{RawCalibration, S};
-use super::super::spanned::Spanned;
+use super::super::raw_job::{RawCalibration, S};
+use super::super::spanned_value::SpannedValue;
 use super::super::types::{CalibrationKeys, Terms};
 
 /// Relative error of a model's S if the job states none: models are off by 1 to 10 %, nobody knows where.
@@ -10,7 +10,7 @@ const DEFAULT_MODEL_UNCERTAINTY_REL: f64 = 0.1;
 
 pub(super) fn calibration(
     c: &mut Collector,
-    raw: Option<&Spanned<RawCalibration>>,
+    raw: Option<&SpannedValue<RawCalibration>>,
 ) -> CalibrationKeys {
     let mut out = CalibrationKeys {
         runs: None,
@@ -26,7 +26,7 @@ pub(super) fn calibration(
     };
     let Some(section) = raw else { return out };
     let raw = section.value();
-    let words = |list: &Spanned<Vec<Spanned<String>>>| -> Vec<String> {
+    let words = |list: &SpannedValue<Vec<SpannedValue<String>>>| -> Vec<String> {
         list.value().iter().map(|w| w.value().clone()).collect()
     };
     out.runs = raw.runs.as_ref().map(words);

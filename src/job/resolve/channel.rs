@@ -1,9 +1,9 @@
 //! `[[combination]]` and `[[correction]]`.
 
 use super::super::faults::Collector;
-use super::super::raw::{RawChannelCorrection, RawCombination};
+use super::super::raw_job::{RawChannelCorrection, RawCombination};
 use super::super::readings::stated_readings;
-use super::super::spanned::Spanned;
+use super::super::spanned_value::SpannedValue;
 use super::super::suggest;
 use super::super::types::*;
 use crate::host::fault::{Fault, FaultList};
@@ -11,7 +11,10 @@ use crate::host::fault::{Fault, FaultList};
 /// No factor of a sum of loads is larger: between the smallest and the largest unit that a job may name lie nine powers of ten.
 const LARGEST_FACTOR: f64 = 1e12;
 
-pub(super) fn combinations(c: &mut Collector, raw: &[Spanned<RawCombination>]) -> Vec<Combination> {
+pub(super) fn combinations(
+    c: &mut Collector,
+    raw: &[SpannedValue<RawCombination>],
+) -> Vec<Combination> {
     let mut out: Vec<Combination> = Vec::new();
     for section in raw {
         let terms: Vec<(String, f64)> = section
@@ -51,7 +54,7 @@ pub(super) fn combinations(c: &mut Collector, raw: &[Spanned<RawCombination>]) -
 
 pub(super) fn corrections(
     c: &mut Collector,
-    raw: &[Spanned<RawChannelCorrection>],
+    raw: &[SpannedValue<RawChannelCorrection>],
 ) -> Vec<StrainCorrection> {
     raw.iter()
         .filter_map(|section| {

@@ -1,9 +1,9 @@
 //! `[compare]`.
 
 use super::super::faults::Collector;
-use super::super::raw::RawCompare;
+use super::super::raw_job::RawCompare;
 use super::super::shapes::NumberOrWord;
-use super::super::spanned::Spanned;
+use super::super::spanned_value::SpannedValue;
 use super::super::types::*;
 use super::measured::time_unit;
 use super::units::{stated_quantities, units};
@@ -12,7 +12,7 @@ use crate::units::ReportUnits;
 
 pub(super) fn compare(
     c: &mut Collector,
-    raw: Option<&Spanned<RawCompare>>,
+    raw: Option<&SpannedValue<RawCompare>>,
     default: ReportUnits,
 ) -> Option<Compare> {
     let section = raw?;

@@ -1,8 +1,8 @@
 //! `[dynamic]`.
 
 use super::super::faults::Collector;
-use super::super::raw::RawDynamic;
-use super::super::spanned::Spanned;
+use super::super::raw_job::RawDynamic;
+use super::super::spanned_value::SpannedValue;
 use super::super::types::Dynamic;
 
 /// One standard deviation of a computed frequency if none is stated, relative to the frequency. It covers density, thickness and joints of a model
@@ -13,7 +13,7 @@ const DAMPING: f64 = 0.5;
 
 pub(super) fn resolve_dynamic(
     c: &mut Collector,
-    raw: Option<&Spanned<RawDynamic>>,
+    raw: Option<&SpannedValue<RawDynamic>>,
 ) -> Option<Dynamic> {
     let section = raw?;
     let raw = section.value();

@@ -1,8 +1,8 @@
 //! `[fleet]`: names of records, S-N line, what damage is held against.
 
 use super::super::faults::Collector;
-use super::super::raw::{RawFleet, RawMission};
-use super::super::spanned::Spanned;
+use super::super::raw_job::{RawFleet, RawMission};
+use super::super::spanned_value::SpannedValue;
 use super::super::types::*;
 use std::collections::BTreeSet;
 
@@ -28,7 +28,7 @@ const OF_OTHERS: [&str; 7] = [
 /// Largest load range of a knee: no structure bears it in any unit, and its power of 20 is still finite.
 const LARGEST_KNEE: f64 = 1e12;
 
-pub(super) fn fleet(c: &mut Collector, raw: Option<&Spanned<RawFleet>>) -> Option<Fleet> {
+pub(super) fn fleet(c: &mut Collector, raw: Option<&SpannedValue<RawFleet>>) -> Option<Fleet> {
     let section = raw?;
     let raw = section.value();
     c.require(
@@ -139,7 +139,7 @@ fn mission(c: &mut Collector, raw: &RawFleet) -> Vec<MissionKind> {
     out
 }
 
-fn kind(c: &mut Collector, section: &Spanned<RawMission>) -> Option<MissionKind> {
+fn kind(c: &mut Collector, section: &SpannedValue<RawMission>) -> Option<MissionKind> {
     let raw = section.value();
     let name = c.require(&raw.name, section, "fleet.mission.name", "name = \"road\"");
     c.require(&raw.share, section, "fleet.mission.share", "share = 0.6");
@@ -154,7 +154,7 @@ fn kind(c: &mut Collector, section: &Spanned<RawMission>) -> Option<MissionKind>
         let remedy = "add `days = [\"2026-05-*\"]` or `vehicles = [\"T1\"]`";
         c.fault(section, "fleet.mission.days", wrong, remedy);
     }
-    let texts = |list: &[Spanned<String>]| -> Vec<String> {
+    let texts = |list: &[SpannedValue<String>]| -> Vec<String> {
         list.iter().map(|t| t.value().clone()).collect()
     };
     Some(MissionKind {

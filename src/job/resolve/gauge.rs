@@ -1,8 +1,8 @@
 //! `[[gauge]]` and `[gauges]`.
 
 use super::super::faults::Collector;
-use super::super::raw::{RawGauge, RawGauges};
-use super::super::spanned::Spanned;
+use super::super::raw_job::{RawGauge, RawGauges};
+use super::super::spanned_value::SpannedValue;
 use super::super::types::{JobGauge, NamedFile, StatedPlace};
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::{Bridge, Rosette};
@@ -65,7 +65,10 @@ pub(crate) fn point_from(word: &str) -> Option<u8> {
     find_choice(word, &POINTS)
 }
 
-pub(super) fn gauge_file(c: &mut Collector, raw: Option<&Spanned<RawGauges>>) -> Option<NamedFile> {
+pub(super) fn gauge_file(
+    c: &mut Collector,
+    raw: Option<&SpannedValue<RawGauges>>,
+) -> Option<NamedFile> {
     let section = raw?;
     c.require(
         &section.value().file,
@@ -76,14 +79,14 @@ pub(super) fn gauge_file(c: &mut Collector, raw: Option<&Spanned<RawGauges>>) ->
     c.named_file(&section.value().file, "gauges.file")
 }
 
-pub(super) fn gauges(c: &mut Collector, raw: &[Spanned<RawGauge>]) -> Vec<JobGauge> {
+pub(super) fn gauges(c: &mut Collector, raw: &[SpannedValue<RawGauge>]) -> Vec<JobGauge> {
     raw.iter().filter_map(|g| gauge(c, g)).collect()
 }
 
-fn gauge(c: &mut Collector, section: &Spanned<RawGauge>) -> Option<JobGauge> {
+fn gauge(c: &mut Collector, section: &SpannedValue<RawGauge>) -> Option<JobGauge> {
     let raw = section.value();
     let name = c.require(&raw.name, section, "gauge.name", "name = \"14\"");
-    let number = |v: &Option<Spanned<u32>>| v.as_ref().map(|v| *v.value());
+    let number = |v: &Option<SpannedValue<u32>>| v.as_ref().map(|v| *v.value());
     let cid = number(&raw.cid).unwrap_or(0);
     let point = raw
         .point

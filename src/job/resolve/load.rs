@@ -1,15 +1,15 @@
 //! `[model]` and `[[load]]`.
 
 use super::super::faults::Collector;
-use super::super::raw::{RawLoad, RawModel, S};
+use super::super::raw_job::{RawLoad, RawModel, S};
 use super::super::shapes::NumberOrWord;
-use super::super::spanned::Spanned;
+use super::super::spanned_value::SpannedValue;
 use super::super::suggest;
 use super::super::types::*;
 use crate::fe::SupportChoice;
 use crate::host::fault::Fault;
 
-pub(super) fn model(c: &mut Collector, raw: Option<&Spanned<RawModel>>) -> Option<ModelFiles> {
+pub(super) fn model(c: &mut Collector, raw: Option<&SpannedValue<RawModel>>) -> Option<ModelFiles> {
     let section = raw?;
     let raw = section.value();
     c.require(&raw.deck, section, "model.deck", "deck = \"truck.bdf\"")?;
@@ -64,7 +64,11 @@ pub(super) enum Behind {
     Table,
 }
 
-pub(super) fn loads(c: &mut Collector, raw: &[Spanned<RawLoad>], behind: Behind) -> Vec<JobLoad> {
+pub(super) fn loads(
+    c: &mut Collector,
+    raw: &[SpannedValue<RawLoad>],
+    behind: Behind,
+) -> Vec<JobLoad> {
     let mut out: Vec<JobLoad> = Vec::new();
     for (i, section) in raw.iter().enumerate() {
         let number = i as u32 + 1;
@@ -90,7 +94,7 @@ pub(super) fn loads(c: &mut Collector, raw: &[Spanned<RawLoad>], behind: Behind)
 
 fn load(
     c: &mut Collector,
-    section: &Spanned<RawLoad>,
+    section: &SpannedValue<RawLoad>,
     number: u32,
     behind: Behind,
 ) -> Option<JobLoad> {
@@ -124,9 +128,9 @@ fn load(
     })
 }
 
-fn acts(c: &mut Collector, section: &Spanned<RawLoad>, behind: Behind) -> Option<LoadActs> {
+fn acts(c: &mut Collector, section: &SpannedValue<RawLoad>, behind: Behind) -> Option<LoadActs> {
     let raw = section.value();
-    let only_with_grid = |c: &mut Collector, key: &str, at: &Spanned<u32>| {
+    let only_with_grid = |c: &mut Collector, key: &str, at: &SpannedValue<u32>| {
         c.fault(
             at,
             key,

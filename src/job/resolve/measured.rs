@@ -1,11 +1,11 @@
 //! `[measured]`, `[runs]`, `[ballast]`, `[payload]`, `[recover]`, `[respond]`.
 
 use super::super::faults::Collector;
-use super::super::raw::{
+use super::super::raw_job::{
     RawBallast, RawFleet, RawMeasured, RawPayload, RawRecover, RawRespond, RawRuns, S,
 };
 use super::super::shapes::{NumberOrNumbers, NumberOrWord, Texts};
-use super::super::spanned::Spanned;
+use super::super::spanned_value::SpannedValue;
 use super::super::types::*;
 use super::placement::DEFAULT_NOISE_MICROSTRAIN;
 use super::units::{stated_quantities, units};
@@ -22,8 +22,8 @@ const DEFAULT_SLOPE: f64 = 5.0;
 /// `[measured]`; where there is a `[fleet]`, its records replace the strain file.
 pub(super) fn resolve_measured(
     c: &mut Collector,
-    raw: Option<&Spanned<RawMeasured>>,
-    fleet: Option<&Spanned<RawFleet>>,
+    raw: Option<&SpannedValue<RawMeasured>>,
+    fleet: Option<&SpannedValue<RawFleet>>,
 ) -> Option<Measured> {
     let section = raw?;
     let raw = section.value();
@@ -120,7 +120,7 @@ fn noise(c: &mut Collector, raw: &S<NumberOrNumbers>) -> (f64, Vec<(String, f64)
         return (DEFAULT_NOISE_MICROSTRAIN, by_gauge);
     };
     let mut check = |x: f64| {
-        let one = Some(Spanned::new(raw.span(), x));
+        let one = Some(SpannedValue::new(raw.span(), x));
         c.positive_number(&one, "measured.noise_microstrain")
     };
     match raw.value() {
@@ -147,7 +147,7 @@ pub(super) fn time_unit(c: &mut Collector, raw: &S<String>, key: &str) -> Option
 
 pub(super) fn runs(
     c: &mut Collector,
-    raw: Option<&Spanned<RawRuns>>,
+    raw: Option<&SpannedValue<RawRuns>>,
     default: ReportUnits,
 ) -> Option<Runs> {
     let section = raw?;
@@ -221,7 +221,10 @@ fn region(c: &mut Collector, raw: &S<Vec<[f64; 2]>>, key: &str) -> Option<Region
     Some(axes.clone())
 }
 
-pub(super) fn ballast(c: &mut Collector, raw: Option<&Spanned<RawBallast>>) -> Option<Ballast> {
+pub(super) fn ballast(
+    c: &mut Collector,
+    raw: Option<&SpannedValue<RawBallast>>,
+) -> Option<Ballast> {
     let section = raw?;
     let raw = section.value();
     Some(Ballast {
@@ -235,7 +238,10 @@ pub(super) fn ballast(c: &mut Collector, raw: Option<&Spanned<RawBallast>>) -> O
     })
 }
 
-pub(super) fn payload(c: &mut Collector, raw: Option<&Spanned<RawPayload>>) -> Option<Payload> {
+pub(super) fn payload(
+    c: &mut Collector,
+    raw: Option<&SpannedValue<RawPayload>>,
+) -> Option<Payload> {
     let section = raw?;
     let raw = section.value();
     let positions = [("known", Place::Known), ("free", Place::Free)];
@@ -283,7 +289,7 @@ pub(super) fn payload(c: &mut Collector, raw: Option<&Spanned<RawPayload>>) -> O
 const NOT_GRAVITY: f64 = 100.0;
 
 /// Gravity, m/s^2 whatever the unit system of the job.
-fn gravity(c: &mut Collector, given: &Option<Spanned<f64>>, key: &str) -> f64 {
+fn gravity(c: &mut Collector, given: &Option<SpannedValue<f64>>, key: &str) -> f64 {
     let stated = c
         .positive_number(given, key)
         .unwrap_or(STANDARD_GRAVITY_M_S2);
@@ -301,7 +307,7 @@ fn gravity(c: &mut Collector, given: &Option<Spanned<f64>>, key: &str) -> f64 {
     stated
 }
 
-pub(super) fn respond(c: &mut Collector, raw: Option<&Spanned<RawRespond>>) -> Respond {
+pub(super) fn respond(c: &mut Collector, raw: Option<&SpannedValue<RawRespond>>) -> Respond {
     let mut out = Respond {
         elements: None,
         hottest: DEFAULT_HOTTEST,
@@ -328,8 +334,8 @@ fn slope_of(c: &mut Collector, raw: &S<f64>, key: &str) -> Option<f64> {
     })
 }
 
-pub(super) fn recover(c: &mut Collector, raw: Option<&Spanned<RawRecover>>) -> Recover {
-    let raw = raw.map(Spanned::value);
+pub(super) fn recover(c: &mut Collector, raw: Option<&SpannedValue<RawRecover>>) -> Recover {
+    let raw = raw.map(SpannedValue::value);
     let files = raw.and_then(|r| r.files.as_ref()).map(|list| {
         let words = list.value().iter();
         words

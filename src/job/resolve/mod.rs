@@ -21,9 +21,9 @@ pub(super) use gauge::{
 pub use gauge::{SAME_SIDE, SAME_SIDE_REMEDY};
 
 use super::faults::Collector;
-use super::raw::{RawCandidates, RawJob};
+use super::raw_job::{RawCandidates, RawJob};
 use super::readings::readings_of;
-use super::spanned::Spanned;
+use super::spanned_value::SpannedValue;
 use super::types::*;
 use crate::host::fault::{Fault, FaultList};
 use std::collections::BTreeMap;
@@ -117,7 +117,7 @@ fn one_source(c: &mut Collector, raw: &RawJob) {
 }
 
 /// The candidates of a file of their own.
-pub(super) fn candidates_of(c: &mut Collector, raw: &Spanned<RawCandidates>) -> Candidates {
+pub(super) fn candidates_of(c: &mut Collector, raw: &SpannedValue<RawCandidates>) -> Candidates {
     placement::candidates(c, Some(raw))
 }
 

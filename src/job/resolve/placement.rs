@@ -1,9 +1,9 @@
 //! `[candidates]`, `[placement]`, `[study]`.
 
 use super::super::faults::Collector;
-use super::super::raw::{RawCandidates, RawPlacement, RawStudy};
+use super::super::raw_job::{RawCandidates, RawPlacement, RawStudy};
 use super::super::shapes::{NumberOrWord, Texts};
-use super::super::spanned::Spanned;
+use super::super::spanned_value::SpannedValue;
 use super::super::types::*;
 use super::gauge::{ROSETTES, SURFACES, bridges};
 use crate::fe::strain_tensor::Surface;
@@ -27,7 +27,10 @@ pub(super) fn default_criterion(loads: &[JobLoad]) -> Optimality {
     }
 }
 
-pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>) -> Candidates {
+pub(super) fn candidates(
+    c: &mut Collector,
+    raw: Option<&SpannedValue<RawCandidates>>,
+) -> Candidates {
     let mut out = Candidates {
         properties: None,
         elements: None,
@@ -101,7 +104,13 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
         let choices = bridges();
         out.bridges = words
             .into_iter()
-            .filter_map(|w| c.choose_at(&Spanned::new(b.span(), w), "candidates.bridge", &choices))
+            .filter_map(|w| {
+                c.choose_at(
+                    &SpannedValue::new(b.span(), w),
+                    "candidates.bridge",
+                    &choices,
+                )
+            })
             .collect();
         out.bridges.dedup();
         if out.bridges.is_empty() && raw.rosette.is_none() {
@@ -113,7 +122,7 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
         .rosette
         .as_ref()
         .and_then(|r| c.choose_at(r, "candidates.rosette", &ROSETTES));
-    let ids = |s: &Option<Spanned<Ids>>| s.as_ref().map(|v| v.value().clone());
+    let ids = |s: &Option<SpannedValue<Ids>>| s.as_ref().map(|v| v.value().clone());
     out.sets = ids(&raw.sets);
     out.exclude_properties = raw.exclude_properties.as_ref().map(|p| p.value().clone());
     out.exclude_elements = ids(&raw.exclude_elements);
@@ -126,7 +135,7 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
     out.exclude_boxes = boxes(c, &raw.exclude_boxes, "candidates.exclude_boxes");
     if let Some(clear) = &raw.clear_of {
         let mut least =
-            |v: &Option<Spanned<f64>>, key: &str| c.at_least_zero(v, key).unwrap_or(0.0);
+            |v: &Option<SpannedValue<f64>>, key: &str| c.at_least_zero(v, key).unwrap_or(0.0);
         out.clear = Clearances {
             edges: least(&clear.edges, "candidates.clear_of.edges"),
             holes: (clear.holes.is_some())
@@ -140,11 +149,11 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
 }
 
 /// Refuses the keys that describe where a search may put gauges: a table of spots states every place, side and direction.
-fn refuse_search_keys(c: &mut Collector, section: &Spanned<RawCandidates>) {
+fn refuse_search_keys(c: &mut Collector, section: &SpannedValue<RawCandidates>) {
     let raw = section.value();
     fn key_and_span<T>(
         key: &'static str,
-        value: &Option<Spanned<T>>,
+        value: &Option<SpannedValue<T>>,
     ) -> Option<(&'static str, Range<usize>)> {
         value.as_ref().map(|v| (key, v.span()))
     }
@@ -172,7 +181,7 @@ fn refuse_search_keys(c: &mut Collector, section: &Spanned<RawCandidates>) {
             _ => "delete the key, and the rows of spots that are not wanted".to_owned(),
         };
         c.fault(
-            &Spanned::new(span, ()),
+            &SpannedValue::new(span, ()),
             &format!("candidates.{key}"),
             "`file` is a table of spots, which states every place: this key has no use",
             remedy,
@@ -181,7 +190,11 @@ fn refuse_search_keys(c: &mut Collector, section: &Spanned<RawCandidates>) {
 }
 
 /// Boxes of two or three ranges, each low before high.
-fn boxes(c: &mut Collector, raw: &Option<Spanned<Vec<Vec<[f64; 2]>>>>, key: &str) -> Vec<Region> {
+fn boxes(
+    c: &mut Collector,
+    raw: &Option<SpannedValue<Vec<Vec<[f64; 2]>>>>,
+    key: &str,
+) -> Vec<Region> {
     let Some(list) = raw else { return Vec::new() };
     for b in list.value() {
         let ranges = (2..=3).contains(&b.len());
@@ -199,7 +212,7 @@ fn boxes(c: &mut Collector, raw: &Option<Spanned<Vec<Vec<[f64; 2]>>>>, key: &str
 
 pub(super) fn placement(
     c: &mut Collector,
-    raw: Option<&Spanned<RawPlacement>>,
+    raw: Option<&SpannedValue<RawPlacement>>,
     measured: Option<&Measured>,
     criterion: Optimality,
 ) -> Placement {
@@ -292,7 +305,7 @@ pub(super) fn placement(
         &[("judge", Loss::Judged), ("optimise", Loss::Optimised)],
         Loss::Judged,
     );
-    out.keep = match raw.keep.as_ref().map(Spanned::value) {
+    out.keep = match raw.keep.as_ref().map(SpannedValue::value) {
         None => Keep::None,
         Some(Texts::One(w)) if w == "all" => Keep::All,
         Some(Texts::One(w)) => Keep::Named(vec![w.clone()]),
@@ -314,7 +327,7 @@ pub(super) fn placement(
     out
 }
 
-pub(super) fn study(c: &mut Collector, raw: Option<&Spanned<RawStudy>>) -> Option<Study> {
+pub(super) fn study(c: &mut Collector, raw: Option<&SpannedValue<RawStudy>>) -> Option<Study> {
     let section = raw?;
     let raw = section.value();
     let layouts = match &raw.layouts {

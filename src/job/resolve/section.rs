@@ -1,12 +1,12 @@
 //! `[[section]]`.
 
 use super::super::faults::Collector;
-use super::super::raw::RawSection;
-use super::super::spanned::Spanned;
+use super::super::raw_job::RawSection;
+use super::super::spanned_value::SpannedValue;
 use super::super::types::*;
 use std::collections::BTreeSet;
 
-pub(super) fn sections(c: &mut Collector, raw: &[Spanned<RawSection>]) -> Vec<RecordSection> {
+pub(super) fn sections(c: &mut Collector, raw: &[SpannedValue<RawSection>]) -> Vec<RecordSection> {
     let mut out: Vec<RecordSection> = Vec::new();
     let mut names = BTreeSet::new();
     for item in raw {
@@ -42,7 +42,7 @@ pub(super) fn sections(c: &mut Collector, raw: &[Spanned<RawSection>]) -> Vec<Re
     out
 }
 
-fn section(c: &mut Collector, item: &Spanned<RawSection>) -> Option<RecordSection> {
+fn section(c: &mut Collector, item: &SpannedValue<RawSection>) -> Option<RecordSection> {
     const TIMES: &str = "start_s = 0.0 and end_s = 60.0";
     let raw = item.value();
     let name = c.require(&raw.name, item, "section.name", "name = \"gravel\"");

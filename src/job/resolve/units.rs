@@ -1,7 +1,7 @@
 //! `units`, `report_units` and the units of tables.
 
 use super::super::faults::Collector;
-use super::super::raw::{RawUnits, S};
+use super::super::raw_job::{RawUnits, S};
 use super::super::suggest;
 use crate::host::fault::Fault;
 use crate::units::{Quantity, ReportUnits, Unit, UnitSystem, find_unit, unit_names};

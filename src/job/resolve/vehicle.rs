@@ -1,11 +1,11 @@
 //! `[vehicle]`, `[reconcile]`, `[sensitivity]`.
 
 use super::super::faults::Collector;
-use super::super::raw::{
+use super::super::raw_job::{
     RawCorrection, RawEdit, RawEffect, RawReconcile, RawSensitivity, RawVehicle, S,
 };
 use super::super::shapes::Texts;
-use super::super::spanned::Spanned;
+use super::super::spanned_value::SpannedValue;
 use super::super::types::*;
 use super::units::units;
 use crate::gauge::Bridge;
@@ -76,7 +76,10 @@ fn correction(c: &mut Collector, channel: &str, r: &RawCorrection) -> ChannelCor
     }
 }
 
-pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> Option<Vehicle> {
+pub(super) fn vehicle(
+    c: &mut Collector,
+    raw: Option<&SpannedValue<RawVehicle>>,
+) -> Option<Vehicle> {
     let section = raw?;
     let raw = section.value();
     let model = c.require(&raw.model, section, "vehicle.model", "model = \"front2\"");
@@ -164,7 +167,7 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
 }
 
 /// Where the axles sit on their leaf springs, by link.
-fn seats(c: &mut Collector, section: &Spanned<RawVehicle>) -> BTreeMap<String, LeafSeat> {
+fn seats(c: &mut Collector, section: &SpannedValue<RawVehicle>) -> BTreeMap<String, LeafSeat> {
     let mut leaf = BTreeMap::new();
     for (link, r) in &section.value().leaf {
         let key = |k: &str| format!("vehicle.leaf.{}.{k}", link.value());
@@ -197,7 +200,7 @@ fn seats(c: &mut Collector, section: &Spanned<RawVehicle>) -> BTreeMap<String, L
 }
 
 /// Refuses known parameters, limits and places that no vehicle has.
-fn numbers(c: &mut Collector, section: &Spanned<RawVehicle>) {
+fn numbers(c: &mut Collector, section: &SpannedValue<RawVehicle>) {
     let raw = section.value();
     let none = |v: &f64| v.is_nan() || v.abs() > LARGEST_KNOWN;
     for (name, v) in raw.known.iter().filter(|(_, v)| none(v)) {
@@ -240,7 +243,7 @@ fn numbers(c: &mut Collector, section: &Spanned<RawVehicle>) {
 
 pub(super) fn reconcile(
     c: &mut Collector,
-    raw: Option<&Spanned<RawReconcile>>,
+    raw: Option<&SpannedValue<RawReconcile>>,
 ) -> Option<Reconcile> {
     let section = raw?;
     let raw = section.value();
@@ -254,7 +257,7 @@ pub(super) fn reconcile(
         Some((_, Texts::Many(list))) => Some(list.clone()),
         Some((at, Texts::One(word))) => {
             c.choose_at(
-                &Spanned::new(at.span(), word.clone()),
+                &SpannedValue::new(at.span(), word.clone()),
                 "reconcile.effects",
                 &[("all", ())],
             );
@@ -298,7 +301,7 @@ pub(super) fn reconcile(
 }
 
 /// A hypothesis of the user's own: by a table or by an edit of the deck.
-fn resolve_effect(c: &mut Collector, entry: &Spanned<RawEffect>) -> Option<DescribedEffect> {
+fn resolve_effect(c: &mut Collector, entry: &SpannedValue<RawEffect>) -> Option<DescribedEffect> {
     let raw = entry.value();
     c.require(
         &raw.id,
@@ -360,7 +363,7 @@ fn resolve_effect(c: &mut Collector, entry: &Spanned<RawEffect>) -> Option<Descr
 
 pub(super) fn sensitivity(
     c: &mut Collector,
-    raw: Option<&Spanned<RawSensitivity>>,
+    raw: Option<&SpannedValue<RawSensitivity>>,
     system: UnitSystem,
 ) -> Option<GivenSensitivity> {
     let section = raw?;
@@ -423,7 +426,7 @@ pub(super) fn sensitivity(
 /// Ranges by name; a fault for each that is not two finite ascending numbers.
 fn ranges(
     c: &mut Collector,
-    raw: &BTreeMap<Spanned<String>, [f64; 2]>,
+    raw: &BTreeMap<SpannedValue<String>, [f64; 2]>,
     key: &str,
 ) -> BTreeMap<String, [f64; 2]> {
     let mut out = BTreeMap::new();

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Terms and errors of a branch that remain for the top.
-struct Left<E> {
+struct RemainingTerms<E> {
     /// Terms with rows in the top, with their numbers.
     terms: Vec<(usize, DenseTerm)>,
     errors: Vec<(usize, E)>,
@@ -61,11 +61,11 @@ impl BlockMatrix {
             row: &matrix.row,
             value_start: &matrix.value_start,
         };
-        let mut left: Vec<Left<E>> = tasks
+        let mut left: Vec<RemainingTerms<E>> = tasks
             .into_par_iter()
             .with_max_len(1)
             .map(|(columns, terms, values, base)| {
-                let mut left = Left {
+                let mut left = RemainingTerms {
                     terms: Vec::new(),
                     errors: Vec::new(),
                 };

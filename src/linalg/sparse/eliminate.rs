@@ -3,7 +3,7 @@
 //! Blocks are halved until they are so narrow that they stay in registers; the rest is matrix products. Large matrices are cut into tiles of a fixed
 //! size that threads share, so that rounding doesn't depend on how many there are. Entries above diagonals are never read.
 
-use super::narrow;
+use super::narrow_blocks;
 use faer::linalg::matmul::matmul;
 use faer::prelude::{IntoConst, Reborrow, ReborrowMut};
 use faer::{Accum, MatMut, MatRef, Par};
@@ -67,8 +67,8 @@ fn subtract(a: MatMut<'_, f64>, b: MatRef<'_, f64>, c: MatRef<'_, f64>) {
 /// The factor of a diagonal block.
 fn cholesky(a: MatMut<'_, f64>) -> Result<(), usize> {
     let n = a.nrows();
-    if n <= narrow::MOST {
-        return narrow::cholesky(a);
+    if n <= narrow_blocks::MOST {
+        return narrow_blocks::cholesky(a);
     }
     let left = half(n);
     let (mut a00, _, mut a10, mut a11) = a.split_at_mut(left, left);
@@ -82,8 +82,8 @@ fn cholesky(a: MatMut<'_, f64>) -> Result<(), usize> {
 /// x in x l' = b, which `x` holds.
 fn solve(l: MatRef<'_, f64>, x: MatMut<'_, f64>) {
     let n = l.nrows();
-    if n <= narrow::MOST {
-        narrow::solve(l, x);
+    if n <= narrow_blocks::MOST {
+        narrow_blocks::solve(l, x);
         return;
     }
     let left = half(n);
@@ -96,7 +96,7 @@ fn solve(l: MatRef<'_, f64>, x: MatMut<'_, f64>) {
 
 /// About half, so that narrow blocks are full.
 fn half(n: usize) -> usize {
-    (n / 2).next_multiple_of(narrow::MOST)
+    (n / 2).next_multiple_of(narrow_blocks::MOST)
 }
 
 /// The lower triangle of `update -= below below'`; `Accum::Replace` does not read what `update` holds.

@@ -4,7 +4,7 @@ use super::block_matrix::BlockMatrix;
 use super::branches::Branch;
 use super::eliminate::Tiles;
 use super::error::FactorError;
-use super::front::{Eliminated, Front, MOST_LOST, Spare, Update};
+use super::front::{EliminatedSupernode, Front, MOST_LOST, Spare, Update};
 use super::graph::NONE;
 use super::symbolic::Symbolic;
 use rayon::prelude::*;
@@ -89,13 +89,13 @@ impl<'a> Factor<'a> {
 }
 
 /// Lost pivots and smallest pivot of a factorisation.
-struct Found {
+struct FactorPivots {
     /// Lost pivots, numbered in elimination order.
     lost: Vec<usize>,
     smallest_pivot: f64,
 }
 
-impl Found {
+impl FactorPivots {
     fn new() -> Self {
         Self {
             lost: Vec::new(),
@@ -118,10 +118,10 @@ struct Pass<'a> {
 impl Pass<'_> {
     /// # Errors
     /// The first pivot, in elimination order of what was reached, that is not a number.
-    fn factor(&self, values: &mut [f64]) -> Result<Found, FactorError> {
+    fn factor(&self, values: &mut [f64]) -> Result<FactorPivots, FactorError> {
         let branches = &self.symbolic.branches;
         let (of_branch, of_top) = self.shared_out(values);
-        let mut all = Found::new();
+        let mut all = FactorPivots::new();
         let mut left: Vec<Option<Update>> = Vec::new();
         left.resize_with(self.symbolic.nodes.len(), || None);
         // The heaviest begin first; results are taken in elimination order.
@@ -130,7 +130,7 @@ impl Pass<'_> {
         let work: Vec<(usize, &mut [f64])> = heaviest
             .filter_map(|i| Some((i, of_branch[i].take()?)))
             .collect();
-        let mut done: Vec<(usize, Result<(Update, Found), FactorError>)> = work
+        let mut done: Vec<(usize, Result<(Update, FactorPivots), FactorError>)> = work
             .into_par_iter()
             .with_max_len(1)
             .map(|(i, values)| (i, self.branch(&branches.list[i], values)))
@@ -153,7 +153,7 @@ impl Pass<'_> {
                     panels[i].take().unwrap_or_default(),
                 ));
             }
-            let done: Vec<Result<Eliminated, FactorError>> = tasks
+            let done: Vec<Result<EliminatedSupernode, FactorError>> = tasks
                 .into_par_iter()
                 .with_max_len(1)
                 .map(|(s, children, panel)| {
@@ -181,10 +181,10 @@ impl Pass<'_> {
         &self,
         branch: &Branch,
         mut values: &mut [f64],
-    ) -> Result<(Update, Found), FactorError> {
+    ) -> Result<(Update, FactorPivots), FactorError> {
         let nodes = &self.symbolic.nodes;
         let (mut waiting, mut spare, mut found) =
-            (Vec::<Update>::new(), Spare::default(), Found::new());
+            (Vec::<Update>::new(), Spare::default(), FactorPivots::new());
         for s in branch.supernodes.clone() {
             let (panel, rest) = values.split_at_mut(nodes.values(s..s + 1).len());
             values = rest;

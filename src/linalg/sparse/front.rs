@@ -55,7 +55,7 @@ impl Spare {
 
 /// A supernode eliminated.
 #[derive(Debug)]
-pub(super) struct Eliminated {
+pub(super) struct EliminatedSupernode {
     pub(super) update: Update,
     /// Unknowns whose pivot was lost, elimination order.
     pub(super) lost: Vec<usize>,
@@ -113,7 +113,7 @@ impl<'a> Front<'a> {
         children: &[Update],
         spare: &mut Spare,
         tiles: Tiles,
-    ) -> Result<Eliminated, FactorError> {
+    ) -> Result<EliminatedSupernode, FactorError> {
         let (own, rows) = (self.own, self.own + self.below);
         let mut columns = spare.columns(own * rows);
         let panel = columns.as_mut_slice();
@@ -165,7 +165,7 @@ impl<'a> Front<'a> {
         }
         pack(panel, rows, packed);
         spare.columns = columns;
-        Ok(Eliminated {
+        Ok(EliminatedSupernode {
             update: Update {
                 node: self.node,
                 values: left,

@@ -12,7 +12,7 @@ mod factor;
 mod forest;
 mod front;
 mod graph;
-mod narrow;
+mod narrow_blocks;
 mod order;
 mod panel;
 mod solve;
@@ -26,7 +26,7 @@ pub use error::FactorError;
 pub use factor::Factor;
 pub use graph::BlockGraph;
 pub use order::OrderingMethod;
-pub use solve::Refined;
+pub use solve::SolutionAccuracy;
 pub use symbolic::Symbolic;
 pub use tree_work::TreeWork;
 

@@ -12,7 +12,7 @@ const TOGETHER: usize = 12;
 
 /// Accuracy of a solution: Nastran's epsilon before and after refinement.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Refined {
+pub struct SolutionAccuracy {
     /// Epsilon after substitution.
     pub first: f64,
     /// Epsilon of the returned solution.
@@ -44,7 +44,7 @@ impl Factor<'_> {
     ///
     /// The measure is Nastran's epsilon, |x'(b - A x)| / |x'b|: the share of the work of the loads that rounding lost.
     /// Columns above `limit` are refined, x + A^-1 (b - A x), and the correction is kept if it improves them.
-    pub fn solve_refined(&self, x: &mut [f64], limit: f64) -> Vec<Refined> {
+    pub fn solve_refined(&self, x: &mut [f64], limit: f64) -> Vec<SolutionAccuracy> {
         let mut told = Vec::new();
         self.each_part(x, |part, k| {
             let mut y = self.scale_columns(part, k);
@@ -69,12 +69,12 @@ impl Factor<'_> {
 
     /// Epsilon of each of `k` solutions `y` for right-hand sides `x`; where it is above `limit`, a solution is replaced by its refinement
     /// if that is better.
-    fn refine(&self, y: &mut [f64], x: &[f64], k: usize, limit: f64) -> Vec<Refined> {
+    fn refine(&self, y: &mut [f64], x: &[f64], k: usize, limit: f64) -> Vec<SolutionAccuracy> {
         let found = self.remainders(y, x, k);
         let mut told = Vec::with_capacity(k);
         for f in &found {
             let as_told = f.epsilon.iter();
-            told.extend(as_told.map(|&first| Refined { first, last: first }));
+            told.extend(as_told.map(|&first| SolutionAccuracy { first, last: first }));
         }
         let poor: Vec<usize> = (0..k).filter(|&c| !(told[c].first <= limit)).collect();
         if poor.is_empty() {

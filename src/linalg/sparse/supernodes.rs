@@ -38,7 +38,7 @@ impl Supernodes {
         forest: &EliminationForest,
         sizes: &[u8],
     ) -> (Self, Vec<u32>) {
-        let mut merged = Merged::from_forest(forest, sizes);
+        let mut merged = MergedSupernodes::from_forest(forest, sizes);
         merged.merge();
         let (mut nodes, order) = merged.number_supernodes(&forest.order);
         nodes.find_rows(graph, &order, sizes);
@@ -115,7 +115,7 @@ impl Supernodes {
 }
 
 /// Supernodes being merged; what is merged into another is no longer a child of any.
-struct Merged {
+struct MergedSupernodes {
     /// Groups of each at first, numbered as in the forest.
     groups: Vec<Range<u32>>,
     /// First ones that each consists of.
@@ -128,7 +128,7 @@ struct Merged {
     zeros: Vec<usize>,
 }
 
-impl Merged {
+impl MergedSupernodes {
     /// Groups joined to the next where that has the same rows below.
     fn from_forest(forest: &EliminationForest, sizes: &[u8]) -> Self {
         let n = forest.order.len();

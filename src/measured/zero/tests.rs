@@ -1,6 +1,6 @@
 //! A zero that is followed through runs without load, of known drift.
 
-use super::{Between, Drift, zero_run_weights};
+use super::{Drift, ZeroWeights, zero_run_weights};
 use crate::measured::strain_table::{StrainRows, StrainTable};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -43,7 +43,7 @@ fn ratios(steady: f64, walk: f64) -> [f64; 2] {
         };
         let drift = Drift::from_zero_runs(&table, &at, NOISE);
         for i in (0..24).filter(|i| !at.contains(i)) {
-            let Between {
+            let ZeroWeights {
                 weights,
                 wander,
                 outside,

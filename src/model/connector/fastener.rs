@@ -1,13 +1,13 @@
 //! CFAST with its PFAST.
 
 use super::patch::Patches;
-use super::place::{Stated, Where};
+use super::place::{StatedConnector, Where};
 use crate::linalg::Matrix6;
 use crate::model::build::Builder;
 use crate::model::fault::FaultKind;
 use crate::model::types::*;
 use nastran::cards::{Fastener, Pfast};
-use nastran::place::Placed;
+use nastran::place::PlacedCard;
 use std::collections::HashSet;
 
 impl Builder<'_> {
@@ -41,8 +41,8 @@ impl Builder<'_> {
         &mut self,
         patches: &mut Patches,
         tied: &mut HashSet<GridIx>,
-        c: &Placed<Fastener>,
-        p: &Placed<Pfast>,
+        c: &PlacedCard<Fastener>,
+        p: &PlacedCard<Pfast>,
         name: &str,
     ) -> Option<Joint> {
         if !(p.d > 0.0) {
@@ -71,7 +71,7 @@ impl Builder<'_> {
         let point = self.connector_point((c.gs, c.xs), name, c.at);
         let grids = self.find_piercing_grids(c.grids, name, c.at);
         let on: Option<Vec<Where>> = on.into_iter().collect();
-        let stated = Stated {
+        let stated = StatedConnector {
             name,
             at: c.at,
             id: c.id,
@@ -102,7 +102,7 @@ impl Builder<'_> {
 
     /// The element's own axes, or with MFLAG 1 those of MCID. How MCID turns the element about its axis (MFLAG 0) matters where KT2 and
     /// KT3, or KR2 and KR3, differ, and is refused there.
-    fn stiffness_axes(&mut self, p: &Placed<Pfast>, own: Mat3, at: Vec3) -> Option<Mat3> {
+    fn stiffness_axes(&mut self, p: &PlacedCard<Pfast>, own: Mat3, at: Vec3) -> Option<Mat3> {
         let Some(cid) = p.mcid else { return Some(own) };
         let name = format!("PFAST {}", p.id);
         let frame = self.frame(cid.into(), &name, "MCID", p.at)?;
@@ -124,7 +124,7 @@ impl Builder<'_> {
     }
 
     /// Half the mass at each end, shared out as its translation is.
-    fn fastener_mass(&mut self, c: &Placed<Fastener>, mass: f64, ends: &[JointEnd; 2]) {
+    fn fastener_mass(&mut self, c: &PlacedCard<Fastener>, mass: f64, ends: &[JointEnd; 2]) {
         for (g, m) in ends.iter().flat_map(|e| &e.motion) {
             let share = mass / 2.0 * (m[(0, 0)] + m[(1, 1)] + m[(2, 2)]) / 3.0;
             let mut matrix = Matrix6::zeros();

@@ -5,7 +5,7 @@ use crate::model::build::Builder;
 use crate::model::fault::FaultKind;
 use crate::model::types::*;
 use nastran::cards::{Gap, Orientation, Pgap};
-use nastran::place::Placed;
+use nastran::place::PlacedCard;
 
 /// KB over KA where KB is blank.
 const OPEN: f64 = 1e-14;
@@ -39,7 +39,7 @@ impl Builder<'_> {
     ///
     /// # Reference
     /// MSC Nastran Quick Reference Guide, CGAP and PGAP: in linear solutions the stiffness is that of the initial state.
-    fn gap(&mut self, g: &Placed<Gap>, p: &Placed<Pgap>, name: &str) -> Option<Joint> {
+    fn gap(&mut self, g: &PlacedCard<Gap>, p: &PlacedCard<Pgap>, name: &str) -> Option<Joint> {
         let [ga, gb] = g.grids;
         let (a, b) = (
             self.grid(ga, name, "GA", g.at)?,

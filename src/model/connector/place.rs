@@ -24,7 +24,7 @@ pub(super) enum Where {
 }
 
 /// A connector as its card states it, on shells.
-pub(super) struct Stated<'a> {
+pub(super) struct StatedConnector<'a> {
     pub(super) name: &'a str,
     pub(super) at: Place,
     pub(super) id: u32,
@@ -37,7 +37,7 @@ pub(super) struct Stated<'a> {
 }
 
 /// Both ends, where the line between them goes, thicknesses of the plates.
-pub(super) struct Pierced {
+pub(super) struct ConnectorGeometry {
     pub(super) ends: [JointEnd; 2],
     pub(super) axes: Mat3,
     pub(super) thickness: [f64; 2],
@@ -129,7 +129,11 @@ impl Builder<'_> {
     }
 
     /// Projects, and ties each end. A fault where a point finds no patch.
-    pub(super) fn pierce(&mut self, patches: &mut Patches, stated: &Stated<'_>) -> Option<Pierced> {
+    pub(super) fn pierce(
+        &mut self,
+        patches: &mut Patches,
+        stated: &StatedConnector<'_>,
+    ) -> Option<ConnectorGeometry> {
         let mut feet = Vec::with_capacity(2);
         for side in 0..2 {
             let Some(p) = self.start(stated, side) else {
@@ -181,7 +185,7 @@ impl Builder<'_> {
             ends.push(end);
         }
         let ends = <[JointEnd; 2]>::try_from(ends).ok()?;
-        Some(Pierced {
+        Some(ConnectorGeometry {
             ends,
             axes,
             thickness,
@@ -190,12 +194,12 @@ impl Builder<'_> {
     }
 
     /// The point to project onto a side: its own piercing grid, or the common one, or the other side's grid.
-    fn start(&self, stated: &Stated<'_>, side: usize) -> Option<Vec3> {
+    fn start(&self, stated: &StatedConnector<'_>, side: usize) -> Option<Vec3> {
         let grid = |i: usize| stated.grids.get(i).copied().flatten().map(|g| self.x(g));
         grid(side).or(stated.point).or_else(|| grid(1 - side))
     }
 
-    fn off_patch(&mut self, stated: &Stated<'_>, side: usize, what: &'static str) {
+    fn off_patch(&mut self, stated: &StatedConnector<'_>, side: usize, what: &'static str) {
         let kind = FaultKind::OffPatch {
             what,
             side: if side == 0 { 'A' } else { 'B' },
@@ -233,7 +237,7 @@ impl Builder<'_> {
     pub(super) fn tie_piercing(
         &mut self,
         card: &'static str,
-        stated: &Stated<'_>,
+        stated: &StatedConnector<'_>,
         ends: &[JointEnd; 2],
         tied: &mut HashSet<GridIx>,
     ) {
@@ -246,7 +250,7 @@ impl Builder<'_> {
             equations.extend(tie::equations(&self.model, g, end));
         }
         if !equations.is_empty() {
-            self.model.rigids.push(Rigid {
+            self.model.rigids.push(RigidElement {
                 id: stated.id,
                 kind: RigidKind::Equations { card, equations },
                 at: stated.at,

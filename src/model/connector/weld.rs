@@ -1,13 +1,13 @@
 //! CWELD with its PWELD.
 
 use super::patch::{Patch, Patches};
-use super::place::{Pierced, Stated, Where, between_deg};
+use super::place::{ConnectorGeometry, StatedConnector, Where, between_deg};
 use super::{COINCIDENT, connector_axes, tie};
 use crate::model::build::Builder;
 use crate::model::fault::FaultKind;
 use crate::model::types::*;
 use nastran::cards::{Pweld, Weld, WeldPatches};
-use nastran::place::{Place, Placed};
+use nastran::place::{Place, PlacedCard};
 use std::collections::HashSet;
 use std::f64::consts::PI;
 
@@ -52,8 +52,8 @@ impl Builder<'_> {
         &mut self,
         patches: &mut Patches,
         tied: &mut HashSet<GridIx>,
-        w: &Placed<Weld>,
-        p: &Placed<Pweld>,
+        w: &PlacedCard<Weld>,
+        p: &PlacedCard<Pweld>,
         name: &str,
     ) -> Option<Joint> {
         let pweld = format!("PWELD {}", p.id);
@@ -115,15 +115,15 @@ impl Builder<'_> {
         &mut self,
         patches: &mut Patches,
         tied: &mut HashSet<GridIx>,
-        w: &Placed<Weld>,
+        w: &PlacedCard<Weld>,
         p: &Pweld,
         name: &str,
-    ) -> Option<Pierced> {
+    ) -> Option<ConnectorGeometry> {
         let point = self.connector_point((w.gs, w.xs), name, w.at);
         let grids = self.find_piercing_grids(w.grids, name, w.at);
         let (point, grids) = (point?, grids?);
         let mut on_shells = |b: &mut Self, patches_of: [Where; 2]| {
-            let stated = Stated {
+            let stated = StatedConnector {
                 name,
                 at: w.at,
                 id: w.id,
@@ -194,7 +194,7 @@ impl Builder<'_> {
                     );
                     return None;
                 }
-                Some(Pierced {
+                Some(ConnectorGeometry {
                     axes: connector_axes(xa, xb, xb - xa, p.d)?,
                     ends: [JointEnd::grid(a, xa), JointEnd::grid(b, xb)],
                     thickness: [0.0; 2],
@@ -216,11 +216,11 @@ impl Builder<'_> {
         lists: &[Vec<u32>; 2],
         point: Option<Vec3>,
         grids: [Option<GridIx>; 2],
-        w: &Placed<Weld>,
+        w: &PlacedCard<Weld>,
         p: &Pweld,
         name: &str,
         tied: &mut HashSet<GridIx>,
-    ) -> Option<Pierced> {
+    ) -> Option<ConnectorGeometry> {
         let [list_a, list_b] = lists;
         let a = self.patch_of_grids(list_a, &CORNERS_A, (name, w.at));
         if list_b.is_empty() {
@@ -251,7 +251,7 @@ impl Builder<'_> {
             );
             return None;
         };
-        let stated = Stated {
+        let stated = StatedConnector {
             name,
             at: w.at,
             id: w.id,
@@ -272,7 +272,7 @@ impl Builder<'_> {
         let axes = connector_axes(fa.x, fb.x, fa.normal, p.d)?;
         let ends = [tie::by_slopes(&a, &fa)?, tie::by_slopes(&b, &fb)?];
         self.tie_piercing("CWELD", &stated, &ends, tied);
-        Some(Pierced {
+        Some(ConnectorGeometry {
             ends,
             axes,
             thickness: [0.0; 2],
@@ -290,11 +290,11 @@ impl Builder<'_> {
         patch: Option<Patch>,
         point: Option<Vec3>,
         grids: [Option<GridIx>; 2],
-        w: &Placed<Weld>,
+        w: &PlacedCard<Weld>,
         p: &Pweld,
         name: &str,
         tied: &mut HashSet<GridIx>,
-    ) -> Option<Pierced> {
+    ) -> Option<ConnectorGeometry> {
         let far = match (grids[1], w.gs) {
             (Some(g), _) => Some(g),
             (None, Some(gs)) => self.grid(gs, name, "GS", w.at),
@@ -332,7 +332,7 @@ impl Builder<'_> {
         };
         let axes = connector_axes(foot.x, xb, foot.normal, p.d)?;
         let ends = [tie::by_slopes(&patch, &foot)?, JointEnd::grid(far, xb)];
-        let stated = Stated {
+        let stated = StatedConnector {
             name,
             at: w.at,
             id: w.id,
@@ -342,7 +342,7 @@ impl Builder<'_> {
             patches: [Where::Shell(0); 2],
         };
         self.tie_piercing("CWELD", &stated, &ends, tied);
-        Some(Pierced {
+        Some(ConnectorGeometry {
             ends,
             axes,
             thickness: [0.0; 2],

@@ -5,7 +5,7 @@ use crate::model::fault::FaultKind;
 use crate::model::load::Sets;
 use crate::model::types::*;
 use nastran::cards::{Accel, Accel1, CoordKind, IdList, Rforce};
-use nastran::place::Placed;
+use nastran::place::PlacedCard;
 
 impl Builder<'_> {
     /// Adds accelerations and rotations. A positive acceleration gives forces along its direction, as GRAV does.
@@ -51,7 +51,7 @@ impl Builder<'_> {
     }
 
     /// Returns the load of an ACCEL. The factor is linear between locations and constant beyond the first and last one. Without DIR it is 1.
-    fn accel(&mut self, card: &Placed<Accel>) -> Option<Load> {
+    fn accel(&mut self, card: &PlacedCard<Accel>) -> Option<Load> {
         let name = format!("ACCEL {}", card.sid);
         let f = self.frame(card.cid.into(), &name, "CID", card.at)?;
         let frame = *self.model.frames.get(f.us())?;
@@ -90,7 +90,7 @@ impl Builder<'_> {
     }
 
     /// Returns the load of an ACCEL1. A range means the existing grids in it.
-    fn accel1(&mut self, card: &Placed<Accel1>) -> Option<Load> {
+    fn accel1(&mut self, card: &PlacedCard<Accel1>) -> Option<Load> {
         let name = format!("ACCEL1 {}", card.sid);
         let f = self.frame(card.cid.into(), &name, "CID", card.at)?;
         let a = self.rectangular(f, card.n) * card.scale;
@@ -123,7 +123,7 @@ impl Builder<'_> {
     ///
     /// The forces are those of the mass where it is. METHOD 1 gives them for lumped mass, METHOD 2 for mass at grids alone: it leaves out
     /// the acceleration of mass at an offset from its grid, so that it is refused with such mass. The default of RFORCE1 is METHOD 2.
-    fn rforce(&mut self, card: &Placed<Rforce>) -> Option<Load> {
+    fn rforce(&mut self, card: &PlacedCard<Rforce>) -> Option<Load> {
         let word = if card.is_rforce1 { "RFORCE1" } else { "RFORCE" };
         let name = format!("{word} {}", card.sid);
         let f = self.frame(card.cid.into(), &name, "CID", card.at)?;

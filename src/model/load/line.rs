@@ -4,7 +4,7 @@ use crate::model::build::Builder;
 use crate::model::fault::FaultKind;
 use crate::model::types::*;
 use nastran::cards::Pload1;
-use nastran::place::Placed;
+use nastran::place::PlacedCard;
 
 impl Builder<'_> {
     /// A load along a bar or beam in its own axes.
@@ -12,7 +12,7 @@ impl Builder<'_> {
     /// # Reference
     /// MSC Nastran Quick Reference Guide, PLOAD1: LE and LEPR give places as lengths, FR and FRPR as shares; the PR scales count
     /// intensity per length projected across the direction of the load.
-    pub(super) fn pload1(&mut self, p: &Placed<Pload1>) -> Option<Load> {
+    pub(super) fn pload1(&mut self, p: &PlacedCard<Pload1>) -> Option<Load> {
         let name = format!("PLOAD1 {}", p.sid);
         let Some(beam) = self.model.beam_ix(p.element) else {
             let kind = FaultKind::Missing {

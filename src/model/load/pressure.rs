@@ -6,7 +6,7 @@ use crate::model::fault::FaultKind;
 use crate::model::frame::unit;
 use crate::model::types::*;
 use nastran::cards::{IdList, Pload4};
-use nastran::place::{Place, Placed};
+use nastran::place::{Place, PlacedCard};
 
 impl Builder<'_> {
     /// The shells of a list: each named one must exist, of a range those that do.
@@ -39,7 +39,7 @@ impl Builder<'_> {
     }
 
     /// Pressure on shells, or on faces of solids.
-    pub(super) fn pload4(&mut self, p: &Placed<Pload4>) -> Vec<Load> {
+    pub(super) fn pload4(&mut self, p: &PlacedCard<Pload4>) -> Vec<Load> {
         let name = format!("PLOAD4 {}", p.sid);
         if !(p.sorl.is_empty() || p.sorl == "SURF") {
             return vec![Load::Unsupported("PLOAD4 with SORL".into(), p.at)];

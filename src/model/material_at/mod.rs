@@ -1,17 +1,17 @@
 //! MATT1: materials at the temperature of their elements, where case control selects one.
 
-mod dependent;
-mod found;
-mod selected;
+mod material_faults;
+mod temperature_dependence;
+mod temperature_selection;
 mod uses;
 
 use super::own_property::change_properties;
 use super::types::*;
-use dependent::{Dependent, dependent_materials};
-use found::Found;
+use material_faults::MaterialFaults;
 use nastran::bdf::Deck;
-use selected::selected_set;
 use std::collections::{BTreeMap, BTreeSet};
+use temperature_dependence::{TemperatureDependentMaterial, dependent_materials};
+use temperature_selection::selected_set;
 use uses::Uses;
 
 /// Gives every element whose MAT1 has a MATT1 the material at its temperature: the mean of its grids, or what TEMPP1 and TEMPRB state.
@@ -22,8 +22,8 @@ use uses::Uses;
 /// # Reference
 /// MSC Nastran Quick Reference Guide, case control command TEMPERATURE, remarks; Autodesk Nastran Reference Guide, MATT1, remark 1 (no
 /// selection, no dependence).
-pub(super) fn heat_materials(model: &mut Model, deck: &Deck) -> Found {
-    let mut found = Found::default();
+pub(super) fn heat_materials(model: &mut Model, deck: &Deck) -> MaterialFaults {
+    let mut found = MaterialFaults::default();
     if deck.cards.matt1s.is_empty() {
         return found;
     }
@@ -68,8 +68,8 @@ fn refuse_others(
     model: &Model,
     deck: &Deck,
     set: &TemperatureSet,
-    dependent: &BTreeMap<u32, Dependent<'_>>,
-    found: &mut Found,
+    dependent: &BTreeMap<u32, TemperatureDependentMaterial<'_>>,
+    found: &mut MaterialFaults,
 ) {
     for p in &model.shell_properties {
         if let ShellKind::Laminate { plies, .. } = &p.kind

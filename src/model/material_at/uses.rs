@@ -1,7 +1,7 @@
 //! Temperatures of elements, and their materials at these temperatures.
 
-use super::dependent::Dependent;
-use super::found::Found;
+use super::material_faults::MaterialFaults;
+use super::temperature_dependence::TemperatureDependentMaterial;
 use crate::model::ElementRef;
 use crate::model::fault::FaultKind;
 use crate::model::own_property::change_properties;
@@ -23,8 +23,8 @@ impl Uses {
     pub(super) fn from_temperatures(
         model: &Model,
         set: &TemperatureSet,
-        dependent: &BTreeMap<u32, Dependent<'_>>,
-        found: &mut Found,
+        dependent: &BTreeMap<u32, TemperatureDependentMaterial<'_>>,
+        found: &mut MaterialFaults,
     ) -> Self {
         let mut at: Vec<Option<f64>> = vec![set.default; model.grids.len()];
         for (g, t) in &set.grids {
@@ -68,7 +68,7 @@ impl Uses {
     pub(super) fn materials(
         &self,
         model: &Model,
-        dependent: &BTreeMap<u32, Dependent<'_>>,
+        dependent: &BTreeMap<u32, TemperatureDependentMaterial<'_>>,
     ) -> BTreeSet<(u32, u64)> {
         let mut out = BTreeSet::new();
         for element in model.elements() {

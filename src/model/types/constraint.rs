@@ -7,7 +7,7 @@ use nastran::place::Place;
 /// A rigid element; dofs are in the displacement frames of their grids.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
-pub struct Rigid {
+pub struct RigidElement {
     pub id: u32,
     pub kind: RigidKind,
     pub at: Place,

@@ -1,6 +1,6 @@
 //! The model as a whole.
 
-use super::constraint::{MpcSet, Rigid, SpcSet};
+use super::constraint::{MpcSet, RigidElement, SpcSet};
 use super::index::GridIx;
 use super::joint::Joint;
 use super::load::{LoadSet, TemperatureSet};
@@ -52,7 +52,7 @@ pub struct Model {
     /// SNORM, ascending grid.
     pub normals: Vec<GridNormal>,
     /// RBE1, RBE2, RBE3, RBAR, RSPLINE; the equations of rigid components of bushes and for grids that pierce a connector's patch.
-    pub rigids: Vec<Rigid>,
+    pub rigids: Vec<RigidElement>,
     /// MPC sets.
     pub mpcs: Vec<MpcSet>,
     /// The set that holds under unit loads: [`nastran::bdf::CaseControl::mpc_of_structure`].

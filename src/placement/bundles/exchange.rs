@@ -1,6 +1,6 @@
 //! Whole bundles within the budget: filled in by gain over cost, then exchanged one by one.
 
-use super::relaxation::Relaxed;
+use super::relaxation::BundleRelaxation;
 use super::set::{BundleSpec, Bundles, CENT, fits};
 use crate::linalg::spd;
 use crate::placement::coordinate_exchange::LEAST_GAIN;
@@ -13,7 +13,7 @@ pub(super) fn improve(
     bundles: &Bundles,
     spec: &BundleSpec,
     list: &[usize],
-    relaxed: &Relaxed,
+    relaxed: &BundleRelaxation,
     mut chosen: Vec<usize>,
 ) -> Option<(Vec<usize>, f64)> {
     let information = |chosen: &[usize], base: &[f64]| {

@@ -15,7 +15,7 @@ const FIRST: usize = 400;
 const LIST: usize = 500;
 
 /// Weights of the bundles in use, and the bound.
-pub(super) struct Relaxed {
+pub(super) struct BundleRelaxation {
     active: Vec<usize>,
     weights: Vec<f64>,
     /// Price over cost of every bundle.
@@ -26,7 +26,7 @@ pub(super) struct Relaxed {
     pub(super) upper: f64,
 }
 
-impl Relaxed {
+impl BundleRelaxation {
     /// Returns the bundles with weight, the heaviest first.
     pub(super) fn by_weight(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.active.len())
@@ -78,7 +78,7 @@ fn point(bundles: &Bundles, spec: &BundleSpec, active: &[usize], weights: &[f64]
 }
 
 /// Weights that spend the budget, over as many bundles as the bound needs; `None` where all of them together are singular.
-pub(super) fn relax(bundles: &Bundles, spec: &BundleSpec) -> Option<Relaxed> {
+pub(super) fn relax(bundles: &Bundles, spec: &BundleSpec) -> Option<BundleRelaxation> {
     let k = bundles.k;
     let degree = spec.criterion.degree(k) as f64;
     let mut stride = (bundles.len() / FIRST).max(1);
@@ -152,7 +152,7 @@ pub(super) fn relax(bundles: &Bundles, spec: &BundleSpec) -> Option<Relaxed> {
     for (&u, &w) in active.iter().zip(&weights) {
         bundles.add_to(&mut ridge, u, 1e-3 * w);
     }
-    Some(Relaxed {
+    Some(BundleRelaxation {
         active,
         weights,
         worth,

@@ -2,12 +2,12 @@
 
 use crate::model::Model;
 use crate::placement::region::{borders, free_edges, hole_rims};
-use nastran::bdf::{IncludeRequest, Loaded, Loader, read_deck};
+use nastran::bdf::{IncludeRequest, LoadedFile, Loader, read_deck};
 
-struct Alone;
+struct NoIncludes;
 
-impl Loader for Alone {
-    fn load(&mut self, _: &IncludeRequest) -> Result<Loaded, String> {
+impl Loader for NoIncludes {
+    fn load(&mut self, _: &IncludeRequest) -> Result<LoadedFile, String> {
         Err("no includes".to_owned())
     }
 }
@@ -43,7 +43,7 @@ fn lattice(
         }
     }
     deck += "ENDDATA\n";
-    let deck = read_deck("plate.bdf", deck.into_bytes(), &mut Alone);
+    let deck = read_deck("plate.bdf", deck.into_bytes(), &mut NoIncludes);
     Model::from_cards(&deck.cards).0
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 use crate::placement::exchange::Effort;
 use crate::placement::quality::{influence, judge_rows, reserve};
-use crate::placement::relaxed::Active;
+use crate::placement::relaxation_solution::Active;
 use crate::placement::{Loss, robust};
 
 fn choice_at(place: usize) -> Choice {

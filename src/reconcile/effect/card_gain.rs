@@ -1,6 +1,6 @@
 //! `card_gain`: one amplifier or module with a wrong gain for several channels that follow each other.
 
-use super::channel_fault::{At, ChannelFault, OnGauges};
+use super::channel_fault::{ChannelFault, FaultScope, OnGauges};
 use super::gauge_gain::{gain_parameter, scale};
 use super::{Correction, Extension, Parameter};
 use crate::reconcile::strain::StrainFrame;
@@ -41,7 +41,7 @@ impl ChannelFault for CardGain {
     fn parameters(&self) -> Vec<Parameter> {
         vec![gain_parameter()]
     }
-    fn read(&self, at: At<'_>, parameters: &[f64], row: &mut [f64]) {
+    fn read(&self, at: FaultScope<'_>, parameters: &[f64], row: &mut [f64]) {
         scale(at, parameters, row);
     }
     fn extension(&self, names: &[String], parameters: &[f64]) -> Extension {

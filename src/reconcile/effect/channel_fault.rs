@@ -5,7 +5,7 @@ use crate::reconcile::strain::{Part, StrainFrame, StrainState};
 
 /// Where a reading is taken: the run, the gauges of the fault (indices into the row), and which part of the fault applies.
 #[derive(Clone, Copy)]
-pub struct At<'a> {
+pub struct FaultScope<'a> {
     /// The problem.
     pub frame: &'a StrainFrame,
     /// Run.
@@ -29,7 +29,7 @@ pub trait ChannelFault: Send + Sync {
         Vec::new()
     }
     /// Turns strain at all gauges of a run (`row`) into readings.
-    fn read(&self, _at: At<'_>, _parameters: &[f64], _row: &mut [f64]) {}
+    fn read(&self, _at: FaultScope<'_>, _parameters: &[f64], _row: &mut [f64]) {}
     /// Change of the influence row of a gauge, for faults of the gauge itself.
     fn influence_change(
         &self,
@@ -130,7 +130,7 @@ impl<F: ChannelFault> StrainEffect for OnGauges<F> {
         row: &mut [f64],
         part: Part,
     ) {
-        let at = At {
+        let at = FaultScope {
             frame,
             run,
             gauges: &self.gauges,

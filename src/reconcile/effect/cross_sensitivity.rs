@@ -1,6 +1,6 @@
 //! `cross_sensitivity`: a channel that reads a share of its neighbour (a common lead, a multiplexer that does not settle).
 
-use super::channel_fault::{At, ChannelFault, OnGauges};
+use super::channel_fault::{ChannelFault, FaultScope, OnGauges};
 use super::{Correction, Extension, Parameter};
 use crate::reconcile::strain::StrainFrame;
 
@@ -41,7 +41,7 @@ impl ChannelFault for CrossSensitivity {
             plausible: 1.0,
         }]
     }
-    fn read(&self, at: At<'_>, parameters: &[f64], row: &mut [f64]) {
+    fn read(&self, at: FaultScope<'_>, parameters: &[f64], row: &mut [f64]) {
         let (Some(share), Some(leaks)) = (parameters.first(), row.get(self.neighbour).copied())
         else {
             return;

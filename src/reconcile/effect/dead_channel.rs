@@ -1,6 +1,6 @@
 //! `dead_channel`: a channel that reads nothing but noise.
 
-use super::channel_fault::{At, ChannelFault, OnGauges, on_every_gauge};
+use super::channel_fault::{ChannelFault, FaultScope, OnGauges, on_every_gauge};
 use super::{Correction, Extension, FaultKind};
 use crate::reconcile::strain::StrainFrame;
 
@@ -22,7 +22,7 @@ impl ChannelFault for DeadChannel {
     fn kind(&self) -> FaultKind {
         FaultKind::Silent
     }
-    fn read(&self, at: At<'_>, _parameters: &[f64], row: &mut [f64]) {
+    fn read(&self, at: FaultScope<'_>, _parameters: &[f64], row: &mut [f64]) {
         for &g in at.gauges {
             if let Some(cell) = row.get_mut(g) {
                 *cell = 0.0;

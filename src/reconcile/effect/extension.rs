@@ -21,7 +21,7 @@ pub enum Correction {
 
 /// Recorded quantity of a run that is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Noted {
+pub enum RecordedQuantity {
     /// One load, kN.
     Load(usize),
     /// All loads, by one factor.
@@ -111,7 +111,7 @@ pub enum Extension {
         /// Run.
         run: String,
         /// Recorded quantity that is wrong.
-        noted: Noted,
+        noted: RecordedQuantity,
         /// Amount by which the true value exceeds the recorded one.
         size: f64,
     },

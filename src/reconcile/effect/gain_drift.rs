@@ -1,6 +1,6 @@
 //! `gain_drift`: a gain that moves through the series of runs, of one channel or of all (supply voltage, bonding).
 
-use super::channel_fault::{At, ChannelFault, OnGauges};
+use super::channel_fault::{ChannelFault, FaultScope, OnGauges};
 use super::{Correction, Extension, Parameter};
 use crate::reconcile::strain::StrainFrame;
 
@@ -34,7 +34,7 @@ impl ChannelFault for GainDrift {
             plausible: 2.0,
         }]
     }
-    fn read(&self, at: At<'_>, parameters: &[f64], row: &mut [f64]) {
+    fn read(&self, at: FaultScope<'_>, parameters: &[f64], row: &mut [f64]) {
         let Some(size) = parameters.first() else {
             return;
         };

@@ -1,6 +1,6 @@
 //! `gauge_gain`: a wrong gauge factor, amplifier gain or bridge factor.
 
-use super::channel_fault::{At, ChannelFault, OnGauges, on_every_gauge};
+use super::channel_fault::{ChannelFault, FaultScope, OnGauges, on_every_gauge};
 use super::{Correction, Extension, Parameter};
 use crate::reconcile::strain::StrainFrame;
 
@@ -34,7 +34,7 @@ impl ChannelFault for GaugeGain {
     fn parameters(&self) -> Vec<Parameter> {
         vec![gain_parameter()]
     }
-    fn read(&self, at: At<'_>, parameters: &[f64], row: &mut [f64]) {
+    fn read(&self, at: FaultScope<'_>, parameters: &[f64], row: &mut [f64]) {
         scale(at, parameters, row);
     }
     fn extension(&self, names: &[String], parameters: &[f64]) -> Extension {
@@ -51,7 +51,7 @@ impl ChannelFault for GaugeGain {
 }
 
 /// Multiplies the cells of the gauges by the first parameter.
-pub(super) fn scale(at: At<'_>, parameters: &[f64], row: &mut [f64]) {
+pub(super) fn scale(at: FaultScope<'_>, parameters: &[f64], row: &mut [f64]) {
     let Some(gain) = parameters.first() else {
         return;
     };

@@ -1,6 +1,6 @@
 //! `gauge_swap`: two channels exchanged.
 
-use super::channel_fault::{At, ChannelFault, OnGauges};
+use super::channel_fault::{ChannelFault, FaultScope, OnGauges};
 use super::{Correction, Extension};
 use crate::reconcile::strain::StrainFrame;
 
@@ -28,7 +28,7 @@ impl ChannelFault for GaugeSwap {
     fn id(&self) -> &'static str {
         "gauge_swap"
     }
-    fn read(&self, at: At<'_>, _parameters: &[f64], row: &mut [f64]) {
+    fn read(&self, at: FaultScope<'_>, _parameters: &[f64], row: &mut [f64]) {
         if let [a, b] = *at.gauges
             && a < row.len()
             && b < row.len()

@@ -1,6 +1,6 @@
 //! `intermittent_channel`: a channel that reads nothing in some runs (a loose contact).
 
-use super::channel_fault::{At, ChannelFault, OnGauges};
+use super::channel_fault::{ChannelFault, FaultScope, OnGauges};
 use super::{Correction, Extension};
 use crate::reconcile::strain::{StrainFrame, predict};
 
@@ -48,7 +48,7 @@ impl ChannelFault for IntermittentChannel {
     fn id(&self) -> &'static str {
         "intermittent_channel"
     }
-    fn read(&self, at: At<'_>, _parameters: &[f64], row: &mut [f64]) {
+    fn read(&self, at: FaultScope<'_>, _parameters: &[f64], row: &mut [f64]) {
         if !self.open.get(at.run).copied().unwrap_or(false) {
             return;
         }

@@ -22,7 +22,7 @@ use super::saturated_channel::SaturatedChannel;
 use super::sign_flip::SignFlip;
 use super::smooth_error::SmoothError;
 use super::stiffness::Stiffness;
-use super::thermal::Thermal;
+use super::thermal::ThermalStrain;
 use super::unaccounted_mass::UnaccountedMass;
 use super::uneven_ground::UnevenGround;
 use super::wheel_scale::WheelScale;
@@ -69,8 +69,8 @@ const LIBRARY: [Everywhere; 27] = [
     |f| box_effects(PayloadOffset::list_effects(f)),
     |f| box_effects(UnaccountedMass::list_effects(f)),
     |f| box_effects(UnevenGround::list_effects(f)),
-    |f| box_effects(Thermal::list_uniform_effects(f)),
-    |f| box_effects(Thermal::gradient(f)),
+    |f| box_effects(ThermalStrain::list_uniform_effects(f)),
+    |f| box_effects(ThermalStrain::gradient(f)),
     |f| box_effects(LateralWheelLoads::list_effects(f)),
     |f| box_effects(Stiffness::list_effects(f)),
     |f| box_effects(Stiffness::list_described_effects(f)),

@@ -36,7 +36,7 @@ mod wheel_scale;
 mod zero_drift;
 
 pub use amplitude::{Amplitudes, SizedAmplitudes};
-pub use extension::{Correction, Extension, Noted, Nuisance};
+pub use extension::{Correction, Extension, Nuisance, RecordedQuantity};
 pub use library::{Candidate, library};
 pub use model_discrepancy::ModelDiscrepancy;
 pub use smooth_error::SmoothError;

@@ -1,6 +1,6 @@
 //! `rosette_legs`: the legs of a rosette connected in another order.
 
-use super::channel_fault::{At, ChannelFault, OnGauges};
+use super::channel_fault::{ChannelFault, FaultScope, OnGauges};
 use super::{Correction, Extension};
 use crate::reconcile::strain::StrainFrame;
 
@@ -44,7 +44,7 @@ impl ChannelFault for RosetteLegs {
     fn id(&self) -> &'static str {
         "rosette_legs"
     }
-    fn read(&self, at: At<'_>, _parameters: &[f64], row: &mut [f64]) {
+    fn read(&self, at: FaultScope<'_>, _parameters: &[f64], row: &mut [f64]) {
         let felt: Vec<f64> = at
             .gauges
             .iter()

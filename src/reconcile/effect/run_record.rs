@@ -1,6 +1,6 @@
 //! `run_record`: a recorded load or the recorded mass of one run is wrong.
 
-use super::{Extension, Noted, Parameter, Stage, StrainEffect};
+use super::{Extension, Parameter, RecordedQuantity, Stage, StrainEffect};
 use crate::reconcile::strain::{StrainFrame, StrainState};
 
 /// Load or mass of one run = recorded value + size; for all loads together, recorded value times (1 + size).
@@ -11,7 +11,7 @@ pub struct RunRecord {
     /// Name of the run.
     pub name: String,
     /// Recorded quantity that is wrong.
-    pub noted: Noted,
+    pub noted: RecordedQuantity,
     /// Usual size of an error.
     pub usual: f64,
 }
@@ -30,13 +30,13 @@ impl RunRecord {
             rms(&mut frame.payload.iter().map(|p| p[0])),
         );
         let load = SHARE * rms(&mut frame.loads.iter().copied());
-        let mut kinds: Vec<(Noted, f64)> = Vec::new();
+        let mut kinds: Vec<(RecordedQuantity, f64)> = Vec::new();
         if load > 0.0 {
-            kinds.extend((0..n_l).map(|l| (Noted::Load(l), load)));
-            kinds.push((Noted::Loads, SHARE));
+            kinds.extend((0..n_l).map(|l| (RecordedQuantity::Load(l), load)));
+            kinds.push((RecordedQuantity::Loads, SHARE));
         }
         if payload > 0.0 {
-            kinds.push((Noted::Mass, SHARE * payload));
+            kinds.push((RecordedQuantity::Mass, SHARE * payload));
         }
         let mut out = Vec::new();
         for run in frame.observations.fit_runs() {
@@ -69,9 +69,9 @@ impl StrainEffect for RunRecord {
     }
     fn parameters(&self) -> Vec<Parameter> {
         let unit = match self.noted {
-            Noted::Load(_) => "kN",
-            Noted::Loads => "of all loads",
-            Noted::Mass => "kg",
+            RecordedQuantity::Load(_) => "kN",
+            RecordedQuantity::Loads => "of all loads",
+            RecordedQuantity::Mass => "kg",
         };
         let (sd, step) = (self.usual, 0.02 * self.usual);
         vec![Parameter {
@@ -93,18 +93,18 @@ impl StrainEffect for RunRecord {
             return;
         };
         match self.noted {
-            Noted::Load(l) => {
+            RecordedQuantity::Load(l) => {
                 if let Some(cell) = row.get_mut(l) {
                     *cell += size;
                 }
             }
-            Noted::Loads => row.iter_mut().take(n_l).for_each(|f| *f *= 1.0 + size),
-            Noted::Mass if mass > 0.0 => row
+            RecordedQuantity::Loads => row.iter_mut().take(n_l).for_each(|f| *f *= 1.0 + size),
+            RecordedQuantity::Mass if mass > 0.0 => row
                 .iter_mut()
                 .skip(n_l)
                 .for_each(|f| *f *= (mass + size) / mass),
             // Noted as empty: what is there acts at the nominal place.
-            Noted::Mass => {
+            RecordedQuantity::Mass => {
                 if let Some(cell) = row.get_mut(n_l) {
                     *cell += size;
                 }

@@ -1,6 +1,6 @@
 //! `saturated_channel`: a channel that stops at the end of its range.
 
-use super::channel_fault::{At, ChannelFault, OnGauges};
+use super::channel_fault::{ChannelFault, FaultScope, OnGauges};
 use super::{Correction, Extension, Parameter};
 use crate::reconcile::strain::{Part, StrainFrame, predict};
 
@@ -51,7 +51,7 @@ impl ChannelFault for SaturatedChannel {
             plausible: f64::INFINITY,
         }]
     }
-    fn read(&self, at: At<'_>, parameters: &[f64], row: &mut [f64]) {
+    fn read(&self, at: FaultScope<'_>, parameters: &[f64], row: &mut [f64]) {
         let (Part::Whole, [limit, ..]) = (at.part, parameters) else {
             return;
         };

@@ -1,6 +1,6 @@
 //! `sign_flip`: a channel with its polarity turned.
 
-use super::channel_fault::{At, ChannelFault, OnGauges, on_every_gauge};
+use super::channel_fault::{ChannelFault, FaultScope, OnGauges, on_every_gauge};
 use super::{Correction, Extension};
 use crate::reconcile::strain::StrainFrame;
 
@@ -19,7 +19,7 @@ impl ChannelFault for SignFlip {
     fn id(&self) -> &'static str {
         "sign_flip"
     }
-    fn read(&self, at: At<'_>, _parameters: &[f64], row: &mut [f64]) {
+    fn read(&self, at: FaultScope<'_>, _parameters: &[f64], row: &mut [f64]) {
         for &g in at.gauges {
             if let Some(cell) = row.get_mut(g) {
                 *cell = -*cell;

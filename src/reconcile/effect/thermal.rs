@@ -14,12 +14,12 @@ pub enum Pattern {
 
 /// Strain = strain + temperature of the run times the pattern.
 #[derive(Clone, Debug)]
-pub struct Thermal {
+pub struct ThermalStrain {
     /// Which pattern.
     pub pattern: Pattern,
 }
 
-impl Thermal {
+impl ThermalStrain {
     /// An even temperature, where the frame knows its strain.
     pub fn list_uniform_effects(frame: &StrainFrame) -> Vec<Self> {
         Self::list_pattern_effects(frame, Pattern::Uniform)
@@ -54,7 +54,7 @@ impl Thermal {
     }
 }
 
-impl StrainEffect for Thermal {
+impl StrainEffect for ThermalStrain {
     fn id(&self) -> &str {
         match self.pattern {
             Pattern::Uniform => "thermal_uniform",

@@ -1,6 +1,6 @@
 //! `zero_drift`: a channel's zero has moved since the installation state.
 
-use super::channel_fault::{At, ChannelFault, OnGauges};
+use super::channel_fault::{ChannelFault, FaultScope, OnGauges};
 use super::{Amplitudes, Correction, Extension, FaultKind, Parameter};
 use crate::reconcile::strain::{Part, StrainFrame};
 
@@ -64,7 +64,7 @@ impl ChannelFault for ZeroDrift {
         }
         all
     }
-    fn read(&self, at: At<'_>, parameters: &[f64], row: &mut [f64]) {
+    fn read(&self, at: FaultScope<'_>, parameters: &[f64], row: &mut [f64]) {
         let (Part::Whole, [size, ..]) = (at.part, parameters) else {
             return;
         };

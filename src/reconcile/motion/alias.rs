@@ -5,11 +5,11 @@ use super::change::Change;
 use super::design::BinEquation;
 use super::evidence::{beside_shaking, evidence};
 use super::fit::{Effort, fit};
-use super::fitted::MotionFit;
 use super::frame::MotionFrame;
+use super::motion_fit::MotionFit;
 use super::scorer::MotionScorer;
 use super::unexplained_background::of_fit;
-use crate::reconcile::search::{Scored, Scorer, settle};
+use crate::reconcile::search::{ScoredSet, Scorer, settle};
 
 /// Adds to `all` the best set with each of its channel faults moved to every other channel of the kind, and sorts `all`, best first.
 ///
@@ -19,7 +19,7 @@ use crate::reconcile::search::{Scored, Scorer, settle};
 ///
 /// Constants of forms (the velocity below which friction fades) were found before the fault was added, or with another channel at fault. They are
 /// then as wrong as the channel is. Each of these sets finds its own constants, so that none leads by them.
-pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<Scored<MotionFit>>, decisive: f64) {
+pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<ScoredSet<MotionFit>>, decisive: f64) {
     let Some(best) = settle(all, decisive) else {
         return;
     };
@@ -54,7 +54,7 @@ pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<Scored<MotionFit>>,
                     true => beside(&alias.fit) - beside(&best.fit),
                     false => alias.log_evidence - of_best,
                 };
-                Scored {
+                ScoredSet {
                     log_evidence: best.log_evidence + lead,
                     ..alias
                 }
@@ -65,7 +65,7 @@ pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<Scored<MotionFit>>,
 }
 
 /// Fits a set under the background from its own residual, again as long as the log evidence rises.
-fn with_own_background(scorer: &MotionScorer, of: &Scored<MotionFit>) -> Scored<MotionFit> {
+fn with_own_background(scorer: &MotionScorer, of: &ScoredSet<MotionFit>) -> ScoredSet<MotionFit> {
     /// Largest number of updates of the background.
     const ROUNDS: usize = 4;
     /// Rise of the log evidence that counts as settled.
@@ -89,7 +89,7 @@ fn with_own_background(scorer: &MotionScorer, of: &Scored<MotionFit>) -> Scored<
         let log_evidence = evidence(scorer.frame, scorer.candidates, &fit);
         let rise = log_evidence - best.log_evidence;
         if rise > 0.0 {
-            best = Scored {
+            best = ScoredSet {
                 log_evidence,
                 fit,
                 set: best.set,

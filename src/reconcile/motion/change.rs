@@ -70,7 +70,7 @@ pub enum Change {
 
 /// A vehicle with changes in it, and where each change's parameters are.
 #[derive(Clone, Debug)]
-pub struct Assembled {
+pub struct ChangedVehicle {
     /// The vehicle.
     pub vehicle: Vehicle,
     /// For each change, indices of its parameters in `vehicle.parameters()`.
@@ -80,7 +80,7 @@ pub struct Assembled {
 }
 
 /// The vehicle with all changes that concern it; changes of channels add nothing here, but for a swap.
-pub fn assemble(base: &Vehicle, changes: &[&Change]) -> Assembled {
+pub fn assemble(base: &Vehicle, changes: &[&Change]) -> ChangedVehicle {
     let mut vehicle = base.clone();
     let mut places: Vec<Vec<Place>> = Vec::new();
     for change in changes {
@@ -133,7 +133,7 @@ pub fn assemble(base: &Vehicle, changes: &[&Change]) -> Assembled {
         kept.extend((0..link.terms.len()).map(|t| vehicle.term_index(l, t)));
     }
     kept.extend((0..base.steps.len()).map(|s| vehicle.step_index(s)));
-    Assembled {
+    ChangedVehicle {
         own: places
             .iter()
             .map(|o| o.iter().map(index).collect())

@@ -5,7 +5,7 @@ use super::design::{Bins, Design};
 use super::frame::MotionFrame;
 use super::part::{ColumnOf, Part};
 use crate::series::spectrum::Fourier;
-use crate::series::window::Windowed;
+use crate::series::window::WindowedTransform;
 use crate::vehicle::adjustment::Lag;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::{PI, SQRT_2};
@@ -52,7 +52,7 @@ fn rate_column(
     let shared: Vec<f64> = (fourier.samples(&rate, 1).iter().enumerate())
         .map(|(i, v)| v * share(m.start_s + i as f64 / m.rate_hz))
         .collect();
-    let mut window = Windowed::new(m.n_samples(), m.rate_hz, design.band);
+    let mut window = WindowedTransform::new(m.n_samples(), m.rate_hz, design.band);
     Some(apply_responses(responses, channel, &window.bins(&shared)))
 }
 
@@ -64,7 +64,7 @@ fn line_columns(
     hz: f64,
 ) -> Vec<Vec<Bins>> {
     let m = &design.motion;
-    let mut window = Windowed::new(m.n_samples(), m.rate_hz, design.band);
+    let mut window = WindowedTransform::new(m.n_samples(), m.rate_hz, design.band);
     let gain = design.band.gain(hz);
     [0.0, 0.5 * PI]
         .map(|phase| {

@@ -3,7 +3,7 @@
 use super::frame::MotionFrame;
 use crate::series::channels::Channels;
 use crate::series::spectrum::Band;
-use crate::series::window::Windowed;
+use crate::series::window::WindowedTransform;
 use crate::vehicle::adjustment::{Adjustment, Lag};
 use crate::vehicle::equations::equations;
 use crate::vehicle::layout::{Measures, Vehicle};
@@ -105,7 +105,7 @@ fn of_motion(
     motion: Motion,
     adjust: &[Adjustment],
 ) -> Result<Design, VehicleError> {
-    let mut window = Windowed::new(motion.n_samples(), motion.rate_hz, frame.band);
+    let mut window = WindowedTransform::new(motion.n_samples(), motion.rate_hz, frame.band);
     let mut out = Vec::new();
     for e in equations(vehicle, &motion) {
         let Some((body, index)) = body_of(vehicle, &e.name) else {
@@ -216,7 +216,8 @@ impl Design {
         const BINS: f64 = 2.5;
         let mut out = self.clone();
         let length =
-            Windowed::new(self.motion.n_samples(), self.motion.rate_hz, self.band).step_hz();
+            WindowedTransform::new(self.motion.n_samples(), self.motion.rate_hz, self.band)
+                .step_hz();
         let near = |f: f64| lines_hz.iter().any(|l| (f - l).abs() <= BINS * length);
         let quiet: Vec<usize> = (0..out.f_hz.len()).filter(|&k| near(out.f_hz[k])).collect();
         let silence = |bins: &mut Bins| {

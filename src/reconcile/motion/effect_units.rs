@@ -1,8 +1,8 @@
 //! Units of effects.
 
 use super::change::Change;
-use super::fitted::MotionFit;
 use super::frame::MotionFrame;
+use super::motion_fit::MotionFit;
 use crate::vehicle::term::Quantity;
 
 /// Unit of the first parameter of a change; relative to the reference mass where no force sets the scale.

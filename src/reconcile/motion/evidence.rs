@@ -2,8 +2,8 @@
 
 use super::candidate::Candidate;
 use super::change::Change;
-use super::fitted::MotionFit;
 use super::frame::MotionFrame;
+use super::motion_fit::MotionFit;
 use super::zeros::zeros;
 
 /// Returns the cost of an effect's freedom: half the log of the number of rows for each parameter (Schwarz), the log of the number of candidates, and

@@ -4,22 +4,22 @@ use super::alias::with_aliases;
 use super::candidate::Candidate;
 use super::change::Change;
 use super::channel_check::{BrokenChannel, broken_channels};
+use super::clock_rate::fit_of_clock;
 use super::design::design;
 use super::effect::library;
 use super::fit::{Effort, fit};
-use super::fitted::MotionFit;
-use super::found::Found;
 use super::frame::MotionFrame;
 use super::gap::fitted_gap;
-use super::growing::fit_of_clock;
 use super::judge::conclude;
+use super::motion_fit::MotionFit;
 use super::noise::Background;
 use super::outcome::MotionOutcome;
 use super::part::Part;
+use super::ranked_sets::RankedEffectSets;
 use super::scorer::MotionScorer;
 use super::sound::outcome_of_dead;
 use super::unexplained_background::{of_fit, power, unexplained_background};
-use crate::reconcile::search::{Breadth, Scored, Scorer, search, search_near, settle};
+use crate::reconcile::search::{Breadth, ScoredSet, Scorer, search, search_near, settle};
 use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::motion::VehicleError;
 
@@ -85,8 +85,8 @@ fn search_effect_sets(
     scorer: &mut MotionScorer,
     null: MotionFit,
     broken: Vec<BrokenChannel>,
-) -> Found {
-    let empty = Scored {
+) -> RankedEffectSets {
+    let empty = ScoredSet {
         set: vec![],
         log_evidence: -0.5 * null.chi2,
         fit: null.clone(),
@@ -94,7 +94,8 @@ fn search_effect_sets(
     let mut all = Vec::new();
     let mut best = None;
     let found = upheavals(scorer, &null);
-    let whole = |s: &Scored<MotionFit>| s.set.iter().any(|&c| scorer.candidates[c].is_upheaval());
+    let whole =
+        |s: &ScoredSet<MotionFit>| s.set.iter().any(|&c| scorer.candidates[c].is_upheaval());
     if let Some(first) = found.first().filter(|s| whole(s)) {
         best = Some(first.clone());
         all = found;
@@ -129,7 +130,7 @@ fn search_effect_sets(
             }
         }
     }
-    Found {
+    RankedEffectSets {
         best: best.unwrap_or(empty),
         null,
         all,
@@ -141,7 +142,7 @@ fn search_effect_sets(
 /// first; the empty set last.
 ///
 /// Channels differ in what turns with them: the balance of weight, the accelerometers' own means, the sign of masses and springs.
-fn upheavals(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Scored<MotionFit>> {
+fn upheavals(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<ScoredSet<MotionFit>> {
     /// Fall of the squared residual that settles it.
     const FALL: f64 = 10.0;
     if fitted_gap(scorer.frame, null).is_none_or(|g| g.gap < scorer.frame.rules.lost) {
@@ -192,10 +193,10 @@ fn upheavals(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Scored<MotionFi
     };
     // All of them, and none, under the background of the one that leaves least.
     scorer.background = of_fit(scorer.frame, best);
-    let mut out: Vec<Scored<MotionFit>> = found
+    let mut out: Vec<ScoredSet<MotionFit>> = found
         .iter()
         .filter_map(|(c, f)| {
-            let there = Scored {
+            let there = ScoredSet {
                 set: vec![*c],
                 log_evidence: 0.0,
                 fit: f.clone(),

@@ -2,17 +2,17 @@
 
 use super::at_rest::rest_row;
 use super::candidate::Candidate;
-use super::change::{Assembled, Change, assemble};
+use super::change::{Change, ChangedVehicle, assemble};
 use super::columns::{fault_columns, nuisance, parameter_column, slices};
 use super::corrections::adjustments;
 use super::design::{Bins, Design, design};
-use super::fitted::{MotionFit, whiten_column};
 use super::frame::MotionFrame;
 use super::limits::{has_plausible_sizes, within_tolerance};
+use super::motion_fit::{MotionFit, whiten_column};
 use super::noise::{Background, Whitener, covariance, log_determinant};
 use super::part::{ColumnOf, Part};
 use super::response::responses;
-use crate::estimate::columns::{PriorColumn, Solved};
+use crate::estimate::columns::{PriorColumn, TargetSolution};
 use crate::series::channels::Channels;
 use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::layout::Vehicle;
@@ -223,13 +223,13 @@ impl Problem {
         self.columns.push(PriorColumn { rows, prior });
     }
 
-    fn solve_unknowns(mut self, frame: &MotionFrame) -> Option<(Solved, Self)> {
+    fn solve_unknowns(mut self, frame: &MotionFrame) -> Option<(TargetSolution, Self)> {
         let s = within_tolerance(&frame.rules, &mut self.columns, &self.rows);
         s.x.iter().all(|x| x.is_finite()).then_some((s, self))
     }
 
     /// Parameters of the vehicle.
-    fn values(&self, s: &Solved) -> Vec<f64> {
+    fn values(&self, s: &TargetSolution) -> Vec<f64> {
         let mut new: Vec<f64> = self.held.iter().map(|h| h.unwrap_or(f64::NAN)).collect();
         self.free.iter().zip(&s.x).for_each(|(&i, x)| new[i] = *x);
         new
@@ -237,10 +237,10 @@ impl Problem {
 
     fn into_fit(
         self,
-        assembled: &Assembled,
+        assembled: &ChangedVehicle,
         parts: &[Part],
         values: Vec<f64>,
-        s: Solved,
+        s: TargetSolution,
     ) -> MotionFit {
         let sd = |k: usize| s.covariance[k][k].max(0.0).sqrt();
         let mut sigmas = vec![0.0; values.len()];
@@ -321,9 +321,9 @@ impl Problem {
     /// Joint covariance of the sizes of all parts: that of the columns, taken to the sizes by their derivatives. A turned sign has none.
     fn covariance_of_sizes(
         &self,
-        assembled: &Assembled,
+        assembled: &ChangedVehicle,
         parts: &[Part],
-        s: &Solved,
+        s: &TargetSolution,
     ) -> Vec<Vec<f64>> {
         let n = self.column_of.len();
         let columns_of = |of: ColumnOf| (0..n).filter(move |&k| self.column_of[k] == of);
@@ -376,7 +376,7 @@ impl Problem {
 const LEAST_LAG_S: f64 = 1e-5;
 
 /// Moves the channel faults by the result of a round; returns the largest step over the step that counts as settled.
-fn advance(parts: &mut [Part], problem: &Problem, s: &Solved) -> f64 {
+fn advance(parts: &mut [Part], problem: &Problem, s: &TargetSolution) -> f64 {
     let mut moved = 0.0f64;
     for (of, step) in problem.column_of.iter().zip(&s.x) {
         let ColumnOf::Fault(i) = of else { continue };
@@ -408,7 +408,7 @@ fn even(d: &Design) -> Vec<Vec<Complex64>> {
 }
 
 /// Values of a neighbour for the parameters that both have; 0 for new ones.
-fn inherit_values(assembled: &Assembled, parts: &[Part], from: &MotionFit) -> Vec<f64> {
+fn inherit_values(assembled: &ChangedVehicle, parts: &[Part], from: &MotionFit) -> Vec<f64> {
     let mut out = vec![0.0; assembled.vehicle.parameters().len()];
     for (&to, &old) in assembled.base.iter().zip(&from.assembled.base) {
         out[to] = from.values[old];

@@ -3,10 +3,10 @@
 use super::corrections::{adjustments, lines};
 use super::design::{Bins, Design, design, measured_quantity, size};
 use super::fit::held_parameters;
-use super::fitted::MotionFit;
 use super::floor::{Floor, fit_without_nuisance, floors};
 use super::frame::MotionFrame;
 use super::gap_profile::{GapProfile, gap_profile};
+use super::motion_fit::MotionFit;
 use super::noise::{BANDS, band_of};
 use crate::reconcile::checks::Fall;
 use crate::series::channels::Channels;

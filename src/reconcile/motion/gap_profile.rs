@@ -22,7 +22,7 @@ pub struct GapProfile {
 }
 
 /// Returns the profile of a residual relative to the measured quantity; empty for fewer than two bins. Both are bins at `f_hz` of one windowed
-/// transform at `rate_hz` that begins at `start_s` ([`crate::series::window::Windowed`]).
+/// transform at `rate_hz` that begins at `start_s` ([`crate::series::window::WindowedTransform`]).
 pub fn gap_profile(
     residual: &Bins,
     measured: &Bins,
@@ -92,7 +92,7 @@ pub fn gap_profile(
 mod tests {
     use super::gap_profile;
     use crate::series::spectrum::Band;
-    use crate::series::window::Windowed;
+    use crate::series::window::WindowedTransform;
     use std::f64::consts::TAU;
 
     const RATE: f64 = 100.0;
@@ -103,7 +103,7 @@ mod tests {
             high_hz: 20.0,
         };
         let n = 8000;
-        let mut window = Windowed::new(n, RATE, band);
+        let mut window = WindowedTransform::new(n, RATE, band);
         // A wave whose size swells and falls every 16 s.
         let wave = |i: usize| {
             let t = i as f64 / RATE;

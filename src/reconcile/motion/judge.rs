@@ -3,23 +3,23 @@
 use super::change::Change;
 use super::channel_check::BrokenChannel;
 use super::corrections::state_corrections;
-use super::detectable::smallest_sizes;
+use super::detection_limits::smallest_sizes;
 use super::effect_units::unit_of_change;
 use super::fit::{Effort, fit};
-use super::fitted::MotionFit;
-use super::found::{Found, other_sets};
 use super::gap::{Proof, RecordGap, fitted_gap, proof, proof_gap};
 use super::limits::{beyond_tolerance, stands_out};
+use super::motion_fit::MotionFit;
 use super::next::next_measurement;
 use super::noise::Background;
 use super::outcome::{MotionEffect, MotionOutcome};
-use super::proven::remove_unproven;
+use super::ranked_sets::{RankedEffectSets, other_sets};
 use super::scorer::MotionScorer;
 use super::sentences::remains;
+use super::unproven_effects::remove_unproven;
 use crate::reconcile::checks::{Check, describe_better_alternative, reasons, verdict};
 use crate::reconcile::outcome::{Gap, GapBasis, Rival, Verdict};
 use crate::reconcile::rules::MotionRules;
-use crate::reconcile::search::{Scored, settle};
+use crate::reconcile::search::{ScoredSet, settle};
 use crate::vehicle::motion::VehicleError;
 
 /// Gaps of a model.
@@ -71,9 +71,9 @@ fn refit_under_noise(scorer: &MotionScorer, old: &MotionFit) -> MotionFit {
 /// The verdict with everything that belongs to it.
 pub(super) fn conclude(
     scorer: &mut MotionScorer,
-    found: Found,
+    found: RankedEffectSets,
 ) -> Result<MotionOutcome, VehicleError> {
-    let Found {
+    let RankedEffectSets {
         null,
         all,
         best,
@@ -222,16 +222,16 @@ pub(super) fn gap_of(before: &Option<RecordGap>, after: &Option<RecordGap>, by: 
 /// the error in the form of that effect leaves.
 fn find_nameable_set(
     scorer: &MotionScorer,
-    all: &[Scored<MotionFit>],
-    best: Scored<MotionFit>,
-) -> Scored<MotionFit> {
+    all: &[ScoredSet<MotionFit>],
+    best: ScoredSet<MotionFit>,
+) -> ScoredSet<MotionFit> {
     let frame = scorer.frame;
     let gaps: Vec<Option<RecordGap>> = all.iter().map(|s| fitted_gap(frame, &s.fit)).collect();
     let power = |set: &[usize]| {
         let at = all.iter().position(|s| s.set == set)?;
         gaps[at].as_ref().map(|g| g.gap * g.gap)
     };
-    let material = |s: &Scored<MotionFit>| {
+    let material = |s: &ScoredSet<MotionFit>| {
         let Some(at) = all.iter().position(|o| o.set == s.set) else {
             return true;
         };
@@ -265,13 +265,13 @@ fn find_nameable_set(
             })
         })
     };
-    let fine = |s: &Scored<MotionFit>| {
+    let fine = |s: &ScoredSet<MotionFit>| {
         material(s) && beyond_tolerance(frame, &s.fit) && stands_out(&frame.rules, &s.fit)
     };
     if fine(&best) {
         return best;
     }
-    let rest: Vec<Scored<MotionFit>> = all.iter().filter(|s| fine(s)).cloned().collect();
+    let rest: Vec<ScoredSet<MotionFit>> = all.iter().filter(|s| fine(s)).cloned().collect();
     settle(&rest, frame.rules.decisive).unwrap_or(best)
 }
 
@@ -314,12 +314,12 @@ fn effects_of(scorer: &MotionScorer, fit: &MotionFit) -> Vec<MotionEffect> {
 /// Returns the first of [`other_sets`] as alternative explanations.
 fn rivals(
     scorer: &MotionScorer,
-    best: &Scored<MotionFit>,
-    all: &[Scored<MotionFit>],
+    best: &ScoredSet<MotionFit>,
+    all: &[ScoredSet<MotionFit>],
 ) -> Vec<Rival> {
     /// Largest number of alternative explanations in the outcome.
     const MOST: usize = 4;
-    let ids = |s: &Scored<MotionFit>| {
+    let ids = |s: &ScoredSet<MotionFit>| {
         let ids = s.set.iter().map(|&c| scorer.candidates[c].id.clone());
         let mut ids: Vec<String> = ids.collect();
         ids.sort();

@@ -2,10 +2,10 @@
 
 use super::candidate::{Candidate, Sign};
 use super::change::Change;
-use super::fitted::MotionFit;
 use super::frame::MotionFrame;
+use super::motion_fit::MotionFit;
 use super::part::ColumnOf;
-use crate::estimate::columns::{PriorColumn, Solved, solve_with_priors};
+use crate::estimate::columns::{PriorColumn, TargetSolution, solve_with_priors};
 use crate::reconcile::rules::MotionRules;
 use crate::vehicle::term::{Side, Term, share_done};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
@@ -23,7 +23,7 @@ pub fn within_tolerance(
     rules: &MotionRules,
     columns: &mut [PriorColumn],
     target: &[f64],
-) -> Solved {
+) -> TargetSolution {
     /// Narrowing settles in a few rounds; the remaining change is small.
     const ROUNDS: usize = 6;
     /// Beyond the limit by less than this share is at it.

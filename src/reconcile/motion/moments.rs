@@ -10,7 +10,7 @@ use super::frame::MotionFrame;
 use super::limits::END;
 use crate::estimate::columns::{Basis, PriorColumn};
 use crate::series::plans::{forward, inverse};
-use crate::series::window::Windowed;
+use crate::series::window::WindowedTransform;
 use crate::vehicle::layout::MassStep;
 use rustfft::num_complex::Complex64;
 
@@ -54,7 +54,7 @@ pub fn best_steps(frame: &MotionFrame, d: &Design, bodies: &[usize]) -> Vec<Vec<
             .map(|r| complex_from_rows(&r[own.clone()]))
             .collect();
         let m = &d.motion;
-        let window = Windowed::new(m.n_samples(), m.rate_hz, d.band);
+        let window = WindowedTransform::new(m.n_samples(), m.rate_hz, d.band);
         let gain: Vec<f64> = d.f_hz.iter().map(|f| d.band.gain(*f)).collect();
         let look = Look::new(window.taper(), acceleration, &gain, window.first_bin());
         let mut best: Vec<(MassStep, f64)> = [frame.gravity, 0.0]

@@ -27,7 +27,7 @@ pub struct MotionEffect {
 
 /// The smallest size of an effect that a record would have shown.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Smallest {
+pub struct MotionDetectionLimit {
     /// Id with place.
     pub id: String,
     /// Size.
@@ -68,7 +68,7 @@ pub struct MotionOutcome {
     /// Share of the measured quantity left on the fitted record: analyst's model, best attempt, floor.
     pub left: [f64; 3],
     /// Smallest sizes that the record would have shown.
-    pub smallest: Vec<Smallest>,
+    pub smallest: Vec<MotionDetectionLimit>,
     /// Text on the remaining gap.
     pub remains: String,
     /// Instruction that separates the first two explanations.

@@ -7,13 +7,13 @@ use super::corrections::adjustments;
 use super::design::{Design, design};
 use super::evidence::{cost, evidence};
 use super::fit::{Effort, fit};
-use super::fitted::MotionFit;
 use super::floor::share;
 use super::frame::MotionFrame;
+use super::motion_fit::MotionFit;
 use super::noise::Background;
 use super::part::Part;
 use crate::estimate::columns::Basis;
-use crate::reconcile::search::{Addition, Scored, Scorer};
+use crate::reconcile::search::{Addition, ScoredSet, Scorer};
 use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::stretch::slow_stretches;
 use std::sync::Arc;
@@ -103,7 +103,7 @@ impl MotionScorer<'_> {
     }
 
     /// A set with the constants of its terms found with all members in it.
-    pub fn with_own_constants(&self, of: Scored<MotionFit>) -> Scored<MotionFit> {
+    pub fn with_own_constants(&self, of: ScoredSet<MotionFit>) -> ScoredSet<MotionFit> {
         let varies = |p: &Part| {
             let is_term = matches!(p.shape, Change::Terms { .. });
             is_term && !p.shape.neighbours(REFINE[0], self.frame.gravity).is_empty()
@@ -114,7 +114,7 @@ impl MotionScorer<'_> {
         let others = of.fit.parts.iter().filter(|p| !varies(p));
         let settled: Vec<usize> = others.map(|p| p.candidate).collect();
         let fit = self.refine_constants(of.fit, &settled);
-        Scored {
+        ScoredSet {
             log_evidence: evidence(self.frame, self.candidates, &fit),
             set: of.set,
             fit,
@@ -367,8 +367,8 @@ impl Scorer for MotionScorer<'_> {
     fn score(
         &mut self,
         set: &[usize],
-        from: Option<(&Scored<MotionFit>, Option<&Addition>)>,
-    ) -> Option<Scored<MotionFit>> {
+        from: Option<(&ScoredSet<MotionFit>, Option<&Addition>)>,
+    ) -> Option<ScoredSet<MotionFit>> {
         let parts: Vec<Part> = set
             .iter()
             .map(|&c| {
@@ -404,14 +404,14 @@ impl Scorer for MotionScorer<'_> {
         } else {
             first
         };
-        Some(Scored {
+        Some(ScoredSet {
             set: set.to_vec(),
             log_evidence: evidence(self.frame, self.candidates, &fit),
             fit,
         })
     }
 
-    fn screen(&mut self, base: &Scored<MotionFit>) -> Vec<Addition> {
+    fn screen(&mut self, base: &ScoredSet<MotionFit>) -> Vec<Addition> {
         let basis = Basis::from_columns(&base.fit.columns);
         let mut best: Vec<Option<Addition>> = vec![None; self.candidates.len()];
         for (c, k, columns) in self.form_columns(&base.fit) {

@@ -1,7 +1,7 @@
 //! Comparable part of a record with a dead channel: the equations that the channel does not enter.
 
 use super::channel_check::BrokenChannel;
-use super::detectable::smallest_sizes;
+use super::detection_limits::smallest_sizes;
 use super::effect::library;
 use super::fit::{Effort, fit};
 use super::frame::MotionFrame;

@@ -1,7 +1,7 @@
 //! Residual of a generous model that no effect of the library explains, as background for every comparison.
 
-use super::fitted::MotionFit;
 use super::frame::MotionFrame;
+use super::motion_fit::MotionFit;
 use super::noise::{Background, background, covariance};
 use super::response::responses;
 use super::scorer::MotionScorer;

@@ -2,8 +2,8 @@
 
 use super::at_rest::{STATIC, finite_mean};
 use super::corrections::adjustments;
-use super::fitted::MotionFit;
 use super::frame::MotionFrame;
+use super::motion_fit::MotionFit;
 use crate::vehicle::layout::Measures;
 
 /// Returns the sum of squared deviates of the accelerometers' means from gravity times gain under a fit. Their zeros are unknown within the limits of

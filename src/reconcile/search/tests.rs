@@ -2,14 +2,14 @@ use super::*;
 use crate::stop::Stop;
 
 /// Five candidates of independent gains; asks to stop when so many sets were scored.
-struct Counting {
+struct CountingScorer {
     stop: Stop,
     last: usize,
     scored: usize,
     screened: usize,
 }
 
-impl Counting {
+impl CountingScorer {
     fn stopped_after(last: usize) -> Self {
         let stop = Stop::new();
         if last == 0 {
@@ -26,26 +26,26 @@ impl Counting {
 
 const GAIN: [f64; 5] = [50.0, 40.0, 30.0, 20.0, -1.0];
 
-impl Scorer for Counting {
+impl Scorer for CountingScorer {
     type Fit = ();
 
     fn score(
         &mut self,
         set: &[usize],
-        _: Option<(&Scored<()>, Option<&Addition>)>,
-    ) -> Option<Scored<()>> {
+        _: Option<(&ScoredSet<()>, Option<&Addition>)>,
+    ) -> Option<ScoredSet<()>> {
         self.scored += 1;
         if self.scored == self.last {
             self.stop.ask();
         }
-        Some(Scored {
+        Some(ScoredSet {
             set: set.to_vec(),
             log_evidence: set.iter().map(|c| GAIN[*c]).sum(),
             fit: (),
         })
     }
 
-    fn screen(&mut self, base: &Scored<()>) -> Vec<Addition> {
+    fn screen(&mut self, base: &ScoredSet<()>) -> Vec<Addition> {
         self.screened += 1;
         let new = (0..GAIN.len()).filter(|c| !base.set.contains(c));
         new.map(|candidate| Addition {
@@ -79,11 +79,11 @@ const BREADTH: Breadth = Breadth {
 
 #[test]
 fn a_search_that_is_stopped_scores_and_screens_nothing_more() {
-    let mut whole = Counting::stopped_after(usize::MAX);
+    let mut whole = CountingScorer::stopped_after(usize::MAX);
     let best = settle(&search(&mut whole, BREADTH), BREADTH.decisive).unwrap();
     assert_eq!(best.set, [0, 1, 2, 3]);
     for last in 1..whole.scored {
-        let mut cut = Counting::stopped_after(last);
+        let mut cut = CountingScorer::stopped_after(last);
         search(&mut cut, BREADTH);
         assert_eq!(cut.scored, last);
         assert!(cut.screened <= whole.screened);
@@ -93,9 +93,9 @@ fn a_search_that_is_stopped_scores_and_screens_nothing_more() {
 
 #[test]
 fn a_search_near_known_sets_that_is_stopped_scores_the_empty_one_alone() {
-    let mut before = Counting::stopped_after(usize::MAX);
+    let mut before = CountingScorer::stopped_after(usize::MAX);
     let known = search(&mut before, BREADTH);
-    let mut cut = Counting::stopped_after(0);
+    let mut cut = CountingScorer::stopped_after(0);
     search_near(&mut cut, BREADTH, &known[..8]);
     assert_eq!((cut.scored, cut.screened), (1, 0));
 }

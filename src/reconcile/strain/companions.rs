@@ -6,7 +6,7 @@ use super::likelihood::Fit;
 use super::own_covariance::{own_evidence, under_own_covariance, with_members};
 use super::rivals::WORTH_NAMING;
 use crate::reconcile::effect::{Candidate, Discrepancy, full_id};
-use crate::reconcile::search::Scored;
+use crate::reconcile::search::ScoredSet;
 use rayon::prelude::*;
 
 /// Returns `set` without effects that raise its log evidence by no more than the limit for indistinguishable causes, and a sentence on them;
@@ -17,8 +17,8 @@ use rayon::prelude::*;
 pub(super) fn without_companions(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    set: &Scored<Fit>,
-) -> Option<(Scored<Fit>, String)> {
+    set: &ScoredSet<Fit>,
+) -> Option<(ScoredSet<Fit>, String)> {
     if is_unmodelled(candidates, &set.set).is_some() {
         return None;
     }
@@ -31,7 +31,7 @@ pub(super) fn without_companions(
         }
         let level = own_evidence(frame, candidates, &best);
         let fewer = |c: &usize| Some((*c, remove_effect(frame, candidates, &best, (*c, level))?));
-        let fewer: Vec<(usize, Scored<Fit>)> = names.par_iter().filter_map(fewer).collect();
+        let fewer: Vec<(usize, ScoredSet<Fit>)> = names.par_iter().filter_map(fewer).collect();
         let least = fewer
             .into_iter()
             .max_by(|a, b| a.1.log_evidence.total_cmp(&b.1.log_evidence));
@@ -56,9 +56,9 @@ pub(super) fn without_companions(
 fn remove_effect(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    set: &Scored<Fit>,
+    set: &ScoredSet<Fit>,
     (effect, level): (usize, f64),
-) -> Option<Scored<Fit>> {
+) -> Option<ScoredSet<Fit>> {
     let rest: Vec<usize> = set.set.iter().copied().filter(|c| *c != effect).collect();
     let alone = under_own_covariance(frame, candidates, &rest, set)?;
     if level - alone.log_evidence > WORTH_NAMING {
@@ -69,7 +69,7 @@ fn remove_effect(
         let is_noise = matches!(discrepancy(candidates, *c), Some(Discrepancy::Noise(_)));
         is_noise && rest.iter().all(|m| id(*m) != id(*c))
     });
-    let with_noise: Vec<Scored<Fit>> = noise
+    let with_noise: Vec<ScoredSet<Fit>> = noise
         .collect::<Vec<usize>>()
         .into_par_iter()
         .filter_map(|c| {

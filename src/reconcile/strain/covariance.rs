@@ -1,7 +1,7 @@
 //! Covariance of the residual from noise and stated model uncertainty, over runs and gauges.
 
+use super::calibration_scatter::{Shares, calibration_covariance, shares};
 use super::frame::{Scatter, StrainFrame};
-use super::learnt::{Shares, calibration_covariance, shares};
 use super::prediction::read_all;
 use super::state::{Part, StrainState};
 use crate::reconcile::effect::{Member, SizedAmplitudes};

@@ -5,7 +5,7 @@ use super::frame::StrainFrame;
 use super::prediction::predict;
 use crate::linalg::precision::Precision;
 use crate::reconcile::effect::{Candidate, Member, full_id};
-use crate::reconcile::outcome::Detectable;
+use crate::reconcile::outcome::DetectionLimit;
 
 /// Returns the sizes at which the expected gain of evidence covers the effect's prior weight, its width and the evidence for a name. Of effects at
 /// many overlapping places (stretches of a card, records of a run), only the effects of `also` are listed.
@@ -13,7 +13,7 @@ pub fn find_detectable_sizes(
     frame: &StrainFrame,
     candidates: &[Candidate],
     also: &[usize],
-) -> Vec<Detectable> {
+) -> Vec<DetectionLimit> {
     let fit = Selection::of_runs(frame, &frame.observations.fit_runs());
     let Some(precision) = Precision::from_covariance(&covariance(frame, &[], &fit, &[]), fit.len())
     else {
@@ -74,7 +74,7 @@ pub fn find_detectable_sizes(
                 }
             }
             let usual = a.usual.iter().copied().fold(0.0, f64::max);
-            out.push(Detectable {
+            out.push(DetectionLimit {
                 id,
                 size: high * usual,
                 unit: a.unit,
@@ -83,7 +83,7 @@ pub fn find_detectable_sizes(
             let size = smallest_detectable_size(
                 frame, c, &fit, &nominal, &precision, p.neutral, p.step, p.prior_sd,
             );
-            out.push(Detectable {
+            out.push(DetectionLimit {
                 id,
                 size,
                 unit: p.unit,

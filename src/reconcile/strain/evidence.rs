@@ -1,17 +1,17 @@
 //! Log evidence of a set: what its best parameters leave, less what their width and the prior weights cost.
 
-use super::learnt::heavier_tail;
+use super::calibration_scatter::heavier_tail;
 use super::likelihood::{Fit, Likelihood};
 use crate::linalg::precision::Precision;
-use crate::reconcile::search::{Addition, Scored};
+use crate::reconcile::search::{Addition, ScoredSet};
 
 impl Likelihood<'_> {
     /// Fits `set`, from scratch or from a fit of its neighbour.
     pub(super) fn evidence_of(
         &mut self,
         set: &[usize],
-        from: Option<(&Scored<Fit>, Option<&Addition>)>,
-    ) -> Option<Scored<Fit>> {
+        from: Option<(&ScoredSet<Fit>, Option<&Addition>)>,
+    ) -> Option<ScoredSet<Fit>> {
         let families = self.with_amplitudes(set);
         let mut sizes: Vec<(usize, Vec<f64>)> = Vec::new();
         for &c in &families {
@@ -83,7 +83,7 @@ impl Likelihood<'_> {
             residual: best.residual,
             chi2: best.chi2,
         };
-        Some(Scored {
+        Some(ScoredSet {
             set: set.to_vec(),
             log_evidence,
             fit,

@@ -2,17 +2,17 @@
 
 use super::explanation::{is_unmodelled, named_part};
 use super::frame::StrainFrame;
+use super::input_fault_search::wrong_records;
 use super::judge::{adequacy_of, at_floor, judge};
 use super::likelihood::{Fit, Likelihood};
 use super::own_covariance::best_by_own_covariance;
-use super::recorded::wrong_records;
 use super::sizes_found::effects_with_sizes;
-use super::smooth::smooth_instead;
+use super::smooth_alternative::smooth_instead;
 use super::validation::{Proofs, validate_set};
 use crate::finding::Finding;
 use crate::reconcile::effect::{Candidate, Discrepancy, library};
 use crate::reconcile::outcome::{Outcome, Verdict};
-use crate::reconcile::search::{Breadth, Scored, Scorer, search, search_near, settle};
+use crate::reconcile::search::{Breadth, ScoredSet, Scorer, search, search_near, settle};
 
 /// Returns the breadth of the search in static problems. A few runs can separate at most three effects at once, with noise as a fourth.
 fn breadth(frame: &StrainFrame) -> Breadth {
@@ -71,8 +71,8 @@ pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
 fn examine_candidates(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
     let fit_runs = frame.observations.fit_runs();
     let mut reference: Vec<(usize, Vec<f64>)> = Vec::new();
-    let mut all: Vec<Scored<Fit>> = Vec::new();
-    let mut best: Option<Scored<Fit>> = None;
+    let mut all: Vec<ScoredSet<Fit>> = Vec::new();
+    let mut best: Option<ScoredSet<Fit>> = None;
     /// Largest number of passes. The covariance follows the best prediction, and the set is stable after two passes in practice.
     const PASSES: usize = 3;
     /// Number of best sets of a pass from which the next pass starts.
@@ -109,7 +109,7 @@ fn examine_candidates(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome 
             break;
         }
     }
-    let empty = Scored {
+    let empty = ScoredSet {
         set: Vec::new(),
         log_evidence: 0.0,
         fit: Fit::default(),
@@ -143,8 +143,8 @@ fn examine_candidates(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome 
 fn judged_beside_smooth(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
-    mut all: Vec<Scored<Fit>>,
-    best: Scored<Fit>,
+    mut all: Vec<ScoredSet<Fit>>,
+    best: ScoredSet<Fit>,
 ) -> Outcome {
     let Some(smooth) = smooth_instead(proofs.frame, candidates, &best) else {
         return judge(proofs, candidates, &all, &best);
@@ -165,15 +165,15 @@ fn judged_beside_smooth(
 fn named_instead(
     likelihood: &mut Likelihood<'_>,
     candidates: &[Candidate],
-    known: &[Scored<Fit>],
-) -> Vec<Scored<Fit>> {
+    known: &[ScoredSet<Fit>],
+) -> Vec<ScoredSet<Fit>> {
     let form = |c: &usize| {
         matches!(
             candidates.get(*c).and_then(|c| c.effect.discrepancy()),
             Some(Discrepancy::Form(_))
         )
     };
-    let mut plain: Vec<Scored<Fit>> = Vec::new();
+    let mut plain: Vec<ScoredSet<Fit>> = Vec::new();
     for s in known {
         let set: Vec<usize> = s.set.iter().copied().filter(|c| !form(c)).collect();
         if plain.iter().all(|p| p.set != set) {
@@ -188,9 +188,9 @@ fn named_instead(
 fn without_needless_noise(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    all: &[Scored<Fit>],
-    best: Scored<Fit>,
-) -> Scored<Fit> {
+    all: &[ScoredSet<Fit>],
+    best: ScoredSet<Fit>,
+) -> ScoredSet<Fit> {
     let kept = named_part(candidates, &best.set);
     let wanders = |c: &usize| {
         let own = candidates.get(*c).and_then(|c| c.effect.amplitudes(frame));
@@ -212,22 +212,22 @@ fn without_needless_noise(
 fn without_needless_names(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
-    all: &[Scored<Fit>],
-    mut best: Scored<Fit>,
-) -> Scored<Fit> {
+    all: &[ScoredSet<Fit>],
+    mut best: ScoredSet<Fit>,
+) -> ScoredSet<Fit> {
     while best.set.len() > 1 {
-        let fewer = |s: &&Scored<Fit>| {
+        let fewer = |s: &&ScoredSet<Fit>| {
             s.set.len() + 1 == best.set.len()
                 && s.set.iter().all(|c| best.set.contains(c))
                 && !named_part(candidates, &s.set).is_empty()
                 && at_floor(proofs.frame, &adequacy_of(proofs.frame, candidates, s))
         };
-        let left: Vec<&Scored<Fit>> = all.iter().filter(fewer).collect();
+        let left: Vec<&ScoredSet<Fit>> = all.iter().filter(fewer).collect();
         if left.is_empty() {
             break;
         }
         let after = validate_set(proofs, candidates, &best).0.after;
-        let no_worse = |s: &&&Scored<Fit>| validate_set(proofs, candidates, s).0.after <= after;
+        let no_worse = |s: &&&ScoredSet<Fit>| validate_set(proofs, candidates, s).0.after <= after;
         let Some(enough) = left.iter().find(no_worse) else {
             break;
         };

@@ -3,7 +3,7 @@
 use super::frame::StrainFrame;
 use super::likelihood::Fit;
 use crate::reconcile::effect::{Candidate, Discrepancy, Member, SizedAmplitudes, full_id};
-use crate::reconcile::search::Scored;
+use crate::reconcile::search::ScoredSet;
 
 /// An explanation: effects with parameters, and amplitudes.
 pub struct Explanation<'a> {
@@ -18,7 +18,7 @@ impl<'a> Explanation<'a> {
     pub fn from_fit(
         frame: &StrainFrame,
         candidates: &'a [Candidate],
-        scored: &'a Scored<Fit>,
+        scored: &'a ScoredSet<Fit>,
     ) -> Self {
         let member = |(&c, p): (&usize, &'a Vec<f64>)| {
             candidates.get(c).map(|c| Member {

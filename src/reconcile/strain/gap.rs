@@ -23,7 +23,7 @@ pub enum FoundAnew {
 
 /// Residuals of runs that were not fitted.
 #[derive(Clone, Debug, Default)]
-pub struct Judged {
+pub struct ValidationResiduals {
     /// Gauge number by reading.
     pub gauges: Vec<usize>,
     /// Reading, microstrain.
@@ -38,7 +38,7 @@ pub struct Judged {
     pub mesh: Vec<f64>,
 }
 
-impl Judged {
+impl ValidationResiduals {
     /// Returns the readings of gauges whose number in file order has this remainder after division by two.
     pub fn half(&self, remainder: usize) -> Self {
         let kept = |v: &[f64]| {
@@ -177,7 +177,7 @@ impl Patterns {
 }
 
 /// Fit runs with a set of active effects, and the covariance that predicts the proof runs from them.
-struct Told<'a> {
+struct ValidationPredictor<'a> {
     frame: &'a StrainFrame,
     members: &'a [Member<'a>],
     unknown: &'a [SizedAmplitudes],
@@ -191,7 +191,7 @@ struct Told<'a> {
     weighted: Vec<f64>,
 }
 
-impl<'a> Told<'a> {
+impl<'a> ValidationPredictor<'a> {
     fn new(
         frame: &'a StrainFrame,
         members: &'a [Member<'a>],
@@ -272,7 +272,7 @@ impl<'a> Told<'a> {
 }
 
 /// Returns mean and covariance (`n x n`) of the residual of one run, given the fit runs.
-fn given_fit(told: &Told<'_>, run: &Selection) -> (Vec<f64>, Vec<f64>) {
+fn given_fit(told: &ValidationPredictor<'_>, run: &Selection) -> (Vec<f64>, Vec<f64>) {
     let n = run.len();
     let proof = told.both.0.iter().skip(told.fit.len());
     let before = proof.take_while(|e| Some(*e) != run.0.first()).count();
@@ -295,7 +295,7 @@ fn given_fit(told: &Told<'_>, run: &Selection) -> (Vec<f64>, Vec<f64>) {
 
 /// Proof runs given the fit runs, with one model.
 struct Proof<'a> {
-    told: &'a Told<'a>,
+    told: &'a ValidationPredictor<'a>,
     patterns: Patterns,
 }
 
@@ -316,7 +316,7 @@ struct ProofRun<'a> {
 }
 
 impl<'a> Proof<'a> {
-    fn new(told: &'a Told<'a>, anew: FoundAnew) -> Self {
+    fn new(told: &'a ValidationPredictor<'a>, anew: FoundAnew) -> Self {
         Self {
             patterns: told.patterns(anew),
             told,
@@ -416,7 +416,7 @@ pub fn proof_residuals(
     members: &[Member<'_>],
     unknown: &[SizedAmplitudes],
     anew: FoundAnew,
-) -> Option<Judged> {
+) -> Option<ValidationResiduals> {
     let before = proof_residuals_before(finer, &[anew])?.pop()?;
     verdict_after_removal(finer, members, unknown, &[(anew, before)])?.pop()
 }
@@ -427,7 +427,7 @@ pub(super) fn proof_residuals_before(
     anew: &[FoundAnew],
 ) -> Option<Vec<Vec<f64>>> {
     let own = finer.as_modelled();
-    let told = Told::new(finer, &[], &[])?;
+    let told = ValidationPredictor::new(finer, &[], &[])?;
     let of = |anew: &FoundAnew| {
         let without = Proof::new(&told, *anew);
         let runs = finer.observations.proof_runs().into_iter();
@@ -443,17 +443,17 @@ pub(super) fn verdict_after_removal(
     members: &[Member<'_>],
     unknown: &[SizedAmplitudes],
     ways: &[(FoundAnew, Vec<f64>)],
-) -> Option<Vec<Judged>> {
+) -> Option<Vec<ValidationResiduals>> {
     let own = finer.as_modelled();
-    let told = Told::new(finer, members, unknown)?;
+    let told = ValidationPredictor::new(finer, members, unknown)?;
     let of = |(anew, before): &(FoundAnew, Vec<f64>)| {
         let with = Proof::new(&told, *anew);
-        let mut out = Judged::default();
+        let mut out = ValidationResiduals::default();
         for run in finer.observations.proof_runs() {
             let now = with.run(&own, run);
             let (after, floor) = now.residual_and_floor();
             let from = out.after.len();
-            out.extend(Judged {
+            out.extend(ValidationResiduals {
                 gauges: now.all.0.iter().map(|e| e.1).collect(),
                 reading: now.all.pick(&finer.observations.values, finer.n_gauges()),
                 before: before

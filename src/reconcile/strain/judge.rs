@@ -12,19 +12,19 @@ use super::no_drift::no_drift;
 use super::outlier::but_for_one;
 use super::own_covariance::{own_evidence, under_own_covariance};
 use super::prediction::predict;
-use super::proven::remove_unproven;
-use super::recovered::loads_before_after;
+use super::recovered_loads::loads_before_after;
+use super::recurring_effects::Recurrence;
 use super::remains::{remains, sits};
-use super::resampled::DRAWINGS;
+use super::resampled_runs::DRAWINGS;
 use super::rivals::{RivalSet, WORTH_NAMING, rival_sets, rivals_told, without_own};
 use super::sizes_found::effects_with_sizes;
-use super::smooth::{curve, is_smooth};
-use super::standing::Standing;
+use super::smooth_alternative::{curve, is_smooth};
+use super::unproven_effects::remove_unproven;
 use super::validation::{Proofs, validate_set};
 use crate::reconcile::checks::{Check, describe_better_alternative, reasons, verdict};
 use crate::reconcile::effect::{Candidate, Discrepancy};
 use crate::reconcile::outcome::{Gap, Misfit, NamedEffect, Outcome, Verdict};
-use crate::reconcile::search::Scored;
+use crate::reconcile::search::ScoredSet;
 
 /// Returns whether the residual of a set is within its expected size from noise and stated uncertainty.
 pub(super) fn at_floor(frame: &StrainFrame, a: &Adequacy) -> bool {
@@ -53,7 +53,7 @@ fn worst_first(parts: &[Misfit], limit: f64) -> Vec<Misfit> {
 }
 
 /// Returns the ratio of the noise of a set to the stated noise; 1 if the set contains no additional noise.
-fn noise_factor(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) -> f64 {
+fn noise_factor(frame: &StrainFrame, candidates: &[Candidate], scored: &ScoredSet<Fit>) -> f64 {
     let is_noise = |c: usize| matches!(discrepancy(candidates, c), Some(Discrepancy::Noise(_)));
     let added = scored.fit.sizes.iter().filter(|s| is_noise(s.0));
     let added: f64 = added.filter_map(|s| s.1.first()).map(|s| s * s).sum();
@@ -64,7 +64,7 @@ fn noise_factor(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<F
 pub(super) fn adequacy_of(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    scored: &Scored<Fit>,
+    scored: &ScoredSet<Fit>,
 ) -> Adequacy {
     let e = Explanation::from_fit(frame, candidates, scored);
     let n_parameters: usize = scored.fit.parameters.iter().map(Vec::len).sum();
@@ -75,7 +75,7 @@ pub(super) fn adequacy_of(
 fn reach(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    scored: &Scored<Fit>,
+    scored: &ScoredSet<Fit>,
     before: &Adequacy,
 ) -> (Adequacy, f64) {
     let after = if scored.set.is_empty() {
@@ -91,7 +91,7 @@ fn reach(
 fn reaches_floor(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    scored: &Scored<Fit>,
+    scored: &ScoredSet<Fit>,
     after: &Adequacy,
     noise: f64,
 ) -> (bool, Option<String>) {
@@ -105,7 +105,10 @@ fn reaches_floor(
 }
 
 /// Returns the set with the most log evidence among the sets of one or more effects without general forms.
-fn best_of_names<'a>(candidates: &[Candidate], all: &'a [Scored<Fit>]) -> Option<&'a Scored<Fit>> {
+fn best_of_names<'a>(
+    candidates: &[Candidate],
+    all: &'a [ScoredSet<Fit>],
+) -> Option<&'a ScoredSet<Fit>> {
     let is_name = |c: &usize| discrepancy(candidates, *c).is_none();
     all.iter()
         .filter(|s| !s.set.is_empty() && s.set.iter().all(is_name))
@@ -117,8 +120,8 @@ fn best_of_names<'a>(candidates: &[Candidate], all: &'a [Scored<Fit>]) -> Option
 pub(super) fn judge(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
-    all: &[Scored<Fit>],
-    best: &Scored<Fit>,
+    all: &[ScoredSet<Fit>],
+    best: &ScoredSet<Fit>,
 ) -> Outcome {
     let frame = proofs.frame;
     let rules = &frame.rules;
@@ -128,12 +131,12 @@ pub(super) fn judge(
     let best = fewer.as_ref().unwrap_or(best);
     let mut rivals = rival_sets(frame, candidates, all, best);
     // As its rivals are.
-    let level = |s: &Scored<Fit>| own_evidence(frame, candidates, s);
-    let alike = Scored {
+    let level = |s: &ScoredSet<Fit>| own_evidence(frame, candidates, s);
+    let alike = ScoredSet {
         log_evidence: level(best),
         ..best.clone()
     };
-    let standing = Standing::compare(frame, candidates, all, &alike, &rivals);
+    let standing = Recurrence::compare(frame, candidates, all, &alike, &rivals);
     let stands = standing.keep_recurring_effects(frame, candidates, best);
     let proven = remove_unproven(proofs, candidates, stands.as_ref().unwrap_or(best));
     let few = standing.doubt.clone().filter(|_| stands.is_some());
@@ -161,7 +164,7 @@ pub(super) fn judge(
     let hinted = hint.is_some_and(|s| s.log_evidence > null_evidence.max(best.log_evidence));
     let unmodelled = is_unmodelled(candidates, &best.set);
     let wins = standing.wins(&names);
-    let checks = checks_of(&Judged {
+    let checks = checks_of(&EffectSetChecks {
         proofs,
         candidates,
         best,
@@ -237,7 +240,7 @@ pub(super) fn judge(
 
 /// Returns the covariance of the parameters of a set. It is empty for a set with a curve, whose single coefficients have no meaning:
 /// [`Outcome::smooth`] has their sum.
-fn covariance_of(candidates: &[Candidate], set: &Scored<Fit>) -> Vec<f64> {
+fn covariance_of(candidates: &[Candidate], set: &ScoredSet<Fit>) -> Vec<f64> {
     match set.set.iter().any(|c| is_smooth(candidates, *c)) {
         true => Vec::new(),
         false => set.fit.covariance.clone(),
@@ -245,10 +248,10 @@ fn covariance_of(candidates: &[Candidate], set: &Scored<Fit>) -> Vec<f64> {
 }
 
 /// Set of effects with the data for its checks.
-struct Judged<'a> {
+struct EffectSetChecks<'a> {
     proofs: &'a Proofs<'a>,
     candidates: &'a [Candidate],
-    best: &'a Scored<Fit>,
+    best: &'a ScoredSet<Fit>,
     attempt: &'a [NamedEffect],
     rivals: &'a [RivalSet],
     /// Log evidence of the set under its own covariance.
@@ -257,7 +260,7 @@ struct Judged<'a> {
     lost: f64,
     /// Message on the removed effects.
     taken_out: Option<String>,
-    standing: &'a Standing,
+    standing: &'a Recurrence,
     gap: &'a Gap,
     noise: f64,
     /// Whether the set reaches its own floor.
@@ -265,7 +268,7 @@ struct Judged<'a> {
 }
 
 /// Returns the checks that a set must pass to be named.
-fn checks_of(set: &Judged<'_>) -> [Check; 10] {
+fn checks_of(set: &EffectSetChecks<'_>) -> [Check; 10] {
     let (frame, gap, noise) = (set.proofs.frame, set.gap, set.noise);
     let rules = &frame.rules;
     let wins = set
@@ -330,7 +333,7 @@ fn list_implausible_sizes(attempt: &[NamedEffect]) -> String {
 fn agrees_without(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    best: &Scored<Fit>,
+    best: &ScoredSet<Fit>,
     before: &Adequacy,
 ) -> bool {
     if at_floor(frame, before) {
@@ -352,8 +355,8 @@ fn agrees_without(
 fn without_false_zeros(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    best: &Scored<Fit>,
-) -> Option<(Scored<Fit>, String)> {
+    best: &ScoredSet<Fit>,
+) -> Option<(ScoredSet<Fit>, String)> {
     let mut set = best.clone();
     let mut told = Vec::new();
     while let Some(doubted) = no_drift(frame, candidates, &set) {

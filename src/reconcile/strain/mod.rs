@@ -2,17 +2,18 @@
 
 mod adequacy;
 mod bias;
+mod calibration_scatter;
 mod companions;
 mod covariance;
 mod detect;
 mod evidence;
 mod examine;
 mod explanation;
-mod extended;
+mod extended_strain_model;
 mod frame;
 mod gap;
+mod input_fault_search;
 mod judge;
-mod learnt;
 mod likelihood;
 mod neighbours;
 mod next;
@@ -22,35 +23,34 @@ mod optimum;
 mod outlier;
 mod own_covariance;
 mod prediction;
-mod proven;
-mod recorded;
-mod recovered;
+mod recovered_loads;
+mod recurring_effects;
 mod remains;
-mod resampled;
+mod resampled_runs;
 mod rivals;
 mod scorer;
 mod screen;
 mod size;
 mod sizes_found;
-mod smooth;
-mod standing;
+mod smooth_alternative;
 mod state;
 mod tolerance;
+mod unproven_effects;
 mod validation;
 
 pub use adequacy::{Adequacy, adequacy, deviate};
 pub use covariance::{Selection, covariance, read_patterns};
 pub use examine::{examine, examine_with, outcome_of_wrong_inputs};
-pub use extended::{corrected_readings, extended_state};
+pub use extended_strain_model::{corrected_readings, extended_state};
 pub use frame::{
     GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, NuisanceLoad, PayloadWeight, PlaneStrainRow,
     Scatter, StiffnessOf, StiffnessSignature, StrainFrame, WheelForces, Wiring,
 };
-pub use gap::{FoundAnew, Judged, proof_residuals};
+pub use gap::{FoundAnew, ValidationResiduals, proof_residuals};
+pub use input_fault_search::gauges_installed_otherwise;
 pub use likelihood::{Fit, Likelihood};
 pub use nuisance::ground_patterns;
 pub use prediction::{predict, read_all};
-pub use recorded::gauges_installed_otherwise;
-pub use recovered::loads_before_after;
+pub use recovered_loads::loads_before_after;
 pub use state::{Part, StrainState};
 pub use tolerance::angle_scatter;

@@ -9,7 +9,7 @@ use super::size::{RunBlocks, amplitudes_by_run};
 use crate::estimate::f_tail;
 use crate::linalg::{Matrix, dense};
 use crate::reconcile::effect::{Candidate, FaultKind, Member, SizedAmplitudes, full_id};
-use crate::reconcile::search::Scored;
+use crate::reconcile::search::ScoredSet;
 
 /// Probability that the F tests reject a zero that does drift.
 const CHANCE: f64 = 1e-3;
@@ -34,7 +34,7 @@ pub(super) struct NoDrift {
 pub(super) fn no_drift(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    scored: &Scored<Fit>,
+    scored: &ScoredSet<Fit>,
 ) -> Option<NoDrift> {
     let scatters = |c: &Candidate| {
         let e = c.effect.as_ref();
@@ -67,7 +67,7 @@ pub(super) fn no_drift(
 }
 
 /// Reading of a gauge, split into the contribution of the model with the other effects and the rest, by run.
-struct Besides {
+struct ReadingSplit {
     /// Run number over the number of runs.
     at: Vec<f64>,
     /// Predicted reading with the other effects, amplitudes included, microstrain.
@@ -80,10 +80,10 @@ struct Besides {
 fn beside_others(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    scored: &Scored<Fit>,
+    scored: &ScoredSet<Fit>,
     but: usize,
     gauge: usize,
-) -> Besides {
+) -> ReadingSplit {
     let others = scored.set.iter().zip(&scored.fit.parameters);
     let member = |(&c, p): (&usize, &'_ Vec<f64>)| (c, p.clone());
     let others: Vec<(usize, Vec<f64>)> = others.filter(|(c, _)| **c != but).map(member).collect();
@@ -99,7 +99,7 @@ fn beside_others(
     let amplitudes = of_amplitudes(frame, candidates, scored, but, gauge);
     let n_g = frame.n_gauges();
     let n_r = frame.n_runs().max(1) as f64;
-    let mut out = Besides {
+    let mut out = ReadingSplit {
         at: Vec::new(),
         model: Vec::new(),
         rest: Vec::new(),
@@ -124,7 +124,7 @@ fn beside_others(
 fn of_amplitudes(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    scored: &Scored<Fit>,
+    scored: &ScoredSet<Fit>,
     but: usize,
     gauge: usize,
 ) -> Vec<f64> {
@@ -164,7 +164,7 @@ fn of_amplitudes(
     out
 }
 
-impl Besides {
+impl ReadingSplit {
     /// Returns the predicted strain over its largest magnitude; `None` if all predictions are zero.
     fn scale_strain(&self) -> Option<Vec<f64>> {
         let scale = self.model.iter().fold(0.0f64, |m, v| m.max(v.abs()));
@@ -241,17 +241,17 @@ fn residual_sum_of_squares(x: &Matrix, r: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::Besides;
+    use super::ReadingSplit;
 
     /// Scatter of +-1 and +-2 without mean, slope or bend.
     const SCATTER: [f64; 8] = [1.0, -2.0, 2.0, -1.0, 1.0, 2.0, -2.0, -1.0];
     /// Strain of runs whose load is not sorted by run number, microstrain.
     const MODEL: [f64; 8] = [300.0, 0.0, 700.0, 100.0, 600.0, 200.0, 500.0, 400.0];
 
-    fn reads(f: impl Fn(f64, f64) -> f64) -> Besides {
+    fn reads(f: impl Fn(f64, f64) -> f64) -> ReadingSplit {
         let at: Vec<f64> = (0..8).map(|k| k as f64 / 8.0).collect();
         let parts = at.iter().zip(MODEL).zip(SCATTER);
-        Besides {
+        ReadingSplit {
             rest: parts.map(|((t, p), s)| f(*t, p) + s).collect(),
             model: MODEL.to_vec(),
             at,

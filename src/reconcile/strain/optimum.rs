@@ -3,7 +3,7 @@
 use super::likelihood::{Fit, Likelihood};
 use crate::linalg::precision::Precision;
 use crate::reconcile::effect::Parameter;
-use crate::reconcile::search::{Addition, Scored};
+use crate::reconcile::search::{Addition, ScoredSet};
 
 /// Parameters that maximise the posterior of a set.
 pub(super) struct Optimum {
@@ -134,7 +134,7 @@ impl Likelihood<'_> {
     pub(super) fn start_near(
         &self,
         set: &[usize],
-        near: &Scored<Fit>,
+        near: &ScoredSet<Fit>,
         addition: Option<&Addition>,
     ) -> Option<Vec<Vec<f64>>> {
         let known = |c: &usize| {

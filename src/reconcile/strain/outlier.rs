@@ -7,7 +7,7 @@ use super::likelihood::Fit;
 use super::prediction::predict;
 use crate::linalg::precision::Precision;
 use crate::reconcile::effect::Candidate;
-use crate::reconcile::search::Scored;
+use crate::reconcile::search::ScoredSet;
 
 /// Returns a text on the fit-run reading without which `scored` reaches the noise floor, as `at_floor` tests it; `None` without such a reading.
 ///
@@ -16,7 +16,7 @@ use crate::reconcile::search::Scored;
 pub(super) fn but_for_one(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    scored: &Scored<Fit>,
+    scored: &ScoredSet<Fit>,
     at_floor: impl FnOnce(&StrainFrame) -> bool,
 ) -> Option<String> {
     let e = Explanation::from_fit(frame, candidates, scored);

@@ -7,7 +7,7 @@
 use super::frame::StrainFrame;
 use super::likelihood::{Fit, Likelihood};
 use crate::reconcile::effect::{Candidate, Stage};
-use crate::reconcile::search::{Scored, Scorer, settle};
+use crate::reconcile::search::{ScoredSet, Scorer, settle};
 use rayon::prelude::*;
 
 /// Returns the best of `contenders`, and of alternatives to members of `found` at the same gauges, each under its own covariance.
@@ -15,13 +15,13 @@ pub(super) fn best_by_own_covariance(
     frame: &StrainFrame,
     candidates: &[Candidate],
     likelihood: &mut Likelihood<'_>,
-    contenders: &[Scored<Fit>],
-    found: &Scored<Fit>,
-) -> Option<Scored<Fit>> {
+    contenders: &[ScoredSet<Fit>],
+    found: &ScoredSet<Fit>,
+) -> Option<ScoredSet<Fit>> {
     if found.set.is_empty() {
         return Some(found.clone());
     }
-    let mut first: Vec<Scored<Fit>> = contenders.to_vec();
+    let mut first: Vec<ScoredSet<Fit>> = contenders.to_vec();
     for set in at_same_gauges(candidates, likelihood, &found.set) {
         if first.iter().all(|s| s.set != set) {
             first.extend(likelihood.score(&set, None));
@@ -30,9 +30,9 @@ pub(super) fn best_by_own_covariance(
     if first.iter().all(|s| s.set != found.set) {
         first.push(found.clone());
     }
-    let own = |s: Scored<Fit>| under_own_covariance(frame, candidates, &s.set, &s);
-    let scored: Vec<Option<Scored<Fit>>> = first.into_par_iter().map(own).collect();
-    let all: Vec<Scored<Fit>> = scored.into_iter().flatten().collect();
+    let own = |s: ScoredSet<Fit>| under_own_covariance(frame, candidates, &s.set, &s);
+    let scored: Vec<Option<ScoredSet<Fit>>> = first.into_par_iter().map(own).collect();
+    let all: Vec<ScoredSet<Fit>> = scored.into_iter().flatten().collect();
     settle(&all, frame.rules.decisive)
 }
 
@@ -41,8 +41,8 @@ pub(super) fn under_own_covariance(
     frame: &StrainFrame,
     candidates: &[Candidate],
     set: &[usize],
-    near: &Scored<Fit>,
-) -> Option<Scored<Fit>> {
+    near: &ScoredSet<Fit>,
+) -> Option<ScoredSet<Fit>> {
     let reference = reference_of(near);
     let reference: Vec<(usize, Vec<f64>)> = (reference.into_iter())
         .filter(|(c, _)| set.contains(c))
@@ -52,7 +52,11 @@ pub(super) fn under_own_covariance(
 }
 
 /// Returns the log evidence of a set under its own covariance.
-pub(super) fn own_evidence(frame: &StrainFrame, candidates: &[Candidate], s: &Scored<Fit>) -> f64 {
+pub(super) fn own_evidence(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    s: &ScoredSet<Fit>,
+) -> f64 {
     let own = under_own_covariance(frame, candidates, &s.set, s);
     own.map_or(s.log_evidence, |own| own.log_evidence)
 }
@@ -62,8 +66,8 @@ pub(super) fn with_members(
     frame: &StrainFrame,
     candidates: &[Candidate],
     set: &[usize],
-    near: &Scored<Fit>,
-) -> Option<Scored<Fit>> {
+    near: &ScoredSet<Fit>,
+) -> Option<ScoredSet<Fit>> {
     let runs = frame.observations.fit_runs();
     let mut reference = reference_of(near);
     reference.retain(|(c, _)| set.contains(c));
@@ -71,7 +75,7 @@ pub(super) fn with_members(
 }
 
 /// Returns the members with their parameters.
-pub(super) fn reference_of(s: &Scored<Fit>) -> Vec<(usize, Vec<f64>)> {
+pub(super) fn reference_of(s: &ScoredSet<Fit>) -> Vec<(usize, Vec<f64>)> {
     let parameters = s.fit.parameters.iter().cloned();
     s.set.iter().copied().zip(parameters).collect()
 }

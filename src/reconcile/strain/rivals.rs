@@ -4,18 +4,18 @@ use super::explanation::{ids, is_unmodelled, named_part};
 use super::frame::StrainFrame;
 use super::likelihood::Fit;
 use super::own_covariance::{under_own_covariance, with_members};
-use super::smooth::is_smooth;
+use super::smooth_alternative::is_smooth;
 use super::validation::{Proofs, validate_set};
 use crate::reconcile::effect::Candidate;
 use crate::reconcile::outcome::Rival;
-use crate::reconcile::search::Scored;
+use crate::reconcile::search::ScoredSet;
 use rayon::prelude::*;
 
 /// Difference in log evidence from the best set beyond which alternative explanations are not reported.
 pub(super) const WORTH_NAMING: f64 = 25.0;
 
 /// Alternative set of effects with its ids.
-pub(super) type RivalSet = (Vec<String>, Scored<Fit>);
+pub(super) type RivalSet = (Vec<String>, ScoredSet<Fit>);
 
 /// Returns the alternative explanations of a set of log evidence `level`, with their gaps.
 pub(super) fn rivals_told(
@@ -38,8 +38,8 @@ pub(super) fn rivals_told(
 pub(super) fn rival_sets(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    all: &[Scored<Fit>],
-    best: &Scored<Fit>,
+    all: &[ScoredSet<Fit>],
+    best: &ScoredSet<Fit>,
 ) -> Vec<RivalSet> {
     const MOST: usize = 5;
     /// Number of sets tried: twice as many, since sets change their order under their own covariance.
@@ -47,8 +47,8 @@ pub(super) fn rival_sets(
     let own = named_part(candidates, &best.set);
     // Beside a curve, which can take many shapes, sets of any number of names stand.
     let curved = own.iter().any(|c| is_smooth(candidates, *c));
-    let is_near = |s: &Scored<Fit>| best.log_evidence - s.log_evidence < WORTH_NAMING;
-    let other = |s: &&Scored<Fit>| {
+    let is_near = |s: &ScoredSet<Fit>| best.log_evidence - s.log_evidence < WORTH_NAMING;
+    let other = |s: &&ScoredSet<Fit>| {
         let named = named_part(candidates, &s.set);
         !named.is_empty()
             && is_unmodelled(candidates, &s.set).is_none()
@@ -56,26 +56,27 @@ pub(super) fn rival_sets(
             && (curved || named.len() <= own.len().max(1))
             && is_near(s)
     };
-    let near: Vec<&Scored<Fit>> = all.iter().filter(other).take(TRIED).collect();
+    let near: Vec<&ScoredSet<Fit>> = all.iter().filter(other).take(TRIED).collect();
     // What the best set takes of noise stands for no name: a rival may take it, too.
     let besides: Vec<usize> = (best.set.iter().copied())
         .filter(|c| !own.contains(c))
         .collect();
-    let alike = |s: &&Scored<Fit>| {
+    let alike = |s: &&ScoredSet<Fit>| {
         let alone = under_own_covariance(frame, candidates, &s.set, s);
         let mut set = named_part(candidates, &s.set);
         set.extend(&besides);
         set.sort_unstable();
         let beside = (set != s.set).then(|| with_members(frame, candidates, &set, s));
-        let better = |a: &Scored<Fit>, b: &Scored<Fit>| a.log_evidence.total_cmp(&b.log_evidence);
+        let better =
+            |a: &ScoredSet<Fit>, b: &ScoredSet<Fit>| a.log_evidence.total_cmp(&b.log_evidence);
         let both = alone.into_iter().chain(beside.flatten());
         both.max_by(better).unwrap_or_else(|| (*s).clone())
     };
-    let mut out: Vec<Scored<Fit>> = near.par_iter().map(alike).collect();
+    let mut out: Vec<ScoredSet<Fit>> = near.par_iter().map(alike).collect();
     out.retain(is_near);
     out.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
     out.truncate(MOST);
-    let with_ids = |s: Scored<Fit>| (ids(candidates, &s.set), s);
+    let with_ids = |s: ScoredSet<Fit>| (ids(candidates, &s.set), s);
     out.into_iter().map(with_ids).collect()
 }
 
@@ -83,7 +84,7 @@ pub(super) fn rival_sets(
 /// effect.
 pub(super) fn without_own(
     candidates: &[Candidate],
-    best: &Scored<Fit>,
+    best: &ScoredSet<Fit>,
     rivals: &mut Vec<RivalSet>,
 ) {
     let mut seen = vec![sorted_ids(candidates, &best.set)];

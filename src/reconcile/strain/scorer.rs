@@ -2,7 +2,7 @@
 
 use super::likelihood::{Fit, Likelihood};
 use crate::reconcile::effect::{Candidate, full_id};
-use crate::reconcile::search::{Addition, Scored, Scorer};
+use crate::reconcile::search::{Addition, ScoredSet, Scorer};
 
 impl Scorer for Likelihood<'_> {
     type Fit = Fit;
@@ -10,12 +10,12 @@ impl Scorer for Likelihood<'_> {
     fn score(
         &mut self,
         set: &[usize],
-        from: Option<(&Scored<Fit>, Option<&Addition>)>,
-    ) -> Option<Scored<Fit>> {
+        from: Option<(&ScoredSet<Fit>, Option<&Addition>)>,
+    ) -> Option<ScoredSet<Fit>> {
         self.evidence_of(set, from)
     }
 
-    fn screen(&mut self, base: &Scored<Fit>) -> Vec<Addition> {
+    fn screen(&mut self, base: &ScoredSet<Fit>) -> Vec<Addition> {
         self.additions_to(base)
     }
 

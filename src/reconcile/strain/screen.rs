@@ -7,13 +7,13 @@ use super::state::Part;
 use crate::linalg::precision::Precision;
 use crate::linalg::spd::dot;
 use crate::reconcile::effect::{Amplitudes, Discrepancy, Member, Parameter, Stage};
-use crate::reconcile::search::{Addition, Scored};
+use crate::reconcile::search::{Addition, ScoredSet};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Fitted set to which candidates are added.
 struct Base<'b> {
-    scored: &'b Scored<Fit>,
+    scored: &'b ScoredSet<Fit>,
     members: Vec<Member<'b>>,
     /// Members with amplitudes.
     families: Vec<usize>,
@@ -26,7 +26,7 @@ struct Base<'b> {
 
 impl Likelihood<'_> {
     /// Returns the candidates that may be added to `base`, by their approximate gain, best first.
-    pub(super) fn additions_to(&mut self, base: &Scored<Fit>) -> Vec<Addition> {
+    pub(super) fn additions_to(&mut self, base: &ScoredSet<Fit>) -> Vec<Addition> {
         let Some(precision) = self.precision(&base.fit.sizes) else {
             return Vec::new();
         };
@@ -92,7 +92,7 @@ impl Likelihood<'_> {
     }
 
     /// Noise that wanders from run to run, tried with the correlation between runs in: `-(r' P r - ln det P) / 2` less that of the base.
-    fn slow_noise(&mut self, base: &Scored<Fit>, precision: &Precision) -> Vec<Addition> {
+    fn slow_noise(&mut self, base: &ScoredSet<Fit>, precision: &Precision) -> Vec<Addition> {
         let r = &base.fit.residual;
         let density = |p: &Precision| -0.5 * (dot(r, &p.apply(r)) + p.log_det());
         let before = density(precision);

@@ -131,7 +131,7 @@ fn patterns_of(unknown: &[SizedAmplitudes]) -> Vec<Pattern<'_>> {
 }
 
 /// Amplitudes that repeat in all runs, given the runs: their mean and covariance, and the log likelihood they gain.
-struct Steady {
+struct RepeatedAmplitudes {
     /// Numbers of the patterns that repeat.
     which: Vec<usize>,
     mean: Vec<f64>,
@@ -145,12 +145,12 @@ fn estimate_steady_amplitudes(
     runs: &[RunPrecision<'_>],
     residual: &[f64],
     patterns: &[Pattern<'_>],
-) -> Steady {
+) -> RepeatedAmplitudes {
     let which: Vec<usize> = (0..patterns.len())
         .filter(|p| patterns[*p].steady > 0.0)
         .collect();
     let n = which.len();
-    let nothing = Steady {
+    let nothing = RepeatedAmplitudes {
         which: Vec::new(),
         mean: Vec::new(),
         posterior: None,
@@ -188,7 +188,7 @@ fn estimate_steady_amplitudes(
     };
     let mean = posterior.apply(&s);
     let gain = 0.5 * (dot(&mean, &s) - posterior.log_det() - log_prior);
-    Steady {
+    RepeatedAmplitudes {
         which,
         mean,
         posterior: Some(posterior),
@@ -273,7 +273,7 @@ fn estimate_scattered_amplitudes(
     residual: &[f64],
     unknown: &[SizedAmplitudes],
     patterns: &[Pattern<'_>],
-    repeated: &Steady,
+    repeated: &RepeatedAmplitudes,
 ) -> Vec<[f64; 2]> {
     let repeats = |g: usize| -> f64 {
         let listed = repeated.which.iter().zip(&repeated.mean);

@@ -5,17 +5,17 @@ use super::explanation::Explanation;
 use super::frame::StrainFrame;
 use super::likelihood::Fit;
 use super::size::{RunBlocks, amplitudes_found};
-use super::smooth::curve;
+use super::smooth_alternative::curve;
 use crate::estimate::rms;
 use crate::reconcile::effect::{Candidate, Discrepancy, SizedAmplitudes, StrainEffect, full_id};
 use crate::reconcile::outcome::NamedEffect;
-use crate::reconcile::search::Scored;
+use crate::reconcile::search::ScoredSet;
 
 /// The effects of a set with their sizes, noise left out.
 pub(super) fn effects_with_sizes(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    scored: &Scored<Fit>,
+    scored: &ScoredSet<Fit>,
 ) -> Vec<NamedEffect> {
     let mut out = Vec::new();
     let found = found_amplitudes(frame, candidates, scored);
@@ -68,7 +68,7 @@ pub(super) fn effects_with_sizes(
 fn found_amplitudes(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    scored: &Scored<Fit>,
+    scored: &ScoredSet<Fit>,
 ) -> Vec<Vec<[f64; 2]>> {
     if scored.fit.sizes.is_empty() {
         return Vec::new();
@@ -89,7 +89,7 @@ fn found_amplitudes(
 fn smooth_found(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    scored: &Scored<Fit>,
+    scored: &ScoredSet<Fit>,
     effect: &dyn StrainEffect,
 ) -> NamedEffect {
     let curve = curve(frame, candidates, scored);

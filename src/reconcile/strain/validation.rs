@@ -2,27 +2,27 @@
 
 use super::explanation::Explanation;
 use super::frame::StrainFrame;
-use super::gap::{FoundAnew, Judged, proof_residuals_before, verdict_after_removal};
+use super::gap::{FoundAnew, ValidationResiduals, proof_residuals_before, verdict_after_removal};
 use super::likelihood::{Fit, Likelihood};
 use crate::reconcile::effect::Candidate;
 use crate::reconcile::outcome::{ChannelGap, Gap, GapBasis};
-use crate::reconcile::search::{Scored, Scorer};
+use crate::reconcile::search::{ScoredSet, Scorer};
 use rayon::prelude::*;
 
 /// Number of groups of runs that are left out in turn if no run is held out. Each set is fitted as many times.
 const FOLDS: usize = 6;
 
 /// Residuals with amplitudes estimated again in each run, then residuals with amplitudes and errors of the recorded loads estimated again.
-pub(super) type Both = [Judged; 2];
+pub(super) type ValidationResidualPair = [ValidationResiduals; 2];
 
 /// Validation runs, with their residuals under the analyst's model.
-struct Proven {
+struct ValidationFold {
     frame: StrainFrame,
-    /// Residuals under the analyst's model in the order of [`Both`]. Empty if the covariance has no factor.
+    /// Residuals under the analyst's model in the order of [`ValidationResidualPair`]. Empty if the covariance has no factor.
     ways: Vec<(FoundAnew, Vec<f64>)>,
 }
 
-impl Proven {
+impl ValidationFold {
     fn from_frame(frame: StrainFrame) -> Self {
         let ways = [FoundAnew::Amplitudes, FoundAnew::AmplitudesAndLoads];
         let before = proof_residuals_before(&frame, &ways).unwrap_or_default();
@@ -32,7 +32,11 @@ impl Proven {
         }
     }
 
-    fn validation_residuals(&self, candidates: &[Candidate], scored: &Scored<Fit>) -> Both {
+    fn validation_residuals(
+        &self,
+        candidates: &[Candidate],
+        scored: &ScoredSet<Fit>,
+    ) -> ValidationResidualPair {
         let e = Explanation::from_fit(&self.frame, candidates, scored);
         let both = verdict_after_removal(&self.frame, &e.members, &e.unknown, &self.ways);
         both.and_then(|b| b.try_into().ok()).unwrap_or_default()
@@ -44,7 +48,7 @@ impl Proven {
 pub struct Proofs<'a> {
     /// Static problem with all runs.
     pub frame: &'a StrainFrame,
-    parts: Vec<Proven>,
+    parts: Vec<ValidationFold>,
 }
 
 impl<'a> Proofs<'a> {
@@ -52,7 +56,7 @@ impl<'a> Proofs<'a> {
     pub fn from_frame(frame: &'a StrainFrame) -> Self {
         let going = |_: &usize| !frame.stop.is_asked();
         if frame.observations.held_out.iter().any(|h| *h) {
-            let whole = (!frame.stop.is_asked()).then(|| Proven::from_frame(frame.clone()));
+            let whole = (!frame.stop.is_asked()).then(|| ValidationFold::from_frame(frame.clone()));
             return Self {
                 frame,
                 parts: whole.into_iter().collect(),
@@ -63,7 +67,7 @@ impl<'a> Proofs<'a> {
         let part = |fold: usize| {
             let mut part = frame.clone();
             part.observations.held_out = (0..n).map(|r| r % folds == fold).collect();
-            Proven::from_frame(part)
+            ValidationFold::from_frame(part)
         };
         Self {
             frame,
@@ -75,8 +79,8 @@ impl<'a> Proofs<'a> {
 fn refit_set(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    scored: &Scored<Fit>,
-) -> Option<Scored<Fit>> {
+    scored: &ScoredSet<Fit>,
+) -> Option<ScoredSet<Fit>> {
     let reference: Vec<(usize, Vec<f64>)> = scored
         .set
         .iter()
@@ -92,7 +96,7 @@ fn refit_set(
 pub fn validate_set(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
-    scored: &Scored<Fit>,
+    scored: &ScoredSet<Fit>,
 ) -> (Gap, Vec<ChannelGap>) {
     let frame = proofs.frame;
     let [plain, loads_found] = residuals_on(proofs, candidates, scored, &scored.set);
@@ -107,9 +111,9 @@ pub fn validate_set(
 pub(super) fn residuals_on(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
-    scored: &Scored<Fit>,
+    scored: &ScoredSet<Fit>,
     of: &[usize],
-) -> Both {
+) -> ValidationResidualPair {
     let frame = proofs.frame;
     let held_out = frame.observations.held_out.iter().any(|h| *h);
     let [mut plain, mut loads_found] = match proofs.parts.as_slice() {
@@ -138,16 +142,20 @@ pub(super) fn residuals_on(
     [plain, loads_found]
 }
 
-fn in_turn(parts: &[Proven], candidates: &[Candidate], scored: &Scored<Fit>) -> Both {
-    let one = |part: &Proven| {
+fn in_turn(
+    parts: &[ValidationFold],
+    candidates: &[Candidate],
+    scored: &ScoredSet<Fit>,
+) -> ValidationResidualPair {
+    let one = |part: &ValidationFold| {
         if part.frame.stop.is_asked() {
             return None;
         }
         let fitted = refit_set(&part.frame, candidates, scored)?;
         Some(part.validation_residuals(candidates, &fitted))
     };
-    let judged: Vec<Option<Both>> = parts.par_iter().map(one).collect();
-    let mut out = Both::default();
+    let judged: Vec<Option<ValidationResidualPair>> = parts.par_iter().map(one).collect();
+    let mut out = ValidationResidualPair::default();
     for part in judged.into_iter().flatten() {
         for (all, more) in out.iter_mut().zip(part) {
             all.extend(more);
@@ -160,10 +168,10 @@ fn in_turn(parts: &[Proven], candidates: &[Candidate], scored: &Scored<Fit>) -> 
 fn test_by_halves(
     frame: &StrainFrame,
     candidates: &[Candidate],
-    scored: &Scored<Fit>,
+    scored: &ScoredSet<Fit>,
     touched: &[usize],
     half: usize,
-) -> Both {
+) -> ValidationResidualPair {
     let mut hidden = frame.clone();
     for (run, row) in hidden
         .observations
@@ -178,11 +186,11 @@ fn test_by_halves(
         masked.for_each(|(_, v)| *v = f64::NAN);
     }
     let Some(fitted) = refit_set(&hidden, candidates, scored) else {
-        return Both::default();
+        return ValidationResidualPair::default();
     };
     let mut proof = frame.clone();
     proof.observations.held_out = (0..frame.n_runs()).map(|r| touched.contains(&r)).collect();
-    Proven::from_frame(proof)
+    ValidationFold::from_frame(proof)
         .validation_residuals(candidates, &fitted)
         .map(|j| j.half(half))
 }

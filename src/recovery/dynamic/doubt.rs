@@ -26,14 +26,14 @@ pub struct Doubt {
 
 /// Covariance of the readings of one sample in addition to independent noise, by gauge of S, `n x n`, strain^2.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Beyond {
+pub struct AddedCovariance {
     /// Covariance of noise, independent in every sample.
     pub noise: Matrix,
     /// Covariance of errors that all samples share.
     pub shared: Matrix,
 }
 
-impl Beyond {
+impl AddedCovariance {
     /// Returns the total covariance of the gauges `used`.
     pub fn total_covariance(&self, used: &[usize]) -> Matrix {
         let n = used.len();
@@ -143,7 +143,7 @@ impl Doubt {
     }
 
     /// Both parts at a sample in which the gauges `used` read.
-    pub fn covariances_at(&self, sample: usize, used: &[usize]) -> Beyond {
+    pub fn covariances_at(&self, sample: usize, used: &[usize]) -> AddedCovariance {
         let own = self.of_noise(used);
         let mut noise = Matrix::zeros(self.n, self.n);
         let mut shared = Matrix::zeros(self.n, self.n);
@@ -154,6 +154,6 @@ impl Doubt {
                 shared[(a, b)] = part[triangle(a.max(b)) + a.min(b)];
             }
         }
-        Beyond { noise, shared }
+        AddedCovariance { noise, shared }
     }
 }

@@ -24,7 +24,7 @@ mod plant;
 mod types;
 
 pub use correct::{AtRest, readings_at_rest, window};
-pub use doubt::{Beyond, Doubt, triangle};
+pub use doubt::{AddedCovariance, Doubt, triangle};
 pub use types::{Dynamics, ElasticMode, Unfit};
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 mod coverage;
 mod records;
 mod residual;
-mod taught;
+mod simultaneous_loads;
 
 use super::*;
 use crate::finding::{Finding, Severity};

@@ -78,11 +78,16 @@ fn the_chi_square_of_right_jobs_is_that_of_its_degrees_of_freedom() {
             noise: 1e-6,
             model_rel: 0.02,
         };
-        let solved = super::super::solved::solve(&s, &readings, errors);
+        let solved = super::super::run_estimates::solve(&s, &readings, errors);
         let (pattern, _) = &solved.patterns[0];
-        let projection =
-            residuals::Projection::new(&s, pattern, errors, &solved.typical, residuals::Out::All)
-                .unwrap();
+        let projection = residuals::Projection::new(
+            &s,
+            pattern,
+            errors,
+            &solved.typical,
+            residuals::RemovedLoads::All,
+        )
+        .unwrap();
         let strain: Vec<&[f64]> = readings.iter().map(|r| &r.strain[..]).collect();
         let loads: Vec<Vec<f64>> = solved
             .runs

@@ -10,7 +10,7 @@ use crate::report::csv_cell;
 use crate::report::figure::gap_by_channel;
 use crate::report::page::{KeyNumber, Page, figure_section, table_section};
 use crate::units::{number, plus_minus};
-use crate::workflow::ballast::{Ballasted, HungMass, Reaction};
+use crate::workflow::ballast::{BallastAnswer, HungMass, Reaction};
 
 /// Columns of masses.csv.
 const MASSES: [&str; 9] = [
@@ -25,7 +25,7 @@ const MASSES: [&str; 9] = [
     "across.high",
 ];
 
-impl Report for Outcome<Ballasted> {
+impl Report for Outcome<BallastAnswer> {
     const FILES: &'static [&'static str] =
         &["result.json", "report.html", "reactions.csv", "masses.csv"];
 
@@ -129,7 +129,7 @@ fn numbers(m: &HungMass) -> [f64; 9] {
     ]
 }
 
-fn page(found: &Outcome<Ballasted>) -> Page {
+fn page(found: &Outcome<BallastAnswer>) -> Page {
     let units = &found.job.report_units;
     let reactions: Vec<Vec<String>> = found
         .reactions

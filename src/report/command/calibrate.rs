@@ -11,12 +11,12 @@ use crate::report::page::{KeyNumber, Page};
 use crate::report::strain::{GLUED_COLUMNS, calibrate_page, glued_csv, sensitivity_csv};
 use crate::strain_chain::covariance_bytes;
 use crate::units::{MICROSTRAIN, Quantity, half_width, number, percent};
-use crate::workflow::calibrate::{Calibrated, CheckLoad, LeftOutLoad, calibrated_job};
+use crate::workflow::calibrate::{CalibratedSensitivity, CheckLoad, LeftOutLoad, calibrated_job};
 
 /// Table of the gauges at their installed positions, as determined from the runs. A job can name it as its gauges.
 const GLUED: &str = "gauges_as_glued.csv";
 
-impl Report for Outcome<Calibrated> {
+impl Report for Outcome<CalibratedSensitivity> {
     const FILES: &'static [&'static str] = &[
         "result.json",
         "report.html",

@@ -8,9 +8,9 @@ use crate::model::Model;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::{Block, KeyNumber, Page, Section};
 use crate::report::scene::{Places, scene_of_model, scene_section};
-use crate::workflow::check::Checked;
+use crate::workflow::check::CheckedFiles;
 
-impl Report for Outcome<Checked> {
+impl Report for Outcome<CheckedFiles> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         write_page(out, self)
     }
@@ -57,7 +57,7 @@ impl Report for Outcome<Checked> {
 }
 
 /// Faults, then every file as on the terminal.
-fn page(found: &Outcome<Checked>) -> Page {
+fn page(found: &Outcome<CheckedFiles>) -> Page {
     let faults: Vec<Vec<String>> = found.faults.iter().map(|f| vec![f.to_string()]).collect();
     let list = match faults.is_empty() {
         true => Block::Text("None.".into()),

@@ -18,9 +18,9 @@ use crate::vehicle::identify::Estimate;
 use crate::vehicle::loads::LoadHistory;
 use crate::vehicle::motion::Motion;
 use crate::vehicle::term::UnitNames;
-use crate::workflow::identify::Identified;
+use crate::workflow::identify::IdentifiedParameters;
 
-impl Report for Outcome<Identified> {
+impl Report for Outcome<IdentifiedParameters> {
     const FILES: &'static [&'static str] = &[
         "result.json",
         "report.html",

@@ -13,6 +13,7 @@ mod fleet_parquet;
 mod identify;
 mod init;
 mod modes;
+mod outcome_text;
 mod pages;
 mod payload;
 mod place;
@@ -24,15 +25,14 @@ mod recover;
 mod respond;
 mod respond_files;
 mod sensitivity;
-mod shown;
 mod solve;
 mod strains;
 mod study;
 mod verify;
 
+pub use outcome_text::{console_of, words};
 pub use pages::{write_book, write_page};
 pub use recover::RecordFolder;
-pub use shown::{console_of, words};
 
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Answer, Outcome, Tables};

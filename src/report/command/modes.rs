@@ -18,14 +18,14 @@ use std::io::Write;
 
 /// Quantity of a column.
 #[derive(Clone, Copy)]
-enum In {
+enum ColumnQuantity {
     Numbers,
     Hertz,
     Mass,
     Inertia,
 }
 
-impl In {
+impl ColumnQuantity {
     /// Returns the name of the unit in the job's units; in the deck's units if `names` is `None`.
     fn unit(self, names: Option<&UnitNames>) -> String {
         let of = |q: Quantity, otherwise: &str| names.map_or(otherwise.into(), |n| n.unit_name(q));
@@ -39,19 +39,19 @@ impl In {
 }
 
 /// Columns of modes.csv before the columns of the gauges, with their quantities.
-const COLUMNS: [(&str, In); 12] = [
-    ("mode", In::Numbers),
-    ("hz", In::Hertz),
-    ("generalised_mass", In::Mass),
-    ("residual", In::Numbers),
-    ("frequency_error", In::Numbers),
-    ("gap", In::Numbers),
-    ("effective_mass_x", In::Mass),
-    ("effective_mass_y", In::Mass),
-    ("effective_mass_z", In::Mass),
-    ("effective_inertia_x", In::Inertia),
-    ("effective_inertia_y", In::Inertia),
-    ("effective_inertia_z", In::Inertia),
+const COLUMNS: [(&str, ColumnQuantity); 12] = [
+    ("mode", ColumnQuantity::Numbers),
+    ("hz", ColumnQuantity::Hertz),
+    ("generalised_mass", ColumnQuantity::Mass),
+    ("residual", ColumnQuantity::Numbers),
+    ("frequency_error", ColumnQuantity::Numbers),
+    ("gap", ColumnQuantity::Numbers),
+    ("effective_mass_x", ColumnQuantity::Mass),
+    ("effective_mass_y", ColumnQuantity::Mass),
+    ("effective_mass_z", ColumnQuantity::Mass),
+    ("effective_inertia_x", ColumnQuantity::Inertia),
+    ("effective_inertia_y", ColumnQuantity::Inertia),
+    ("effective_inertia_z", ColumnQuantity::Inertia),
 ];
 
 impl Report for Outcome<Modes> {

@@ -9,7 +9,7 @@ use crate::host::output::Output;
 use crate::job::Job;
 use crate::report::console::ConsoleTable;
 use crate::report::page::{Block, Card, FirstScreen, Page, Section, Table};
-use crate::report::spreadsheet::{About, Sheet, UnitOf, spreadsheet};
+use crate::report::spreadsheet::{Sheet, UnitOf, WorkbookDescription, spreadsheet};
 use crate::units::Quantity;
 
 /// Writes `report.html` if the outcome has a page, and `report.pdf` with the feature `pdf` if the page is meant for paper. Where the folder
@@ -150,7 +150,7 @@ pub fn write_book<A>(
         quantity: "strain",
         unit: "microstrain".to_owned(),
     });
-    let about = About {
+    let about = WorkbookDescription {
         title: &job.title,
         units: &units,
         findings: &outcome.findings,

@@ -13,7 +13,7 @@ use crate::report::figure::{Ends, IntervalRow, intervals};
 use crate::report::page::{KeyNumber, Page, Paper, Section, figure_section, table_section};
 use crate::report::scene::{Arrow, ArrowSet, Twist, scene_of_job, scene_section};
 use crate::units::{MICROSTRAIN, factor, number, plus_minus};
-use crate::workflow::payload::{Weighed, WeighedPayload};
+use crate::workflow::payload::{WeighedPayload, WeighedPayloads};
 
 /// Columns of payload.csv with their quantity.
 const PAYLOAD: [(&str, &str); 10] = [
@@ -39,7 +39,7 @@ const BY_GAUGE: [(&str, &str); 6] = [
     ("used", ""),
 ];
 
-impl Report for Outcome<Weighed> {
+impl Report for Outcome<WeighedPayloads> {
     const FILES: &'static [&'static str] =
         &["result.json", "report.html", "payload.csv", "by_gauge.csv"];
 
@@ -159,7 +159,7 @@ impl Report for Outcome<Weighed> {
 }
 
 /// The payload of each run as an arrow at its place, the heaviest run first; none where no run gives a place.
-fn payload_arrows(found: &Outcome<Weighed>, model: &Model) -> Vec<ArrowSet> {
+fn payload_arrows(found: &Outcome<WeighedPayloads>, model: &Model) -> Vec<ArrowSet> {
     let job = &found.job;
     let length = factor(job.units, job.report_units.length);
     let own = job.payload.as_ref().and_then(|p| p.grid);
@@ -244,7 +244,7 @@ fn line(p: &WeighedPayload) -> String {
     format!("{},{},{refused}", csv_cell(&p.run), numbers.join(","))
 }
 
-fn page(found: &Outcome<Weighed>) -> Page {
+fn page(found: &Outcome<WeighedPayloads>) -> Page {
     let units = &found.job.report_units;
     let rows: Vec<Vec<String>> = found.payload.iter().map(row).collect();
     let head = [

@@ -9,7 +9,7 @@ use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::figure::CountPoint;
 use crate::report::page::{KeyNumber, Page, Paper};
-use crate::report::scene::{Places, Pointing, Scene, placed_mark, scene_of};
+use crate::report::scene::{PickTargets, Places, Scene, placed_mark, scene_of};
 use crate::report::spreadsheet::gauge_sheets;
 use crate::report::strain::{
     HowMany, gauges_csv, gauges_vtu, gluing_page, gluing_sheet_csv, gluing_sheet_md, place_page,
@@ -17,9 +17,9 @@ use crate::report::strain::{
 };
 use crate::strain_chain::LoadSigma;
 use crate::units::{half_width, number, percent};
-use crate::workflow::place::{Installed, InstalledQuality, Placed};
+use crate::workflow::place::{CertifiedLayout, InstalledLayout, InstalledQuality};
 
-impl Report for Outcome<Placed> {
+impl Report for Outcome<CertifiedLayout> {
     const FILES: &'static [&'static str] = &[
         "result.json",
         "report.html",
@@ -67,7 +67,7 @@ impl Report for Outcome<Placed> {
     fn page(&self) -> Option<Page> {
         let (s, job) = (&self.sensitivity, &self.job);
         let mut scene = scene(self);
-        scene.pointing = Pointing::Places(Places::from_candidates(&job.candidates));
+        scene.pointing = PickTargets::Places(Places::from_candidates(&job.candidates));
         let page = place_page(
             &job.title,
             &scene,
@@ -160,7 +160,7 @@ impl Report for Outcome<Placed> {
 }
 
 /// The model with the gauges.
-fn scene(placed: &Placed) -> Scene<'_> {
+fn scene(placed: &CertifiedLayout) -> Scene<'_> {
     let marks = placed.gauges.iter().map(placed_mark).collect();
     scene_of(&placed.job, &placed.fields, marks)
 }
@@ -204,13 +204,13 @@ fn unit<'a>(word: &'a str, length: &'a str) -> &'a str {
     if word == "L" { length } else { word }
 }
 
-fn installed_quality(placed: &Placed) -> Option<&InstalledQuality> {
-    let installed: Option<&Installed> = placed.installed.as_ref();
+fn installed_quality(placed: &CertifiedLayout) -> Option<&InstalledQuality> {
+    let installed: Option<&InstalledLayout> = placed.installed.as_ref();
     installed?.quality.as_ref()
 }
 
 /// Rows of the page's first table.
-fn numbers(placed: &Placed) -> Vec<(String, String)> {
+fn numbers(placed: &CertifiedLayout) -> Vec<(String, String)> {
     let mut out = vec![
         (
             "Efficiency, certified at least".to_owned(),
@@ -257,7 +257,7 @@ fn numbers(placed: &Placed) -> Vec<(String, String)> {
 }
 
 /// Load, sigma, sigma as glued, unit.
-fn load_sigma(placed: &Placed) -> Vec<Vec<String>> {
+fn load_sigma(placed: &CertifiedLayout) -> Vec<Vec<String>> {
     let row = |l: &LoadSigma| {
         let glued = l.sigma_as_glued.map(number).unwrap_or_default();
         vec![l.name.clone(), number(l.sigma), glued, l.unit.clone()]
@@ -265,7 +265,7 @@ fn load_sigma(placed: &Placed) -> Vec<Vec<String>> {
     placed.load_sigma.iter().map(row).collect()
 }
 
-fn how_many(placed: &Placed) -> HowMany {
+fn how_many(placed: &CertifiedLayout) -> HowMany {
     let point = |p: &crate::workflow::place::CurvePoint| CountPoint {
         gauges: p.gauges,
         efficiency: p.efficiency_bound,

@@ -13,9 +13,9 @@ use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::{KeyNumber, Page, Paper, number, table_section};
 use crate::units::percent;
 use crate::vehicle::term::UnitNames;
-use crate::workflow::reconcile::{GapFound, Reconciled, effect_in_words};
+use crate::workflow::reconcile::{GapFound, Reconciliation, effect_in_words};
 
-impl Report for Outcome<Reconciled> {
+impl Report for Outcome<Reconciliation> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         write_extended(self, out)?;
         if let Some(strain) = &self.strain {
@@ -88,7 +88,7 @@ impl Report for Outcome<Reconciled> {
 }
 
 /// Effects, gap, certainty, and what would confirm them, as fields of a terminal.
-fn fields(found: &Outcome<Reconciled>) -> Vec<(&'static str, String)> {
+fn fields(found: &Outcome<Reconciliation>) -> Vec<(&'static str, String)> {
     let mut out: Vec<(&'static str, String)> = Vec::new();
     out.extend(found.effects.iter().map(|e| ("effect", effect_in_words(e))));
     let gap = &found.gap;
@@ -124,7 +124,7 @@ fn fields(found: &Outcome<Reconciled>) -> Vec<(&'static str, String)> {
 }
 
 /// How sure the named set is: resampled runs, and the distance of the next explanation.
-fn confidence(found: &Reconciled) -> Option<String> {
+fn confidence(found: &Reconciliation) -> Option<String> {
     let runs = found.strain.as_ref().filter(|_| !found.named.is_empty());
     let runs = runs.map(|s| format!("{} of 100 resampled run sets agree", s.wins_of_100));
     let next = found.rivals.iter().find(|r| !r.indistinguishable);
@@ -156,7 +156,7 @@ fn causes_table(causes: &CauseOutcome) -> ConsoleTable {
     ConsoleTable::new("Causes", &["cause", "log evidence", "gap"], rows)
 }
 
-fn causes_page(outcome: &Outcome<Reconciled>, causes: &CauseOutcome) -> Page {
+fn causes_page(outcome: &Outcome<Reconciliation>, causes: &CauseOutcome) -> Page {
     let evidence = causes.sets.first().map_or(0.0, |b| b.log_evidence);
     let row = |s: &CauseSet| {
         vec![

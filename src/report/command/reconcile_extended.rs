@@ -5,15 +5,15 @@ use crate::host::output::Output;
 use crate::job::Job;
 use crate::reconcile::strain::StrainFrame;
 use crate::report::csv_cell;
-use crate::workflow::reconcile::extended::{
+use crate::workflow::reconcile::extended_columns::{payload_factors, sensitivity_columns};
+use crate::workflow::reconcile::extended_model::{
     DECK, ExtendedRuns, ExtendedS, PAYLOAD, RUNS, SENSITIVITY, STRAIN,
 };
-use crate::workflow::reconcile::extended_columns::{payload_factors, sensitivity_columns};
-use crate::workflow::reconcile::{Reconciled, extended_job};
+use crate::workflow::reconcile::{Reconciliation, extended_job};
 use std::fmt::Write;
 
 /// Writes the extended job and what it names, where there is one.
-pub(super) fn write_extended(found: &Reconciled, out: &mut Output) -> Result<(), Faults> {
+pub(super) fn write_extended(found: &Reconciliation, out: &mut Output) -> Result<(), Faults> {
     let Some(extended) = &found.extended_model else {
         return Ok(());
     };

@@ -19,7 +19,7 @@ use crate::report::vehicle::{
 };
 use crate::units::plus_minus;
 use crate::vehicle::term::UnitNames;
-use crate::workflow::reconcile::{MotionPart, Reconciled, SimulationFound};
+use crate::workflow::reconcile::{MotionPart, Reconciliation, SimulationFound};
 use std::fmt::Write;
 
 /// Writes the tables; `units` are the job's.
@@ -52,7 +52,7 @@ fn gap_unit(column: &str) -> String {
 }
 
 /// The page.
-pub(super) fn motion_page(outcome: &Outcome<Reconciled>, found: &MotionPart) -> Page {
+pub(super) fn motion_page(outcome: &Outcome<Reconciliation>, found: &MotionPart) -> Page {
     let curves = match &found.identified {
         Some((id, moved)) => restoring_curves(id, moved),
         None => Vec::new(),
@@ -138,7 +138,7 @@ fn gap_tables(outcome: &MotionOutcome) -> [(&'static str, String); 4] {
     ]
 }
 
-fn verdict_section(outcome: &Outcome<Reconciled>, found: &MotionPart) -> Section {
+fn verdict_section(outcome: &Outcome<Reconciliation>, found: &MotionPart) -> Section {
     let words = match found.outcome.verdict {
         Verdict::Named => format!(
             "An effect is missing in the model and is identified: {}.",
@@ -193,7 +193,7 @@ fn where_section(found: &MotionPart) -> Section {
 }
 
 /// Effects with their sizes, their joint probability, and their places in the extended job.
-fn added_section(outcome: &Outcome<Reconciled>, found: &MotionPart) -> Section {
+fn added_section(outcome: &Outcome<Reconciliation>, found: &MotionPart) -> Section {
     let attempt = &found.outcome.best_attempt;
     if attempt.is_empty() {
         let nothing = Block::Text("No effect is identified.".into());

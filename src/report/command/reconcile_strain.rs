@@ -10,9 +10,9 @@ use crate::reconcile::strain::StrainFrame;
 use crate::report::csv_cell;
 use crate::report::figure::GaugePoints;
 use crate::report::page::Page;
-use crate::report::scene::{Field, FieldValues, Mark, Pointing, Scene, fields_of, mark_of_gap};
+use crate::report::scene::{Field, FieldValues, Mark, PickTargets, Scene, fields_of, mark_of_gap};
 use crate::report::strain::{GapReport, RunStrain, reconcile_page};
-use crate::workflow::reconcile::{Added, MarkedStiffness, Reconciled, StrainPart};
+use crate::workflow::reconcile::{MarkedStiffness, ModelChange, Reconciliation, StrainPart};
 use std::fmt::Write;
 
 /// Writes `gap.csv` and `loads_before_after.csv`.
@@ -31,7 +31,7 @@ pub(super) fn write_strain(found: &StrainPart, out: &mut Output) -> Result<(), F
 }
 
 /// The page.
-pub(super) fn strain_page(outcome: &Outcome<Reconciled>, found: &StrainPart) -> Page {
+pub(super) fn strain_page(outcome: &Outcome<Reconciliation>, found: &StrainPart) -> Page {
     let job = &outcome.job;
     let metres = match found.fields {
         Some(_) => job.units.length_m(),
@@ -62,7 +62,7 @@ pub(super) fn strain_page(outcome: &Outcome<Reconciled>, found: &StrainPart) -> 
         }),
         arrows: Vec::new(),
         length: job.units.unit(crate::units::Quantity::Length).name,
-        pointing: Pointing::Nothing,
+        pointing: PickTargets::Nothing,
         caption: "Circles show the gap of each gauge, orange before and blue after: smaller circles are better.".to_owned(),
     });
     reconcile_page(&GapReport {
@@ -119,8 +119,8 @@ fn field_of_place(m: &MarkedStiffness, n_shells: usize) -> Field<'static> {
 }
 
 /// Returns a row for each change of the model: effect, path, old and new value.
-pub(super) fn added_rows(found: &Reconciled) -> Vec<Vec<String>> {
-    let row = |a: &Added| {
+pub(super) fn added_rows(found: &Reconciliation) -> Vec<Vec<String>> {
+    let row = |a: &ModelChange| {
         let cells = [&a.effect, &a.path, &a.old, &a.new];
         cells.map(String::clone).to_vec()
     };

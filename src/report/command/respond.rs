@@ -15,14 +15,14 @@ use crate::report::scene::{Field, FieldValues, Mark, scene_of, scene_section};
 use crate::report::write_cells_vtu;
 use crate::respond::{Place, ResponseRow, von_mises_history};
 use crate::units::{factor, plus_minus};
-use crate::workflow::respond::{Element, ElementFatigue, Responded, grids};
+use crate::workflow::respond::{Element, ElementFatigue, StressResponse, grids};
 
 /// Rows of a table on the page.
 const MOST_ROWS: usize = 60;
 /// Points a drawing takes.
 const MOST_POINTS: usize = 2000;
 
-impl Report for Outcome<Responded> {
+impl Report for Outcome<StressResponse> {
     const FILES: &'static [&'static str] = &[
         "result.json",
         "report.html",
@@ -211,7 +211,7 @@ fn history_unit(column: &str, stress: &str) -> String {
 }
 
 /// A row a state: predicted and measured microstrain of every gauge.
-fn write_predicted_strain(w: &mut dyn std::io::Write, r: &Responded) -> std::io::Result<()> {
+fn write_predicted_strain(w: &mut dyn std::io::Write, r: &StressResponse) -> std::io::Result<()> {
     write!(w, "state")?;
     for g in &r.check.gauges {
         let measured = format!("{g}.measured");
@@ -231,7 +231,7 @@ fn write_predicted_strain(w: &mut dyn std::io::Write, r: &Responded) -> std::io:
     Ok(())
 }
 
-fn sections(r: &Responded) -> Vec<Section> {
+fn sections(r: &StressResponse) -> Vec<Section> {
     let unit = r.stress_unit;
     let header = ["element", "surface", unit, "95 %", "at"];
     let mut out = vec![
@@ -289,7 +289,7 @@ fn note(e: &Element, unit: &str) -> String {
 }
 
 /// Von Mises stress of the shells in the state in which some element is hottest, and the largest of all states.
-fn stress_fields(r: &Responded, model: &Model) -> Vec<Field<'static>> {
+fn stress_fields(r: &StressResponse, model: &Model) -> Vec<Field<'static>> {
     let f = &r.field;
     let known = f.peaks.iter().filter(|p| p.von_mises.is_finite());
     let Some(hottest) = known.max_by(|a, b| a.von_mises.total_cmp(&b.von_mises)) else {
@@ -346,7 +346,7 @@ fn mark_of_row(model: &Model, row: &ResponseRow, note: String) -> Mark {
 }
 
 /// Predicted against measured strain at the gauges.
-fn check_sections(r: &Responded) -> [Section; 2] {
+fn check_sections(r: &StressResponse) -> [Section; 2] {
     let check = &r.check;
     let stride = (check.states.len() * check.gauges.len())
         .div_ceil(MOST_POINTS)

@@ -12,9 +12,9 @@ use crate::report::strain::{sensitivity_csv, sensitivity_page};
 use crate::sensitivity::Sensitivity;
 use crate::strain_chain::load_units;
 use crate::units::{MICROSTRAIN, number};
-use crate::workflow::sensitivity::Sensed;
+use crate::workflow::sensitivity::ComputedSensitivity;
 
-impl Report for Outcome<Sensed> {
+impl Report for Outcome<ComputedSensitivity> {
     const FILES: &'static [&'static str] = &["result.json", "report.html", "sensitivity.csv"];
 
     fn write(&self, out: &mut Output) -> Result<(), Faults> {

@@ -11,9 +11,9 @@ use crate::report::csv_cell;
 use crate::report::figure::{Ends, IntervalRow, intervals};
 use crate::report::page::{KeyNumber, Page, Section, figure_section, table_section};
 use crate::units::{Quantity, half_width, number, percent, plus_minus};
-use crate::workflow::study::{LayoutGauge, LayoutGauges, Studied, StudiedLayout, StudiedLoad};
+use crate::workflow::study::{LayoutGauge, LayoutGauges, LayoutStudy, StudiedLayout, StudiedLoad};
 
-impl Report for Outcome<Studied> {
+impl Report for Outcome<LayoutStudy> {
     const FILES: &'static [&'static str] =
         &["result.json", "report.html", "study.csv", "layouts.csv"];
 
@@ -194,7 +194,7 @@ fn line(row: &StudiedLayout) -> String {
     cells.join(",")
 }
 
-fn page(found: &Outcome<Studied>) -> Page {
+fn page(found: &Outcome<LayoutStudy>) -> Page {
     let loads = found.study.first().map_or(&[][..], |row| &row.loads);
     let mut header: Vec<String> = [
         "layout",
@@ -247,7 +247,7 @@ fn page(found: &Outcome<Studied>) -> Page {
 }
 
 /// The gauges of each layout, by name.
-fn gauges_by_layout(found: &Studied) -> Section {
+fn gauges_by_layout(found: &LayoutStudy) -> Section {
     let row = |l: &LayoutGauges| {
         let names = l.chosen.iter().map(|g| g.name.as_str());
         let names: Vec<&str> = names.collect();
@@ -263,7 +263,7 @@ fn gauges_by_layout(found: &Studied) -> Section {
 }
 
 /// Root mean square error of each load in percent of its true size, by layout, and the mean over the loads.
-fn errors_by_layout(found: &Studied) -> Section {
+fn errors_by_layout(found: &LayoutStudy) -> Section {
     let name = |r: &StudiedLayout| format!("{} {}, {}", r.layout, r.gauges, r.error);
     let of_load = |load: &StudiedLoad| -> (String, Vec<IntervalRow>) {
         let row = |r: &StudiedLayout| {

@@ -6,13 +6,13 @@ use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::{KeyNumber, Page, table_section};
-use crate::workflow::verify::{Difference, Verified};
+use crate::workflow::verify::{Difference, Recomputation};
 
 fn equal_file_row(file: &str) -> Vec<String> {
     vec![file.to_owned(), "the same".to_owned()]
 }
 
-impl Report for Outcome<Verified> {
+impl Report for Outcome<Recomputation> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         write_page(out, self)
     }

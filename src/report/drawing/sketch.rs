@@ -164,9 +164,9 @@ pub(in crate::report) struct Look<'a> {
 
 /// Rectangles that are drawn on (left, top, right, bottom), by square cells of a lattice, so that a search is no slower for many gauges.
 #[derive(Default)]
-struct Taken(HashMap<[i64; 2], Vec<[f64; 4]>>);
+struct OccupiedArea(HashMap<[i64; 2], Vec<[f64; 4]>>);
 
-impl Taken {
+impl OccupiedArea {
     /// Width of a cell: some letters.
     const CELL: f64 = 2.0;
 
@@ -194,7 +194,7 @@ pub(in crate::report) fn marks(picture: &mut Picture, marks: &[Mark], look: &Loo
     let most = marks.iter().filter_map(|m| m.gap).flatten();
     let most = most.filter(|v| v.is_finite()).fold(0.0, f64::max);
     // Names keep clear of all gauges.
-    let mut taken = Taken::default();
+    let mut taken = OccupiedArea::default();
     let mut keep = |p: [f64; 2], r: f64| taken.add([p[0] - r, p[1] - r, p[0] + r, p[1] + r]);
     for m in marks {
         let at = place(m.at);
@@ -229,7 +229,7 @@ pub(in crate::report) fn marks(picture: &mut Picture, marks: &[Mark], look: &Loo
 }
 
 /// The name where it covers nothing, with a line to its gauge where it is far; left out where there is no such place.
-fn name(picture: &mut Picture, name: &str, at: [f64; 2], taken: &mut Taken) {
+fn name(picture: &mut Picture, name: &str, at: [f64; 2], taken: &mut OccupiedArea) {
     const SIZE: f64 = 6.0;
     let text = shorten_to(name, 16);
     let (wide, tall) = (1.35 * text.chars().count() as f64, 2.8);

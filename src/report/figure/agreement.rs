@@ -1,7 +1,7 @@
 //! Measured against predicted strain.
 
 use super::chart::Figure;
-use super::packed::{round_number, round_numbers};
+use super::packed_numbers::{round_number, round_numbers};
 use serde_json::{Value, json};
 
 /// Gauges that can be looked at one by one; all of them are in the first picture.

@@ -1,7 +1,7 @@
 //! Figure of efficiency and load sigmas against the number of gauges.
 
 use super::chart::Figure;
-use super::packed::{round_number, round_numbers};
+use super::packed_numbers::{round_number, round_numbers};
 use serde_json::{Value, json};
 
 /// Results with one number of gauges.

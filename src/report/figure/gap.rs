@@ -1,7 +1,7 @@
 //! The gap by channel.
 
 use super::chart::Figure;
-use super::packed::round_numbers;
+use super::packed_numbers::round_numbers;
 use serde_json::json;
 
 /// Draws the gap of each channel before and after, with its noise floor if known: name and numbers in `unit`, on what was held out.

@@ -1,7 +1,7 @@
 //! A matrix as colours.
 
 use super::chart::Figure;
-use super::packed::round_number;
+use super::packed_numbers::round_number;
 use serde_json::{Value, json};
 
 /// Rows and columns coloured by their share of the largest in their column: blue negative, red positive; the value itself on pointing.

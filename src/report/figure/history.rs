@@ -1,7 +1,7 @@
 //! A load over time.
 
 use super::chart::Figure;
-use super::packed::round_numbers;
+use super::packed_numbers::round_numbers;
 use serde_json::{Value, json};
 
 /// One load over time, thinned: by span of time the smallest, mean and largest sample, report unit.

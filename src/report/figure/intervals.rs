@@ -1,7 +1,7 @@
 //! Values with their intervals.
 
 use super::chart::Figure;
-use super::packed::round_numbers;
+use super::packed_numbers::round_numbers;
 use serde_json::{Value, json};
 
 /// Ratio of two values above which one linear axis does not show the smaller one.

@@ -1,7 +1,7 @@
 //! Curves over a common axis.
 
 use super::chart::Figure;
-use super::packed::round_numbers;
+use super::packed_numbers::round_numbers;
 use serde_json::{Value, json};
 
 /// Points drawn at most for one curve; longer ones are thinned evenly.

@@ -2,27 +2,29 @@
 
 mod agreement;
 mod chart;
-mod cross;
 mod curve;
 mod gap;
 mod heat_map;
 mod history;
 mod intervals;
 mod lines;
-mod packed;
+mod load_cross_plot;
+mod packed_numbers;
 mod script;
 
 pub use agreement::{GaugePoints, agreement};
 pub use chart::Figure;
 pub(in crate::report) use chart::embed_data;
-pub use cross::{CrossPlot, cross_plot};
 pub use curve::{CountPoint, curve};
 pub use gap::gap_by_channel;
 pub use heat_map::heat_map;
 pub use history::{LoadTrace, history};
 pub use intervals::{Ends, IntervalRow, MOST_RATIO, interval_trace, intervals};
 pub use lines::{Line, Scale, lines};
-pub(in crate::report) use packed::{STEPS, packed_deltas, round_number, round_numbers, steps_of};
+pub use load_cross_plot::{CrossPlot, cross_plot};
+pub(in crate::report) use packed_numbers::{
+    STEPS, packed_deltas, round_number, round_numbers, steps_of,
+};
 pub(in crate::report) use script::scripts;
 
 #[cfg(test)]

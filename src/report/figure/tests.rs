@@ -1,4 +1,4 @@
-use super::packed::{packed_deltas, round_number, steps_of};
+use super::packed_numbers::{packed_deltas, round_number, steps_of};
 use super::*;
 use maud::Render;
 use serde_json::json;

@@ -6,7 +6,7 @@ use crate::host::words::{capitalize, numbers_in_words};
 use maud::{Markup, html};
 
 /// Findings by severity.
-pub(super) struct Sorted<'a> {
+pub(super) struct FindingsBySeverity<'a> {
     /// Errors.
     pub errors: Vec<&'a Finding>,
     /// Warnings.
@@ -15,7 +15,7 @@ pub(super) struct Sorted<'a> {
     pub notes: Vec<&'a Finding>,
 }
 
-impl<'a> Sorted<'a> {
+impl<'a> FindingsBySeverity<'a> {
     /// Sorts findings by severity; those of one severity keep their order.
     pub(super) fn from_findings(findings: &'a [Finding]) -> Self {
         let of = |severity| findings.iter().filter(|f| f.severity == severity).collect();

@@ -1,8 +1,8 @@
 //! A page as one HTML file: no script from elsewhere, the first screen with summary, errors, picture and table first.
 
 use super::block::{Block, Card, Page};
-use super::findings::{Sorted, reliability};
-use super::first::{first_screen, notes_and_tests};
+use super::findings::{FindingsBySeverity, reliability};
+use super::summary_screen::{first_screen, notes_and_tests};
 use super::table::{list_of_links, table};
 use crate::report::drawing::picture::Picture;
 use crate::report::drawing::{pictures, to_svg};
@@ -14,7 +14,7 @@ const STYLE: &str = include_str!("page.css");
 impl Page {
     /// `report.html`: works from the file, without a network.
     pub fn to_html(&self) -> String {
-        let findings = Sorted::from_findings(&self.findings);
+        let findings = FindingsBySeverity::from_findings(&self.findings);
         let sections = html! {
             @for (i, s) in self.sections.iter().enumerate() {
                 section.pair[is_pair(&s.blocks)] id=(format!("s{}", i + 1)) { h2 { (s.title) } @for b in &s.blocks { (block(b)) } }

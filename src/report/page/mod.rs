@@ -2,9 +2,9 @@
 
 mod block;
 mod findings;
-mod first;
 mod html;
 mod key_number;
+mod summary_screen;
 mod table;
 
 pub use crate::units::number;

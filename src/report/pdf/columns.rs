@@ -22,7 +22,7 @@ pub(super) const LONGEST_WORD: usize = 22;
 
 /// A table, or some of its columns, as it is set.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Fitted {
+pub(super) struct TableLayout {
     /// Columns shown.
     pub(super) columns: Vec<usize>,
     /// Size of type, points.
@@ -34,14 +34,14 @@ pub(super) struct Fitted {
 }
 
 /// Returns the table in one piece if a size of type allows it, or else in pieces that repeat the first column. A table without columns has no piece.
-pub(super) fn fit_table(table: &Table) -> Vec<Fitted> {
+pub(super) fn fit_table(table: &Table) -> Vec<TableLayout> {
     let n = table.rows.iter().map(Vec::len).max().unwrap_or(0);
     let n = n.max(table.head.len());
     if n == 0 {
         return Vec::new();
     }
     let widths: Vec<usize> = (0..n).map(|c| characters(table, c)).collect();
-    let whole = |across: bool, size: f64| Fitted {
+    let whole = |across: bool, size: f64| TableLayout {
         columns: (0..n).collect(),
         size,
         across,
@@ -51,7 +51,7 @@ pub(super) fn fit_table(table: &Table) -> Vec<Fitted> {
     if table.rows.len() > LONG
         && let Some(size) = SIZES.iter().find(|s| 2.0 * wide(**s) + GUTTER <= UPRIGHT)
     {
-        return vec![Fitted {
+        return vec![TableLayout {
             halved: true,
             ..whole(false, *size)
         }];
@@ -65,12 +65,12 @@ pub(super) fn fit_table(table: &Table) -> Vec<Fitted> {
     }
     const SMALL: f64 = 7.0;
     let first = width(widths.first().copied().unwrap_or(0), SMALL);
-    let mut out: Vec<Fitted> = Vec::new();
+    let mut out: Vec<TableLayout> = Vec::new();
     let mut used = f64::INFINITY;
     for (c, w) in widths.iter().enumerate().skip(1) {
         let own = width(*w, SMALL);
         if used + own > ACROSS {
-            out.push(Fitted {
+            out.push(TableLayout {
                 columns: vec![0],
                 ..whole(true, SMALL)
             });

@@ -1,6 +1,6 @@
 //! Input of the PDF template: the page as JSON, with printable text only.
 
-use super::columns::{Fitted, LONGEST_WORD, fit_table, is_numeric};
+use super::columns::{LONGEST_WORD, TableLayout, fit_table, is_numeric};
 use super::glyphs::{make_breakable, make_printable, short_printable};
 use super::shapes::picture_json;
 use crate::finding::{Finding, Severity};
@@ -165,7 +165,7 @@ fn table(t: &Table) -> Vec<Value> {
     out
 }
 
-fn piece(t: &Table, f: &Fitted) -> Value {
+fn piece(t: &Table, f: &TableLayout) -> Value {
     let cell = |row: &Vec<String>, c: &usize| {
         let text = row.get(*c).map_or("", String::as_str);
         make_breakable(text, LONGEST_WORD)

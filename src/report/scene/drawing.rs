@@ -3,10 +3,10 @@
 use super::outline::{bars, outline};
 use super::pack::packed_scene;
 use super::part::Part;
-use super::pointing::{result, tools};
+use super::planning_tools::{result, tools};
 use super::skin::{Finest, skin};
-use super::still::draw_still;
-use super::types::{FieldValues, Pointing, Scene};
+use super::still_picture::draw_still;
+use super::types::{FieldValues, PickTargets, Scene};
 use super::view::SceneView;
 use crate::report::figure::embed_data;
 use crate::report::page::{Block, Section};
@@ -15,8 +15,8 @@ use maud::{Markup, html};
 /// The section. Colour of strain: the largest principal one by magnitude at the surfaces of shells, at the centre of solids.
 pub fn scene_section(title: &str, scene: &Scene) -> Section {
     let finest = match scene.pointing {
-        Pointing::Places(_) => Finest::Always,
-        Pointing::Gauges | Pointing::Nothing => Finest::FewFields,
+        PickTargets::Places(_) => Finest::Always,
+        PickTargets::Gauges | PickTargets::Nothing => Finest::FewFields,
     };
     let parts = skin(scene.model, scene.fields.len(), finest);
     let faces = parts
@@ -136,8 +136,8 @@ fn note(scene: &Scene, parts: &[Part], bytes: usize) -> Markup {
             @if scene.fields.iter().any(|f| matches!(f.values, FieldValues::Magnitudes(_))) { "Colour: " (scene.fields.first().map_or("", |f| f.name.as_str())) ", from the centres of the elements. " }
             @if !scene.arrows.is_empty() { "Arrows end at the point of the load: green forces, violet moments (right-hand rule); lengths compare within a kind. " }
             @if !whole { "The picture is coarser than the model and shows the largest of the combined strains. No result depends on it. "
-                @if matches!(scene.pointing, Pointing::Places(_)) { "Brush and box select elements of the model by their centres. " }
-                @if scene.pointing != Pointing::Nothing && !scene.marks.is_empty() { "A dragged gauge is placed on the elements of the model by their centres, not on the picture. " }
+                @if matches!(scene.pointing, PickTargets::Places(_)) { "Brush and box select elements of the model by their centres. " }
+                @if scene.pointing != PickTargets::Nothing && !scene.marks.is_empty() { "A dragged gauge is placed on the elements of the model by their centres, not on the picture. " }
             }
             span data-role="size" { (drawn) " triangles for " (all) " faces, " (bytes.div_ceil(1000)) " kB of this page." }
         }

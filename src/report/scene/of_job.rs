@@ -1,6 +1,6 @@
 //! The scene of a job: the job's unit loads as strain and arrows, gauges, recovered loads.
 
-use super::types::{Arrow, ArrowSet, Field, FieldValues, Mark, Places, Pointing, Scene, Twist};
+use super::types::{Arrow, ArrowSet, Field, FieldValues, Mark, PickTargets, Places, Scene, Twist};
 use crate::fe::{LoadCase, Solution, UnitLoad};
 use crate::job::{Job, LoadActs};
 use crate::model::{GridIx, Load, Model, Vec3};
@@ -8,7 +8,7 @@ use crate::placement::Role;
 use crate::reconcile::ChannelGap;
 use crate::report::page::number;
 use crate::report::strain::RecoveredRun;
-use crate::strain_chain::{Fields, LoadUnits, Prepared, load_units};
+use crate::strain_chain::{Fields, JobSensitivity, LoadUnits, load_units};
 use crate::units::Quantity;
 use crate::workflow::place::PlacedGauge;
 
@@ -19,7 +19,7 @@ const MOST_RUNS: usize = 100;
 const MOST_OF_SET: usize = 60;
 
 /// The scene of a job with a model: its gauges, its unit loads.
-pub fn scene_of_job<'a>(job: &Job, prepared: &'a Prepared) -> Option<Scene<'a>> {
+pub fn scene_of_job<'a>(job: &Job, prepared: &'a JobSensitivity) -> Option<Scene<'a>> {
     let fields = prepared.fields.as_ref()?;
     let mark = |g| Mark::from_gauge(g, String::new());
     Some(scene_of(
@@ -66,7 +66,7 @@ pub fn scene_of_loads<'a>(job: &Job, model: &'a Model) -> Scene<'a> {
             arrows: arrows.collect(),
         }),
         length: job.units.unit(Quantity::Length).name,
-        pointing: Pointing::Nothing,
+        pointing: PickTargets::Nothing,
         caption: "Arrows show where the loads of the job act and their directions: an arrow in a wrong place makes every result wrong."
             .to_owned(),
     }
@@ -126,7 +126,7 @@ fn locate_load(job: &Job, model: &Model, name: &str) -> Option<(Vec3, Vec3, Twis
 
 /// Meaning of the three numbers of a recovered load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shown {
+pub enum LoadRange {
     /// Lower end of the interval, value, upper end: a set of arrows a run.
     Interval,
     /// Smallest, mean, largest of a history: a set of arrows each.
@@ -134,7 +134,12 @@ pub enum Shown {
 }
 
 /// Recovered loads as arrows.
-pub fn run_arrows(job: &Job, model: &Model, runs: &[RecoveredRun], shown: Shown) -> Vec<ArrowSet> {
+pub fn run_arrows(
+    job: &Job,
+    model: &Model,
+    runs: &[RecoveredRun],
+    shown: LoadRange,
+) -> Vec<ArrowSet> {
     let set = |name: String, run: &RecoveredRun, k: usize| ArrowSet {
         name,
         arrows: run
@@ -144,13 +149,13 @@ pub fn run_arrows(job: &Job, model: &Model, runs: &[RecoveredRun], shown: Shown)
                 let (at, along, twist) = locate_load(job, model, name)?;
                 let value = v[k];
                 let label = match shown {
-                    Shown::Interval => format!(
+                    LoadRange::Interval => format!(
                         "{name}: {} {unit} ({} to {})",
                         number(value),
                         number(v[0]),
                         number(v[2])
                     ),
-                    Shown::Extremes => format!("{name}: {} {unit}", number(value)),
+                    LoadRange::Extremes => format!("{name}: {} {unit}", number(value)),
                 };
                 value.is_finite().then_some(Arrow {
                     at,
@@ -164,8 +169,8 @@ pub fn run_arrows(job: &Job, model: &Model, runs: &[RecoveredRun], shown: Shown)
     };
     let runs = runs.iter().take(MOST_RUNS);
     runs.flat_map(|run| match shown {
-        Shown::Interval => vec![set(format!("run {}", run.run), run, 1)],
-        Shown::Extremes => [(2, "largest"), (1, "mean"), (0, "smallest")]
+        LoadRange::Interval => vec![set(format!("run {}", run.run), run, 1)],
+        LoadRange::Extremes => [(2, "largest"), (1, "mean"), (0, "smallest")]
             .map(|(k, word)| set(format!("{word} of the record"), run, k))
             .to_vec(),
     })
@@ -239,7 +244,7 @@ pub fn scene_of_solution<'a>(
         fields: fields.collect(),
         arrows: arrows.collect(),
         length: "",
-        pointing: Pointing::Nothing,
+        pointing: PickTargets::Nothing,
         caption: "Colour shows the strain of one load case: gauges on darker places read more, which is better.".to_owned(),
     }
 }
@@ -252,7 +257,7 @@ pub fn scene_of_model<'a>(model: &'a Model, places: Places) -> Scene<'a> {
         fields: Vec::new(),
         arrows: Vec::new(),
         length: "",
-        pointing: Pointing::Places(places),
+        pointing: PickTargets::Places(places),
         caption: "The structure as the deck describes it: a part that is absent or detached here makes every result wrong.".to_owned(),
     }
 }

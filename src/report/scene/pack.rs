@@ -2,8 +2,8 @@
 
 use super::paint::Values;
 use super::part::{Owner, Part};
-use super::pointing::script_data;
-use super::types::{Arrow, Field, Mark, Pointing, Scene, Twist};
+use super::planning_tools::script_data;
+use super::types::{Arrow, Field, Mark, PickTargets, Scene, Twist};
 use crate::fe::strain_tensor::Surface;
 use crate::model::{Model, Vec3};
 use crate::report::figure::{STEPS, packed_deltas, round_number, round_numbers, steps_of};
@@ -105,7 +105,7 @@ fn part(scene: &Scene, p: &Part, raster: &Raster) -> Value {
         "grids": packed_deltas(&grids, 1),
     });
     let shells: Option<Vec<[i64; 2]>> = p.faces.iter().map(|f| shell(model, f.0)).collect();
-    if let (Some(shells), false) = (shells, scene.pointing == Pointing::Nothing) {
+    if let (Some(shells), false) = (shells, scene.pointing == PickTargets::Nothing) {
         let column = |k: usize| packed_deltas(&shells.iter().map(|s| s[k]).collect::<Vec<_>>(), 1);
         out["elements"] = column(0);
         out["properties"] = column(1);

@@ -23,7 +23,7 @@ pub(super) struct Part {
     /// Faces: owner, indices into `grids`; triangles repeat the third.
     pub faces: Vec<(Owner, [u32; 4])>,
     /// Drawn geometry of these faces.
-    pub drawn: Drawn,
+    pub drawn: PartMesh,
 }
 
 impl Part {
@@ -36,7 +36,7 @@ impl Part {
 
 /// Drawn geometry of a part: its own faces, or a coarser version of them.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Drawn {
+pub(super) struct PartMesh {
     /// By grid of the part: its vertex.
     pub vertex_of: Vec<u32>,
     /// By vertex: the grid of the part that it represents.

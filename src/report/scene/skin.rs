@@ -1,6 +1,6 @@
 //! The surface that is drawn: shells and the outside of solids, by property.
 
-use super::coarse::coarsen;
+use super::mesh_coarsening::coarsen;
 use super::part::{Owner, Part};
 use super::solids::outer_faces;
 use crate::model::{GridIx, Model};

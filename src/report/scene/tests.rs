@@ -226,7 +226,7 @@ fn colours_of_magnitudes_begin_at_zero_and_those_of_strain_lie_about_it() {
             }],
             arrows: Vec::new(),
             length: "mm",
-            pointing: Pointing::Nothing,
+            pointing: PickTargets::Nothing,
             caption: String::new(),
         };
         let section = scene_section("Model", &scene);
@@ -302,7 +302,7 @@ fn a_page_of_a_large_model_stays_small() {
         fields: ["A.FZ", "B.FZ", "C.FZ"].map(field).to_vec(),
         arrows: Vec::new(),
         length: "mm",
-        pointing: Pointing::Nothing,
+        pointing: PickTargets::Nothing,
         caption: String::new(),
     };
     let section = scene_section("Model", &scene);

@@ -20,14 +20,14 @@ pub struct Scene<'a> {
     /// Unit of length; empty if the deck states none.
     pub length: &'static str,
     /// Planning by pointing that the scene allows.
-    pub pointing: Pointing,
+    pub pointing: PickTargets,
     /// Caption: what the scene shows, and what would be better or worse.
     pub caption: String,
 }
 
 /// Planning by pointing at a scene.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub enum Pointing {
+pub enum PickTargets {
     /// Nothing.
     #[default]
     Nothing,

@@ -71,7 +71,7 @@ pub struct UnitOf {
 
 /// Description of the job in every workbook.
 #[derive(Clone, Debug, PartialEq)]
-pub struct About<'a> {
+pub struct WorkbookDescription<'a> {
     /// Title of the job.
     pub title: &'a str,
     /// Units of the numbers.
@@ -91,7 +91,7 @@ const WIDEST: u32 = 520;
 ///
 /// # Errors
 /// What the writing library refuses, such as two sheets of one name.
-pub fn spreadsheet(sheets: &[Sheet], about: &About) -> Result<Vec<u8>, XlsxError> {
+pub fn spreadsheet(sheets: &[Sheet], about: &WorkbookDescription) -> Result<Vec<u8>, XlsxError> {
     let mut book = Workbook::new();
     book.set_properties(
         &DocProperties::new()
@@ -150,7 +150,7 @@ fn shorten_to_cell(text: &str) -> std::borrow::Cow<'_, str> {
     (kept.collect::<String>() + "..").into()
 }
 
-fn units_sheet(about: &About) -> Sheet {
+fn units_sheet(about: &WorkbookDescription) -> Sheet {
     let mut sheet = Sheet::new("Units", &["quantity", "unit"]);
     sheet.rows = about
         .units

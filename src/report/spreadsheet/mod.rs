@@ -4,7 +4,7 @@ mod book;
 mod gauges;
 mod loads;
 
-pub use book::{About, Cell, Sheet, UnitOf, spreadsheet};
+pub use book::{Cell, Sheet, UnitOf, WorkbookDescription, spreadsheet};
 pub use gauges::gauge_sheets;
 pub use loads::{HistoryLoad, history_sheet, residual_sheet, runs_sheet};
 

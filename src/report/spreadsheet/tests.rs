@@ -9,7 +9,7 @@ fn book(findings: &[Finding]) -> Vec<u8> {
         quantity: "force",
         unit: "kN".into(),
     }];
-    let about = About {
+    let about = WorkbookDescription {
         title: "A truck & <its> trailer",
         units: &units,
         findings,

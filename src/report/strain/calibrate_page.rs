@@ -6,12 +6,12 @@ use crate::report::figure::{Ends, IntervalRow, intervals};
 use crate::report::page::{Block, Page, Section, figure_section, number, table_section};
 use crate::units::Quantity;
 use crate::workflow::calibrate::{
-    Calibrated, CalibratedGauge, CheckLoad, GlueSummary, LackOfFitSummary, LeftOutLoad,
+    CalibratedGauge, CalibratedSensitivity, CheckLoad, GlueSummary, LackOfFitSummary, LeftOutLoad,
     LeftOutSummary, LoadResidual, NextRunSummary,
 };
 
 /// The page of `calibrate`: what was learnt, left-out runs against what is known, each gauge's model and calibrated row.
-pub fn calibrate_page(title: &str, answer: &Calibrated, findings: &[Finding]) -> Page {
+pub fn calibrate_page(title: &str, answer: &CalibratedSensitivity, findings: &[Finding]) -> Page {
     let mut sections = vec![summary(answer)];
     sections.extend(errors_of_left_out(answer));
     sections.extend(checks(answer));
@@ -26,7 +26,7 @@ pub fn calibrate_page(title: &str, answer: &Calibrated, findings: &[Finding]) ->
     )
 }
 
-fn summary(answer: &Calibrated) -> Section {
+fn summary(answer: &CalibratedSensitivity) -> Section {
     let c = &answer.calibration;
     let percent = |x: f64| format!("{:.2} %", 100.0 * x);
     let mut pairs = vec![
@@ -65,7 +65,7 @@ fn summary(answer: &Calibrated) -> Section {
 }
 
 /// Errors of the loads of left-out runs with their 95 % intervals, by load; `None` without known loads.
-fn errors_of_left_out(answer: &Calibrated) -> Option<Section> {
+fn errors_of_left_out(answer: &CalibratedSensitivity) -> Option<Section> {
     let left_out = &answer.calibration.left_out;
     let first = left_out.first()?;
     let of_load = |(l, load): (usize, &LeftOutLoad)| -> (String, Vec<IntervalRow>) {
@@ -96,7 +96,7 @@ fn errors_of_left_out(answer: &Calibrated) -> Option<Section> {
 }
 
 /// Check loads, with the load that is worth applying next; `None` without check runs.
-fn checks(answer: &Calibrated) -> Option<Section> {
+fn checks(answer: &CalibratedSensitivity) -> Option<Section> {
     let c = &answer.calibration;
     let row = |l: &CheckLoad| {
         vec![
@@ -130,7 +130,7 @@ fn checks(answer: &Calibrated) -> Option<Section> {
 }
 
 /// Range and residual of each load.
-fn residuals(answer: &Calibrated) -> Section {
+fn residuals(answer: &CalibratedSensitivity) -> Section {
     let c = &answer.calibration;
     let percent = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), number);
     let row = |r: &LoadResidual| {
@@ -165,7 +165,7 @@ fn residuals(answer: &Calibrated) -> Section {
 }
 
 /// Tests of further terms.
-fn lack_of_fit(answer: &Calibrated) -> Section {
+fn lack_of_fit(answer: &CalibratedSensitivity) -> Section {
     let c = &answer.calibration;
     let row = |t: &LackOfFitSummary| vec![t.test.to_owned(), format!("{:.1e}", t.p)];
     let rows: Vec<Vec<String>> = c.lack_of_fit.iter().map(row).collect();
@@ -204,7 +204,7 @@ fn next_words(n: &NextRunSummary) -> String {
     )
 }
 
-fn left_out(answer: &Calibrated) -> Section {
+fn left_out(answer: &CalibratedSensitivity) -> Section {
     let rows: Vec<Vec<String>> = answer
         .calibration
         .left_out
@@ -239,7 +239,7 @@ fn left_out(answer: &Calibrated) -> Section {
 }
 
 /// Where gauges sit; `None` where no tolerance was stated.
-fn as_glued(answer: &Calibrated) -> Option<Section> {
+fn as_glued(answer: &CalibratedSensitivity) -> Option<Section> {
     let all = &answer.calibration.gauges;
     all.iter().find(|g| g.as_glued.is_some())?;
     let size = |s: Option<GlueSummary>| match s {
@@ -275,7 +275,7 @@ fn as_glued(answer: &Calibrated) -> Option<Section> {
     ))
 }
 
-fn gauges(answer: &Calibrated) -> Section {
+fn gauges(answer: &CalibratedSensitivity) -> Section {
     let s = &answer.sensitivity;
     let halves = s.half_widths();
     let mut head: Vec<String> = vec![

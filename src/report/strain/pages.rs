@@ -1,6 +1,6 @@
 //! The pages of `sensitivity`, `place` and `recover`.
 
-use super::gluing::{gluing_section, in_length};
+use super::gluing_sheet::{gluing_section, in_length};
 use crate::finding::Finding;
 use crate::report::figure::{
     CountPoint, Ends, GaugePoints, IntervalRow, LoadTrace, MOST_RATIO, agreement, curve, heat_map,
@@ -147,7 +147,7 @@ pub struct RecoveredRun {
 }
 
 /// Result of `recover`.
-pub struct Recovered<'a> {
+pub struct RecoveryPage<'a> {
     /// S.
     pub sensitivity: &'a Sensitivity,
     /// Runs.
@@ -173,7 +173,7 @@ const MOST_RUNS: usize = 200;
 pub fn recover_page(
     title: &str,
     scene: Option<&Scene>,
-    found: &Recovered,
+    found: &RecoveryPage,
     findings: &[Finding],
 ) -> Page {
     let mut sections = vec![Section::new("Result", vec![Block::pairs(found.numbers)])];
@@ -234,14 +234,14 @@ pub fn recover_page(
 }
 
 /// Loads of a similar size in one unit.
-struct Alike<'a> {
+struct LoadSizeGroup<'a> {
     unit: &'a str,
     largest: f64,
     names: Vec<&'a str>,
 }
 
 /// Groups the loads of all runs by unit and size, the largest first, so that no load flattens the axis of another.
-fn group_loads_by_size(runs: &[RecoveredRun]) -> Vec<Alike<'_>> {
+fn group_loads_by_size(runs: &[RecoveredRun]) -> Vec<LoadSizeGroup<'_>> {
     let mut sizes: BTreeMap<(&str, &str), f64> = BTreeMap::new();
     for (name, values, unit) in runs.iter().flat_map(|r| &r.loads) {
         let size = sizes.entry((unit.as_str(), name.as_str())).or_default();
@@ -249,11 +249,11 @@ fn group_loads_by_size(runs: &[RecoveredRun]) -> Vec<Alike<'_>> {
     }
     let mut sorted: Vec<_> = sizes.into_iter().collect();
     sorted.sort_by(|a, b| (a.0.0).cmp(b.0.0).then(b.1.total_cmp(&a.1)));
-    let mut out: Vec<Alike> = Vec::new();
+    let mut out: Vec<LoadSizeGroup> = Vec::new();
     for ((unit, name), size) in sorted {
         match out.last_mut() {
             Some(a) if a.unit == unit && size * MOST_RATIO >= a.largest => a.names.push(name),
-            _ => out.push(Alike {
+            _ => out.push(LoadSizeGroup {
                 unit,
                 largest: size,
                 names: vec![name],
@@ -274,7 +274,7 @@ fn bars(runs: &[RecoveredRun], ends: Ends) -> Vec<Block> {
         }
     };
     let groups = group_loads_by_size(runs);
-    let figure = |group: &Alike| {
+    let figure = |group: &LoadSizeGroup| {
         let of_run = |r: &RecoveredRun| -> (String, Vec<IntervalRow>) {
             let of_group = |l: &&(String, [f64; 3], String)| {
                 l.2 == group.unit && group.names.contains(&l.0.as_str())

@@ -1,7 +1,7 @@
 //! The page of `identify`.
 
 use super::curve::{Curve, plots};
-use super::restoring::restoring_section;
+use super::restoring_forces::restoring_section;
 use crate::finding::Finding;
 use crate::report::figure::Scale;
 use crate::report::page::{Block, Page, Section, number, table_section};

@@ -1,6 +1,6 @@
 //! Tables of an identification.
 
-use super::restoring::{asked_force, links_told};
+use super::restoring_forces::{asked_force, links_told};
 use crate::vehicle::chassis::{ChassisForce, LeafSeat, SpringForce, split_leaf};
 use crate::vehicle::identify::Identification;
 use crate::vehicle::loads::{LoadHistory, link_forces};

@@ -86,9 +86,11 @@ pub(super) trait Listener<T> {
 }
 
 /// Listener from two functions: tag of a reversal, closed cycle.
-struct Both<F, G>(F, G);
+struct FunctionListener<F, G>(F, G);
 
-impl<T, F: FnMut(Point) -> T, G: FnMut(&Reversal<T>, &Reversal<T>)> Listener<T> for Both<F, G> {
+impl<T, F: FnMut(Point) -> T, G: FnMut(&Reversal<T>, &Reversal<T>)> Listener<T>
+    for FunctionListener<F, G>
+{
     #[inline(always)]
     fn tag(&mut self, point: Point) -> T {
         (self.0)(point)
@@ -225,7 +227,7 @@ impl<T: Clone> Rainflow<T> {
         for r in residues.iter().flatten() {
             let before = |_: Point| latest.clone().unwrap_or_else(|| r.tag.clone());
             let changed = count.latest.is_none_or(|l| l.value != r.point.value);
-            count.push_tagged(r.point, &mut Both(before, &mut *counted));
+            count.push_tagged(r.point, &mut FunctionListener(before, &mut *counted));
             // A sample that repeats the latest is not taken, and what belongs to it neither.
             if changed && r.point.value.is_finite() {
                 latest = Some(r.tag.clone());
@@ -248,7 +250,7 @@ impl Rainflow {
                 count: 1.0,
             });
         };
-        self.push_tagged(point, &mut Both(|_| (), closed));
+        self.push_tagged(point, &mut FunctionListener(|_| (), closed));
     }
 
     /// Counts the residue by ASTM E1049: the last sample is a reversal, and every open range half a cycle.

@@ -3,7 +3,7 @@
 use super::count::{Listener, Point, Rainflow, Reversal};
 use super::counts::Counts;
 use super::law::Law;
-use super::tally::{Extreme, Left, NOISE, Sums, Tally, class, extremes, risen_borders};
+use super::tally::{Extreme, NOISE, ResidueReversal, Sums, Tally, class, extremes, risen_borders};
 
 /// Samples handled together: their numbers stay in the processor's first cache.
 const BLOCK: usize = 512;
@@ -50,7 +50,7 @@ struct Slots {
 }
 
 /// Listener of the plain count during a push.
-struct Plain<'a> {
+struct PlainCountListener<'a> {
     closed: &'a mut ClosedCycles,
     rows: &'a [f64],
     /// Number of the first row.
@@ -59,7 +59,7 @@ struct Plain<'a> {
 }
 
 /// Hears of a count with noise added: damage alone.
-struct Noisy {
+struct NoisyCountListener {
     law: Law,
     damage: f64,
 }
@@ -145,7 +145,7 @@ impl Counter {
             classes: [0; BLOCK],
             turns: [0; BLOCK],
         };
-        let mut listener = Plain {
+        let mut listener = PlainCountListener {
             closed: &mut self.closed,
             rows,
             first,
@@ -183,7 +183,7 @@ impl Counter {
                         *y = v + added * w;
                     }
                     let noisy = room.noisy.get(..values.len()).unwrap_or_default();
-                    let mut listener = Noisy {
+                    let mut listener = NoisyCountListener {
                         law: listener.closed.law,
                         damage: *damage,
                     };
@@ -216,9 +216,9 @@ impl Counter {
             sums,
         } = self.closed;
         let carried = self.carried;
-        let bare = |count: Rainflow| -> Vec<Left> {
+        let bare = |count: Rainflow| -> Vec<ResidueReversal> {
             let residue = count.residue(&mut |_| ());
-            let left = |r: Reversal<()>| Left {
+            let left = |r: Reversal<()>| ResidueReversal {
                 at: r.point.at,
                 value: r.point.value,
                 loads: Vec::new(),
@@ -229,7 +229,7 @@ impl Counter {
             class: class(p.value, width),
             slot: kept.keep(&carried),
         });
-        let left = |r: Reversal<Tag>| Left {
+        let left = |r: Reversal<Tag>| ResidueReversal {
             at: r.point.at,
             value: r.point.value,
             loads: kept.row(r.tag.slot, carried.len()).to_vec(),
@@ -255,7 +255,7 @@ impl Counter {
     }
 }
 
-impl Listener<Tag> for Plain<'_> {
+impl Listener<Tag> for PlainCountListener<'_> {
     #[inline(always)]
     fn tag(&mut self, p: Point) -> Tag {
         let k = self.carried.len();
@@ -283,7 +283,7 @@ impl Listener<Tag> for Plain<'_> {
     }
 }
 
-impl Listener<()> for Noisy {
+impl Listener<()> for NoisyCountListener {
     #[inline(always)]
     fn tag(&mut self, _: Point) {}
 

@@ -46,7 +46,7 @@ pub struct DamageParts {
 
 /// Errors that two damages share, in addition to the bias of noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shared {
+pub struct SharedErrors {
     /// Share of the first damage whose errors of S are also errors of the second.
     pub scale: f64,
     /// Whether the first damage includes the cycles of the second.
@@ -181,7 +181,7 @@ impl DamageParts {
     ///
     /// # Reference
     /// J.A. Hausman, Specification tests in econometrics, Econometrica 46 (1978) 1251-1271, lemma 2.1.
-    pub fn ratio_to(&self, other: &Self, shared: Shared) -> Option<Ratio> {
+    pub fn ratio_to(&self, other: &Self, shared: SharedErrors) -> Option<Ratio> {
         let (d1, d2) = (self.value, other.value);
         if !(d1 > 0.0 && d2 > 0.0) {
             return None;

@@ -8,7 +8,7 @@ pub struct Knee {
     /// Range at the bend: smaller ranges do less damage than the power gives.
     pub range: f64,
     /// The power below; infinite for no damage at all.
-    #[serde(deserialize_with = "super::absent::number_or_infinity")]
+    #[serde(deserialize_with = "super::nullable_numbers::number_or_infinity")]
     pub slope: f64,
 }
 

@@ -14,7 +14,7 @@ pub struct Marks {
 }
 
 /// Rows whose marks are wanted.
-struct Put<'a> {
+struct MarkKernel<'a> {
     marks: &'a Marks,
     rows: &'a [f64],
     out: &'a mut Vec<u64>,
@@ -32,7 +32,7 @@ impl Marks {
 
     /// Appends the marks of rows; each row is all loads of a sample.
     pub fn append_marks(&self, rows: &[f64], out: &mut Vec<u64>) {
-        pulp::Arch::new().dispatch(Put {
+        pulp::Arch::new().dispatch(MarkKernel {
             marks: self,
             rows,
             out,
@@ -40,7 +40,7 @@ impl Marks {
     }
 }
 
-impl pulp::WithSimd for Put<'_> {
+impl pulp::WithSimd for MarkKernel<'_> {
     type Output = ();
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Rainflow cycles and the pseudo-damage they make.
 //!
-//! - [`absent`]: numbers that are not finite, kept in JSON
+//! - [`nullable_numbers`]: numbers that are not finite, kept in JSON
 //! - `bias`: what noise adds to damage, from counts with more of it
 //! - [`count`]: the four-point count, whose residues join; with the residue as half cycles it is the count of ASTM E1049
 //! - `counter`: a tally under way, `counts` its cycles and rises by class
@@ -10,7 +10,6 @@
 //! - [`interval`]: damage with what is known of its errors
 //! - `damage`: damage of one record, range by range
 
-pub mod absent;
 mod bias;
 pub mod count;
 mod counter;
@@ -19,12 +18,13 @@ mod damage;
 pub mod interval;
 pub mod law;
 mod marks;
+pub mod nullable_numbers;
 pub mod tally;
 
 pub use count::{Cycle, Point, Rainflow, Reversal, half_cycles};
 pub use counter::Counter;
 pub use damage::{Bin, Damage};
-pub use interval::{DamageInterval, DamageParts, Ratio, Shared, damage_interval};
+pub use interval::{DamageInterval, DamageParts, Ratio, SharedErrors, damage_interval};
 pub use law::{Knee, Law};
 pub use marks::Marks;
 pub use tally::{Extreme, Tally};

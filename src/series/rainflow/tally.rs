@@ -21,13 +21,13 @@ pub struct Extreme {
 
 /// A reversal of a residue: its sample, its value, all loads at that time (empty if they are not needed).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Left {
+pub struct ResidueReversal {
     /// Sample.
     pub at: usize,
     /// Value.
     pub value: f64,
     /// All loads at that time.
-    #[serde(deserialize_with = "super::absent::numbers")]
+    #[serde(deserialize_with = "super::nullable_numbers::numbers")]
     pub loads: Vec<f64>,
 }
 
@@ -37,7 +37,7 @@ pub struct Sums {
     /// Damage, by [`NOISE`].
     pub damage: [f64; 3],
     /// Change of the damage with each scale error: `sum of d'(R) sign(dF) dF_m`, by load m.
-    #[serde(deserialize_with = "super::absent::numbers")]
+    #[serde(deserialize_with = "super::nullable_numbers::numbers")]
     pub by_load: Vec<f64>,
     /// Variance of the damage for noise of variance one in each sample: `sum of 2 d'(R)^2`.
     pub scatter: f64,
@@ -63,7 +63,7 @@ pub struct Tally {
     /// Samples without a value.
     pub missing: usize,
     /// Reversals that no cycle has closed, by [`NOISE`].
-    pub residues: [Vec<Left>; 3],
+    pub residues: [Vec<ResidueReversal>; 3],
     /// Sums over closed cycles.
     pub sums: Sums,
 }
@@ -131,7 +131,7 @@ impl Tally {
             }
             let before = all.samples;
             for (list, residue) in residues.iter_mut().zip(&part.residues) {
-                let reversal = |l: &Left| Reversal {
+                let reversal = |l: &ResidueReversal| Reversal {
                     point: Point {
                         at: before + l.at,
                         value: l.value,
@@ -178,7 +178,7 @@ impl Tally {
             if let Some(slot) = all.residues.get_mut(level) {
                 *slot = residue
                     .into_iter()
-                    .map(|r| Left {
+                    .map(|r| ResidueReversal {
                         at: r.point.at,
                         value: r.point.value,
                         loads: r.tag,
@@ -240,7 +240,7 @@ impl Tally {
     }
 }
 
-fn reversal(l: &Left) -> Reversal<Vec<f64>> {
+fn reversal(l: &ResidueReversal) -> Reversal<Vec<f64>> {
     Reversal {
         point: Point {
             at: l.at,

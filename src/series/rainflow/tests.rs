@@ -1,6 +1,6 @@
 use super::*;
 
-mod joined;
+mod joined_tallies;
 
 fn cycles_of(history: &[f64]) -> Vec<Cycle> {
     let mut out = Vec::new();

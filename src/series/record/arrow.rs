@@ -1,7 +1,7 @@
 //! Schemas of Arrow: the columns of a Feather file with their types, and those of a Parquet file that are durations, a type that Parquet lacks.
 
 use super::flat_buffer::Buffer;
-use super::typed::Meaning;
+use super::typed_columns::Meaning;
 use crate::series::parquet::UNIT_OF;
 use parquet::file::metadata::FileMetaData;
 use std::collections::HashMap;
@@ -17,7 +17,7 @@ const DEPTH: usize = 32;
 
 /// How the values of a column are stored.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Stored {
+pub(super) enum ColumnStorage {
     /// A bit each.
     Bits,
     Integer {
@@ -41,7 +41,7 @@ pub(super) struct Field {
     pub name: String,
     /// Unit that the notes on the column state; empty where they state none.
     pub unit: String,
-    pub stored: Stored,
+    pub stored: ColumnStorage,
     /// Number of its buffers in a batch, without those of its children; of views the fixed ones.
     pub buffers: usize,
     /// Whether it has as many more buffers as each batch states.
@@ -49,7 +49,7 @@ pub(super) struct Field {
     /// Whether its first buffer marks missing values.
     pub has_validity: bool,
     /// Identifier and storage of the dictionary that its values count in.
-    pub dictionary: Option<(usize, Stored)>,
+    pub dictionary: Option<(usize, ColumnStorage)>,
     pub children: Vec<Field>,
 }
 
@@ -87,7 +87,7 @@ fn of_schema(bytes: &[u8]) -> Option<Notes> {
     let schema = buffer.child(message(buffer, 0)?, HEADER)?;
     let mut notes = Notes::default();
     for f in fields(buffer, schema)? {
-        if let Stored::Integer {
+        if let ColumnStorage::Integer {
             meaning: Meaning::Duration(worth),
             ..
         } = f.stored
@@ -200,8 +200,8 @@ const UTF8_VIEW: u8 = 24;
 const LIST_VIEW: u8 = 25;
 const LARGE_LIST_VIEW: u8 = 26;
 
-fn integer(bytes: usize, is_signed: bool, meaning: Meaning) -> Stored {
-    Stored::Integer {
+fn integer(bytes: usize, is_signed: bool, meaning: Meaning) -> ColumnStorage {
+    ColumnStorage::Integer {
         bytes,
         is_signed,
         meaning,
@@ -215,7 +215,7 @@ fn half(buffer: Buffer<'_>, table: usize, number: usize, otherwise: u16) -> Opti
 }
 
 /// Returns how the values of a type are stored; `None` where its details are damaged.
-fn read_storage(buffer: Buffer<'_>, kind: u8, details: usize) -> Option<Stored> {
+fn read_storage(buffer: Buffer<'_>, kind: u8, details: usize) -> Option<ColumnStorage> {
     let bits = |number: usize, otherwise: u32| {
         let at = buffer.field(details, number);
         at.map_or(Some(otherwise), |at| buffer.word(at))
@@ -235,7 +235,7 @@ fn read_storage(buffer: Buffer<'_>, kind: u8, details: usize) -> Option<Stored> 
             let is_signed = at.is_some_and(|at| buffer.byte(at) == Some(1));
             integer(bytes(bits(0, 0)?)?, is_signed, Meaning::Number(1.0))
         }
-        REAL => Stored::Real {
+        REAL => ColumnStorage::Real {
             bytes: match half(buffer, details, 0, 0)? {
                 0 => 2,
                 1 => 4,
@@ -243,14 +243,14 @@ fn read_storage(buffer: Buffer<'_>, kind: u8, details: usize) -> Option<Stored> 
                 _ => return None,
             },
         },
-        UTF8 => Stored::Text { bytes: 4 },
-        LARGE_UTF8 => Stored::Text { bytes: 8 },
-        UTF8_VIEW => Stored::TextView,
-        BOOL => Stored::Bits,
+        UTF8 => ColumnStorage::Text { bytes: 4 },
+        LARGE_UTF8 => ColumnStorage::Text { bytes: 8 },
+        UTF8_VIEW => ColumnStorage::TextView,
+        BOOL => ColumnStorage::Bits,
         TIME => integer(bytes(bits(1, 32)?)?, true, Meaning::Instant(unit(1)?)),
         TIMESTAMP => integer(8, true, Meaning::Instant(unit(0)?)),
         DURATION => integer(8, true, Meaning::Duration(unit(1)?)),
-        _ => Stored::Other,
+        _ => ColumnStorage::Other,
     })
 }
 

@@ -1,7 +1,7 @@
 //! Clock of a record: one pass over its times determines rate, span, gaps, and whether the steps are even.
 
 use super::reader::{Pick, RecordReader, Times};
-use super::span::{EVEN, Gap, LISTED, Scale, Span, Stretch, Walk, Wrong, span, typical_steps};
+use super::span::{EVEN, Gap, LISTED, Scale, Span, Stretch, TimeFault, Walk, span, typical_steps};
 use super::time_unit::TimeUnit;
 use crate::series::error::SeriesError;
 use rayon::prelude::*;
@@ -261,7 +261,7 @@ fn spans_of(
     scale: Option<Scale>,
 ) -> Result<(Vec<Span>, usize), SeriesError> {
     let mut spans = Vec::with_capacity(reader.n_pieces());
-    let found: Vec<Result<Span, (usize, Wrong)>> = (0..reader.n_pieces())
+    let found: Vec<Result<Span, (usize, TimeFault)>> = (0..reader.n_pieces())
         .into_par_iter()
         .map(|p| span(reader, p, scale))
         .collect();

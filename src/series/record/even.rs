@@ -3,7 +3,7 @@
 use super::clock::{Clock, Evenness, Steps, clock_of, counts};
 use super::column::Column;
 use super::reader::{BLOCK, Block, OtherChannel, Pick, RecordReader, Sink, Times};
-use super::timed::with_times_in_seconds;
+use super::time_conversion::with_times_in_seconds;
 use crate::series::error::SeriesError;
 use std::ops::ControlFlow;
 

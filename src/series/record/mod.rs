@@ -10,12 +10,14 @@ mod clock;
 mod column;
 pub mod csv;
 mod even;
+mod even_step_formats;
 #[cfg(feature = "parquet")]
 mod feather;
 #[cfg(feature = "parquet")]
 mod flat_buffer;
 #[cfg(feature = "mdf")]
 mod mdf;
+mod memory_record;
 mod open;
 #[cfg(feature = "parquet")]
 mod pages;
@@ -28,25 +30,24 @@ mod reader;
 mod rows;
 #[cfg(feature = "parquet")]
 mod runs;
+mod simultaneous_channels;
 mod source;
 mod span;
-mod stored;
 #[cfg(feature = "parquet")]
 mod strip;
 mod tdms;
 #[cfg(any(feature = "parquet", feature = "mdf"))]
 mod tile;
+mod time_conversion;
 mod time_unit;
-mod timed;
-mod together;
 #[cfg(feature = "parquet")]
-mod typed;
+mod typed_columns;
 mod uff;
-mod whole;
 
 pub use clock::{Clock, Evenness, RateChange};
 pub use column::{Clash, Column, Header, is_time, name_and_unit, seconds_in, take_unit_below};
 pub use even::Record;
+pub use memory_record::MemoryRecord;
 pub use open::{Format, Options, format_of, is_format, open_record, open_source, read_channels};
 pub use reader::{Block, Bytes, OtherChannel, Pick, RecordReader, Sink, Times};
 #[cfg(feature = "parquet")]
@@ -54,7 +55,6 @@ pub use runs::runs_as_csv;
 pub use source::{Parts, Source, is_read_in_parts};
 pub use span::{EVEN, Gap};
 pub use time_unit::{TimeUnit, USUAL_RATES_HZ, is_usual};
-pub use whole::Whole;
 
 #[cfg(test)]
 mod tests;

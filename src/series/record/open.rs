@@ -2,9 +2,9 @@
 
 use super::csv::Csv;
 use super::even::Record;
+use super::even_step_formats::EvenStepReader;
 use super::reader::{Bytes, RecordReader};
 use super::source::{Source, is_read_in_parts};
-use super::stored::Stored;
 use super::tdms::{Tdms, is_tdms};
 use super::uff::{Uff, is_uff};
 use crate::series::channels::{Channel, Channels};
@@ -139,8 +139,8 @@ pub fn is_format(bytes: &[u8]) -> bool {
 
 fn reader_of(bytes: Bytes, options: &Options) -> Result<Box<dyn RecordReader>, SeriesError> {
     Ok(match format_of((*bytes).as_ref()) {
-        Some(Format::Binary) => Box::new(Stored::binary(bytes)?),
-        Some(Format::Rpc) => Box::new(Stored::rpc(bytes)?),
+        Some(Format::Binary) => Box::new(EvenStepReader::binary(bytes)?),
+        Some(Format::Rpc) => Box::new(EvenStepReader::rpc(bytes)?),
         Some(Format::Parquet) => return parquet(Source::Memory(bytes), options),
         Some(Format::Feather) => return feather(bytes),
         Some(Format::Mdf) => return mdf(bytes, &options.wanted),

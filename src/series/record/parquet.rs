@@ -3,13 +3,13 @@
 use super::arrow::notes;
 use super::column::{Column, is_time};
 use super::pages::Pages;
-use super::parquet_bytes::Whole;
+use super::parquet_bytes::ParquetBytes;
 use super::reader::{BLOCK, Block, Pick, RecordReader, Sink, Times};
-use super::rows::{Shared, Strips};
+use super::rows::{SharedRows, Strips};
 use super::source::Source;
 use super::strip::{Strip, read_error, texts};
 use super::tile::Tile;
-use super::typed::{Meaning, Precision, TimeColumn, Typed};
+use super::typed_columns::{Meaning, Precision, TimeColumn, TypedChannels};
 use crate::series::error::SeriesError;
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type as Kind};
 use parquet::column::reader::{ColumnReader, get_column_reader};
@@ -27,7 +27,7 @@ const TOGETHER: usize = 2;
 
 /// A Parquet file as a record.
 pub struct Parquet {
-    whole: Arc<Whole>,
+    whole: Arc<ParquetBytes>,
     metadata: ParquetMetaData,
     columns: Vec<Column>,
     /// Leaf in the file and value of one stored unit, for each column.
@@ -40,7 +40,7 @@ pub struct Parquet {
     /// Units of pieces that are decoded together.
     units: Vec<Unit>,
     /// Decoded rows, and reused memory of earlier rows: to free and allocate it again costs as much as decoding.
-    shared: Shared,
+    shared: SharedRows,
 }
 
 /// Rows of a row group.
@@ -70,7 +70,7 @@ impl Parquet {
     /// # Errors
     /// A file that is cut off or damaged.
     pub fn new(source: Source) -> Result<Self, SeriesError> {
-        let whole = Arc::new(Whole::from_source(source));
+        let whole = Arc::new(ParquetBytes::from_source(source));
         let metadata = ParquetMetaDataReader::new()
             .parse_and_finish(&*whole)
             .map_err(read_error)?;
@@ -78,7 +78,7 @@ impl Parquet {
         let notes = notes(metadata.file_metadata());
         let columns = schema.columns().iter().enumerate();
         // The name of a nested leaf is its last word; groups other than the root are no tables of channels.
-        let typed = Typed::from_columns(columns.filter_map(|(leaf, c)| {
+        let typed = TypedChannels::from_columns(columns.filter_map(|(leaf, c)| {
             let meaning = column_meaning(c).filter(|_| c.max_rep_level() == 0)?;
             let is_outermost = c.path().parts().len() == 1;
             let meaning = match notes.durations.get(c.name()) {
@@ -132,7 +132,7 @@ impl Parquet {
             epoch: 0.0,
             pieces,
             units,
-            shared: Shared::default(),
+            shared: SharedRows::default(),
         };
         if let Some(time) = typed.time {
             file.set_time(&time)?;

@@ -7,14 +7,14 @@ use parquet::file::reader::{ChunkReader, Length};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// The bytes of the file as this library asks for them: of a file in memory a page is a part of it, not a copy.
-pub(super) struct Whole {
+pub(super) struct ParquetBytes {
     source: Source,
     shared: bytes::Bytes,
     pages: Arc<Mutex<Vec<Vec<u8>>>>,
 }
 
 /// Bytes of a page read from a file. Its memory goes back to the pages that were decoded, for the next ones.
-struct Lent {
+struct PooledPage {
     memory: Vec<u8>,
     length: usize,
     pages: Arc<Mutex<Vec<Vec<u8>>>>,
@@ -23,13 +23,13 @@ struct Lent {
 /// Memory of larger pages is given back to the system.
 const LARGE_PAGE: usize = 8 << 20;
 
-impl AsRef<[u8]> for Lent {
+impl AsRef<[u8]> for PooledPage {
     fn as_ref(&self) -> &[u8] {
         self.memory.get(..self.length).unwrap_or_default()
     }
 }
 
-impl Drop for Lent {
+impl Drop for PooledPage {
     fn drop(&mut self) {
         if self.memory.len() <= LARGE_PAGE {
             let mut pages = self.pages.lock().unwrap_or_else(PoisonError::into_inner);
@@ -47,7 +47,7 @@ impl AsRef<[u8]> for Owner {
     }
 }
 
-impl Whole {
+impl ParquetBytes {
     pub(super) fn from_source(source: Source) -> Self {
         let shared = match &source {
             Source::Memory(bytes) => bytes::Bytes::from_owner(Owner(bytes.clone())),
@@ -84,7 +84,7 @@ impl Whole {
                 let out = memory.get_mut(..length).unwrap_or_default();
                 file.read_at(start, out)
                     .map_err(|e| ParquetError::General(e.to_string()))?;
-                Ok(bytes::Bytes::from_owner(Lent {
+                Ok(bytes::Bytes::from_owner(PooledPage {
                     memory,
                     length,
                     pages: Arc::clone(&self.pages),
@@ -94,20 +94,20 @@ impl Whole {
     }
 }
 
-impl Length for Whole {
+impl Length for ParquetBytes {
     fn len(&self) -> u64 {
         self.source.size()
     }
 }
 
 /// Reads on from a place: the header of a page.
-pub(super) struct Reading {
-    whole: Arc<Whole>,
+pub(super) struct PageHeaderReader {
+    whole: Arc<ParquetBytes>,
     at: u64,
     ahead: bytes::Bytes,
 }
 
-impl std::io::Read for Reading {
+impl std::io::Read for PageHeaderReader {
     fn read(&mut self, out: &mut [u8]) -> std::io::Result<usize> {
         /// Bytes fetched at a time: a header with its statistics.
         const AHEAD: usize = 512;
@@ -125,12 +125,12 @@ impl std::io::Read for Reading {
     }
 }
 
-impl ChunkReader for Whole {
-    type T = Reading;
+impl ChunkReader for ParquetBytes {
+    type T = PageHeaderReader;
 
     fn get_read(&self, start: u64) -> Result<Self::T, ParquetError> {
         self.read_bytes(start, 0, true)?;
-        Ok(Reading {
+        Ok(PageHeaderReader {
             whole: Arc::new(Self {
                 source: self.source.clone(),
                 shared: self.shared.clone(),

@@ -33,7 +33,7 @@ struct State {
 
 /// Rows that pieces have in work, the oldest first, and memory of those that are done with.
 #[derive(Default)]
-pub(super) struct Shared {
+pub(super) struct SharedRows {
     rows: Mutex<Vec<Arc<Rows>>>,
     spare: Mutex<Vec<Strips>>,
     buffers: Mutex<Vec<Buffers>>,
@@ -43,7 +43,7 @@ fn lock_mutex<T>(m: &Mutex<T>) -> MutexGuard<'_, T> {
     m.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl Shared {
+impl SharedRows {
     /// The rows `unit`, which `pieces` pieces read, each once; at most `most` of them are kept.
     pub fn rows(&self, unit: usize, pieces: usize, picks: &[Pick], most: usize) -> Arc<Rows> {
         let mut all = lock_mutex(&self.rows);
@@ -192,7 +192,7 @@ mod tests {
 
     /// Returns the strips of two pieces, each decoded on its own thread.
     fn of_two(
-        shared: &Shared,
+        shared: &SharedRows,
         decode: &(dyn Fn(usize) -> bool + Sync),
     ) -> [Option<Arc<Strips>>; 2] {
         let one = || {
@@ -207,7 +207,7 @@ mod tests {
 
     #[test]
     fn two_pieces_decode_each_column_once_and_leave_their_memory() {
-        let shared = Shared::default();
+        let shared = SharedRows::default();
         let calls = AtomicUsize::new(0);
         let got = of_two(&shared, &|_| {
             calls.fetch_add(1, Ordering::Relaxed);
@@ -226,20 +226,20 @@ mod tests {
 
     #[test]
     fn where_a_column_fails_each_piece_is_left_to_itself() {
-        let got = of_two(&Shared::default(), &|j| j != 2);
+        let got = of_two(&SharedRows::default(), &|j| j != 2);
         assert!(got.iter().all(Option::is_none));
     }
 
     #[test]
     fn rows_of_no_column_are_not_waited_for() {
-        let rows = Shared::default().rows(0, 2, &[], 1);
+        let rows = SharedRows::default().rows(0, 2, &[], 1);
         let strips = rows.decode_columns(&mut |_, _| false);
         assert!(strips.is_some_and(|s| s.is_empty()));
     }
 
     #[test]
     fn rows_that_nobody_comes_back_for_are_not_kept() {
-        let shared = Shared::default();
+        let shared = SharedRows::default();
         for unit in 0..9 {
             let rows = shared.rows(unit, 2, &PICKS, 3);
             let strips = rows.decode_columns(&mut |_, _| true).unwrap();

@@ -172,13 +172,13 @@ fn lower_quantile(mut numbers: Vec<f64>, part: usize) -> Option<f64> {
 }
 
 /// A time that can't be.
-pub(super) enum Wrong {
+pub(super) enum TimeFault {
     Missing,
     Back { time_s: f64, before_s: f64 },
     Read(SeriesError),
 }
 
-impl Wrong {
+impl TimeFault {
     /// Returns the error at a line.
     pub(super) fn error_at_line(self, line: usize) -> SeriesError {
         match self {
@@ -319,16 +319,16 @@ pub(super) fn span(
     reader: &dyn RecordReader,
     piece: usize,
     scale: Option<Scale>,
-) -> Result<Span, (usize, Wrong)> {
+) -> Result<Span, (usize, TimeFault)> {
     let mut walk = Walk::new(scale.unwrap_or(Scale::without_gaps()));
     let (mut rows, mut first, mut last) = (0, f64::NAN, f64::NAN);
     let mut wrong = None;
     let read = reader.read(piece, &[Pick::Time], &mut |block| {
         for &t in block.values {
             if !t.is_finite() {
-                wrong = Some((rows, Wrong::Missing));
+                wrong = Some((rows, TimeFault::Missing));
             } else if rows > 0 && !(t > last) {
-                let back = Wrong::Back {
+                let back = TimeFault::Back {
                     time_s: t,
                     before_s: last,
                 };
@@ -347,7 +347,7 @@ pub(super) fn span(
         }
         ControlFlow::Continue(())
     });
-    read.map_err(|e| (rows, Wrong::Read(e)))?;
+    read.map_err(|e| (rows, TimeFault::Read(e)))?;
     match wrong {
         Some(w) => Err(w),
         None => Ok(Span {

@@ -21,12 +21,12 @@ fn a_shift_of_a_fraction_of_a_sample_is_found_at_two_rates() {
         // Sample i of the moving signals was taken at 5 + i / rate, which their clock calls that less the shift.
         let moving = signals(5.0, rate, 6000);
         let found = estimate_shift(
-            Sampled {
+            SampledSignals {
                 start_s: 5.0,
                 rate_hz: 100.0,
                 signals: &fixed,
             },
-            Sampled {
+            SampledSignals {
                 start_s: 5.0 - shift,
                 rate_hz: rate,
                 signals: &moving,
@@ -47,7 +47,7 @@ fn a_shift_of_a_fraction_of_a_sample_is_found_at_two_rates() {
 fn constant_unlike_and_periodic_signals_have_no_shift() {
     let fixed = signals(0.0, 100.0, 3000);
     let of = |signals: &[Vec<f32>]| {
-        let sampled = |signals| Sampled {
+        let sampled = |signals| SampledSignals {
             start_s: 0.0,
             rate_hz: 100.0,
             signals,
@@ -67,7 +67,7 @@ fn constant_unlike_and_periodic_signals_have_no_shift() {
             .map(|i| (TAU * 0.02 * f64::from(i)).sin() as f32)
             .collect(),
     ];
-    let sampled = Sampled {
+    let sampled = SampledSignals {
         start_s: 0.0,
         rate_hz: 100.0,
         signals: &sine,
@@ -80,7 +80,7 @@ fn constant_unlike_and_periodic_signals_have_no_shift() {
 #[test]
 fn values_between_samples_are_those_of_the_cubic() {
     let samples: Vec<Vec<f32>> = vec![(0..8).map(|i| (i * i * i - 5 * i * i) as f32).collect()];
-    let sampled = Sampled {
+    let sampled = SampledSignals {
         start_s: 2.0,
         rate_hz: 4.0,
         signals: &samples,

@@ -7,7 +7,7 @@ use crate::series::{Channel, SeriesError};
 use crate::vehicle::chassis::{LeafSeat, split_leaf};
 use crate::vehicle::checks::check_mass_closure;
 use crate::vehicle::equations::Equation;
-use crate::vehicle::fit::{Allowed, fit};
+use crate::vehicle::fit::{ParameterRange, fit};
 use crate::vehicle::interval::spread;
 use crate::vehicle::layout::MassStep;
 use crate::vehicle::loads::static_loads;
@@ -99,7 +99,7 @@ fn intervals_hold_the_truth_in_95_of_100_records_with_coloured_residuals() {
             target,
             driven: true,
         }];
-        let f = fit(&equations, &[Allowed::Free, Allowed::Free]);
+        let f = fit(&equations, &[ParameterRange::Free, ParameterRange::Free]);
         // Correlation falls to 1/e in 20 samples: blocks of 100.
         let s = spread(&equations, &f, 100.0, 1.0);
         for (k, truth) in [(0, 2.0), (1, -3.0)] {
@@ -126,12 +126,15 @@ fn a_parameter_against_nature_stops_at_its_bound_and_the_rest_is_fitted_around_i
         target,
         driven: true,
     }];
-    let f = fit(&equations, &[Allowed::Within(0.0, f64::INFINITY); 2]);
+    let f = fit(&equations, &[ParameterRange::Within(0.0, f64::INFINITY); 2]);
     assert_eq!((f.active.as_slice(), f.values[1]), (&[1][..], 0.0));
     assert!((f.values[0] - 2.0).abs() < 0.1);
     let f = fit(
         &equations,
-        &[Allowed::Known(2.0), Allowed::Within(-1.0, -0.6)],
+        &[
+            ParameterRange::Known(2.0),
+            ParameterRange::Within(-1.0, -0.6),
+        ],
     );
     assert_eq!(f.values, [2.0, -0.6]);
 }

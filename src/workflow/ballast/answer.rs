@@ -1,6 +1,6 @@
 //! The answer of `ballast` and its findings.
 
-use super::completed::MassCards;
+use super::completed_deck::MassCards;
 use super::task::{CompletedDeck, DECK, Task, force, length, mass};
 use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity};
@@ -13,7 +13,7 @@ use serde::Serialize;
 
 /// Masses that complete a model, report units.
 #[derive(Serialize)]
-pub struct Ballasted {
+pub struct BallastAnswer {
     /// The masses.
     pub masses: Vec<HungMass>,
     /// Reactions by wheel.
@@ -25,7 +25,7 @@ pub struct Ballasted {
     /// Number of unknowns: three for each mass.
     pub numbers_asked: usize,
     /// All masses together, from statics alone.
-    pub together: Together,
+    pub together: TotalMass,
     /// Name of the completed deck.
     pub completed_deck: String,
     /// Height of the masses (no influence on a level floor).
@@ -39,7 +39,7 @@ pub struct Ballasted {
     pub job: Job,
 }
 
-impl Answer for Ballasted {
+impl Answer for BallastAnswer {
     const COMMAND: &'static str = "ballast";
     const RESULT: &'static str = "The masses";
 
@@ -104,7 +104,7 @@ pub struct Reaction {
 
 /// Total missing mass and its centre, from the resultant of the measured reactions less the reactions of the model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Together {
+pub struct TotalMass {
     /// Mass.
     pub mass: f64,
     /// Standard deviation of the total mass.
@@ -116,7 +116,7 @@ pub struct Together {
 }
 
 /// Result of the sizing, job units.
-pub(super) struct Sized<'a> {
+pub(super) struct BallastSizing<'a> {
     pub run: String,
     pub measured: &'a [f64],
     pub sigma: &'a [f64],
@@ -130,8 +130,8 @@ pub(super) struct Sized<'a> {
 /// The answer in report units, once it has its deck.
 pub(super) fn report_ballast(
     task: &Task,
-    sized: &Sized,
-) -> impl FnOnce(CompletedDeck) -> Ballasted + use<> {
+    sized: &BallastSizing,
+) -> impl FnOnce(CompletedDeck) -> BallastAnswer + use<> {
     let (job, g) = (task.job.clone(), task.gravity);
     let (f, l, m) = (force(&job), length(&job), mass(&job));
     let masses: Vec<HungMass> = sized
@@ -161,7 +161,7 @@ pub(super) fn report_ballast(
         .collect();
     let (run, numbers_fixed, height) = (sized.run.clone(), sized.fit.fixed, sized.height * l);
     let together = missing_mass_resultant(task, sized);
-    move |deck| Ballasted {
+    move |deck| BallastAnswer {
         numbers_asked: 3 * masses.len(),
         masses,
         reactions,
@@ -176,7 +176,7 @@ pub(super) fn report_ballast(
 }
 
 /// Statics alone: the reactions' resultant less the model's own.
-fn missing_mass_resultant(task: &Task, sized: &Sized) -> Together {
+fn missing_mass_resultant(task: &Task, sized: &BallastSizing) -> TotalMass {
     let (job, g) = (task.job, task.gravity);
     let (l, m) = (length(job), mass(job));
     let pairs = sized.measured.iter().zip(sized.before);
@@ -193,7 +193,7 @@ fn missing_mass_resultant(task: &Task, sized: &Sized) -> Together {
             .sum();
         [at * l, var.sqrt() / total.abs() * l]
     });
-    Together {
+    TotalMass {
         mass: total / g * m,
         mass_sigma: spread / g * m,
         position: [centre[0][0], centre[1][0]],

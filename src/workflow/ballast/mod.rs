@@ -1,10 +1,10 @@
 //! `ballast`: lumped masses that bring the model's reactions to the measured ones, and the deck with them in it.
 
 mod answer;
-mod completed;
+mod completed_deck;
 mod task;
 
-pub use answer::{Ballasted, HungMass, Reaction, Together};
+pub use answer::{BallastAnswer, HungMass, Reaction, TotalMass};
 pub use task::CompletedDeck;
 
 use crate::fe::floor::solve_standing;
@@ -20,7 +20,7 @@ use crate::model::{GridIx, Vec3};
 use crate::payload::{BallastFit, BallastSpec, Carriers, size_ballast, spread};
 use crate::strain_chain::deck::DeckModel;
 use crate::strain_chain::job_deck::read_deck;
-use crate::strain_chain::named_results::{Absent, check_named, check_tables};
+use crate::strain_chain::named_results::{MissingResults, check_named, check_tables};
 use crate::units::{Quantity, number};
 use nastran::bdf::{Edits, write_edited};
 use task::{Task, force};
@@ -48,7 +48,7 @@ const ASSUMED_NOISE: f64 = 0.01;
 /// assert!((found.together.mass - gearbox.mass).abs() < 0.5);
 /// # Ok::<(), strainbridge::Faults>(())
 /// ```
-pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
+pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<BallastAnswer>, Faults> {
     let mut work = Work::of_job(cx, job);
     let read = read_asked(&mut work, job)?;
     let job = &job.with_property_ids(&read.model.property_names)?;
@@ -87,17 +87,17 @@ pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
     let fit = work.stage("size", |_| {
         size(&task, &carriers, height, [&before, &measured], &spec)
     })?;
-    let (cards, text) = completed::cards(&task, &carriers, &fit, height);
+    let (cards, text) = completed_deck::cards(&task, &carriers, &fit, height);
     let mut edits = Edits::default();
     edits.insert_cards(&read.deck, &text);
     let edited = write_edited(&read.deck, &edits);
     let after = work.stage("solve completed deck", |s| {
-        completed::solve_completed(s, &task, &edited)
+        completed_deck::solve_completed(s, &task, &edited)
     })?;
     answer::judge(&mut work, &task, &run, &measured, &after, &fit, &spec);
     work.findings
         .extend(answer::far_beyond(&task, &run, &before, &fit));
-    let sized = answer::Sized {
+    let sized = answer::BallastSizing {
         run,
         measured: &measured,
         sigma: &sigma,
@@ -148,7 +148,7 @@ fn read_asked(work: &mut Work, job: &Job) -> Result<DeckModel, Faults> {
     let files = job.model.as_ref().ok_or_else(|| {
         missing_section(job, "model", "name the deck: [model] deck = \"model.bdf\"")
     })?;
-    check_named(work, job, Absent::Refused)?;
+    check_named(work, job, MissingResults::Refused)?;
     check_tables(work, job)?;
     let read = work.stage("read model", |s| read_deck(s, job, files))?;
     if read.deck.sources.is_empty() {

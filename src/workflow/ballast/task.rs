@@ -1,6 +1,6 @@
 //! Inputs of `ballast`, and the completed deck.
 
-use crate::fe::floor::Standing;
+use crate::fe::floor::FloorSolution;
 use crate::job::{Ballast, Job};
 use crate::measured::wheels::Wheels;
 use crate::strain_chain::deck::DeckModel;
@@ -31,7 +31,7 @@ pub(super) struct Task<'a> {
     pub ballast: &'a Ballast,
     pub read: &'a DeckModel,
     pub wheels: Wheels,
-    pub standing: Standing,
+    pub standing: FloorSolution,
     pub gravity: f64,
 }
 

@@ -5,7 +5,7 @@ use crate::calibrate::CheckedRun;
 use crate::estimate::{NORMAL_95, TOO_FEW, chance_of_so_few};
 use crate::finding::{Finding, Severity, list_few};
 use crate::units::number;
-use crate::workflow::recover::Listed;
+use crate::workflow::recover::ListedLoads;
 
 /// Chance of so few check loads within their intervals, where these are right, up to which they are reported.
 const SELDOM: f64 = 0.05;
@@ -13,7 +13,7 @@ const SELDOM: f64 = 0.05;
 const FAR: f64 = 2.0;
 
 /// Loads of the check runs, and combinations, report units. The interval of the comparison includes the error of the applied load.
-pub(super) fn compare_check_loads(checked: &[CheckedRun], listed: &Listed) -> Vec<CheckLoad> {
+pub(super) fn compare_check_loads(checked: &[CheckedRun], listed: &ListedLoads) -> Vec<CheckLoad> {
     let of_run = |c: &CheckedRun| -> Vec<CheckLoad> {
         let k = c.run.loads.mean.len();
         let mut estimate = c.estimate.clone();

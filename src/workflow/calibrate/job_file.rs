@@ -1,10 +1,10 @@
 //! `calibrated.toml`: the job with the calibrated S in it.
 
-use super::Calibrated;
+use super::CalibratedSensitivity;
 use crate::host::fault::{Fault, Faults};
 use crate::units::MICROSTRAIN;
+use crate::workflow::reconcile::folder_paths::relative_path;
 use crate::workflow::reconcile::redirect::redirect;
-use crate::workflow::reconcile::relative::relative_path;
 use std::collections::BTreeSet;
 use std::path::Path;
 use toml::{Table, Value};
@@ -14,7 +14,7 @@ use toml::{Table, Value};
 ///
 /// # Errors
 /// A job that is no TOML, which is a mistake of the program.
-pub fn calibrated_job(answer: &Calibrated, out: &Path) -> Result<String, Faults> {
+pub fn calibrated_job(answer: &CalibratedSensitivity, out: &Path) -> Result<String, Faults> {
     let job = &answer.job;
     let mistake = |e: String| {
         Faults::from(Fault::new(

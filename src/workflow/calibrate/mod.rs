@@ -1,12 +1,12 @@
 //! `calibrate`: S from runs of known load, fused with the model's where there is one; the job that the other workflows run with it.
 
-mod asked;
 mod checks;
-mod glued;
+mod installed_positions;
 mod job_file;
-mod known;
+mod known_loads;
 mod outcome;
 mod payloads;
+mod run_selection;
 mod said;
 
 pub use job_file::calibrated_job;
@@ -24,11 +24,11 @@ use crate::job::{Job, JobLoad, LoadRole, Measured, Reference, Runs, Terms};
 use crate::linalg::Matrix;
 use crate::measured::faults::no_gauge_column;
 use crate::measured::strain_table::StrainTable;
-use crate::measured::zero::{Zeroed, judged_to_learn, read_zeroed, reads_strain, some_left};
+use crate::measured::zero::{ZeroedTable, judged_to_learn, read_zeroed, reads_strain, some_left};
 use crate::recovery::Readings;
 use crate::sensitivity::{Load, Sensitivity};
 use crate::strain_chain::named_results::check_tables;
-use crate::strain_chain::{Prepared, given_as_asked, prepare, stated_noise};
+use crate::strain_chain::{JobSensitivity, given_as_asked, prepare, stated_noise};
 use crate::units::MICROSTRAIN;
 use crate::workflow::reconcile::redirect::text_of;
 use crate::workflow::recover::list_load_columns;
@@ -67,7 +67,7 @@ use crate::workflow::recover::list_load_columns;
 /// }
 /// # Ok::<(), strainbridge::Faults>(())
 /// ```
-pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults> {
+pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<CalibratedSensitivity>, Faults> {
     let mut work = Work::of_job(cx, job);
     let job = &job.without_validation_gauges()?;
     check_tables(&work, job)?;
@@ -81,7 +81,7 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
     let names = zeroed.runs()?;
     let noise_factor = &zeroed.noise_factor;
     let prior_is_given = prior.is_some();
-    let as_run = |k: &known::Known| KnownRun {
+    let as_run = |k: &known_loads::LoadedRun| KnownRun {
         run: names[k.row].clone(),
         strain: strain[k.row].strain.clone(),
         noise_factor: noise_factor[k.row],
@@ -99,8 +99,8 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
         common_zero: common_zero(job, prior_is_given)?,
         scale_sd: job.calibration.scale_sd,
     };
-    let sites = match glued::tolerance(&job.calibration) {
-        Some(t) => Some((t, glued::Sites::from_job(job, &prepared, t)?)),
+    let sites = match installed_positions::tolerance(&job.calibration) {
+        Some(t) => Some((t, installed_positions::Sites::from_job(job, &prepared, t)?)),
         None => None,
     };
     let found = work
@@ -142,9 +142,11 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
         &listed.names[..task.loads.len()],
     ));
     work.findings
-        .extend(glued::report_undetermined_values(&calibration.gauges));
+        .extend(installed_positions::report_undetermined_values(
+            &calibration.gauges,
+        ));
     let glued = found.as_glued.iter().enumerate();
-    let answer = Calibrated {
+    let answer = CalibratedSensitivity {
         calibration,
         glued: glued
             .map(|(g, a)| sites.as_ref().and_then(|(_, s)| s.locate_gauge(g, a)))
@@ -214,7 +216,7 @@ pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
 ///
 /// # Errors
 /// Those of the file; a record.
-fn strain_of_runs(work: &mut Work, job: &Job, measured: &Measured) -> Result<Zeroed, Faults> {
+fn strain_of_runs(work: &mut Work, job: &Job, measured: &Measured) -> Result<ZeroedTable, Faults> {
     let zeroed = read_zeroed(work, job, measured, &measured.strain)?;
     zeroed.runs()?;
     Ok(zeroed)
@@ -228,12 +230,12 @@ fn read(
     work: &mut Work,
     job: &Job,
     (measured, runs): (&Measured, &Runs),
-    zeroed: &Zeroed,
+    zeroed: &ZeroedTable,
     s: &Sensitivity,
     origin: [f64; 2],
-) -> Result<(known::KnownRuns, Vec<Readings>), Faults> {
+) -> Result<(known_loads::KnownRuns, Vec<Readings>), Faults> {
     let names = zeroed.runs()?;
-    let known = known::read_known(work, job, (runs, measured), names, &s.loads, origin)?;
+    let known = known_loads::read_known(work, job, (runs, measured), names, &s.loads, origin)?;
     check_readings(job, measured, &zeroed.table, &s.gauges)?;
     let read = zeroed.readings(&s.gauges);
     let strain = judged_to_learn(work, job, measured, &s.gauges, read);
@@ -242,7 +244,7 @@ fn read(
 }
 
 /// Place in plan, m, of the grid where the payload acts; zeros without a model.
-fn payload_place(job: &Job, prepared: &Prepared) -> [f64; 2] {
+fn payload_place(job: &Job, prepared: &JobSensitivity) -> [f64; 2] {
     let model = prepared.fields.as_ref().map(|f| f.model());
     let grid = model.zip(job.payload_grid()).and_then(|(model, id)| {
         let at = model.grids.get(model.grid_ix(id)?.us())?;
@@ -290,13 +292,13 @@ fn prior(
     work: &mut Work,
     job: &Job,
     table: &StrainTable,
-) -> Result<(Prepared, Option<ModelPrior>), Faults> {
+) -> Result<(JobSensitivity, Option<ModelPrior>), Faults> {
     if job.model.is_some() || job.sensitivity.is_some() {
         let prepared = prepare(work, job)?;
         let prior = ModelPrior {
             values: prepared.sensitivity.values.clone(),
             moves: Vec::new(),
-            off_drawing: glued::off_drawing(job, &prepared)?,
+            off_drawing: installed_positions::off_drawing(job, &prepared)?,
             uncertainty_rel: job.calibration.model_uncertainty_rel,
         };
         return Ok((prepared, Some(prior)));
@@ -310,7 +312,7 @@ fn prior(
         )
         .into());
     }
-    let prepared = Prepared {
+    let prepared = JobSensitivity {
         sensitivity: stated_alone(job, table),
         fields: None,
         gauges: Vec::new(),

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 
 /// A calibrated S.
 #[derive(Serialize)]
-pub struct Calibrated {
+pub struct CalibratedSensitivity {
     /// Summary of the calibration.
     pub calibration: CalibrationSummary,
     /// S with its covariance.
@@ -37,7 +37,7 @@ pub struct Calibrated {
     pub job: Job,
 }
 
-impl Answer for Calibrated {
+impl Answer for CalibratedSensitivity {
     const COMMAND: &'static str = "calibrate";
     const RESULT: &'static str = "The calibrated sensitivities";
 

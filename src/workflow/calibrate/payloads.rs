@@ -26,11 +26,11 @@ pub(super) struct Payloads {
     /// Whether the job has loads that are the payload's.
     taught: bool,
     /// Loads that are made of the weight and its place.
-    made: Vec<Made>,
+    made: Vec<WeightLoad>,
 }
 
 /// A load that is the weight times an arm.
-struct Made {
+struct WeightLoad {
     /// Number of the load.
     load: usize,
     /// By row of the table: the arm, where an sd of the weight is stated.
@@ -101,7 +101,7 @@ pub(super) fn add_columns(
         let name = format!("{}_sd", load.name);
         push(table, headers, &name, rows.iter().enumerate().map(spread));
         let stated = rows.iter().zip(&sd);
-        made.push(Made {
+        made.push(WeightLoad {
             load: number,
             arms: stated.map(|(r, sd)| sd.map(|_| of(r))).collect(),
         });
@@ -176,7 +176,7 @@ impl Payloads {
     /// Puts into the covariance of a row's `k` known loads, so far that of independent ones, that those made of one weight share its error:
     /// `Cov(W a, W b) = sd_W^2 a b`.
     pub fn share_error(&self, row: usize, covariance: &mut [f64], k: usize) {
-        let arm = |m: &Made| Some((m.load, m.arms.get(row).copied()??));
+        let arm = |m: &WeightLoad| Some((m.load, m.arms.get(row).copied()??));
         let made: Vec<(usize, f64)> = self.made.iter().filter_map(arm).collect();
         for (l, a) in &made {
             for (m, b) in made.iter().filter(|m| m.0 != *l) {

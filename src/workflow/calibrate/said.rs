@@ -6,7 +6,7 @@ use crate::estimate::student_95;
 use crate::finding::{Finding, Severity};
 use crate::strain_chain::LoadUnits;
 use crate::units::{MICROSTRAIN, number};
-use crate::workflow::recover::Listed;
+use crate::workflow::recover::ListedLoads;
 use std::collections::BTreeMap;
 
 /// Chance under which a dependence is worth a word.
@@ -36,7 +36,7 @@ impl DependenceSummary {
 }
 
 /// The largest known load of each unit, where there is no model that its strain could be held against.
-pub(super) fn report_unchecked_loads(task: &Task, listed: &Listed) -> Option<Finding> {
+pub(super) fn report_unchecked_loads(task: &Task, listed: &ListedLoads) -> Option<Finding> {
     if task.model.is_some() {
         return None;
     }
@@ -94,7 +94,7 @@ fn largest_known_load(task: &Task, l: usize) -> f64 {
 pub(super) fn report_uneven_loads(
     task: &Task,
     found: &Calibration,
-    listed: &Listed,
+    listed: &ListedLoads,
 ) -> Option<Finding> {
     if task.model.is_some() {
         return None;
@@ -192,7 +192,7 @@ pub(super) fn dependence(
 pub(super) fn words(
     task: &Task,
     found: &Calibration,
-    listed: &Listed,
+    listed: &ListedLoads,
     next_run: Option<NextRunSummary>,
     dependence: Option<DependenceSummary>,
 ) -> CalibrationSummary {
@@ -222,7 +222,7 @@ pub(super) fn words(
             loads: rows.enumerate().map(one).collect(),
         }
     };
-    let terms = |u: &crate::calibrate::Undetermined| -> BTreeMap<String, f64> {
+    let terms = |u: &crate::calibrate::UndeterminedCombination| -> BTreeMap<String, f64> {
         task.loads
             .iter()
             .zip(&u.terms)
@@ -245,7 +245,10 @@ pub(super) fn words(
                 shift: s.shift,
                 scale: s.scale,
                 looks_like: s.word.name(),
-                as_glued: found.as_glued.get(g).map(super::glued::summary),
+                as_glued: found
+                    .as_glued
+                    .get(g)
+                    .map(super::installed_positions::summary),
             })
             .collect(),
         repeat_scatter_rel: found.repeat_scatter_rel,
@@ -302,7 +305,7 @@ pub(super) fn words(
 
 /// Ranges by load, report units; a load that no run states has none.
 fn ranges<'a>(
-    listed: &Listed,
+    listed: &ListedLoads,
     names: impl Iterator<Item = &'a str>,
     ranges: &[[f64; 2]],
 ) -> BTreeMap<String, [f64; 2]> {
@@ -313,7 +316,7 @@ fn ranges<'a>(
 }
 
 /// Recovered less known loads over the runs, by load.
-fn residuals(task: &Task, found: &Calibration, listed: &Listed) -> Vec<LoadResidual> {
+fn residuals(task: &Task, found: &Calibration, listed: &ListedLoads) -> Vec<LoadResidual> {
     let fitted = found.recover_used_runs(task.noise, &task.runs);
     let rms = |v: &[f64]| (v.iter().map(|x| x * x).sum::<f64>() / v.len().max(1) as f64).sqrt();
     let one = |l: usize| {

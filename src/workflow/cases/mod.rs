@@ -14,10 +14,10 @@ use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::job::{Component, Job, JobLoad, LoadActs};
 use crate::model::{Grid, Model};
+use crate::strain_chain::built_in_solver::support_of_job;
 use crate::strain_chain::job_deck::read_deck;
-use crate::strain_chain::named_results::{Absent, check_named};
+use crate::strain_chain::named_results::{MissingResults, check_named};
 use crate::strain_chain::repeated_subcases::refuse_repeated_subcases;
-use crate::strain_chain::solved::support_of_job;
 use nastran::bdf::{Deck, Edits, Field, format_card, write_edited};
 use nastran::cards::Force;
 use serde::Serialize;
@@ -149,7 +149,7 @@ pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
         ));
     }
     // Those of the deck that is written here come of a run that is still to be made.
-    check_named(&work, job, Absent::ToCome)?;
+    check_named(&work, job, MissingResults::ToCome)?;
     let read = work.stage("read deck", |s| read_deck(s, job, files))?;
     refuse_repeated_subcases(&read)?;
     if read.deck.sources.is_empty() {

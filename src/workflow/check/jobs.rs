@@ -1,7 +1,7 @@
 //! A job: its own faults, the files it names, and what the commands read of them, by their own readers.
 
-use super::asked::{ask, recovers};
-use super::checked::Checked;
+use super::checked_files::CheckedFiles;
+use super::command_checks::{ask, recovers};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::outcome::StatedUnits;
 use crate::host::work::Work;
@@ -12,17 +12,23 @@ use crate::measured::runs_file;
 use crate::measured::zero::read_zeroed;
 use crate::model::Model;
 use crate::sensitivity::Sensitivity;
+use crate::strain_chain::built_in_solver::{relief_of_job, support_finding, support_of_job};
 use crate::strain_chain::job_deck::against_units;
-use crate::strain_chain::solved::{relief_of_job, support_finding, support_of_job};
 use crate::strain_chain::{given_as_asked, point_findings};
 use crate::workflow::{calibrate, identify, reconcile, recover, respond};
 use std::collections::HashSet;
 use std::path::Path;
 
 /// Looks into a file: of a folder, as named.
-type Look = fn(&mut Work, &Path, &str, &mut Checked);
+type Look = fn(&mut Work, &Path, &str, &mut CheckedFiles);
 
-pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checked, into: Look) {
+pub(super) fn look(
+    work: &mut Work,
+    base: &Path,
+    given: &str,
+    found: &mut CheckedFiles,
+    into: Look,
+) {
     let job = match job::read_job(&mut work.inputs, &base.join(given)) {
         Ok(job) => job,
         Err(f) => return found.faults.extend(f),
@@ -172,7 +178,7 @@ fn signatures(
 }
 
 /// Opens every file that the job names; decks and results are looked into.
-fn files(work: &mut Work, job: &Job, found: &mut Checked, into: Look) {
+fn files(work: &mut Work, job: &Job, found: &mut CheckedFiles, into: Look) {
     if let Some(m) = &job.model {
         let before = found.decks.len();
         for named in std::iter::once(&m.deck).chain(&m.results) {

@@ -3,20 +3,20 @@
 //! `kind` finds the kind of a file; `checked` is the answer; `decks`, `results` and `records` describe them; `jobs` follows a job to
 //! the files it names, and `asked` asks what commands make of them; `together` compares.
 
-mod asked;
-mod checked;
+mod checked_files;
+mod command_checks;
+mod deck_result_comparison;
 mod decks;
 mod jobs;
 mod kind;
 mod records;
 mod results;
-mod together;
 
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::Outcome;
 use crate::host::work::Work;
-pub use checked::Checked;
+pub use checked_files::CheckedFiles;
 pub use decks::DeckEntry;
 use kind::{Kind, kind_of};
 pub use records::RecordEntry;
@@ -43,14 +43,16 @@ use std::path::{Path, PathBuf};
 /// assert!(found.next_step().is_none());
 /// # Ok::<(), strainbridge::Faults>(())
 /// ```
-pub fn check(files: &[PathBuf], cx: &Context) -> Result<Outcome<Checked>, Faults> {
+pub fn check(files: &[PathBuf], cx: &Context) -> Result<Outcome<CheckedFiles>, Faults> {
     let mut work = Work::new(cx);
-    let mut found = Checked::default();
+    let mut found = CheckedFiles::default();
     for file in files {
         let given = file.display().to_string();
         work.stage("read", |w| look(w, Path::new(""), &given, &mut found));
     }
-    work.stage("compare", |w| together::compare(w, &mut found));
+    work.stage("compare", |w| {
+        deck_result_comparison::compare(w, &mut found)
+    });
     for deck in &found.decks {
         work.findings
             .extend(deck.contradictions_of_suggested_units());
@@ -60,7 +62,7 @@ pub fn check(files: &[PathBuf], cx: &Context) -> Result<Outcome<Checked>, Faults
 }
 
 /// Looks into one file.
-fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checked) {
+fn look(work: &mut Work, base: &Path, given: &str, found: &mut CheckedFiles) {
     let bytes = match work.inputs.read(base, given) {
         Ok(b) => b,
         Err(f) => return found.faults.push(f),

@@ -4,7 +4,7 @@ use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, FaultList};
 use crate::host::files::FileBytes;
 use crate::host::work::Work;
-use nastran::results::{Block, ResultsFile, Salvaged};
+use nastran::results::{Block, ResultsFile, SalvagedFile};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -116,7 +116,7 @@ pub(super) fn look(
 fn describe(
     given: &str,
     bytes: &FileBytes,
-    read: &Salvaged<ResultsFile>,
+    read: &SalvagedFile<ResultsFile>,
 ) -> (ResultEntry, Vec<Finding>, Vec<Fault>) {
     let file = &read.file;
     let mut faults: Vec<Fault> = read

@@ -4,7 +4,7 @@ use crate::finding::Finding;
 use crate::host::whole_file::Stamp;
 use crate::recovery::UNEXPLAINED;
 use crate::series::rainflow::Tally;
-use crate::series::rainflow::absent::number;
+use crate::series::rainflow::nullable_numbers::number;
 use serde::{Deserialize, Serialize};
 
 /// One load over the record.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 /// In which order a date that does not begin with its year has day and month.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum First {
+enum DayMonthOrder {
     #[default]
     Day,
     Month,
@@ -25,7 +25,7 @@ pub enum DayOrder {
 
 /// Days whose order is ambiguous.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Unordered {
+pub struct AmbiguousDays {
     /// Reason why the order is ambiguous.
     pub wrong: String,
     /// Remedy.
@@ -49,7 +49,7 @@ impl DayOrder {
     ///
     /// # Errors
     /// Dates whose day and month could be exchanged with a change of order; dates that contradict each other; a mix of dates and other names.
-    pub fn from_names<'a>(names: impl Iterator<Item = &'a str>) -> Result<Self, Unordered> {
+    pub fn from_names<'a>(names: impl Iterator<Item = &'a str>) -> Result<Self, AmbiguousDays> {
         let names: BTreeSet<&str> = names.collect();
         let dates: Vec<(&str, Option<Date>)> = names.iter().map(|n| (*n, date(n))).collect();
         let of_year_last: Vec<(&str, Date)> = dates
@@ -67,7 +67,7 @@ impl DayOrder {
             if of_year_last.iter().all(|(_, d)| d.is_short) {
                 return Ok(Self::Numbers);
             }
-            return Err(Unordered {
+            return Err(AmbiguousDays {
                 wrong: format!(
                     "the order of the days `{first}` and `{other}` is unknown: one is a date, the other is not"
                 ),
@@ -76,7 +76,7 @@ impl DayOrder {
         }
         let is = |of: [bool; 2]| of_year_last.iter().find(|(_, d)| fits(d) == of);
         match (is([true, false]), is([false, true])) {
-            (Some((a, _)), Some((b, _))) => Err(Unordered {
+            (Some((a, _)), Some((b, _))) => Err(AmbiguousDays {
                 wrong: format!(
                     "the days `{a}` and `{b}` have different formats: one has the day before the month, the other the month before the day"
                 ),
@@ -85,15 +85,15 @@ impl DayOrder {
             (Some(_), None) => Ok(Self::DayFirst),
             (None, Some(_)) => Ok(Self::MonthFirst),
             (None, None) => {
-                let order = |first: First| {
+                let order = |first: DayMonthOrder| {
                     let mut list: Vec<&str> = names.iter().copied().collect();
                     list.sort_by(|a, b| by_date(first, a, b));
                     list
                 };
-                if order(First::Day) == order(First::Month) {
+                if order(DayMonthOrder::Day) == order(DayMonthOrder::Month) {
                     return Ok(Self::DayFirst);
                 }
-                Err(Unordered {
+                Err(AmbiguousDays {
                     wrong: format!(
                         "the day `{first}` may have its day or its month first, and no other day determines which"
                     ),
@@ -107,8 +107,8 @@ impl DayOrder {
     pub fn compare(self, a: &str, b: &str) -> Ordering {
         match self {
             Self::Numbers => by_numbers(a, b),
-            Self::DayFirst => by_date(First::Day, a, b),
-            Self::MonthFirst => by_date(First::Month, a, b),
+            Self::DayFirst => by_date(DayMonthOrder::Day, a, b),
+            Self::MonthFirst => by_date(DayMonthOrder::Month, a, b),
         }
     }
 }
@@ -121,14 +121,14 @@ fn fits(d: &Date) -> [bool; 2] {
 }
 
 /// By year, month and day, then by the names.
-fn by_date(first: First, a: &str, b: &str) -> Ordering {
+fn by_date(first: DayMonthOrder, a: &str, b: &str) -> Ordering {
     let key = |name: &str| match date(name) {
         Some(d) => {
             let [x, y] = d.two;
             match first {
-                First::Day => [d.year, y, x],
-                First::Month if d.is_told => [d.year, y, x],
-                First::Month => [d.year, x, y],
+                DayMonthOrder::Day => [d.year, y, x],
+                DayMonthOrder::Month if d.is_told => [d.year, y, x],
+                DayMonthOrder::Month => [d.year, x, y],
             }
         }
         None => year_first(name).unwrap_or_default(),
@@ -204,7 +204,7 @@ fn month(text: &str) -> Option<u32> {
 
 /// A date in a name.
 #[derive(Clone, Copy)]
-enum Found {
+enum NameDate {
     /// Year, month and day: `2026-05-31`, `20260531`, `2026-May-31`.
     YearFirst([u32; 3]),
     /// `31.05.2026`, `5-31-2026`, `31052026`, `31-May-2026`, `31.05.26`. Two digits are a year behind points alone.
@@ -212,7 +212,7 @@ enum Found {
 }
 
 /// The first date in a name.
-fn find_date(name: &str) -> Option<Found> {
+fn find_date(name: &str) -> Option<NameDate> {
     let words = words(name);
     let at = |i: usize| words.get(i..).unwrap_or_default();
     (0..words.len()).find_map(|i| match at(i) {
@@ -224,15 +224,15 @@ fn find_date(name: &str) -> Option<Found> {
 
 fn date(name: &str) -> Option<Date> {
     match find_date(name)? {
-        Found::YearLast(date) => Some(date),
-        Found::YearFirst(_) => None,
+        NameDate::YearLast(date) => Some(date),
+        NameDate::YearFirst(_) => None,
     }
 }
 
 fn year_first(name: &str) -> Option<[u32; 3]> {
     match find_date(name)? {
-        Found::YearFirst(date) => Some(date),
-        Found::YearLast(_) => None,
+        NameDate::YearFirst(date) => Some(date),
+        NameDate::YearLast(_) => None,
     }
 }
 
@@ -240,12 +240,12 @@ fn is_month_and_day(month: u32, day: u32) -> bool {
     (1..=12).contains(&month) && (1..=31).contains(&day)
 }
 
-fn of_three(a: &Word, b: &Word, c: &Word) -> Option<Found> {
+fn of_three(a: &Word, b: &Word, c: &Word) -> Option<NameDate> {
     let by_word = month(b.text);
     let second = || by_word.or_else(|| number(b.text, 1..=2));
     if let Some(y) = year(a.text) {
         let (m, d) = (second()?, number(c.text, 1..=2)?);
-        return is_month_and_day(m, d).then_some(Found::YearFirst([y, m, d]));
+        return is_month_and_day(m, d).then_some(NameDate::YearFirst([y, m, d]));
     }
     let points = [b.mark, c.mark] == ["."; 2];
     let divided = b.mark == c.mark && !b.mark.is_empty() || by_word.is_some();
@@ -257,11 +257,11 @@ fn of_three(a: &Word, b: &Word, c: &Word) -> Option<Found> {
         is_told: points || by_word.is_some(),
         is_short: long.is_none(),
     };
-    (divided && fits(&d) != [false, false]).then_some(Found::YearLast(d))
+    (divided && fits(&d) != [false, false]).then_some(NameDate::YearLast(d))
 }
 
 /// Eight digits.
-fn of_one(word: &Word) -> Option<Found> {
+fn of_one(word: &Word) -> Option<NameDate> {
     let digits = word.text;
     let (begin, end) = digits.split_at_checked(4).filter(|_| digits.len() == 8)?;
     let two = |text: &str| {
@@ -271,7 +271,7 @@ fn of_one(word: &Word) -> Option<Found> {
     if let (Some(y), Some([m, d])) = (year(begin), two(end))
         && is_month_and_day(m, d)
     {
-        return Some(Found::YearFirst([y, m, d]));
+        return Some(NameDate::YearFirst([y, m, d]));
     }
     let d = Date {
         year: year(end)?,
@@ -279,7 +279,7 @@ fn of_one(word: &Word) -> Option<Found> {
         is_told: false,
         is_short: false,
     };
-    (fits(&d) != [false, false]).then_some(Found::YearLast(d))
+    (fits(&d) != [false, false]).then_some(NameDate::YearLast(d))
 }
 
 /// Runs of digits by their number, the rest as text (`day9` before `day10`).
@@ -315,7 +315,7 @@ fn by_numbers(a: &str, b: &str) -> Ordering {
 mod tests {
     use super::*;
 
-    fn sort_names(names: &[&str]) -> Result<Vec<String>, Unordered> {
+    fn sort_names(names: &[&str]) -> Result<Vec<String>, AmbiguousDays> {
         let order = DayOrder::from_names(names.iter().copied())?;
         let mut list: Vec<String> = names.iter().map(|n| (*n).to_owned()).collect();
         list.sort_by(|a, b| order.compare(a, b));

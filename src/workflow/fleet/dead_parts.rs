@@ -1,15 +1,15 @@
 //! Gauges that are dead or stuck in a part of a record. Their readings are left out there, and the results of their days list these parts.
 
 use super::day::GaugeDay;
-use super::judged::Judged;
-use super::recovering::Recovering;
+use super::record_recovery::RecordRecovery;
+use super::sample_tests::TestedSamples;
 use crate::finding::Finding;
 use crate::host::fault::Fault;
 use crate::measured::faults::record_fault;
 use crate::recovery::ErrorModel;
-use crate::recovery::stuck::check;
+use crate::recovery::dead_gauges::check;
+use crate::series::constant_columns::{Gives, extent};
 use crate::series::record::{Clock, Record};
-use crate::series::still::{Gives, extent};
 use crate::workflow::recover::silent_in_part;
 use std::ops::Range;
 
@@ -22,8 +22,8 @@ pub(super) type DeadPart = (usize, Gives, Range<usize>);
 /// What can't be decoded.
 pub(super) fn dead_parts(
     record: &Record,
-    r: &Recovering,
-    judged: &Judged,
+    r: &RecordRecovery,
+    judged: &TestedSamples,
     errors: ErrorModel,
     noise_factor: f64,
 ) -> Result<Vec<DeadPart>, Fault> {

@@ -4,8 +4,8 @@ use super::day::{Day, GaugeDay, LoadDay};
 use super::dead_parts::{blank_of, dead_parts, told_dead};
 use super::exchange::find_exchange;
 use super::health::Health;
-use super::judged::{Judged, findings_of};
-use super::recovering::{Part, Recovering, UnderWay, count_pieces};
+use super::record_recovery::{Part, RecordRecovery, UnderWay, count_pieces};
+use super::sample_tests::{TestedSamples, findings_of};
 use super::scale::{noise_of, scales};
 use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, Faults};
@@ -18,16 +18,16 @@ use crate::measured::faults::record_fault;
 use crate::measured::gauge_columns::find_gauge_columns;
 use crate::recovery::ErrorModel;
 use crate::recovery::clock;
+use crate::recovery::dead_gauges::is_told_dead;
 use crate::recovery::history::{Filter, SampleLoads};
-use crate::recovery::stuck::is_told_dead;
-use crate::recovery::{Missing, Sums, UNEXPLAINED, Widening, check_gaps};
+use crate::recovery::{MissingReadings, Sums, UNEXPLAINED, Widening, check_gaps};
 use crate::sensitivity::{GaugeNoise, Sensitivity};
 use crate::series::SeriesError;
+use crate::series::constant_columns::{ColumnContents, Gives};
 use crate::series::rainflow::{Counter, Law, Marks};
 use crate::series::record::Record;
-use crate::series::still::{Gives, Still};
 use crate::units::MICROSTRAIN;
-use crate::workflow::recover::{Listed, silent_throughout};
+use crate::workflow::recover::{ListedLoads, silent_throughout};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
 use std::ops::ControlFlow;
@@ -41,8 +41,8 @@ const ENOUGH: usize = 200;
 struct Pass {
     counters: Vec<Counter>,
     health: Health,
-    missing: Missing,
-    judged: Judged,
+    missing: MissingReadings,
+    judged: TestedSamples,
     /// Number of samples with a missing reading, by the gauges that read.
     by_gauges: BTreeMap<Vec<usize>, u64>,
     /// Noise of each load for the count of its cycles, report unit.
@@ -62,7 +62,7 @@ pub struct Kernel {
     /// Range of each load of S in its calibration, job units; `None` where the job states none.
     pub ranges: Vec<Option<[f64; 2]>>,
     /// Loads of S, then sums of loads, whose cycles are counted, with their units.
-    pub listed: Listed,
+    pub listed: ListedLoads,
     /// Harm of a cycle.
     pub law: Law,
     /// Width of a class, by load and sum, report units.
@@ -146,7 +146,7 @@ impl Kernel {
     }
 
     /// The record, recovered and counted.
-    fn pass(&self, record: &Record, r: &Recovering) -> Result<Pass, Fault> {
+    fn pass(&self, record: &Record, r: &RecordRecovery) -> Result<Pass, Fault> {
         let k = self.listed.names.len();
         let noise = noise_of(r);
         let counter = |l: usize| {
@@ -157,8 +157,8 @@ impl Kernel {
         let mut pass = Pass {
             counters: (0..k).map(counter).collect(),
             health: Health::new(&r.s),
-            missing: Missing::new(k),
-            judged: Judged::new(r.used.len(), k, record.clock.samples),
+            missing: MissingReadings::new(k),
+            judged: TestedSamples::new(r.used.len(), k, record.clock.samples),
             by_gauges: BTreeMap::new(),
             noise,
         };
@@ -191,8 +191,8 @@ impl Kernel {
     /// the noise of the gauges. `None` if the stated errors remain valid, or if no interval is reliable.
     fn judge(
         &self,
-        r: &Recovering,
-        judged: Judged,
+        r: &RecordRecovery,
+        judged: TestedSamples,
         time_s: impl Fn(usize) -> f64,
         findings: &mut Vec<Finding>,
     ) -> (Option<Filter>, Option<GaugeNoise>) {
@@ -245,7 +245,7 @@ impl Kernel {
         &self,
         record: &Record,
         findings: &mut Vec<Finding>,
-    ) -> Result<Recovering, Faults> {
+    ) -> Result<RecordRecovery, Faults> {
         let all = &self.sensitivity;
         let columns = find_gauge_columns("record", record.columns(), &self.wanted_columns())?;
         let names: Vec<String> = columns
@@ -280,7 +280,7 @@ impl Kernel {
         }
         let n = found.len();
         let mut alive = Vec::new();
-        let mut looked = Still::new(n);
+        let mut looked = ColumnContents::new(n);
         looked.look(&sampled);
         // What one gives in a part alone is told by those who read there.
         let columns: Vec<Option<usize>> = found.iter().map(|f| Some(f.1)).collect();
@@ -299,7 +299,7 @@ impl Kernel {
         let alive_values = kept_columns(&sampled, &found, &alive);
         let silent = found.iter().filter(|f| alive.iter().all(|a| a.0 != f.0));
         let names = silent.filter_map(|f| all.gauges.get(f.0)).cloned();
-        Ok(Recovering {
+        Ok(RecordRecovery {
             silent: names.collect(),
             samples: record.clock.samples,
             ..self.build_recovery(&alive, &alive_values)?
@@ -346,7 +346,7 @@ impl Kernel {
         &self,
         alive: &[(usize, usize, [f64; 2])],
         sampled: &[f64],
-    ) -> Result<Recovering, Fault> {
+    ) -> Result<RecordRecovery, Fault> {
         let all = &self.sensitivity;
         let k = all.loads.len();
         let used: Vec<usize> = alive.iter().map(|a| a.0).collect();
@@ -437,7 +437,7 @@ impl Kernel {
         let values = |(g, l, f)| if l < k { s.values[(g, l)] / f } else { 0.0 };
         let values = |g: usize| row(g).map(values).collect();
         let by_row = (0..used.len()).map(values).collect();
-        Ok(Recovering {
+        Ok(RecordRecovery {
             filter,
             silent: Vec::new(),
             sensitivity: s,

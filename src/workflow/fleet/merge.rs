@@ -1,6 +1,6 @@
 //! Days of a vehicle, one after the other, as one.
 
-use super::compared::Reference;
+use super::damage_references::Reference;
 use super::day::{Day, FileHead, GaugeDay, LoadDay};
 use super::days::DayOrder;
 use super::gauge_history::is_misread;

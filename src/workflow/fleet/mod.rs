@@ -1,21 +1,18 @@
 //! `fleet`: records of many vehicles and days, one small result a file, merged by vehicle.
 //!
-//! [`kernel`] turns a record into a [`day::Day`], by any number of threads and without a file; [`kept`] keeps it by the digest of what it depends on,
+//! [`kernel`] turns a record into a [`day::Day`], by any number of threads and without a file; [`stored_results`] keeps it by the digest of what it depends on,
 //! so that a second run processes only new records and many machines can share one folder; [`merge`] joins the days of a vehicle exactly.
 
-mod asked;
-mod calibrated;
-mod compared;
+mod calibration_range;
+mod damage_references;
 pub mod day;
 mod days;
 mod dead_parts;
 mod drift;
 mod exchange;
-mod found;
 mod gauge_history;
 mod health;
-mod judged;
-pub mod kept;
+mod job_kernel;
 pub mod kernel;
 pub mod merge;
 mod mission;
@@ -23,34 +20,36 @@ pub mod name;
 mod other_scale;
 mod other_unit;
 mod outcome;
-mod prepared;
+mod record_findings;
+mod record_recovery;
 pub mod records;
-mod recovering;
+mod requested_records;
+mod sample_tests;
 mod scale;
+pub mod stored_results;
 
-pub use compared::ReferenceAnswer;
+pub use damage_references::ReferenceAnswer;
 pub use gauge_history::{DeadPart, GaugeHistory};
-pub use kept::digests_of;
+pub use job_kernel::kernel_of;
 pub use merge::{RecordOf, SampleOf};
 pub use mission::{KindAnswer, MissionAnswer, MissionLoad};
 pub use outcome::{FileAnswer, Fleet, VehicleAnswer, VehicleLoadAnswer};
-pub use prepared::kernel_of;
+pub use stored_results::digests_of;
 
 use crate::finding::{Finding, Severity, list_few};
 use crate::host::context::{Context, Files};
 use crate::host::fault::{Fault, Faults};
-use crate::host::files::Opened;
+use crate::host::files::OpenedFile;
 use crate::host::outcome::{Outcome, StatedUnits};
 use crate::host::words::count_of;
 use crate::host::work::{Work, cancelled_fault};
 use crate::job::{Fleet as FleetKeys, Job};
 use crate::measured::faults::record_fault;
 use crate::series::record::{Options, open_source};
-use compared::{Compared, check_targets};
+use damage_references::{DamageReferences, check_targets};
 use day::{Day, FileHead, FileResult};
 use days::DayOrder;
 use drift::drift;
-use kept::{KeptDays, digest};
 use kernel::Kernel;
 use merge::{Status, sort_files, vehicle};
 use name::{NameForm, Shard};
@@ -59,6 +58,7 @@ use other_unit::in_other_units;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use stored_results::{KeptDays, digest};
 
 /// Inputs of a fleet run.
 #[derive(Clone, Debug, Default)]
@@ -133,7 +133,7 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
     };
     // Before hours of work come to nothing.
     let asked = spec.files.iter();
-    let asked: Vec<name::Named> = asked
+    let asked: Vec<name::VehicleDay> = asked
         .filter_map(|p| form.read(&p.display().to_string()))
         .collect();
     order(&mut asked.iter().map(|n| n.day.as_str()))?;
@@ -151,7 +151,7 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
             .map(|f| f.day.as_str())
             .filter(|d| !d.is_empty()),
     )?;
-    let Merged {
+    let MergedVehicles {
         vehicles,
         status,
         compared,
@@ -179,10 +179,10 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
 }
 
 /// Result of merging the days.
-struct Merged {
+struct MergedVehicles {
     vehicles: Vec<VehicleAnswer>,
     status: Vec<Status>,
-    compared: Compared,
+    compared: DamageReferences,
 }
 
 /// Vehicles by name, the status of every file, and what damage is held against. The days of one vehicle are in memory at a time.
@@ -196,9 +196,9 @@ fn merge_vehicles(
     days_in: DayOrder,
     job: &str,
     keys: &FleetKeys,
-) -> Result<Merged, Faults> {
+) -> Result<MergedVehicles, Faults> {
     let (by_vehicle, status) = sort_files(files, days_in);
-    let mut compared = Compared::new(keys, kept, &by_vehicle);
+    let mut compared = DamageReferences::new(keys, kept, &by_vehicle);
     let mut vehicles = Vec::with_capacity(by_vehicle.len());
     for (name, list) in by_vehicle {
         work.go_on()?;
@@ -224,7 +224,7 @@ fn merge_vehicles(
         vehicles.push(VehicleAnswer::from_vehicle(v, keys));
     }
     VehicleAnswer::compare(&mut vehicles);
-    Ok(Merged {
+    Ok(MergedVehicles {
         vehicles,
         status,
         compared,
@@ -476,7 +476,7 @@ fn reason(faults: Faults) -> String {
 ///
 /// # Errors
 /// The reason why the loads or their damage can't be computed.
-pub fn day_of(kernel: &Kernel, opened: &Opened) -> Result<Day, Faults> {
+pub fn day_of(kernel: &Kernel, opened: &OpenedFile) -> Result<Day, Faults> {
     let options = Options {
         declared_hz: None,
         time_unit_s: kernel.time_unit_s,

@@ -17,7 +17,7 @@ enum Part {
 
 /// Vehicle and day in a file name.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Named {
+pub struct VehicleDay {
     /// The vehicle.
     pub vehicle: String,
     /// Day, as written in the name.
@@ -70,7 +70,7 @@ impl NameForm {
 
     /// Vehicle and day of a file; `None` where its path has another form. A place takes as little as it can, the last all that is left; none
     /// goes beyond a folder.
-    pub fn read(&self, file: &str) -> Option<Named> {
+    pub fn read(&self, file: &str) -> Option<VehicleDay> {
         let path = file.replace('\\', "/");
         let folders = (self.parts.iter())
             .filter_map(|p| match p {
@@ -112,7 +112,7 @@ impl NameForm {
                 _ => {}
             }
         }
-        let named = Named {
+        let named = VehicleDay {
             vehicle: vehicle.filter(|v| !v.is_empty())?,
             day: day.filter(|d| !d.is_empty())?,
         };

@@ -1,13 +1,13 @@
 //! The answer of `fleet`.
 
-use super::compared::{Compared, ReferenceAnswer};
+use super::damage_references::{DamageReferences, ReferenceAnswer};
 use super::day::FileHead;
 use super::days::DayOrder;
-use super::found::of_records;
 use super::gauge_history::{GainChange, GaugeHistory, moving_days};
 use super::kernel::Kernel;
 use super::merge::{RecordOf, SampleOf, Status, Vehicle, VehicleLoad};
 use super::mission::{MissionAnswer, MissionSums};
+use super::record_findings::of_records;
 use crate::finding::{Finding, Severity, list_few};
 use crate::host::outcome::Answer;
 use crate::host::words::count_of;
@@ -307,7 +307,7 @@ impl Fleet {
         vehicles: Vec<VehicleAnswer>,
         files: &[FileHead],
         status: &[Status],
-        compared: Compared,
+        compared: DamageReferences,
     ) -> Self {
         let mut listed: Vec<FileAnswer> = files
             .iter()

@@ -53,14 +53,14 @@ pub fn records_of(asked: &[PathBuf], form: &NameForm) -> Result<Vec<PathBuf>, Fa
     Ok(found.into_iter().collect())
 }
 
-type Wrong = (String, &'static str);
+type ProblemAndRemedy = (String, &'static str);
 
 fn is_pattern(path: &str) -> bool {
     path.contains(['*', '?', '['])
 }
 
 /// The records below a folder.
-fn find_records_in(folder: &Path, form: &NameForm) -> Result<Vec<PathBuf>, Wrong> {
+fn find_records_in(folder: &Path, form: &NameForm) -> Result<Vec<PathBuf>, ProblemAndRemedy> {
     let files = all_matching(&format!(
         "{}/**/*",
         Pattern::escape(&folder.display().to_string())
@@ -84,7 +84,7 @@ fn find_records_in(folder: &Path, form: &NameForm) -> Result<Vec<PathBuf>, Wrong
 }
 
 /// The files that a pattern matches.
-fn find_matching_files(pattern: &str) -> Result<Vec<PathBuf>, Wrong> {
+fn find_matching_files(pattern: &str) -> Result<Vec<PathBuf>, ProblemAndRemedy> {
     match all_matching(pattern)? {
         files if files.is_empty() => Err((
             "no file matches the pattern".to_owned(),
@@ -95,7 +95,7 @@ fn find_matching_files(pattern: &str) -> Result<Vec<PathBuf>, Wrong> {
 }
 
 /// Returns the files that a pattern matches, possibly none. Names that begin with a point are left out, as a shell leaves them out.
-fn all_matching(pattern: &str) -> Result<Vec<PathBuf>, Wrong> {
+fn all_matching(pattern: &str) -> Result<Vec<PathBuf>, ProblemAndRemedy> {
     let options = MatchOptions {
         require_literal_separator: true,
         require_literal_leading_dot: true,

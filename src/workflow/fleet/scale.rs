@@ -1,6 +1,6 @@
 //! Errors of the loads of a record by the gauges that read in it: those of all where all read, larger ones where some gave nothing.
 
-use super::recovering::Recovering;
+use super::record_recovery::RecordRecovery;
 use crate::recovery::Gain;
 use crate::recovery::history::Filter;
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ const SETS: usize = 16;
 const FAR: f64 = 1e6;
 
 /// Standard deviation of the noise in a sample, by load, report unit: root mean square over the record, dead parts of gauges by the gauges left.
-pub(super) fn noise_of(r: &Recovering) -> Vec<f64> {
+pub(super) fn noise_of(r: &RecordRecovery) -> Vec<f64> {
     let zeros = vec![0.0; r.factors.len()];
     let all = r.filter.sigma(&zeros);
     let samples = r.samples.max(1) as f64;
@@ -34,7 +34,7 @@ pub(super) fn noise_of(r: &Recovering) -> Vec<f64> {
 /// Covariance of the errors of scale of each load with every load, `n_loads x n_loads` a load: the mean over the samples of the record, of which
 /// `whole` have all gauges and `by_gauges` those named.
 pub(super) fn scales(
-    r: &Recovering,
+    r: &RecordRecovery,
     filter: &Filter,
     whole: u64,
     by_gauges: &BTreeMap<Vec<usize>, u64>,

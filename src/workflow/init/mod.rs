@@ -29,7 +29,7 @@ use crate::strain_chain::job_deck::against_suggested_units;
 use crate::strain_chain::named_results::RESULTS_REMEDY;
 use crate::units::likely_system;
 use nastran::results::ResultsFile;
-use propose::{LeftOutLoad, StrainFrom, Strained, proposals};
+use propose::{LeftOutLoad, StrainFrom, StrainResultFile, proposals};
 pub use purpose::{Purpose, init_for};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -264,7 +264,7 @@ fn read_strained(
     results: &[PathBuf],
     deck: &DeckModel,
     work: &mut Work,
-) -> Result<Vec<Strained>, Faults> {
+) -> Result<Vec<StrainResultFile>, Faults> {
     let options = ReadOptions {
         displacements: Displacements::Leave,
         ..ReadOptions::default()

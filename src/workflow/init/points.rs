@@ -3,7 +3,7 @@
 use super::plain_name::plain_name;
 use crate::model::{GridIx, Model, RigidKind, Vec3};
 use crate::strain_chain::deck::DeckModel;
-use nastran::bdf::Named;
+use nastran::bdf::NameOwner;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Largest number of grids that are proposed if no card indicates where loads enter.
@@ -88,7 +88,7 @@ pub(super) fn load_points(deck: &DeckModel) -> Vec<LoadPoint> {
 /// Names of grids from the deck's comments.
 fn grid_names(deck: &DeckModel) -> BTreeMap<u32, String> {
     let labels = deck.deck.labels.iter();
-    let named = labels.filter(|l| l.kind == Named::Grid);
+    let named = labels.filter(|l| l.kind == NameOwner::Grid);
     named.map(|l| (l.id, l.name.clone())).collect()
 }
 

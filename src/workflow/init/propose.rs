@@ -53,12 +53,12 @@ pub(super) struct Proposal {
 }
 
 /// A result file and its static subcases with strain of shells, each with its LABEL.
-pub(super) type Strained = (String, BTreeMap<u32, String>);
+pub(super) type StrainResultFile = (String, BTreeMap<u32, String>);
 
 /// Every proposal that the files allow, the best first; none without grids. Loads that the files state are never exchanged for others.
 pub(super) fn proposals(
     deck: &DeckModel,
-    strained: &[Strained],
+    strained: &[StrainResultFile],
     system: Option<UnitSystem>,
 ) -> Vec<Proposal> {
     let stated = |from, (loads, left_out)| Proposal {
@@ -92,13 +92,13 @@ pub(super) fn proposals(
 /// Subcases of the deck that the results hold with strain.
 fn of_results(
     deck: &DeckModel,
-    strained: &[Strained],
+    strained: &[StrainResultFile],
     system: Option<UnitSystem>,
 ) -> (Vec<ProposedLoad>, Vec<LeftOutLoad>) {
     let (all, mut left_out) = of_subcases(deck, system);
     let mut loads = Vec::new();
     for mut l in all {
-        let holds = |s: &&Strained| l.subcase.is_some_and(|id| s.1.contains_key(&id));
+        let holds = |s: &&StrainResultFile| l.subcase.is_some_and(|id| s.1.contains_key(&id));
         match strained.iter().find(holds) {
             Some(source) => {
                 l.result = (strained.len() > 1).then(|| source.0.clone());
@@ -117,7 +117,7 @@ fn of_results(
 /// Subcases of results whose loads the deck does not state.
 fn by_number(
     deck: &DeckModel,
-    strained: &[Strained],
+    strained: &[StrainResultFile],
     system: Option<UnitSystem>,
 ) -> Vec<ProposedLoad> {
     const REPLACE: &str = "# replace: the load of this subcase";

@@ -8,13 +8,13 @@ use crate::host::outcome::{Answer, finite_or_none};
 use crate::host::words::count_of;
 use crate::job::Job;
 use crate::payload::{PayloadRun, Place, WeighSpec, WeighedRun, Weighing};
-use crate::strain_chain::{Conditioning, Prepared};
+use crate::strain_chain::{Conditioning, JobSensitivity};
 use crate::units::{number, plus_minus};
 use serde::Serialize;
 
 /// Payloads weighed, report units.
 #[derive(Serialize)]
-pub struct Weighed {
+pub struct WeighedPayloads {
     /// By run.
     pub payload: Vec<WeighedPayload>,
     /// By run and gauge.
@@ -33,13 +33,13 @@ pub struct Weighed {
     pub weighing: Weighing,
     /// S and gauges, where strain is used.
     #[serde(skip)]
-    pub prepared: Option<Prepared>,
+    pub prepared: Option<JobSensitivity>,
     /// The job.
     #[serde(skip)]
     pub job: Job,
 }
 
-impl Answer for Weighed {
+impl Answer for WeighedPayloads {
     const COMMAND: &'static str = "payload";
     const RESULT: &'static str = "The payload";
 
@@ -166,7 +166,7 @@ pub(super) fn report_payload(
     readings: Readings,
     spec: &WeighSpec,
     weighing: Weighing,
-) -> Weighed {
+) -> WeighedPayloads {
     let job = task.job;
     let payload = weighing
         .runs
@@ -199,7 +199,7 @@ pub(super) fn report_payload(
         }
     }
     let modelled = parts.prepared.as_ref().filter(|p| p.fields.is_some());
-    Weighed {
+    WeighedPayloads {
         payload,
         by_gauge,
         net: readings.net,

@@ -4,7 +4,7 @@ use super::model::{Parts, model_of};
 use super::task::Task;
 use crate::finding::{Finding, Severity};
 use crate::host::work::Work;
-use crate::input_faults::{Handling, SIGN_OF_ALL};
+use crate::input_faults::{FaultTreatment, SIGN_OF_ALL};
 use crate::payload::{PayloadRun, Refusal, WeighSpec, Weighing, faults_of_gauges, payload_rows};
 use crate::strain_chain::alternatives_of;
 
@@ -40,8 +40,8 @@ pub(super) fn search(
     };
     work.findings.extend(found.iter().map(|f| {
         let handling = match f.fault.gauges().iter().all(unused) {
-            true => Handling::LeftOut,
-            false => Handling::AsMeasured,
+            true => FaultTreatment::LeftOut,
+            false => FaultTreatment::AsMeasured,
         };
         f.finding(&parts.model.gauges, handling)
     }));

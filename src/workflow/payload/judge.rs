@@ -1,13 +1,13 @@
 //! Findings of `payload`: refusals, wheels that lift off, undetermined places, gauges that are not used.
 
 use super::model::Parts;
-use super::stated::REFUTED;
+use super::stated_payload::REFUTED;
 use super::task::Task;
 use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity, list_few};
 use crate::host::words::format_number;
 use crate::host::work::Work;
-use crate::input_faults::identical::identical_readings;
+use crate::input_faults::identical_columns::identical_readings;
 use crate::measured::zero::subtract_and_test_zero;
 use crate::payload::{PayloadRun, Place, Refusal, WeighSpec, WeighedRun, Weighing};
 use crate::recovery::Readings;

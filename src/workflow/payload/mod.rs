@@ -1,15 +1,15 @@
 //! `payload`: mass of a payload, and its position if the data determine it, from strain, from wheel forces, or from both.
 
 mod answer;
-mod calibrated;
+mod calibration_range;
 mod faults;
 mod judge;
 mod model;
 mod readings;
-mod stated;
+mod stated_payload;
 mod task;
 
-pub use answer::{Ellipse, SingleGauge, Weighed, WeighedPayload};
+pub use answer::{Ellipse, SingleGauge, WeighedPayload, WeighedPayloads};
 pub use readings::NetReading;
 
 use crate::estimate::{NORMAL_95, student_95};
@@ -62,7 +62,7 @@ use task::Task;
 /// assert!((p.position[1].unwrap() - (300.0 - 200.0) / 1000.0).abs() < 1e-5);
 /// # Ok::<(), strainbridge::Faults>(())
 /// ```
-pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
+pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<WeighedPayloads>, Faults> {
     let mut work = Work::of_job(cx, job);
     let job = &job.without_validation_gauges()?;
     check_tables(&work, job)?;
@@ -104,12 +104,12 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
     let spec = spec_of(&task, &parts, runs);
     let weighing = work.stage("weigh", |_| weigh(&parts.model, runs, &spec));
     judge::findings(&mut work, &task, &parts, runs, &spec, &weighing);
-    let outside = calibrated::findings(&task, &parts, &weighing);
+    let outside = calibration_range::findings(&task, &parts, &weighing);
     work.findings.extend(outside);
     faults::search(&mut work, &task, &parts, runs, (&spec, &weighing));
-    let place = stated::place_contradicted(&task, &parts, runs, &spec, &weighing);
+    let place = stated_payload::place_contradicted(&task, &parts, runs, &spec, &weighing);
     work.findings.extend(place);
-    let mass = stated::mass_contradicted(&mut work, &task, &weighing)?;
+    let mass = stated_payload::mass_contradicted(&mut work, &task, &weighing)?;
     work.findings.extend(mass);
     let answer = answer::report_payload(&task, parts, readings, &spec, weighing);
     Ok(work.finish(

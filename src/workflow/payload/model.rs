@@ -17,9 +17,9 @@ use crate::measured::wheels::{basic_dof, floor_fault, wheels_of};
 use crate::model::{GridIx, Model, Vec3};
 use crate::payload::PayloadModel;
 use crate::sensitivity::{Sensitivity, Uncertainty, check_separability};
+use crate::strain_chain::built_in_solver::{stands_on_wheels, support_of_job, unit_loads_kept};
 use crate::strain_chain::job_deck::read_deck;
-use crate::strain_chain::solved::{stands_on_wheels, support_of_job, unit_loads_kept};
-use crate::strain_chain::{Fields, Prepared, has_covariance, take_out_beside};
+use crate::strain_chain::{Fields, JobSensitivity, has_covariance, take_out_beside};
 use crate::units::MICROSTRAIN;
 
 /// The model of the payload with what the report draws.
@@ -27,7 +27,7 @@ pub(super) struct Parts {
     /// In report units of force and length.
     pub model: PayloadModel,
     /// S and gauges; `None` where strain is not used.
-    pub prepared: Option<Prepared>,
+    pub prepared: Option<JobSensitivity>,
 }
 
 /// The model in report units; sets nominal place, wheels and their reactions to the empty structure.
@@ -158,7 +158,7 @@ fn own_columns(job: &Job, model: &Model, place: Place) -> [Option<usize>; 3] {
 /// Strain of the payload's parts by gauge: the job's own column where it has one, else the solution `others` made for it.
 fn payload_strain(
     (job, model): (&Job, &Model),
-    p: &Prepared,
+    p: &JobSensitivity,
     place: Place,
     others: &[CaseResult],
 ) -> Matrix {
@@ -207,7 +207,7 @@ fn calibrated_uncertainty(
 fn build_supported_model(
     work: &mut Work,
     task: &mut Task,
-    prepared: &Prepared,
+    prepared: &JobSensitivity,
     fields: &Fields,
     support: Support,
 ) -> Result<PayloadModel, Faults> {
@@ -275,7 +275,7 @@ fn build_model_on_wheels(
     work: &mut Work,
     task: &mut Task,
     model: &Model,
-    prepared: Option<&Prepared>,
+    prepared: Option<&JobSensitivity>,
 ) -> Result<PayloadModel, Faults> {
     let job = task.job;
     stands_on_wheels(job, model, "a payload over wheel forces")?;

@@ -1,11 +1,11 @@
 //! The choice: single gauges through the tensors, or bundles (rosettes, pairs, unlike costs) within a budget.
 
-use super::chosen::{Channel, Chosen, Refused};
+use super::chosen_layout::{Channel, ChoiceRefusal, ChosenLayout};
 use super::misfits::fit_gauge_to_part;
 use super::pool::Kind;
 use super::spot_layout;
 use super::task::{Task, know_the_loads, position};
-use super::wanted::on_wanted;
+use super::wanted_elements::on_wanted;
 use crate::gauge::{Bridge, CornerRows, Gauge, GaugeSpec, build};
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
@@ -14,8 +14,8 @@ use crate::linalg::spd;
 use crate::model::Vec3;
 use crate::placement::bundles::{BundleSpec, Bundles, place_bundles};
 use crate::placement::candidates::{Angles, Choice};
+use crate::placement::required_places::value;
 use crate::placement::sites::axis_of;
-use crate::placement::wanted::value;
 use crate::placement::{Layout, PlaceError, Spec, condition, place};
 use std::collections::HashMap;
 
@@ -44,9 +44,9 @@ pub(super) fn choose(
     task: &Task,
     kinds: &[Kind],
     spec: &mut Spec,
-) -> Result<Chosen, Faults> {
+) -> Result<ChosenLayout, Faults> {
     match choose_once(task, kinds, spec) {
-        Err(Refused::By(PlaceError::Singular { gauges, loads })) => {
+        Err(ChoiceRefusal::By(PlaceError::Singular { gauges, loads })) => {
             know_the_loads(work, spec, gauges, loads);
             // What is no plan needs no proof that it is the best: with fewer gauges than loads that may take minutes.
             spec.proof = 0.0;
@@ -56,23 +56,27 @@ pub(super) fn choose(
     }
     .map_err(|e| {
         Faults::from(match e {
-            Refused::By(e) => task.refusal(&e),
-            Refused::Job(f) => f,
+            ChoiceRefusal::By(e) => task.refusal(&e),
+            ChoiceRefusal::Job(f) => f,
         })
     })
 }
 
 /// Chooses gauges by the spec.
-pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Refused> {
+pub(super) fn choose_once(
+    task: &Task,
+    kinds: &[Kind],
+    spec: &Spec,
+) -> Result<ChosenLayout, ChoiceRefusal> {
     if is_plain(task)
         && let [kind] = kinds
     {
-        let mut layout = place(&kind.candidates, spec).map_err(Refused::By)?;
+        let mut layout = place(&kind.candidates, spec).map_err(ChoiceRefusal::By)?;
         let least_condition = well_conditioned(task, kind, spec, &mut layout);
         if let Some(spots) = &task.spots {
             return Ok(spot_layout::of_layout(spots, &layout, least_condition));
         }
-        if let Some(gauges) = on_wanted(task, kind, spec, &layout).map_err(Refused::Job)? {
+        if let Some(gauges) = on_wanted(task, kind, spec, &layout).map_err(ChoiceRefusal::Job)? {
             put_instead(kind, spec, &mut layout, gauges);
         }
         let n = layout.gauges.len();
@@ -82,7 +86,7 @@ pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Ch
             .enumerate()
             .map(|(i, &c)| channel(task, kind, c, name(i, n)))
             .collect::<Result<_, _>>()?;
-        return Ok(Chosen {
+        return Ok(ChosenLayout {
             channels,
             log_det: layout.log_det,
             upper_bound: layout.upper_bound,
@@ -96,7 +100,7 @@ pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Ch
     let job = task.job;
     let single = |line, field, what, remedy| {
         let wrong = format!("{what} single gauges of one wiring, without pairs, costs or a budget");
-        Refused::Job(Fault::with_line(&*job.file, line, field, wrong, remedy))
+        ChoiceRefusal::Job(Fault::with_line(&*job.file, line, field, wrong, remedy))
     };
     if job.placement.criterion == Optimality::Condition {
         return Err(single(
@@ -156,11 +160,16 @@ pub(in crate::workflow) fn name(i: usize, n: usize) -> String {
 }
 
 /// Returns the gauge of a choice as a job reads it from `gauges.csv`: by its element, side, direction and grid length.
-fn channel(task: &Task, kind: &Kind, choice: Choice, name: String) -> Result<Channel, Refused> {
+fn channel(
+    task: &Task,
+    kind: &Kind,
+    choice: Choice,
+    name: String,
+) -> Result<Channel, ChoiceRefusal> {
     let job = task.job;
     let refused = |wrong: String, remedy: &str| {
         let (file, line) = (&*job.file, job.candidates.line);
-        Refused::Job(Fault::with_line(file, line, "candidates", wrong, remedy))
+        ChoiceRefusal::Job(Fault::with_line(file, line, "candidates", wrong, remedy))
     };
     let no_place = || {
         refused(
@@ -210,7 +219,7 @@ fn channel(task: &Task, kind: &Kind, choice: Choice, name: String) -> Result<Cha
 }
 
 /// Content of a bundle: wiring, site and angle of each grid or bridge in it. The legs of a rosette are three grids of the quarter kind.
-struct Described {
+struct BundleContent {
     members: Vec<(usize, Choice)>,
     rosette: bool,
 }
@@ -219,7 +228,7 @@ struct Described {
 struct DescribedBundles<'a> {
     kinds: &'a [Kind],
     bundles: Bundles,
-    described: Vec<Described>,
+    described: Vec<BundleContent>,
 }
 
 impl DescribedBundles<'_> {
@@ -231,12 +240,12 @@ impl DescribedBundles<'_> {
         let first = members.first().map_or(0, |m| m.1.place);
         let last = members.last().map_or(0, |m| m.1.place);
         self.bundles.add(&rows, cost, [first, last]);
-        self.described.push(Described { members, rosette });
+        self.described.push(BundleContent { members, rosette });
     }
 }
 
 /// Chooses among bundles within the budget.
-fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Refused> {
+fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<ChosenLayout, ChoiceRefusal> {
     let of_job = bundles_of(task, kinds)?;
     let budget = task.job.placement.budget.unwrap_or(spec.gauges as f64);
     let spec = BundleSpec {
@@ -247,13 +256,13 @@ fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Ref
         tolerance: spec.tolerance,
         effort: spec.effort,
     };
-    let layout = place_bundles(&of_job.bundles, &spec).map_err(Refused::By)?;
+    let layout = place_bundles(&of_job.bundles, &spec).map_err(ChoiceRefusal::By)?;
     let n = layout.bundles.len();
     let mut channels = Vec::new();
     for (i, &u) in layout.bundles.iter().enumerate() {
         channels.extend(channels_of(task, kinds, &of_job.described[u], &name(i, n))?);
     }
-    Ok(Chosen {
+    Ok(ChosenLayout {
         channels,
         log_det: layout.log_det,
         upper_bound: layout.upper_bound,
@@ -266,7 +275,7 @@ fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Ref
 }
 
 /// Every bundle that the job's candidates allow: single gauges and rosettes at each site, in pairs where the layout is to be symmetric.
-fn bundles_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<DescribedBundles<'a>, Refused> {
+fn bundles_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<DescribedBundles<'a>, ChoiceRefusal> {
     let p = &task.job.placement;
     let cost_of = |name: &str, default: f64| {
         let own = p.costs.iter().find(|c| c.0 == name);
@@ -346,12 +355,12 @@ fn bundles_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<DescribedBundles<'a>
 }
 
 /// Refuses candidates whose bundles, so many a site, would not fit into memory.
-fn few_enough(task: &Task, a_site: usize) -> Result<(), Refused> {
+fn few_enough(task: &Task, a_site: usize) -> Result<(), ChoiceRefusal> {
     let many = task.sites.len() * a_site;
     if many <= MOST_BUNDLES {
         return Ok(());
     }
-    Err(Refused::Job(Fault::with_line(
+    Err(ChoiceRefusal::Job(Fault::with_line(
         &*task.job.file,
         task.job.candidates.line,
         "candidates",
@@ -364,9 +373,9 @@ fn few_enough(task: &Task, a_site: usize) -> Result<(), Refused> {
 fn channels_of(
     task: &Task,
     kinds: &[Kind],
-    bundle: &Described,
+    bundle: &BundleContent,
     base: &str,
-) -> Result<Vec<Channel>, Refused> {
+) -> Result<Vec<Channel>, ChoiceRefusal> {
     let mut channels = Vec::new();
     for (m, (kind, choice)) in bundle.members.iter().enumerate() {
         let leg = m % 3;

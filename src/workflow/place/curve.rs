@@ -1,7 +1,7 @@
 //! How many gauges: what each number of them gives, and what the next one buys.
 
 use super::choose::choose_once;
-use super::chosen::Refused;
+use super::chosen_layout::ChoiceRefusal;
 use super::judge::{chosen_as_recovered, in_job_order, sigma_of, terms_listed};
 use super::outcome::{BoughtSigma, CurvePoint};
 use super::pool::Kind;
@@ -11,14 +11,14 @@ use crate::host::outcome::finite_or_none;
 use crate::linalg::{Matrix, dense};
 use crate::placement::quality::judge_rows;
 use crate::placement::{PlaceError, Spec};
-use crate::workflow::recover::Listed;
+use crate::workflow::recover::ListedLoads;
 
 /// The curve over the job's numbers; numbers that can't separate the loads are left out.
 pub(super) fn curve(
     task: &Task,
     kinds: &[Kind],
     spec: &Spec,
-    listed: &Listed,
+    listed: &ListedLoads,
 ) -> (Vec<CurvePoint>, Vec<usize>) {
     let mut counts = task.job.placement.curve.clone();
     counts.sort_unstable();
@@ -38,7 +38,7 @@ pub(super) fn curve(
         spec.proof *= 0.05;
         let chosen = match choose_once(task, kinds, &spec) {
             Ok(c) => c,
-            Err(Refused::By(PlaceError::Singular { .. } | PlaceError::TooTight { .. }))
+            Err(ChoiceRefusal::By(PlaceError::Singular { .. } | PlaceError::TooTight { .. }))
             | Err(_) => {
                 left_out.push(gauges);
                 continue;

@@ -1,6 +1,6 @@
 //! Findings on a layout.
 
-use super::chosen::{Channel, Chosen};
+use super::chosen_layout::{Channel, ChosenLayout};
 use super::outcome::PlacedGauge;
 use super::task::Task;
 use crate::finding::{Finding, Severity};
@@ -12,7 +12,7 @@ use crate::placement::quality::Quality;
 use crate::placement::{Loss, Spec};
 use crate::strain_chain::{LoadSigma, LoadUnits};
 use crate::units::{Quantity, Unit, is_unit_load};
-use crate::workflow::recover::Listed;
+use crate::workflow::recover::ListedLoads;
 
 /// Puts the standard deviations and the covariance into job order.
 pub(super) fn in_job_order(mut q: Quality, order: &[usize]) -> Quality {
@@ -68,7 +68,7 @@ pub(super) fn sigma_of(covariance: &[f64], scales: &[f64], terms: &[(usize, f64)
 }
 
 /// Terms of all that is listed: each load, then each combination.
-pub(super) fn terms_listed(listed: &Listed, k: usize) -> Vec<Vec<(usize, f64)>> {
+pub(super) fn terms_listed(listed: &ListedLoads, k: usize) -> Vec<Vec<(usize, f64)>> {
     let own = (0..k).map(|l| vec![(l, 1.0)]);
     own.chain(listed.sums.iter().cloned()).collect()
 }
@@ -122,7 +122,7 @@ pub(super) fn as_glued(job: &Job, q: &Quality, k: usize) -> Vec<f64> {
 /// tolerances.
 pub(super) fn sigma_rows(
     job: &Job,
-    listed: &Listed,
+    listed: &ListedLoads,
     recovered: Option<&[f64]>,
     as_glued: &[f64],
     scales: &[f64],
@@ -263,7 +263,7 @@ fn check_budgets<'a>(
 pub(super) fn judge_layout(
     work: &mut Work,
     job: &Job,
-    layout: &Chosen,
+    layout: &ChosenLayout,
     q: &Quality,
     spec: &Spec,
     placed: &[PlacedGauge],

@@ -8,13 +8,13 @@ use crate::job::Job;
 use crate::placement::sites::Site;
 
 /// Gauges on the model with their findings, or the reason why they can't be built.
-type Built = Result<(Vec<Gauge>, Vec<Finding>), GaugeError>;
+type BuiltGauges = Result<(Vec<Gauge>, Vec<Finding>), GaugeError>;
 
 /// Returns a gauge, reduced to a point if its grid is longer than the part, and the fault of a grid that does not fit.
 pub(super) fn fit_gauge_to_part(
     job: &Job,
     spec: GaugeSpec,
-    build: impl Fn(&GaugeSpec) -> Built,
+    build: impl Fn(&GaugeSpec) -> BuiltGauges,
 ) -> (GaugeSpec, Option<Fault>) {
     let built = build(&spec);
     let misfit = misfit(job, &built);
@@ -32,7 +32,7 @@ pub(super) fn fit_gauge_to_part(
 }
 
 /// Returns the fault of a grid that is longer than the part or that reaches past its edge.
-fn misfit(job: &Job, built: &Built) -> Option<Fault> {
+fn misfit(job: &Job, built: &BuiltGauges) -> Option<Fault> {
     let (wrong, remedy) = match built {
         Err(e @ GaugeError::GridBeyondPart { element, part, .. }) => (
             e.parts().0,

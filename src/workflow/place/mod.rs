@@ -1,11 +1,11 @@
 //! `place`: gauges chosen from the candidates, in addition to the installed gauges of the job, with the certificate.
 
 mod choose;
-mod chosen;
+mod chosen_layout;
 mod curve;
-mod installed;
+mod installed_gauges;
+mod job_gauge_rows;
 mod judge;
-mod known;
 mod misfits;
 mod outcome;
 mod pool;
@@ -14,7 +14,7 @@ mod sheet;
 mod spot_layout;
 mod spots;
 mod task;
-mod wanted;
+mod wanted_elements;
 
 pub(super) use choose::name as placed_name;
 pub use outcome::*;
@@ -56,7 +56,7 @@ use crate::workflow::recover::list_load_columns;
 /// assert_eq!(plan.conditioning.rank, job.loads.len());
 /// # Ok::<(), strainbridge::Faults>(())
 /// ```
-pub fn place(job: &Job, cx: &Context) -> Result<Outcome<Placed>, Faults> {
+pub fn place(job: &Job, cx: &Context) -> Result<Outcome<CertifiedLayout>, Faults> {
     let mut work = Work::of_job(cx, job);
     check_tables(&work, job)?;
     let fields = read_fields(&mut work, job, WantedAt::Anywhere)?;
@@ -83,7 +83,7 @@ fn lay_out_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutO
     };
     let k = cases.len();
     let scales = scales(work, &cases, &common);
-    let given = known::read_given_sensitivity(work, job)?;
+    let given = job_gauge_rows::read_given_sensitivity(work, job)?;
     let mut task = task::task(job, fields, cases, scales, sites, given);
     task.strict = strict;
     task.lay_spots(work)?;
@@ -139,7 +139,7 @@ fn lay_out_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutO
     let units = &listed.units[..k];
     let gauges = sheet::list_placed_gauges(&task, &chosen, &spec.prior, &quality, &validation);
     let installed = match kinds.first().filter(|_| choose::is_plain(&task)) {
-        Some(kind) => installed::evaluate_installed(work, &task, &kind.candidates, &spec)?,
+        Some(kind) => installed_gauges::evaluate_installed(work, &task, &kind.candidates, &spec)?,
         None => None,
     };
     work.findings
@@ -165,7 +165,7 @@ fn lay_out_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutO
     };
     let reserved = validation.iter().map(|(i, inflation)| {
         let c = &chosen.channels[*i];
-        Reserved {
+        ReservedGauge {
             name: c.gauge.name.clone(),
             prediction_sd_microstrain: c.sd * inflation,
         }
@@ -209,20 +209,20 @@ fn kinds_of(task: &task::Task) -> Vec<pool::Kind> {
 struct LayoutOf {
     gauges: Vec<PlacedGauge>,
     candidates: Candidates,
-    chosen: chosen::Chosen,
+    chosen: chosen_layout::ChosenLayout,
     kept: Vec<String>,
     mesh_error: Vec<GaugeMeshError>,
     sensitivity: Sensitivity,
     load_sigma: Vec<LoadSigma>,
     worst_loss: WorstLoss,
-    reserved: Vec<Reserved>,
-    installed: Option<Installed>,
+    reserved: Vec<ReservedGauge>,
+    installed: Option<InstalledLayout>,
     how_many: Vec<CurvePoint>,
 }
 
 impl LayoutOf {
-    fn into_placed(self, fields: Fields, job: &Job) -> Placed {
-        Placed {
+    fn into_placed(self, fields: Fields, job: &Job) -> CertifiedLayout {
+        CertifiedLayout {
             gauges: self.gauges,
             files: outcome::FILES,
             candidates: self.candidates,

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 /// A layout of gauges with its certificate.
 #[derive(Serialize)]
-pub struct Placed {
+pub struct CertifiedLayout {
     /// The gauges chosen.
     pub gauges: Vec<PlacedGauge>,
     /// Files for the workshop: the table of gauges and the gluing sheets.
@@ -52,9 +52,9 @@ pub struct Placed {
     /// The gauge whose loss costs most.
     pub worst_loss: WorstLoss,
     /// Gauges kept for validation.
-    pub reserved: Vec<Reserved>,
+    pub reserved: Vec<ReservedGauge>,
     /// Quality of the job's gauges by these measures.
-    pub installed: Option<Installed>,
+    pub installed: Option<InstalledLayout>,
     /// Results with other numbers of gauges, if the job asks for them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub how_many: Vec<CurvePoint>,
@@ -77,7 +77,7 @@ pub(super) const FILES: [&str; 4] = [
     "gluing_sheet.md",
 ];
 
-impl Answer for Placed {
+impl Answer for CertifiedLayout {
     const COMMAND: &'static str = "place";
     const RESULT: &'static str = "The layout";
 
@@ -102,7 +102,7 @@ impl Answer for Placed {
     }
 }
 
-impl Placed {
+impl CertifiedLayout {
     /// Returns the half width of the 95 % interval of a load over its expected size; `None` where the job states no size.
     pub fn share_of_expected(&self, load: &LoadSigma) -> Option<f64> {
         let of_job = self.job.loads.iter().find(|l| l.name == load.name)?;
@@ -215,7 +215,7 @@ pub struct WorstLoss {
 
 /// A gauge kept for validation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Reserved {
+pub struct ReservedGauge {
     /// Name of the gauge.
     pub name: String,
     /// Standard deviation of the reading predicted from the other gauges, its own noise included.
@@ -224,7 +224,7 @@ pub struct Reserved {
 
 /// The layout that the job has.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Installed {
+pub struct InstalledLayout {
     /// How many gauges.
     pub gauges: usize,
     /// Rank of their S, where they don't separate the loads.

@@ -1,6 +1,6 @@
 //! Data on each gauge for the technician: reference point, tolerance budget, strain by load.
 
-use super::chosen::Chosen;
+use super::chosen_layout::ChosenLayout;
 use super::outcome::{PlacedGauge, StrainOfLoad};
 use super::task::{Task, by_load};
 use crate::gauge::{Bridge, Gauge};
@@ -18,7 +18,7 @@ const BUDGET: f64 = 0.05;
 /// Returns the gauges with all data of the sheet; the gauges in `validation` are not used for estimating.
 pub(super) fn list_placed_gauges(
     task: &Task,
-    chosen: &Chosen,
+    chosen: &ChosenLayout,
     prior: &[f64],
     quality: &Quality,
     validation: &[(usize, f64)],
@@ -78,7 +78,12 @@ pub(super) fn list_placed_gauges(
 }
 
 /// By channel, the change of its reading with its place, microstrain per length, rms over the expected loads.
-fn steepness(task: &Task, chosen: &Chosen, ordered: &[LoadCaseOf], scales: &[f64]) -> Vec<f64> {
+fn steepness(
+    task: &Task,
+    chosen: &ChosenLayout,
+    ordered: &[LoadCaseOf],
+    scales: &[f64],
+) -> Vec<f64> {
     let mut out = vec![0.0; chosen.channels.len()];
     for bridge in Bridge::ALL {
         let (at, sites): (Vec<usize>, Vec<Site>) = chosen

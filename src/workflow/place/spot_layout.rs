@@ -1,7 +1,7 @@
 //! Layouts of named spots: chosen one by one, or within a budget.
 
-use super::chosen::{Chosen, Refused};
-use super::known::gluing_effect;
+use super::chosen_layout::{ChoiceRefusal, ChosenLayout};
+use super::job_gauge_rows::gluing_effect;
 use super::pool::Kind;
 use super::spots::{LaidSpot, Leg};
 use super::task::Task;
@@ -151,11 +151,11 @@ pub(super) fn of_layout(
     spots: &[LaidSpot],
     layout: &Layout,
     least_condition: Option<f64>,
-) -> Chosen {
+) -> ChosenLayout {
     let mut chosen: Vec<usize> = layout.gauges.iter().map(|c| c.place as usize).collect();
     chosen.sort_unstable();
     let channels = chosen.iter().filter_map(|&i| spots.get(i));
-    Chosen {
+    ChosenLayout {
         channels: channels.flat_map(LaidSpot::channels).collect(),
         log_det: layout.log_det,
         upper_bound: layout.upper_bound,
@@ -172,7 +172,7 @@ pub(super) fn within_budget(
     task: &Task,
     spots: &[LaidSpot],
     spec: &Spec,
-) -> Result<Chosen, Refused> {
+) -> Result<ChosenLayout, ChoiceRefusal> {
     let mut bundles = Bundles::new(task.cases.len(), positions(spots));
     for (i, spot) in spots.iter().enumerate() {
         let rows: Vec<Vec<f64>> = spot.legs.iter().map(Leg::row).collect();
@@ -188,7 +188,7 @@ pub(super) fn within_budget(
         effort: spec.effort,
     };
     let layout = place_bundles(&bundles, &of_bundles).map_err(|e| {
-        Refused::By(match e {
+        ChoiceRefusal::By(match e {
             PlaceError::Singular { loads, .. } => PlaceError::Singular {
                 gauges: count_affordable(spots, budget),
                 loads,
@@ -197,7 +197,7 @@ pub(super) fn within_budget(
         })
     })?;
     let chosen = || layout.bundles.iter().filter_map(|&u| spots.get(u));
-    Ok(Chosen {
+    Ok(ChosenLayout {
         channels: chosen().flat_map(LaidSpot::channels).collect(),
         log_det: layout.log_det,
         upper_bound: layout.upper_bound,

@@ -1,6 +1,6 @@
 //! Named spots of the job's table, laid onto the model.
 
-use super::chosen::Channel;
+use super::chosen_layout::Channel;
 use crate::gauge::{Bridge, Gauge};
 use crate::job::JobGauge;
 use crate::model::Vec3;

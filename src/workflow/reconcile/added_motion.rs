@@ -1,7 +1,7 @@
 //! Changes of the job by the named effects of motion.
 
-use super::added::{Added, Place, list_changes};
-use super::extended::ExtendedModel;
+use super::extended_model::ExtendedModel;
+use super::model_changes::{ModelChange, Place, list_changes};
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::{MotionEffect, MotionFrame, MotionOutcome};
 use crate::units::number;
@@ -12,7 +12,7 @@ pub(super) fn added_to_motion(
     frame: &MotionFrame,
     outcome: &MotionOutcome,
     extended: Option<&ExtendedModel>,
-) -> Vec<Added> {
+) -> Vec<ModelChange> {
     let Some(extended) = extended else {
         return Vec::new();
     };

@@ -1,8 +1,8 @@
 //! Answer of `reconcile`: one type for strain, motion and causes. Fields of one kind only are `None` for the other kinds.
 
-use super::added::Added;
-use super::extended::ExtendedModel;
-use super::marked::MarkedStiffness;
+use super::extended_model::ExtendedModel;
+use super::marked_stiffness::MarkedStiffness;
+use super::model_changes::ModelChange;
 use crate::host::outcome::Answer;
 use crate::job::Job;
 use crate::reconcile::motion::gap::Proof;
@@ -21,7 +21,7 @@ use std::path::Path;
 
 /// Where simulation and measurement disagree, which effect is missing, and the model with the effect in it.
 #[derive(Serialize)]
-pub struct Reconciled {
+pub struct Reconciliation {
     /// The verdict.
     #[serde(serialize_with = "as_word")]
     pub verdict: Verdict,
@@ -60,7 +60,7 @@ pub struct Reconciled {
     #[serde(skip)]
     pub causes: Option<CauseOutcome>,
     /// Changes of the model: path, old and new value.
-    pub added: Vec<Added>,
+    pub added: Vec<ModelChange>,
     /// The job with the named effects in it; `None` where nothing was named or an effect can't be put into it.
     pub extended_model: Option<ExtendedModel>,
     /// The job.
@@ -68,7 +68,7 @@ pub struct Reconciled {
     pub job: Job,
 }
 
-impl Answer for Reconciled {
+impl Answer for Reconciliation {
     const COMMAND: &'static str = "reconcile";
     const RESULT: &'static str = "The comparison";
 
@@ -77,7 +77,7 @@ impl Answer for Reconciled {
     }
 }
 
-impl Reconciled {
+impl Reconciliation {
     /// Sets the folder into which the answer is written. The path of the extended model is then given from the folder of the caller.
     pub fn put_into(&mut self, folder: &Path) {
         if let Some(extended) = &mut self.extended_model {

@@ -1,6 +1,6 @@
 //! Readings against causes measured in every run, where no model gives their strain: `[reconcile] causes`.
 
-use super::answer::{EffectFound, GapFound, Reconciled, RivalFound, SlopeFound};
+use super::answer::{EffectFound, GapFound, Reconciliation, RivalFound, SlopeFound};
 use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
@@ -20,7 +20,7 @@ pub(super) fn answer(
     reconcile: &Reconcile,
     work: &mut Work,
     observations: &Observations,
-) -> Result<Reconciled, Faults> {
+) -> Result<Reconciliation, Faults> {
     let causes = read(job, reconcile, work, observations)?;
     let noise = job.measured.as_ref().map_or(1.0, |m| m.noise_microstrain);
     let noise: Vec<f64> = match stated_noise(job, &observations.channels)? {
@@ -42,7 +42,7 @@ pub(super) fn answer(
     let named = best.filter(|_| outcome.verdict == Verdict::Named);
     let before = outcome.sets.iter().find(|s| s.names.is_empty());
     let before = before.map_or(0.0, |s| s.gap);
-    Ok(Reconciled {
+    Ok(Reconciliation {
         verdict: outcome.verdict,
         named: named.map_or(Vec::new(), |b| b.names.clone()),
         effects: named.map_or(Vec::new(), |b| effects(b, observations)),

@@ -3,11 +3,11 @@
 use super::background::{Axis, ENTRY_SHARE, background, gradients};
 use super::deck_loads::SignatureLoads;
 pub(super) use super::deck_loads::unit;
-use super::deck_thermal::Heated;
-use super::finer::Finer;
+use super::deck_thermal::UnitTemperatureModel;
 use super::frame_columns::FrameColumns;
 use super::influence::{influence, readings};
 use super::model_part::{ModelPart, facts};
+use super::refined_model::RefinedGaugeModel;
 use super::region::Region;
 use super::signature_table::TableColumn;
 use crate::fe::UnitLoad;
@@ -22,8 +22,8 @@ use crate::model::Model;
 use crate::reconcile::strain::{GaugeFacts, PlaneStrainRow, Wiring};
 use crate::sensitivity::from_cases;
 use crate::stop::Stop;
-use crate::strain_chain::solved::{support_of_job, unit_loads_kept};
-use crate::strain_chain::{Fields, Prepared, alternatives_of, lay_gauges, prepare_beside};
+use crate::strain_chain::built_in_solver::{support_of_job, unit_loads_kept};
+use crate::strain_chain::{Fields, JobSensitivity, alternatives_of, lay_gauges, prepare_beside};
 use crate::units::KILO;
 use std::collections::BTreeMap;
 
@@ -50,9 +50,10 @@ pub(super) fn read(
     job: &Job,
     channels: &[String],
 ) -> Result<(ModelPart, DeckFrame), Faults> {
-    let columns =
-        |model: &Model| Ok(SignatureLoads::from_job(job, &Heated::from_job(job, model)?)?.columns);
-    let Prepared {
+    let columns = |model: &Model| {
+        Ok(SignatureLoads::from_job(job, &UnitTemperatureModel::from_job(job, model)?)?.columns)
+    };
+    let JobSensitivity {
         sensitivity,
         fields: Some(mut fields),
         gauges,
@@ -69,13 +70,13 @@ pub(super) fn read(
     let gauges = in_order(job, gauges, channels)?;
     let s = FrameColumns::from_sensitivity(job, sensitivity, channels)?;
     let turned = lay_turned_gauges(work, job, &fields, channels)?;
-    let heated = Heated::from_job(job, fields.model())?;
+    let heated = UnitTemperatureModel::from_job(job, fields.model())?;
     let model = &heated.model;
     let asked = SignatureLoads::from_job(job, &heated)?;
     let support = support_of_job(job, model)?;
     // Signatures come from a mesh half as wide, where that can be made: what the mesh makes is computed, not guessed.
     let laid = [&gauges, &turned[0], &turned[1]];
-    let finer = work.stage("refine", |_| Finer::refine_model(model, laid));
+    let finer = work.stage("refine", |_| RefinedGaugeModel::refine_model(model, laid));
     if let Err(why) = &finer {
         work.findings.push(mesh_unknown(job, why));
     }

@@ -1,6 +1,6 @@
 //! The loads whose signatures a deck's model is solved for, and what their strain is in the frame.
 
-use super::deck_thermal::{Heated, NOTHING};
+use super::deck_thermal::{NOTHING, UnitTemperatureModel};
 use super::influence::payload_grid;
 use super::model_part::{ModelPart, nominal_x_m, nominal_y_m};
 use crate::fe::UnitLoad;
@@ -42,7 +42,7 @@ pub(super) struct SignatureLoads {
 impl SignatureLoads {
     /// # Errors
     /// Loads that no model can be put under, grids that the deck lacks.
-    pub(super) fn from_job(job: &Job, heated: &Heated) -> Result<Self, Faults> {
+    pub(super) fn from_job(job: &Job, heated: &UnitTemperatureModel) -> Result<Self, Faults> {
         let model = &heated.model;
         let JobLoads {
             wheels,
@@ -145,7 +145,7 @@ impl SignatureLoads {
     /// besides (`apparent`, `rises` the pattern where each gauge sits).
     pub(super) fn thermal_strain(
         &self,
-        heated: &Heated,
+        heated: &UnitTemperatureModel,
         apparent: &[f64],
         rises: &[f64],
         column: impl Fn(usize) -> Vec<f64>,

@@ -19,7 +19,7 @@ use toml::{Table, Value};
 pub(super) const NOTHING: f64 = 0.02;
 
 /// The model with temperature sets of one degree, and the unit loads that use them.
-pub(super) struct Heated {
+pub(super) struct UnitTemperatureModel {
     /// The deck's model, synthetic sets added.
     pub(super) model: Model,
     /// A degree everywhere, where materials expand differently.
@@ -30,7 +30,7 @@ pub(super) struct Heated {
     shape: Option<TemperatureSet>,
 }
 
-impl Heated {
+impl UnitTemperatureModel {
     /// # Errors
     /// A set that the deck lacks, or that holds one temperature only.
     pub(super) fn from_job(job: &Job, model: &Model) -> Result<Self, Faults> {

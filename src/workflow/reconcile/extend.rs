@@ -1,17 +1,17 @@
 //! Changes by the named effects of strain: readings, S, loads of the runs, the deck.
 
-use super::corrected::{Weight, angle_corrections, corrections};
+use super::channel_corrections::{Weight, angle_corrections, corrections};
 use super::deck_frame::DeckFrame;
-use super::described::effect_of;
-use super::extended::{ExtendedModel, ExtendedRuns, ExtendedS};
+use super::described_effects::effect_of;
 use super::extended_deck::NamedStiffness;
 use super::extended_loads::side_loads;
+use super::extended_model::{ExtendedModel, ExtendedRuns, ExtendedS};
 use super::redirect::text_of;
 use crate::finding::{Finding, Severity};
 use crate::host::fault::Faults;
 use crate::host::work::Work;
 use crate::job::{EffectSource, Job};
-use crate::reconcile::effect::{Correction, Extension, Noted, Nuisance};
+use crate::reconcile::effect::{Correction, Extension, Nuisance, RecordedQuantity};
 use crate::reconcile::strain::{
     N_PAYLOAD_COLUMNS, PayloadWeight, StiffnessOf, StrainFrame, StrainState, corrected_readings,
     extended_state,
@@ -86,10 +86,10 @@ pub(super) fn extend_model(
         work.findings.extend(not_in);
         return Ok(None);
     }
-    let deck_bytes = match deck.map_or(Edited::Unchanged, |d| deck_with(job, d, outcome)) {
-        Edited::Unchanged => None,
-        Edited::Deck(bytes) => Some(bytes),
-        Edited::Refused => {
+    let deck_bytes = match deck.map_or(DeckEditOutcome::Unchanged, |d| deck_with(job, d, outcome)) {
+        DeckEditOutcome::Unchanged => None,
+        DeckEditOutcome::Deck(bytes) => Some(bytes),
+        DeckEditOutcome::Refused => {
             let ids: Vec<&str> = effects.iter().map(|e| e.id.as_str()).collect();
             let why = "the cards of the deck could not be edited (a property other than PSHELL or PBUSH, or files that do not match)";
             work.findings
@@ -112,7 +112,8 @@ pub(super) fn extend_model(
     // The payload's place is moved in the model, for all runs to come, as far as the model can say it.
     let moved = payload_moved(frame, effects, deck.is_some());
     let is_moved = |e: &&NamedEffect| {
-        matches!(e.extension, Extension::PayloadOffset { .. }) && moved != Moved::InNotes
+        matches!(e.extension, Extension::PayloadOffset { .. })
+            && moved != PositionCorrection::InNotes
     };
     let others: Vec<NamedEffect> = effects.iter().filter(|e| !is_moved(e)).cloned().collect();
     let state = extended_state(frame, &others);
@@ -143,8 +144,10 @@ pub(super) fn extend_model(
         sensitivity,
         runs: noted.then(|| runs_with(frame, &others, &state)),
         nominal_x_m: match moved {
-            Moved::Origin { x_m } => Some(x_m),
-            Moved::Not | Moved::Signature { .. } | Moved::InNotes => None,
+            PositionCorrection::Origin { x_m } => Some(x_m),
+            PositionCorrection::Not
+            | PositionCorrection::Signature { .. }
+            | PositionCorrection::InNotes => None,
         },
         ..ExtendedModel::from_job_text(JOB, text_of(work, job)?)
     }))
@@ -196,7 +199,7 @@ fn less_gains(
 
 /// Place in the extended model in which the recorded position of the payload is corrected.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Moved {
+enum PositionCorrection {
     /// Nowhere.
     Not,
     /// In its signature, m: S is given.
@@ -207,19 +210,23 @@ enum Moved {
     InNotes,
 }
 
-fn payload_moved(frame: &StrainFrame, effects: &[NamedEffect], has_deck: bool) -> Moved {
+fn payload_moved(
+    frame: &StrainFrame,
+    effects: &[NamedEffect],
+    has_deck: bool,
+) -> PositionCorrection {
     let offset = effects.iter().find_map(|e| match e.extension {
         Extension::PayloadOffset { dx, dy } => Some((dx, dy)),
         _ => None,
     });
     let noted = frame.payload.iter().any(|p| p[1] != 0.0);
     match offset {
-        None => Moved::Not,
-        Some((dx, dy)) if !has_deck => Moved::Signature { dx, dy },
-        Some((dx, dy)) if dy == 0.0 && noted => Moved::Origin {
+        None => PositionCorrection::Not,
+        Some((dx, dy)) if !has_deck => PositionCorrection::Signature { dx, dy },
+        Some((dx, dy)) if dy == 0.0 && noted => PositionCorrection::Origin {
             x_m: frame.payload_origin[0] - dx,
         },
-        Some(_) => Moved::InNotes,
+        Some(_) => PositionCorrection::InNotes,
     }
 }
 
@@ -234,7 +241,7 @@ pub(super) fn effect_not_in_model(id: &str, why: &str) -> Finding {
 }
 
 /// Result of editing the deck.
-enum Edited {
+enum DeckEditOutcome {
     /// The deck needs no change.
     Unchanged,
     /// Deck with the effects.
@@ -244,7 +251,7 @@ enum Edited {
 }
 
 /// Edits the deck to contain the effects that a deck can contain.
-fn deck_with(job: &Job, deck: &DeckFrame, outcome: &Outcome) -> Edited {
+fn deck_with(job: &Job, deck: &DeckFrame, outcome: &Outcome) -> DeckEditOutcome {
     let mut stiffness: Vec<NamedStiffness> = Vec::new();
     let mut masses: Vec<(String, f64)> = Vec::new();
     for e in &outcome.effects {
@@ -264,10 +271,10 @@ fn deck_with(job: &Job, deck: &DeckFrame, outcome: &Outcome) -> Edited {
     }
     let side = side_loads(job, &outcome.effects);
     if stiffness.is_empty() && masses.is_empty() && side.is_empty() {
-        return Edited::Unchanged;
+        return DeckEditOutcome::Unchanged;
     }
     deck.extend_deck(job, &stiffness, &masses, &side)
-        .map_or(Edited::Refused, Edited::Deck)
+        .map_or(DeckEditOutcome::Refused, DeckEditOutcome::Deck)
 }
 
 /// Does an effect change what was noted of runs?
@@ -318,7 +325,7 @@ fn payload_noted(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<[f64; 3]> 
             }
             Extension::RunRecord {
                 run,
-                noted: Noted::Mass,
+                noted: RecordedQuantity::Mass,
                 size,
             } => {
                 if let Some([mass, ..]) = at(run).and_then(|r| out.get_mut(r)) {
@@ -336,11 +343,11 @@ fn sensitivity_with(
     frame: &StrainFrame,
     outcome: &Outcome,
     state: &StrainState,
-    moved: Moved,
+    moved: PositionCorrection,
 ) -> Option<ExtendedS> {
     let left_out = nuisance(frame, &outcome.effects);
     let mut influence = state.influence.clone();
-    if let Moved::Signature { dx, dy } = moved {
+    if let PositionCorrection::Signature { dx, dy } = moved {
         let (n_c, n_l) = (frame.n_columns(), frame.n_loads());
         for row in influence.chunks_exact_mut(n_c.max(1)) {
             // strain per kg = b0 + x b_x + y b_y + x y b_xy at (x + dx, y + dy)

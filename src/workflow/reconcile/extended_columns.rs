@@ -1,8 +1,8 @@
 //! The columns of S in the tables of the extended job. They have the names and units of the job's own tables, so that every other table of the job
 //! remains valid.
 
-use super::extended::ExtendedS;
 use super::extended_loads::component_word;
+use super::extended_model::ExtendedS;
 use super::matrix_frame::{payload_scale, quantity_of_load};
 use crate::job::{Component, Job};
 use crate::reconcile::strain::{N_PAYLOAD_COLUMNS, StrainFrame};

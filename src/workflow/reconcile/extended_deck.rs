@@ -1,9 +1,9 @@
 //! The analyst's deck with named effects in it.
 
 use super::deck_frame::{DeckFrame, unit};
-use super::described::effect_of;
-use super::extended::DECK;
+use super::described_effects::effect_of;
 use super::extended_loads::{SideLoad, cards};
+use super::extended_model::DECK;
 use super::influence::{readings, solve};
 use super::one_file::one_file;
 use super::stiffness::factor;

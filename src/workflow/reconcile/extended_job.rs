@@ -1,8 +1,8 @@
 //! A copy of the job that the effects go into.
 
-use super::answer::Reconciled;
+use super::answer::Reconciliation;
+use super::folder_paths::relative_path;
 use super::redirect::redirect;
-use super::relative::relative_path;
 use super::words::effect_in_words;
 use super::{motion_job, strain_job};
 use crate::host::fault::{Fault, Faults};
@@ -14,7 +14,7 @@ use toml::{Table, Value};
 ///
 /// # Errors
 /// A job that is no TOML, which is a mistake of the program.
-pub fn extended_job(answer: &Reconciled, out: &Path) -> Result<Option<String>, Faults> {
+pub fn extended_job(answer: &Reconciliation, out: &Path) -> Result<Option<String>, Faults> {
     let Some(extended) = &answer.extended_model else {
         return Ok(None);
     };

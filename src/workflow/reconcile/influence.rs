@@ -11,7 +11,7 @@ use crate::job::Job;
 use crate::model::{GridIx, Model};
 use crate::reconcile::strain::N_PAYLOAD_COLUMNS;
 use crate::stop::Stop;
-use crate::strain_chain::solved::support_of_job;
+use crate::strain_chain::built_in_solver::support_of_job;
 use crate::units::MICROSTRAIN;
 
 /// Influence of the columns, `n_gauges x n_columns`, zero for columns without a load.

@@ -1,6 +1,6 @@
 //! The static frame of a job whose S and signatures are given as CSV files.
 
-use super::described;
+use super::described_effects;
 use super::frame_columns::FrameColumns;
 use super::model_part::{ModelPart, facts, nominal_x_m, nominal_y_m};
 use super::signature_table::{SignatureTable, TableColumn};
@@ -54,7 +54,7 @@ pub(super) fn read(
     [part.thermal_uniform, part.thermal_gradient] = tables.read_thermal_strain(&mut work.inputs)?;
     part.masses = tables.masses(&mut work.inputs)?;
     part.stiffness = tables.stiffness(&mut work.inputs)?;
-    part.stiffness.extend(described::from_tables(
+    part.stiffness.extend(described_effects::from_tables(
         &mut work.inputs,
         job,
         channels,

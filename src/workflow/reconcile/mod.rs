@@ -1,29 +1,28 @@
 //! `reconcile`: where simulation and measurement disagree, which effect is missing, and the model with the effect in it.
 
-mod added;
 mod added_motion;
 mod answer;
 mod background;
 mod causes;
-mod changed;
-mod corrected;
+mod channel_corrections;
 mod deck_frame;
 mod deck_loads;
 mod deck_thermal;
-mod described;
+mod described_effects;
 mod extend;
-pub mod extended;
 pub mod extended_columns;
 mod extended_deck;
 mod extended_job;
 mod extended_loads;
-mod finer;
+pub mod extended_model;
+pub(super) mod folder_paths;
 mod frame_columns;
 mod influence;
-mod local;
 mod local_ground;
-mod marked;
+mod local_stiffness;
+mod marked_stiffness;
 mod matrix_frame;
+mod model_changes;
 mod model_part;
 mod motion_findings;
 mod motion_job;
@@ -31,21 +30,22 @@ mod motion_path;
 mod one_file;
 mod readings;
 pub(super) mod redirect;
+mod refined_model;
 mod region;
-pub(super) mod relative;
 mod run_frame;
 mod signature_table;
 mod stiffness;
+mod stiffness_changes;
 mod strain_findings;
 mod strain_job;
 mod strain_path;
 mod words;
 mod zones;
 
-pub use added::Added;
 pub use answer::*;
 pub use extended_job::extended_job;
-pub use marked::MarkedStiffness;
+pub use marked_stiffness::MarkedStiffness;
+pub use model_changes::ModelChange;
 pub use words::effect_in_words;
 
 use crate::host::context::Context;
@@ -72,7 +72,7 @@ use crate::strain_chain::named_results::check_tables;
 /// assert!(found.gap.after < 0.1 * found.gap.before);
 /// # Ok::<(), strainbridge::Faults>(())
 /// ```
-pub fn reconcile(job: &Job, cx: &Context) -> Result<Outcome<Reconciled>, Faults> {
+pub fn reconcile(job: &Job, cx: &Context) -> Result<Outcome<Reconciliation>, Faults> {
     let mut work = Work::of_job(cx, job);
     let job = &job.without_validation_gauges()?;
     check_tables(&work, job)?;

@@ -2,11 +2,11 @@
 
 use super::added_motion::added_to_motion;
 use super::answer::{
-    DetectableSize, EffectFound, GapFound, MotionPart, Reconciled, ReducedChi2, RivalFound,
+    DetectableSize, EffectFound, GapFound, MotionPart, Reconciliation, ReducedChi2, RivalFound,
     Simulation, SizeFound, WheelMisfit, first_finite,
 };
 use super::extend::effect_not_in_model;
-use super::extended::ExtendedModel;
+use super::extended_model::ExtendedModel;
 use super::motion_findings::findings;
 use super::motion_job;
 use super::redirect::text_of;
@@ -33,7 +33,7 @@ use crate::workflow::vehicle::{
 ///
 /// # Errors
 /// Faults of the job and of its records.
-pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
+pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciliation, Faults> {
     let section = section_of(job)?;
     let records = work.stage("read", |w| read_vehicle(w, job))?;
     let mut frame = frame(section, &records, work.cx.progress.stop());
@@ -92,13 +92,13 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
     let added = added_to_motion(&frame, &outcome, extended_model.as_ref());
     let list = |effects: &[MotionEffect]| effects.iter().map(effect_found).collect();
     let [before, after] = outcome.reduced_chi2;
-    let size = |s: &crate::reconcile::motion::outcome::Smallest| DetectableSize {
+    let size = |s: &crate::reconcile::motion::outcome::MotionDetectionLimit| DetectableSize {
         id: s.id.clone(),
         size: s.size,
         unit: s.unit.clone(),
     };
     let sits = outcome.before.as_ref().map_or_else(Vec::new, gap_sits);
-    Ok(Reconciled {
+    Ok(Reconciliation {
         verdict: outcome.verdict,
         named: outcome.effects.iter().map(|e| e.id.clone()).collect(),
         effects: list(&outcome.effects),

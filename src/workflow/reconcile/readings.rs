@@ -4,7 +4,7 @@ use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::job::{HoldOut, Job, Measured, Reference};
-use crate::measured::zero::{Zeroed, read_zeroed, some_left, subtract_and_test_zero};
+use crate::measured::zero::{ZeroedTable, read_zeroed, some_left, subtract_and_test_zero};
 use crate::reconcile::Observations;
 use crate::recovery::Readings;
 use crate::units::MICROSTRAIN;
@@ -30,7 +30,7 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
     }
     let zeroed = read_zeroed(work, job, measured, &measured.strain)?;
     let runs = zeroed.runs()?.to_vec();
-    let Zeroed {
+    let ZeroedTable {
         table,
         mut noise_factor,
     } = zeroed;
@@ -47,7 +47,7 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
     if let HoldOut::File(named) = &measured.hold_out {
         let zeroed = read_zeroed(work, job, measured, named)?;
         let names = zeroed.runs()?.to_vec();
-        let Zeroed {
+        let ZeroedTable {
             table: kept,
             noise_factor: own,
         } = zeroed;

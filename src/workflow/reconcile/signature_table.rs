@@ -3,7 +3,7 @@
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::files::Inputs;
 use crate::job::table::{Table, read_table};
-use crate::job::unread::note_unread;
+use crate::job::unread_columns::note_unread;
 use crate::job::{Job, NamedFile};
 use std::cell::RefCell;
 

@@ -1,8 +1,8 @@
 //! Signatures of a stiffness that may be wrong: the changed model solved again.
 
-use super::changed::Changed;
 use super::deck_frame::DeckFrame;
-use super::described::{effect_of, factor_at};
+use super::described_effects::{effect_of, factor_at};
+use super::stiffness_changes::DeckStiffnessChange;
 use crate::host::fault::{Fault, Faults};
 use crate::job::Job;
 use crate::model::Model;
@@ -64,7 +64,7 @@ impl DeckFrame {
                 JOINT_PRIOR,
             )
         }));
-        let mut models: Vec<Changed> = Vec::new();
+        let mut models: Vec<DeckStiffnessChange> = Vec::new();
         for (of, place, sizes, _) in &wanted {
             for percent in sizes {
                 models.push(self.resolve_change(job, *of, place, *percent)?);
@@ -104,13 +104,13 @@ impl DeckFrame {
         of: StiffnessOf,
         place: &str,
         percent: f64,
-    ) -> Result<Changed, Faults> {
+    ) -> Result<DeckStiffnessChange, Faults> {
         let factor = factor(job, of, place, percent).unwrap_or(1.0);
         Ok(match of {
-            StiffnessOf::Joint => Changed::Bush(place.to_owned(), factor),
-            StiffnessOf::Local => Changed::Shells(self.shells_of_region(place), factor),
+            StiffnessOf::Joint => DeckStiffnessChange::Bush(place.to_owned(), factor),
+            StiffnessOf::Local => DeckStiffnessChange::Shells(self.shells_of_region(place), factor),
             StiffnessOf::Zone | StiffnessOf::Described => {
-                Changed::Thickness(self.properties_of_zone(job, place)?, factor)
+                DeckStiffnessChange::Thickness(self.properties_of_zone(job, place)?, factor)
             }
         })
     }

@@ -1,11 +1,11 @@
 //! The named effects of strain in a job: names of the files that hold them, loads that were left out.
 
 use super::answer::StrainPart;
-use super::corrected::entry;
+use super::channel_corrections::entry;
 use super::deck_thermal;
-use super::extended::{DECK, ExtendedModel, ExtendedS, PAYLOAD, RUNS, SENSITIVITY, STRAIN};
 use super::extended_columns::{sensitivity_columns, typical_size};
 use super::extended_loads::{component_word, entries, side_loads};
+use super::extended_model::{DECK, ExtendedModel, ExtendedS, PAYLOAD, RUNS, SENSITIVITY, STRAIN};
 use crate::job::Job;
 use crate::reconcile::NamedEffect;
 use crate::reconcile::effect::{Extension, Nuisance};

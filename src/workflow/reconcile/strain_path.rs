@@ -1,18 +1,18 @@
 //! Strain: frame, verdict, extended model.
 
-use super::added::added_to_strain;
 use super::answer::{
-    DetectableSize, EffectFound, GapFound, Reconciled, ReducedChi2, RivalFound, SizeFound,
+    DetectableSize, EffectFound, GapFound, Reconciliation, ReducedChi2, RivalFound, SizeFound,
     StrainGap, StrainPart, first_finite,
 };
 use super::deck_frame::{self, DeckFrame};
-use super::described::effect_of;
-use super::local::gauges_that_disagree;
+use super::described_effects::effect_of;
+use super::local_stiffness::gauges_that_disagree;
+use super::model_changes::added_to_strain;
 use super::readings::observations;
 use super::run_frame::frame;
 use super::stiffness::factor;
 use super::strain_findings::findings;
-use super::{causes, described, extend, matrix_frame};
+use super::{causes, described_effects, extend, matrix_frame};
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::job::{EffectSource, Job};
@@ -26,7 +26,7 @@ use crate::reconcile::{GapBasis, NamedEffect, Outcome, Verdict};
 ///
 /// # Errors
 /// Faults of the job and of the files it names.
-pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
+pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciliation, Faults> {
     let observations = observations(job, work)?;
     let channels = observations.channels.clone();
     if let (Some(r), None, None) = (&job.reconcile, &job.sensitivity, &job.model)
@@ -108,12 +108,12 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
     );
     let list = |effects: &[NamedEffect]| effects.iter().map(effect_found).collect();
     let [before, after, held_out] = outcome.reduced_chi2;
-    let size = |d: &crate::reconcile::Detectable| DetectableSize {
+    let size = |d: &crate::reconcile::DetectionLimit| DetectableSize {
         id: d.id.clone(),
         size: d.size,
         unit: d.unit.to_owned(),
     };
-    Ok(Reconciled {
+    Ok(Reconciliation {
         verdict: outcome.verdict,
         named: outcome.effects.iter().map(|e| e.id.clone()).collect(),
         effects: list(&outcome.effects),
@@ -152,7 +152,7 @@ pub(super) fn look(job: &Job, work: &mut Work) -> Result<(), Faults> {
         }
         (None, Some(_)) => {
             let columns = deck_frame::per_job_unit(job);
-            described::look(&mut work.inputs, job, &channels, &columns)
+            described_effects::look(&mut work.inputs, job, &channels, &columns)
         }
         (None, None) => Ok(()),
     }

@@ -1,6 +1,6 @@
 //! Effects and the verdict in words: on the terminal, on the page and in the extended job, the same for strain and motion.
 
-use super::answer::{EffectFound, GapFound, Reconciled};
+use super::answer::{EffectFound, GapFound, Reconciliation};
 use crate::estimate::NORMAL_95;
 use crate::finding::list_few;
 use crate::reconcile::Verdict;
@@ -108,7 +108,7 @@ fn stiffness_in_words(percent: f64, half: f64) -> String {
     format!("{} % {way} stiff", plus_minus(percent.abs(), half))
 }
 
-impl Reconciled {
+impl Reconciliation {
     /// Returns the verdict in words: what, where, how large, how sure, and what to do.
     pub(super) fn sentence(&self) -> String {
         let gap = &self.gap;

@@ -13,14 +13,14 @@ use crate::host::words::count_of;
 use crate::job::Job;
 use crate::recovery::{Readings, Recovery, Sums};
 use crate::sensitivity::Sensitivity;
-use crate::strain_chain::{Conditioning, GaugeMeshError, LoadUnits, Prepared};
+use crate::strain_chain::{Conditioning, GaugeMeshError, JobSensitivity, LoadUnits};
 use crate::units::{MICROSTRAIN, half_width};
 use serde::Serialize;
 use std::sync::Arc;
 
 /// Validation, comparison and sections: results besides the loads.
 #[derive(Default)]
-pub(super) struct Beside {
+pub(super) struct AdditionalResults {
     pub validation: Vec<ValidationGauge>,
     pub comparison: Comparison,
     pub sections: Vec<SectionLoad>,
@@ -28,7 +28,7 @@ pub(super) struct Beside {
 
 /// Loads from measured strain.
 #[derive(Serialize)]
-pub struct Recovered {
+pub struct RecoveredLoads {
     /// Rank and condition numbers of S.
     #[serde(flatten)]
     pub conditioning: Conditioning,
@@ -49,13 +49,13 @@ pub struct Recovered {
     pub mesh_error: Vec<GaugeMeshError>,
     /// S, gauges, model and strain fields.
     #[serde(skip)]
-    pub prepared: Prepared,
+    pub prepared: JobSensitivity,
     /// The job.
     #[serde(skip)]
     pub job: Job,
 }
 
-impl Answer for Recovered {
+impl Answer for RecoveredLoads {
     const COMMAND: &'static str = "recover";
     const RESULT: &'static str = "The recovered loads";
 
@@ -83,7 +83,7 @@ impl Answer for Recovered {
     }
 }
 
-impl Recovered {
+impl RecoveredLoads {
     /// Loads of static runs; `None` where a record was measured.
     pub fn runs(&self) -> Option<&RecoveredRuns> {
         match &self.states {

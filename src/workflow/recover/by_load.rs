@@ -1,6 +1,6 @@
 //! Recovered loads by load: smallest, mean and largest over all runs or samples, with the half width of their intervals.
 
-use super::answer::{RecordLoad, Recovered, RecoveredRecord, RecoveredRuns, States};
+use super::answer::{RecordLoad, RecoveredLoads, RecoveredRecord, RecoveredRuns, States};
 use crate::units::{factor, number};
 
 /// A load over all runs, or over a record, report units.
@@ -37,7 +37,7 @@ impl LoadSpan {
     }
 }
 
-impl Recovered {
+impl RecoveredLoads {
     /// Returns the loads over all runs or samples, combinations among them, in the order of the job.
     pub fn spans(&self) -> Vec<LoadSpan> {
         let mut spans = match &self.states {

@@ -54,7 +54,7 @@ pub(super) fn damage(
         .into_par_iter()
         .map(|l| {
             let [min, max] = extremes(head, sums, l);
-            let d = Counting {
+            let d = CycleCountInput {
                 head,
                 samples,
                 slope,
@@ -103,13 +103,13 @@ pub(super) fn extremes(head: &RecordHead, sums: &Sums, l: usize) -> [f64; 2] {
 
 /// Samples of a record whose cycles are counted, with the slope of the S-N line.
 #[derive(Clone, Copy)]
-pub(super) struct Counting<'a> {
+pub(super) struct CycleCountInput<'a> {
     pub head: &'a RecordHead,
     pub samples: &'a dyn Samples,
     pub slope: f64,
 }
 
-impl Counting<'_> {
+impl CycleCountInput<'_> {
     /// Counts load `l` over some of the samples, report unit; ranges reach to `limit`.
     pub fn damage(self, l: usize, limit: f64, range: Range<usize>) -> Damage {
         let Self {

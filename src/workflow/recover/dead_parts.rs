@@ -1,19 +1,19 @@
 //! A record without the readings of gauges that are dead in a part of it.
 
-use super::judged::spread_readings;
+use super::record_tests::spread_readings;
 use super::task::Task;
 use crate::finding::{Finding, Severity};
 use crate::host::fault::Faults;
 use crate::host::work::Work;
 use crate::measured::record::Record;
 use crate::recovery::Readings;
-use crate::recovery::stuck::{check, still_parts};
+use crate::recovery::dead_gauges::{check, still_parts};
 use crate::sensitivity::Sensitivity;
-use crate::series::still::{Gives, blank_readings};
+use crate::series::constant_columns::{Gives, blank_readings};
 use std::ops::Range;
 
 /// A record without the readings of gauges where they are dead.
-pub(super) struct Living {
+pub(super) struct MaskedRecord {
     pub record: Record,
     /// Readings of samples spread over the record.
     pub readings: Vec<Readings>,
@@ -31,7 +31,7 @@ pub(super) fn without_dead_parts(
     record: Record,
     s: &Sensitivity,
     zero: &[f64],
-) -> Result<Living, Faults> {
+) -> Result<MaskedRecord, Faults> {
     let mut samples = spread_readings(task, &record, zero)?;
     let looked: Vec<(usize, &[f64])> = samples.iter().map(|r| (r.0, &*r.1.strain)).collect();
     // Names alone, without S, say nothing of what others expect.
@@ -57,7 +57,7 @@ pub(super) fn without_dead_parts(
         blank_readings(&mut readings.strain, n, *at, &blanked);
     }
     let readings = samples.into_iter().map(|r| r.1).collect();
-    Ok(Living {
+    Ok(MaskedRecord {
         record: record.with_blank_readings(blanked),
         readings,
         dead: parts,

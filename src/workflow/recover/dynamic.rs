@@ -12,8 +12,8 @@ use crate::recovery::dynamic::{
     AtRest, Doubt, Dynamics, ElasticMode, Unfit, readings_at_rest, triangle, window,
 };
 use crate::sensitivity::Sensitivity;
+use crate::strain_chain::built_in_solver::{ElasticModes, cases_of_job, faults_of, modes_kept};
 use crate::strain_chain::deck::DeckModel;
-use crate::strain_chain::solved::{ElasticModes, cases_of_job, faults_of, modes_kept};
 use serde::Serialize;
 
 /// Modes are solved up to this many times the highest frequency wanted at least, and all that are solved are taken. What the next one answers beyond
@@ -41,7 +41,7 @@ pub struct Motion {
 }
 
 /// Quasi-static record, and the errors of its readings.
-pub(super) struct Rested {
+pub(super) struct QuasiStaticRecord {
     pub record: Record,
     pub motion: Motion,
     /// Noise variance of a reading, in units of the variance of a reading as measured.
@@ -64,7 +64,7 @@ pub(super) fn remove_vibration(
     task: &Task,
     record: &Record,
     s: &Sensitivity,
-) -> Result<Option<Rested>, Faults> {
+) -> Result<Option<QuasiStaticRecord>, Faults> {
     let Some(asked) = task.job.dynamic else {
         return Ok(None);
     };
@@ -116,7 +116,7 @@ pub(super) fn remove_vibration(
         asked,
         &task.measured.strain.given,
     ));
-    Ok(Some(Rested {
+    Ok(Some(QuasiStaticRecord {
         noise_factor: task.noise_factor - 1.0 + rested.noise_share,
         doubt: rested.doubt,
         apart: independent_spacing(&dynamics, step_s),

@@ -1,6 +1,6 @@
 //! Tests of measured strain before its loads are recovered, for `check`.
 
-use super::combined::list_load_columns;
+use super::listed_loads::list_load_columns;
 use super::task::{Task, task_of, without_reference};
 use super::{open_strain, record, runs};
 use crate::host::fault::{FaultList, Faults};
@@ -8,9 +8,9 @@ use crate::host::work::Work;
 use crate::job::{Job, Measured, Reference};
 use crate::measured::MeasuredStrain;
 use crate::measured::zero::reads_strain;
-use crate::recovery::plausible;
+use crate::recovery::reading_plausibility;
 use crate::sensitivity::{Sensitivity, check_separability};
-use crate::strain_chain::Prepared;
+use crate::strain_chain::JobSensitivity;
 
 /// Reads the measured strain of a job, its zero and the payload that is known, as `recover` does, and judges readings and times; every
 /// fault of them. `sensitivity` is the job's given S, or the names of its gauges without a load where S takes a solution.
@@ -20,7 +20,7 @@ pub(crate) fn look(
     measured: &Measured,
     sensitivity: Sensitivity,
 ) -> FaultList {
-    let prepared = Prepared {
+    let prepared = JobSensitivity {
         sensitivity,
         fields: None,
         gauges: Vec::new(),
@@ -28,12 +28,12 @@ pub(crate) fn look(
     };
     // A model's reference state takes a solution.
     let known = match job.model.is_none() && !prepared.sensitivity.loads.is_empty() {
-        true => Known::S,
-        false => Known::Names,
+        true => KnownSensitivity::S,
+        false => KnownSensitivity::Names,
     };
     let task = match known {
-        Known::S => task_of(work, job, measured, &prepared),
-        Known::Names => without_reference(work, job, measured, &prepared),
+        KnownSensitivity::S => task_of(work, job, measured, &prepared),
+        KnownSensitivity::Names => without_reference(work, job, measured, &prepared),
     };
     let faults_of = |read: Result<(), Faults>| read.err().map_or_else(Vec::new, Faults::into_list);
     let first = match task {
@@ -45,7 +45,7 @@ pub(crate) fn look(
     (bare.zero, bare.reference) = (None, Reference::None);
     let mut faults = first.into_list();
     match without_reference(work, job, &bare, &prepared) {
-        Ok(task) => faults.extend(faults_of(readings(work, &task, Known::Names))),
+        Ok(task) => faults.extend(faults_of(readings(work, &task, KnownSensitivity::Names))),
         Err(more) => faults.extend(more),
     }
     faults
@@ -53,7 +53,7 @@ pub(crate) fn look(
 
 /// Known part of S.
 #[derive(Clone, Copy, PartialEq)]
-enum Known {
+enum KnownSensitivity {
     /// Complete S, which loads are recovered with.
     S,
     /// Names of the gauges.
@@ -61,9 +61,9 @@ enum Known {
 }
 
 /// Reads and judges.
-fn readings(work: &mut Work, task: &Task, known: Known) -> Result<(), Faults> {
+fn readings(work: &mut Work, task: &Task, known: KnownSensitivity) -> Result<(), Faults> {
     let s = &task.prepared.sensitivity;
-    if known == Known::S {
+    if known == KnownSensitivity::S {
         // A job that is reconciled lists loads that only the runs file tells apart.
         if task.job.reconcile.is_none() {
             work.findings
@@ -76,14 +76,14 @@ fn readings(work: &mut Work, task: &Task, known: Known) -> Result<(), Faults> {
         MeasuredStrain::Runs(table) => (s.clone(), runs::read(work, task, &table)?.0),
     };
     let found = match reads_strain(task.job) {
-        true => plausible::check(&s.gauges, &readings, task.errors).1,
+        true => reading_plausibility::check(&s.gauges, &readings, task.errors).1,
         false => {
             work.findings.retain(|f| f.code != "reading-impossible");
-            plausible::check_signal(&readings, task.errors)
+            reading_plausibility::check_signal(&readings, task.errors)
         }
     };
     // The strain of a reference state that is not in them may be all there is.
-    let all = known == Known::S || task.measured.reference == Reference::None;
+    let all = known == KnownSensitivity::S || task.measured.reference == Reference::None;
     let holds = |code: &str| all || code != "readings-below-noise";
     work.findings
         .extend(found.into_iter().filter(|f| holds(f.code)));

@@ -3,11 +3,11 @@
 //! `runs` static states, a row each; `record` records of any length and format ([`crate::series::record`]), at constant memory: their
 //! loads go to a [`RecordSink`] as they come.
 
+mod active_gauges;
 mod answer;
 mod block;
 mod by_load;
-mod calibrated;
-mod combined;
+mod calibration_range;
 mod compare;
 mod content;
 mod damage;
@@ -15,43 +15,43 @@ mod dead_parts;
 mod dynamic;
 mod files;
 mod history;
-mod judged;
 mod known_payload;
+mod listed_loads;
 mod look;
 mod record;
-mod recorded;
+mod record_tests;
+mod recorded_run_loads;
 mod runs;
 mod section_files;
 mod sections;
 mod sink;
-mod speaking;
 mod task;
 mod trace;
 mod validation;
 
-pub(crate) use calibrated::record_beyond_calibration;
+pub(crate) use calibration_range::record_beyond_calibration;
 
+pub(super) use active_gauges::silent_throughout;
 pub use answer::{
-    Content, GaugeResidual, RecordLoad, Recovered, RecoveredLoad, RecoveredRecord, RecoveredRuns,
-    RunFit, States,
+    Content, GaugeResidual, RecordLoad, RecoveredLoad, RecoveredLoads, RecoveredRecord,
+    RecoveredRuns, RunFit, States,
 };
 pub use by_load::LoadSpan;
-pub(super) use combined::{Listed, list_load_columns};
 pub use compare::{Comparison, ComparisonShift, LoadComparison};
 pub use damage::LoadDamage;
 pub(super) use dead_parts::silent_in_part;
 pub use dynamic::Motion;
 pub use files::rpc_targets;
 pub use history::{History, HistoryRow};
+pub(super) use listed_loads::{ListedLoads, list_load_columns};
 pub(super) use look::{gauges_of_file, look};
 pub use sections::{DutyLoad, SectionLoad, Sections};
 use sink::Unheard;
 pub use sink::{Block, RecordHead, RecordSink, Sample, Samples};
-pub(super) use speaking::silent_throughout;
 pub use trace::{Span, Spans};
 pub use validation::ValidationGauge;
 
-use answer::Beside;
+use answer::AdditionalResults;
 
 use crate::host::context::Context;
 use crate::host::fault::Faults;
@@ -63,7 +63,7 @@ use crate::measured::{self, MeasuredStrain};
 use crate::recovery::{Readings, Recovery};
 use crate::sensitivity::check_separability;
 use crate::strain_chain::named_results::check_tables;
-use crate::strain_chain::{Conditioning, Prepared};
+use crate::strain_chain::{Conditioning, JobSensitivity};
 
 /// Recovers the loads of the runs or the record of a job with their intervals. Every sample of a record stays in memory
 /// ([`RecoveredRecord::history`]); [`recover_into`] writes the samples to a sink instead.
@@ -95,7 +95,7 @@ use crate::strain_chain::{Conditioning, Prepared};
 /// }
 /// # Ok::<(), strainbridge::Faults>(())
 /// ```
-pub fn recover(job: &Job, cx: &Context) -> Result<Outcome<Recovered>, Faults> {
+pub fn recover(job: &Job, cx: &Context) -> Result<Outcome<RecoveredLoads>, Faults> {
     let mut history = History::default();
     let mut outcome = recover_into(job, cx, &mut history)?;
     if let States::Record(record) = &mut outcome.answer.states {
@@ -112,7 +112,7 @@ pub fn recover_into(
     job: &Job,
     cx: &Context,
     sink: &mut dyn RecordSink,
-) -> Result<Outcome<Recovered>, Faults> {
+) -> Result<Outcome<RecoveredLoads>, Faults> {
     let mut work = Work::of_job(cx, job);
     let measured = task::measured_of(job)?;
     job.without_validation_gauges()?;
@@ -120,7 +120,7 @@ pub fn recover_into(
     let mut prepared = prepare_with_noise(&mut work, job)?;
     let (states, beside) = recover_measured_loads(&mut work, (job, measured), &prepared, sink)?;
     prepared.retain(&task::validation_rows(job, &prepared.sensitivity).1);
-    let answer = Recovered {
+    let answer = RecoveredLoads {
         validation: beside.validation,
         comparison: beside.comparison,
         sections: Sections::from_loads(job, beside.sections),
@@ -143,9 +143,9 @@ pub fn recover_into(
 fn recover_measured_loads(
     work: &mut Work,
     (job, measured): (&Job, &Measured),
-    prepared: &Prepared,
+    prepared: &JobSensitivity,
     sink: &mut dyn RecordSink,
-) -> Result<(States, Beside), Faults> {
+) -> Result<(States, AdditionalResults), Faults> {
     let (_, estimating) = task::validation_rows(job, &prepared.sensitivity);
     let s = prepared.sensitivity.of_gauges(&estimating);
     work.findings
@@ -185,7 +185,7 @@ pub(super) fn judged_alone(
     work: &mut Work,
     job: &Job,
     measured: &Measured,
-    prepared: &Prepared,
+    prepared: &JobSensitivity,
 ) -> Result<(), Faults> {
     recover_measured_loads(work, (job, measured), prepared, &mut Unheard).map(|_| ())
 }
@@ -198,7 +198,7 @@ pub(super) fn recovered_runs(
     work: &mut Work,
     job: &Job,
     measured: &Measured,
-    prepared: &Prepared,
+    prepared: &JobSensitivity,
 ) -> Result<(Vec<Readings>, Recovery), Faults> {
     let task = task::task_of(work, job, measured, prepared)?;
     let table = open_strain(work, job, measured)?.into_runs()?;

@@ -1,22 +1,22 @@
 //! Records: samples streamed through one estimate, pieces in parallel, a few pieces in memory at a time.
 
-use super::answer::{Beside, Content, GaugeResidual, RecordLoad, RecoveredRecord};
+use super::active_gauges::{ActiveGaugeRecord, exclude_silent_gauges};
+use super::answer::{AdditionalResults, Content, GaugeResidual, RecordLoad, RecoveredRecord};
 use super::block::block;
-use super::calibrated;
-use super::combined::{Listed, list_load_columns};
+use super::calibration_range;
 use super::compare::{self, Gap};
-use super::damage::{Counting, LoadDamage, about_damage, damage};
-use super::dead_parts::{Living, without_dead_parts};
+use super::damage::{CycleCountInput, LoadDamage, about_damage, damage};
+use super::dead_parts::{MaskedRecord, without_dead_parts};
 use super::dynamic::{Motion, remove_vibration};
 use super::files;
-use super::judged::{check_times, content, judge, judge_at_rest, spread};
+use super::listed_loads::{ListedLoads, list_load_columns};
+use super::record_tests::{check_times, content, judge, judge_at_rest, spread};
 use super::runs::find_identical_readings;
 use super::sections;
 use super::sink::{Block, RecordHead, RecordSink};
-use super::speaking::{Speaking, exclude_silent_gauges};
 use super::task::Task;
 use super::trace::Spans;
-use super::validation::{self, Channels, Compared};
+use super::validation::{self, Channels, ValidationSums};
 use crate::finding::Finding;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::finite_or_none;
@@ -26,7 +26,7 @@ use crate::measured::record::Record;
 use crate::measured::zero::no_zero_runs;
 use crate::recovery::dynamic::Doubt;
 use crate::recovery::history::Filter;
-use crate::recovery::{Gain, Readings, Recovery, Sums, check_gaps, plausible};
+use crate::recovery::{Gain, Readings, Recovery, Sums, check_gaps, reading_plausibility};
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
 use rayon::prelude::*;
@@ -44,20 +44,20 @@ pub(super) fn record(
     task: &Task,
     record: &Record,
     sink: &mut dyn RecordSink,
-) -> Result<(RecoveredRecord, Beside), Faults> {
+) -> Result<(RecoveredRecord, AdditionalResults), Faults> {
     no_zero_runs(task.job, task.measured, &task.measured.strain.given)?;
     let mut channels = Channels::from_record(task, record);
-    let Speaking {
+    let ActiveGaugeRecord {
         record,
         sensitivity,
         zero,
     } = exclude_silent_gauges(work, task, record)?;
-    let Listed {
+    let ListedLoads {
         names,
         units,
         sums: combinations,
     } = list_load_columns(task.job, &sensitivity)?;
-    let Living {
+    let MaskedRecord {
         record,
         readings,
         dead,
@@ -112,7 +112,7 @@ pub(super) fn record(
         is_compared: recorded.is_some() || !parts.is_empty(),
     });
     sink.begin(&head)?;
-    let Streamed {
+    let RecordPassResults {
         sums,
         spans,
         compared,
@@ -128,13 +128,13 @@ pub(super) fn record(
     work.findings
         .extend(validation::report_contradictions(&validation));
     let slope = task.job.recover.slope;
-    let mut beside = Beside {
+    let mut beside = AdditionalResults {
         validation,
-        ..Beside::default()
+        ..AdditionalResults::default()
     };
     if head.is_compared {
         let samples = sink.samples()?;
-        let counting = Counting {
+        let counting = CycleCountInput {
             head: &head,
             samples: &*samples,
             slope,
@@ -173,8 +173,8 @@ fn beyond_calibration(
     let sigma = head.filter.sigma(&ends);
     let factor = head.filter.coverage_factor();
     let halves: Vec<f64> = sigma.iter().map(|s| factor * s).collect();
-    calibrated::record_beyond_calibration(
-        &calibrated::with_range(task.job, sensitivity, &head.units),
+    calibration_range::record_beyond_calibration(
+        &calibration_range::with_range(task.job, sensitivity, &head.units),
         (&head.file, sums.missing.samples()),
         (&sums.min, &sums.max, &halves),
     )
@@ -205,7 +205,7 @@ pub(super) fn look(
     record: &Record,
 ) -> Result<(Sensitivity, Vec<Readings>), Faults> {
     no_zero_runs(task.job, task.measured, &task.measured.strain.given)?;
-    let Speaking {
+    let ActiveGaugeRecord {
         record,
         sensitivity,
         zero,
@@ -236,7 +236,7 @@ pub(super) fn look(
         Ok(())
     })?;
     if impossible > 0 {
-        let found = plausible::impossible_in_record(record.file(), impossible);
+        let found = reading_plausibility::impossible_in_record(record.file(), impossible);
         work.findings.push(found);
     }
     Ok((sensitivity, readings))
@@ -285,10 +285,10 @@ fn sensitivity_fault(task: &Task) -> Fault {
 }
 
 /// Results of one pass over the record.
-struct Streamed {
+struct RecordPassResults {
     sums: Sums,
     spans: Spans,
-    compared: Compared,
+    compared: ValidationSums,
     /// Samples in which a gauge gives nothing, with the estimate from the others, where loads are compared.
     gaps: Vec<Gap>,
 }
@@ -302,19 +302,19 @@ fn stream(
     (record, channels): (&Record, Option<&Channels>),
     head: &RecordHead,
     sink: &mut dyn RecordSink,
-) -> Result<Streamed, Faults> {
+) -> Result<RecordPassResults, Faults> {
     let filter = &head.filter;
-    let mut compared = Compared::default();
+    let mut compared = ValidationSums::default();
     let mut gaps = Vec::new();
     let mut sums = Sums::new(filter.n_gauges(), filter.n_loads());
     let mut spans = Spans::new(filter.n_loads());
     let mut first = 0;
     in_groups(work, record, &mut |group| {
-        let one = |&i: &usize| -> Result<(Block, Sums, Compared), Fault> {
+        let one = |&i: &usize| -> Result<(Block, Sums, ValidationSums), Fault> {
             let (block, sums) = block(record, filter, i)?;
             let compared = match channels {
                 Some(c) => c.compare(i, &block.loads.values, filter.n_loads())?,
-                None => Compared::default(),
+                None => ValidationSums::default(),
             };
             Ok((block, sums, compared))
         };
@@ -334,7 +334,7 @@ fn stream(
         }
         Ok(sink.take(blocks)?)
     })?;
-    Ok(Streamed {
+    Ok(RecordPassResults {
         sums,
         spans,
         compared,

@@ -1,18 +1,18 @@
 //! Static states.
 
-use super::answer::{Beside, RecoveredRuns};
-use super::calibrated;
-use super::combined::{Listed, list_load_columns};
+use super::answer::{AdditionalResults, RecoveredRuns};
+use super::calibration_range;
 use super::compare;
 use super::known_payload::{self, KnownLoads};
-use super::recorded;
+use super::listed_loads::{ListedLoads, list_load_columns};
+use super::recorded_run_loads;
 use super::sections;
 use super::task::Task;
 use super::validation::{self, ValidationGauge};
 use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::Faults;
 use crate::host::work::Work;
-use crate::input_faults::identical::identical_readings;
+use crate::input_faults::identical_columns::identical_readings;
 use crate::input_faults::not_explained_by;
 use crate::job::correct::channel_of;
 use crate::job::{LoadActs, Reference};
@@ -132,7 +132,7 @@ fn blanks(table: &StrainTable, names: &[String], gauges: &[(usize, &str)]) -> Ve
 }
 
 /// Loads of the runs, with what they were estimated from.
-pub(super) struct Solved {
+pub(super) struct RunRecovery {
     /// S of the gauges that loads are estimated from.
     pub s: Sensitivity,
     pub readings: Vec<Readings>,
@@ -143,7 +143,11 @@ pub(super) struct Solved {
 }
 
 /// Reads the strain of the runs and recovers their loads.
-pub(super) fn solve(work: &mut Work, task: &Task, table: &StrainTable) -> Result<Solved, Faults> {
+pub(super) fn solve(
+    work: &mut Work,
+    task: &Task,
+    table: &StrainTable,
+) -> Result<RunRecovery, Faults> {
     let mut s = task.prepared.sensitivity.of_gauges(&task.estimating);
     let (all, known) = read(work, task, table)?;
     let readings: Vec<Readings> = all.iter().map(|r| r.of_gauges(&task.estimating)).collect();
@@ -157,7 +161,7 @@ pub(super) fn solve(work: &mut Work, task: &Task, table: &StrainTable) -> Result
     let validation = validation::of_runs(task, (&s, &readings), &all, &recovery);
     work.findings
         .extend(validation::report_contradictions(&validation));
-    let wrong = recorded::wrong_records(work, task, (&s, &readings), &recovery, &known)?;
+    let wrong = recorded_run_loads::wrong_records(work, task, (&s, &readings), &recovery, &known)?;
     work.findings
         .extend(not_explained_by(&recovery.findings, wrong));
     for (run, loads) in recovery.runs.iter_mut().zip(&known) {
@@ -168,7 +172,7 @@ pub(super) fn solve(work: &mut Work, task: &Task, table: &StrainTable) -> Result
         }
     }
     work.findings.extend(recovery.findings.iter().cloned());
-    Ok(Solved {
+    Ok(RunRecovery {
         s,
         readings,
         recovery,
@@ -213,16 +217,16 @@ pub(super) fn runs(
     work: &mut Work,
     task: &Task,
     table: &StrainTable,
-) -> Result<(RecoveredRuns, Beside), Faults> {
+) -> Result<(RecoveredRuns, AdditionalResults), Faults> {
     sections::without_record(task.job)?;
-    let Solved {
+    let RunRecovery {
         s,
         readings,
         mut recovery,
         validation,
         known,
     } = solve(work, task, table)?;
-    let Listed {
+    let ListedLoads {
         names,
         units,
         sums: combinations,
@@ -230,13 +234,13 @@ pub(super) fn runs(
     let comparison = compare::runs(work, task, (&s, &readings), (&recovery, &units), &known)?;
     let k = s.loads.len();
     work.findings.extend(sums(task, &recovery, &units[..k]));
-    let outside = calibrated::of_runs(task, (&s, &readings), &recovery, &units[..k]);
+    let outside = calibration_range::of_runs(task, (&s, &readings), &recovery, &units[..k]);
     work.findings.extend(outside);
     for run in &mut recovery.runs {
         run.estimate.add_sums(&names[k..], &combinations);
     }
     let runs = RecoveredRuns::from_recovery(&s, readings, recovery, names, units);
-    let beside = Beside {
+    let beside = AdditionalResults {
         validation,
         comparison,
         sections: Vec::new(),

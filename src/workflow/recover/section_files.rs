@@ -1,6 +1,6 @@
 //! Sections that are strain records of their own.
 
-use super::damage::Counting;
+use super::damage::CycleCountInput;
 use super::history::History;
 use super::record::record;
 use super::sections::{SectionLoad, count};
@@ -53,7 +53,7 @@ pub(super) fn count_files(work: &mut Work, task: &Task) -> Result<Vec<SectionLoa
         let mut history = History::default();
         let (found, _) = record(work, &of_file, &opened, &mut history)?;
         let samples = history.samples()?;
-        let counting = Counting {
+        let counting = CycleCountInput {
             head: &found.head,
             samples: &*samples,
             slope: job.recover.slope,

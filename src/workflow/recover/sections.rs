@@ -1,6 +1,6 @@
 //! Loads of a record by section, and the duty cycle that the sections make.
 
-use super::damage::{Counting, PIECE};
+use super::damage::{CycleCountInput, PIECE};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::words::format_number;
 use crate::job::{Job, RecordSection, SectionExtent};
@@ -132,7 +132,7 @@ pub(super) fn parts<'a>(job: &'a Job, clock: &Clock) -> Result<Vec<Part<'a>>, Fa
 }
 
 /// Statistics and damage of every load in every section of the record.
-pub(super) fn count_all(counting: Counting, parts: &[Part]) -> Vec<SectionLoad> {
+pub(super) fn count_all(counting: CycleCountInput, parts: &[Part]) -> Vec<SectionLoad> {
     let counted = parts.iter();
     counted
         .flat_map(|p| count(counting, p.section, &p.range))
@@ -141,7 +141,7 @@ pub(super) fn count_all(counting: Counting, parts: &[Part]) -> Vec<SectionLoad> 
 
 /// Statistics and damage of every load in some samples of a record.
 pub(super) fn count(
-    counting: Counting,
+    counting: CycleCountInput,
     section: &RecordSection,
     range: &Range<usize>,
 ) -> Vec<SectionLoad> {

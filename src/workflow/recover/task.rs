@@ -8,14 +8,14 @@ use crate::measured::reference::reference_strain;
 use crate::measured::zero::zero_of;
 use crate::recovery::ErrorModel;
 use crate::sensitivity::Sensitivity;
-use crate::strain_chain::{Prepared, stated_errors};
+use crate::strain_chain::{JobSensitivity, stated_errors};
 use std::collections::HashSet;
 
 /// Inputs that runs and records share.
 pub(super) struct Task<'a> {
     pub job: &'a Job,
     pub measured: &'a Measured,
-    pub prepared: &'a Prepared,
+    pub prepared: &'a JobSensitivity,
     pub errors: ErrorModel,
     /// Strain subtracted from readings, by gauge of S.
     pub zero: Vec<f64>,
@@ -57,7 +57,7 @@ pub(super) fn task_of<'a>(
     work: &mut Work,
     job: &'a Job,
     measured: &'a Measured,
-    prepared: &'a Prepared,
+    prepared: &'a JobSensitivity,
 ) -> Result<Task<'a>, Faults> {
     let mut task = without_reference(work, job, measured, prepared)?;
     let reference = reference_strain(job, measured, prepared)?;
@@ -72,7 +72,7 @@ pub(super) fn without_reference<'a>(
     work: &mut Work,
     job: &'a Job,
     measured: &'a Measured,
-    prepared: &'a Prepared,
+    prepared: &'a JobSensitivity,
 ) -> Result<Task<'a>, Faults> {
     let (zero, n_zero) = zero_of(work, job, measured, &prepared.sensitivity.gauges)?;
     if !measured.states_noise {

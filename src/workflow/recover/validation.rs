@@ -79,7 +79,7 @@ pub(super) fn report_contradictions(list: &[ValidationGauge]) -> Option<Finding>
 }
 
 /// A gauge that is predicted.
-struct Predicted<'a> {
+struct PredictedGauge<'a> {
     task: &'a Task<'a>,
     /// Row in S.
     row: usize,
@@ -88,7 +88,7 @@ struct Predicted<'a> {
     uncertainty: Option<Uncertainty>,
 }
 
-impl<'a> Predicted<'a> {
+impl<'a> PredictedGauge<'a> {
     fn from_validation_gauges(task: &'a Task<'a>) -> Vec<Self> {
         let s = &task.prepared.sensitivity;
         let of = |&row: &usize| Self {
@@ -127,7 +127,7 @@ pub(super) fn of_runs(
     all: &[Readings],
     recovery: &Recovery,
 ) -> Vec<ValidationGauge> {
-    let gauges = Predicted::from_validation_gauges(task);
+    let gauges = PredictedGauge::from_validation_gauges(task);
     if gauges.is_empty() {
         return Vec::new();
     }
@@ -165,21 +165,21 @@ pub(super) fn of_runs(
 /// The channels of a record that hold validation gauges.
 pub(super) struct Channels<'a> {
     record: Record,
-    gauges: Vec<Predicted<'a>>,
+    gauges: Vec<PredictedGauge<'a>>,
     /// Gauge of each channel.
     of: Vec<usize>,
 }
 
 /// Sums over a part of a record.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Compared {
+pub(super) struct ValidationSums {
     sums: Vec<Differences>,
     /// Samples in which all loads are known, and sums of squares of the loads.
     samples: u64,
     loads: Vec<f64>,
 }
 
-impl Compared {
+impl ValidationSums {
     /// Adds the sums of another part.
     pub fn merge(&mut self, other: &Self) {
         self.sums.resize(other.sums.len(), Differences::default());
@@ -198,7 +198,7 @@ impl Compared {
 impl<'a> Channels<'a> {
     /// Returns the channels of the job's validation gauges in a record; `None` where it has none.
     pub fn from_record(task: &'a Task<'a>, record: &Record) -> Option<Self> {
-        let gauges = Predicted::from_validation_gauges(task);
+        let gauges = PredictedGauge::from_validation_gauges(task);
         if gauges.is_empty() {
             return None;
         }
@@ -218,7 +218,7 @@ impl<'a> Channels<'a> {
 
     /// Returns a note that the gauges are not compared, as their readings contain the vibration that `[dynamic]` takes out of the loads.
     pub fn not_compared(&self) -> Finding {
-        let names: Vec<&str> = self.gauges.iter().map(Predicted::name).collect();
+        let names: Vec<&str> = self.gauges.iter().map(PredictedGauge::name).collect();
         Finding::new(
             Severity::Info,
             "gauges-not-compared",
@@ -233,9 +233,14 @@ impl<'a> Channels<'a> {
     ///
     /// # Errors
     /// A piece that can't be read.
-    pub fn compare(&self, piece: usize, loads: &[f64], width: usize) -> Result<Compared, Fault> {
+    pub fn compare(
+        &self,
+        piece: usize,
+        loads: &[f64],
+        width: usize,
+    ) -> Result<ValidationSums, Fault> {
         let k = self.gauges.first().map_or(0, |g| g.s.len());
-        let mut out = Compared {
+        let mut out = ValidationSums {
             sums: vec![Differences::default(); self.gauges.len()],
             samples: 0,
             loads: vec![0.0; k],
@@ -264,11 +269,11 @@ impl<'a> Channels<'a> {
     }
 
     /// Returns the comparison of all parts; the expected difference is computed at the root mean square of the loads.
-    pub fn compare_gauges(&self, compared: &Compared, gain: &Gain) -> Vec<ValidationGauge> {
+    pub fn compare_gauges(&self, compared: &ValidationSums, gain: &Gain) -> Vec<ValidationGauge> {
         let samples = compared.samples.max(1) as f64;
         let typical = compared.loads.iter().map(|v| (v / samples).sqrt());
         let typical: Vec<f64> = typical.collect();
-        let of = |(i, gauge): (usize, &Predicted)| {
+        let of = |(i, gauge): (usize, &PredictedGauge)| {
             let mut sum = compared.sums.get(i).copied().unwrap_or_default();
             if sum.n > 0 {
                 let variance = gauge.variance(gain, &typical, gauge.task.noise_factor);

@@ -9,7 +9,7 @@ use crate::measured::means::is_long_record;
 use crate::measured::strain_table::StrainRows;
 use crate::measured::zero::{read_zeroed, subtract_and_test_zero};
 use crate::respond::LoadState;
-use crate::strain_chain::Prepared;
+use crate::strain_chain::JobSensitivity;
 use crate::units::MICROSTRAIN;
 use serde::Serialize;
 
@@ -55,7 +55,7 @@ pub struct Check {
 pub(super) fn check(
     work: &mut Work,
     job: &Job,
-    prepared: &Prepared,
+    prepared: &JobSensitivity,
     states: &[LoadState],
 ) -> Result<Check, Faults> {
     let mut out = Check::default();

@@ -6,7 +6,7 @@ mod record_states;
 mod states;
 
 pub use gauges::{Check, GaugeCheck};
-pub use outcome::{Element, ElementFatigue, Field, Responded};
+pub use outcome::{Element, ElementFatigue, Field, StressResponse};
 
 use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity, list_few};
@@ -20,7 +20,7 @@ use crate::respond::{
     LoadState, Peak, Place, PlaceDamage, ResponseRow, envelope, fatigue, hot_spots, response_rows,
 };
 use crate::strain_chain::named_results::check_tables;
-use crate::strain_chain::{Prepared, WantedAt, has_covariance, prepare, read_fields};
+use crate::strain_chain::{JobSensitivity, WantedAt, has_covariance, prepare, read_fields};
 use crate::units::factor;
 use std::collections::BTreeSet;
 
@@ -43,7 +43,7 @@ use std::collections::BTreeSet;
 /// assert!(found.gauges.iter().all(|g| g.residual_rms < 1.5));
 /// # Ok::<(), strainbridge::Faults>(())
 /// ```
-pub fn respond(job: &Job, cx: &Context) -> Result<Outcome<Responded>, Faults> {
+pub fn respond(job: &Job, cx: &Context) -> Result<Outcome<StressResponse>, Faults> {
     let mut work = Work::of_job(cx, job);
     let answer = compute_response(&mut work, &job.without_validation_gauges()?)?;
     Ok(work.finish(
@@ -63,7 +63,7 @@ pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
     })
 }
 
-fn compute_response(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
+fn compute_response(work: &mut Work, job: &Job) -> Result<StressResponse, Faults> {
     check_tables(work, job)?;
     let calibrated = has_covariance(job) && job.model.is_some();
     if job.sensitivity.is_some() && !calibrated {
@@ -75,7 +75,7 @@ fn compute_response(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
         )));
     }
     let prepared = if job.gauges.is_empty() {
-        Prepared {
+        JobSensitivity {
             sensitivity: crate::sensitivity::Sensitivity {
                 gauges: Vec::new(),
                 loads: Vec::new(),
@@ -157,7 +157,7 @@ fn compute_response(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
         }
         None => Vec::new(),
     };
-    Ok(Responded {
+    Ok(StressResponse {
         fatigue,
         elements: order.iter().map(entry).collect(),
         hot_spots: hottest.map(entry).collect(),

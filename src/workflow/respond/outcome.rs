@@ -6,13 +6,13 @@ use crate::host::outcome::Answer;
 use crate::host::words::count_of;
 use crate::job::Job;
 use crate::respond::{LoadState, Peak, ResponseRow};
-use crate::strain_chain::Prepared;
+use crate::strain_chain::JobSensitivity;
 use crate::units::plus_minus;
 use serde::Serialize;
 
 /// Stress from loads.
 #[derive(Serialize)]
-pub struct Responded {
+pub struct StressResponse {
     /// The elements asked for, or the hottest, the hottest first.
     pub elements: Vec<Element>,
     /// Elements with a higher stress than all elements that share a grid with them.
@@ -35,13 +35,13 @@ pub struct Responded {
     pub check: Check,
     /// S, gauges, model and strain fields.
     #[serde(skip)]
-    pub prepared: Prepared,
+    pub prepared: JobSensitivity,
     /// The job.
     #[serde(skip)]
     pub job: Job,
 }
 
-impl Answer for Responded {
+impl Answer for StressResponse {
     const COMMAND: &'static str = "respond";
     const RESULT: &'static str = "The stresses";
 

@@ -6,13 +6,13 @@ use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
 use crate::job::table::{Table, each_part};
-use crate::job::unread::unread_columns;
+use crate::job::unread_columns::unread_columns;
 use crate::job::{Job, NamedFile, Runs};
 use crate::measured::runs_columns::{known_column, take_units_of};
 use crate::recovery::beyond_expected;
 use crate::respond::{LoadState, Spread};
 use crate::series::record::{Column, is_format, is_time, name_and_unit};
-use crate::strain_chain::{LoadUnits, Prepared, load_units};
+use crate::strain_chain::{JobSensitivity, LoadUnits, load_units};
 use crate::units::Quantity;
 use crate::workflow::recover::recovered_runs;
 use std::collections::HashSet;
@@ -30,7 +30,11 @@ pub(super) struct States {
 ///
 /// # Errors
 /// Neither loads nor measured strain; tables that can't be read.
-pub(super) fn read(work: &mut Work, job: &Job, prepared: &Prepared) -> Result<States, Faults> {
+pub(super) fn read(
+    work: &mut Work,
+    job: &Job,
+    prepared: &JobSensitivity,
+) -> Result<States, Faults> {
     if let Some(named) = &job.respond.loads {
         return from_table(work, job, named);
     }
@@ -228,13 +232,13 @@ struct Columns {
 
 /// Columns of a load: its value, and the ends of its interval if the table has them.
 struct LoadColumns {
-    value: Sized,
-    interval: Option<[Sized; 2]>,
+    value: QuantityColumn,
+    interval: Option<[QuantityColumn; 2]>,
 }
 
 /// Column with its quantity, the SI units of one of its numbers, and the number of report units in one of its numbers.
 #[derive(Clone, Copy)]
-struct Sized {
+struct QuantityColumn {
     at: usize,
     size: (Option<Quantity>, f64),
     in_report_units: f64,
@@ -261,7 +265,7 @@ impl Columns {
             let mut of = |name: &str| {
                 let found = known_column(job, &runs, t, columns, name, quantity, faults)?;
                 let si = found.unit.map_or(1.0, |u| u.si);
-                Some(Sized {
+                Some(QuantityColumn {
                     at: found.at,
                     size: (quantity, si),
                     in_report_units: si / report,
@@ -328,7 +332,7 @@ impl Columns {
         units: &[LoadUnits],
         faults: &mut FaultList,
     ) -> Option<LoadState> {
-        let mut number = |c: Sized| {
+        let mut number = |c: QuantityColumn| {
             let found = t.size(row, c.at, c.size).unwrap_or_else(|f| {
                 faults.push(f);
                 None

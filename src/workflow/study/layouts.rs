@@ -1,7 +1,7 @@
 //! Layouts of a study: the gauges given, random ones, the best ones.
 
 use super::gauges::LayoutGauge;
-use super::pool::{Pool, Prepared, on_model};
+use super::pool::{Pool, StudyInputs, on_model};
 use crate::finding::{Finding, Severity, list_few};
 use crate::gauge::GaugeSpec;
 use crate::host::fault::{Fault, Faults};
@@ -39,7 +39,7 @@ pub(super) fn build_layouts(
     work: &mut Work,
     job: &Job,
     study: &Study,
-    prepared: &Prepared,
+    prepared: &StudyInputs,
 ) -> Result<Vec<LayoutOf>, Faults> {
     // Named spots are the pool for every layout but the given one.
     let pool = prepared.spots.as_ref().unwrap_or(&prepared.pool);
@@ -60,7 +60,7 @@ pub(super) fn build_layouts(
     let mut out = Vec::new();
     let mut skipped: Vec<String> = Vec::new();
     let wide = if from_model {
-        Some(Wide::new(work, job, prepared)?)
+        Some(ModelCandidates::new(work, job, prepared)?)
     } else {
         None
     };
@@ -170,7 +170,7 @@ fn placement_fault(job: &Job, study: &str, e: &PlaceError) -> Faults {
 /// The D-optimal part of the job's own gauges.
 fn best_of_pool(
     job: &Job,
-    prepared: &Prepared,
+    prepared: &StudyInputs,
     pool: &Pool,
     name: &str,
     n: usize,
@@ -217,14 +217,14 @@ fn best_of_pool(
 }
 
 /// Candidates on the model.
-struct Wide {
+struct ModelCandidates {
     sites: Vec<Site>,
     candidates: Candidates,
     order: Vec<usize>,
 }
 
-impl Wide {
-    fn new(work: &mut Work, job: &Job, prepared: &Prepared) -> Result<Self, Faults> {
+impl ModelCandidates {
+    fn new(work: &mut Work, job: &Job, prepared: &StudyInputs) -> Result<Self, Faults> {
         let Some(fields) = &prepared.fields else {
             return Err(Fault::new(
                 &*job.file,
@@ -261,7 +261,7 @@ impl Wide {
     fn gauge(
         &self,
         job: &Job,
-        prepared: &Prepared,
+        prepared: &StudyInputs,
         choice: &Choice,
     ) -> Option<(PoolGauge, LayoutGauge)> {
         let fields = prepared.fields.as_ref()?;
@@ -278,7 +278,7 @@ impl Wide {
     fn best_layout(
         &self,
         job: &Job,
-        prepared: &Prepared,
+        prepared: &StudyInputs,
         name: &str,
         n: usize,
     ) -> Result<LayoutOf, Faults> {
@@ -306,7 +306,7 @@ impl Wide {
     fn random_layout(
         &self,
         job: &Job,
-        prepared: &Prepared,
+        prepared: &StudyInputs,
         n: usize,
         seed: u64,
     ) -> Option<LayoutOf> {

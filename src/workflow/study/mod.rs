@@ -32,7 +32,7 @@ struct Line {
 
 /// Recovery repeated under stated errors.
 #[derive(Serialize)]
-pub struct Studied {
+pub struct LayoutStudy {
     /// A row a layout, number of gauges and error.
     pub study: Vec<StudiedLayout>,
     /// The gauges of each layout, of random ones none.
@@ -45,7 +45,7 @@ pub struct Studied {
     pub job: Job,
 }
 
-impl Answer for Studied {
+impl Answer for LayoutStudy {
     const COMMAND: &'static str = "study";
     const RESULT: &'static str = "The study";
 
@@ -145,7 +145,7 @@ pub struct StudiedLoad {
 /// }
 /// # Ok::<(), strainbridge::Faults>(())
 /// ```
-pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
+pub fn study(job: &Job, cx: &Context) -> Result<Outcome<LayoutStudy>, Faults> {
     let mut work = Work::of_job(cx, job);
     let job = &job.without_validation_gauges()?;
     let Some(study) = &job.study else {
@@ -213,7 +213,7 @@ pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
     let rows = lines
         .iter()
         .map(|line| summarise_layout(line, loads, &units, &truth));
-    let answer = Studied {
+    let answer = LayoutStudy {
         study: rows.collect(),
         layouts: layouts
             .iter()

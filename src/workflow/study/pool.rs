@@ -41,7 +41,7 @@ impl Pool {
 }
 
 /// Gauges, loads and model for the layouts.
-pub(super) struct Prepared {
+pub(super) struct StudyInputs {
     /// Columns.
     pub loads: Vec<Load>,
     /// The job's gauges; empty without.
@@ -58,11 +58,11 @@ pub(super) struct Prepared {
 ///
 /// # Errors
 /// Faults of the deck, the results, the gauges.
-pub(super) fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
+pub(super) fn prepare(work: &mut Work, job: &Job) -> Result<StudyInputs, Faults> {
     if job.sensitivity.is_none() && job.gauges.is_empty() {
         let fields = read_fields(work, job, WantedAt::Anywhere)?;
         let cases = fields.load_cases(job);
-        return Ok(Prepared {
+        return Ok(StudyInputs {
             spots: spots_on_model(work, job, &fields)?,
             loads: cases.into_iter().map(|c| c.load).collect(),
             pool: Pool::default(),
@@ -81,7 +81,7 @@ pub(super) fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
             spots_on_model(work, job, fields)?,
         ),
     };
-    Ok(Prepared {
+    Ok(StudyInputs {
         loads: s.loads.clone(),
         pool,
         spots,

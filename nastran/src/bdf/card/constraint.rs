@@ -3,7 +3,7 @@
 use super::super::fields::Fields;
 use super::ids::id_lists;
 use crate::cards::{Cards, IdList, Mpc, SetSum, Spc, Spc1, Suport};
-use crate::place::Placed;
+use crate::place::PlacedCard;
 
 /// Terms are in fields 3-5 and 6-8 of every line.
 pub(super) fn mpc(f: &mut Fields) -> Mpc {
@@ -44,7 +44,7 @@ pub(super) fn spc1(f: &mut Fields, cards: &mut Cards) {
         lists.push(IdList::Each(Vec::new()));
     }
     for grids in lists {
-        cards.spc1s.push(Placed {
+        cards.spc1s.push(PlacedCard {
             card: Spc1 { sid, dofs, grids },
             at: f.at,
         });

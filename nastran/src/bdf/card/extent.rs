@@ -1,6 +1,6 @@
 //! Fields that a card has: a value in another field is a fault.
 
-use super::super::fault::Wrong;
+use super::super::fault::DeckFaultKind;
 use super::super::fields::{Fields, excerpt};
 
 /// Fields of a card as bits, bit 0 being field 2; bits 8 and on are those of continuations.
@@ -75,6 +75,6 @@ pub(super) fn check(f: &mut Fields) {
     };
     if let Some(i) = (0..last).find(|&i| !f.is_blank(i) && !is_field(i)) {
         let found = excerpt(f.bytes_at(i));
-        f.fault(i, "unused", Wrong::NoSuchField { found });
+        f.fault(i, "unused", DeckFaultKind::NoSuchField { found });
     }
 }

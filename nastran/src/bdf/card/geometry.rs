@@ -2,7 +2,7 @@
 
 use super::super::fields::{Fields, Value};
 use crate::cards::{Cards, Coord, CoordDefinition, CoordKind, Grdset, Grid};
-use crate::place::Placed;
+use crate::place::PlacedCard;
 
 pub(super) fn grid(f: &mut Fields) -> Grid {
     Grid {
@@ -26,7 +26,7 @@ pub(super) fn grdset(f: &mut Fields) -> Grdset {
 
 pub(super) fn spoint(f: &mut Fields, cards: &mut Cards) {
     for card in super::ids::id_lists(f, 0, "ID1") {
-        cards.spoints.push(Placed { card, at: f.at });
+        cards.spoints.push(PlacedCard { card, at: f.at });
     }
 }
 

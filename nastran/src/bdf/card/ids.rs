@@ -1,6 +1,6 @@
 //! Lists of ids: one by one, and ranges with THRU and BY.
 
-use super::super::fault::Wrong;
+use super::super::fault::DeckFaultKind;
 use super::super::fields::{Fields, Value};
 use crate::cards::IdList;
 
@@ -40,7 +40,7 @@ fn out_of_range(f: &mut Fields, i: usize, name: &'static str) {
     f.fault(
         i,
         name,
-        Wrong::OutOfRange {
+        DeckFaultKind::OutOfRange {
             found,
             allowed: "1 and more",
         },
@@ -62,7 +62,7 @@ fn range(
     };
     let (Some(lower), Some(upper)) = (each.last().copied(), upper) else {
         if f.is_blank(next) {
-            f.fault(next, name, Wrong::Missing);
+            f.fault(next, name, DeckFaultKind::Missing);
         } else {
             f.integer(next, name);
         }

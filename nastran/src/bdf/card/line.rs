@@ -1,6 +1,6 @@
 //! CBAR, CBEAM, BAROR, BEAMOR, CROD, CTUBE, CONROD.
 
-use super::super::fault::Wrong;
+use super::super::fault::DeckFaultKind;
 use super::super::fields::{Fields, Value};
 use crate::cards::{Bar, BarDefaults, Beam, Conrod, Orientation, Rod};
 
@@ -20,7 +20,7 @@ pub(super) fn orientation(f: &mut Fields, i: usize) -> Orientation {
                 f.fault(
                     i,
                     "G0",
-                    Wrong::OutOfRange {
+                    DeckFaultKind::OutOfRange {
                         found,
                         allowed: "1 and more",
                     },
@@ -50,7 +50,7 @@ fn offt(f: &mut Fields, i: usize) -> Option<[u8; 3]> {
                 f.fault(
                     i,
                     "OFFT",
-                    Wrong::NotOneOf {
+                    DeckFaultKind::NotOneOf {
                         found,
                         allowed: "GGG, BGG, GGO, BGO, GOG, BOG, GOO, BOO",
                     },

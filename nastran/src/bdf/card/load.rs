@@ -1,13 +1,13 @@
 //! FORCE, MOMENT, PLOADs, GRAV, ACCEL, ACCEL1, RFORCE, RFORCE1, LOAD, TEMP, TEMPD, TEMPP1, TEMPRB.
 
-use super::super::fault::Wrong;
+use super::super::fault::DeckFaultKind;
 use super::super::fields::Fields;
 use super::ids::id_lists;
 use crate::cards::{
     Accel, Accel1, Cards, Force, ForceAlong, Grav, IdList, LoadSum, Pload, Pload1, Pload2, Pload4,
     Rforce, Sload, Temp, Tempd, Tempp1, Temprb,
 };
-use crate::place::Placed;
+use crate::place::PlacedCard;
 
 pub(super) fn force(f: &mut Fields) -> Force {
     Force {
@@ -44,7 +44,7 @@ pub(super) fn sload(f: &mut Fields, cards: &mut Cards) {
                 load: f.real_or(i + 1, "F", 0.0),
             };
             if !f.unusable {
-                cards.sloads.push(Placed { card, at: f.at });
+                cards.sloads.push(PlacedCard { card, at: f.at });
             }
         }
     }
@@ -68,9 +68,9 @@ fn letters(f: &mut Fields, i: usize, name: &'static str, allowed: &'static str) 
     let word = f.word(i);
     if !allowed.split(", ").any(|w| w == word) {
         let what = if word.is_empty() {
-            Wrong::Missing
+            DeckFaultKind::Missing
         } else {
-            Wrong::NotOneOf {
+            DeckFaultKind::NotOneOf {
                 found: word.clone(),
                 allowed,
             }
@@ -108,13 +108,13 @@ pub(super) fn pload2(f: &mut Fields, cards: &mut Cards) {
     let pressure = f.real_or(1, "P", 0.0);
     let lists = id_lists(f, 2, "EID");
     if lists.is_empty() {
-        f.fault(2, "EID1", Wrong::Missing);
+        f.fault(2, "EID1", DeckFaultKind::Missing);
     }
     if f.unusable {
         return;
     }
     for elements in lists {
-        cards.pload2s.push(Placed {
+        cards.pload2s.push(PlacedCard {
             card: Pload2 {
                 sid,
                 pressure,
@@ -176,7 +176,7 @@ pub(super) fn accel(f: &mut Fields) -> Accel {
     let allowed = "X, Y, Z";
     if !["", "X", "Y", "Z"].contains(&direction.as_str()) {
         let found = direction.clone();
-        f.fault(5, "DIR", Wrong::NotOneOf { found, allowed });
+        f.fault(5, "DIR", DeckFaultKind::NotOneOf { found, allowed });
     }
     let mut table = Vec::new();
     for i in (8..f.len()).step_by(2) {
@@ -185,7 +185,7 @@ pub(super) fn accel(f: &mut Fields) -> Accel {
         }
     }
     if direction.is_empty() && !table.is_empty() {
-        f.fault(5, "DIR", Wrong::Missing);
+        f.fault(5, "DIR", DeckFaultKind::Missing);
     }
     Accel {
         sid,
@@ -205,7 +205,7 @@ pub(super) fn accel1(f: &mut Fields) -> Accel1 {
         grids: id_lists(f, 8, "GRIDID"),
     };
     if card.grids.is_empty() {
-        f.fault(8, "GRIDID1", Wrong::Missing);
+        f.fault(8, "GRIDID1", DeckFaultKind::Missing);
     }
     card
 }
@@ -246,7 +246,7 @@ pub(super) fn temp(f: &mut Fields, cards: &mut Cards) {
                 t: f.required_real(i + 1, "T"),
             };
             if !f.unusable {
-                cards.temps.push(Placed { card, at: f.at });
+                cards.temps.push(PlacedCard { card, at: f.at });
             }
         }
     }
@@ -260,7 +260,7 @@ pub(super) fn tempd(f: &mut Fields, cards: &mut Cards) {
                 t: f.required_real(i + 1, "T"),
             };
             if !f.unusable {
-                cards.tempds.push(Placed { card, at: f.at });
+                cards.tempds.push(PlacedCard { card, at: f.at });
             }
         }
     }
@@ -290,7 +290,7 @@ pub(super) fn tempp1(f: &mut Fields, cards: &mut Cards) {
             gradient,
             at_surfaces,
         };
-        cards.tempp1s.push(Placed { card, at: f.at });
+        cards.tempp1s.push(PlacedCard { card, at: f.at });
     }
 }
 
@@ -311,6 +311,6 @@ pub(super) fn temprb(f: &mut Fields, cards: &mut Cards) {
             gradient,
             at_points,
         };
-        cards.temprbs.push(Placed { card, at: f.at });
+        cards.temprbs.push(PlacedCard { card, at: f.at });
     }
 }

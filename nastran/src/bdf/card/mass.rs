@@ -6,7 +6,7 @@ use super::springs::{end, scalar_end};
 use crate::cards::{
     Cards, Conm1, Conm2, IdList, NonstructuralMass, Pmass, ScalarMass, ScalarMassValue,
 };
-use crate::place::Placed;
+use crate::place::PlacedCard;
 
 pub(super) fn conm1(f: &mut Fields) -> Conm1 {
     Conm1 {
@@ -93,7 +93,7 @@ pub(super) fn nonstructural(f: &mut Fields, cards: &mut Cards) {
         ids,
         value,
     };
-    let cards_of = entries.into_iter().map(|e| Placed {
+    let cards_of = entries.into_iter().map(|e| PlacedCard {
         card: card(e),
         at: f.at,
     });

@@ -23,7 +23,7 @@ pub(super) use geometry::connected_points;
 
 use super::fields::Fields;
 use crate::cards::Cards;
-use crate::place::Placed;
+use crate::place::PlacedCard;
 
 /// Adds the card to its list; false where no struct exists for it.
 ///
@@ -125,16 +125,16 @@ pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
     true
 }
 
-fn keep<T>(list: &mut Vec<Placed<T>>, f: &mut Fields, read: impl FnOnce(&mut Fields) -> T) {
+fn keep<T>(list: &mut Vec<PlacedCard<T>>, f: &mut Fields, read: impl FnOnce(&mut Fields) -> T) {
     let card = read(f);
     if !f.unusable {
-        list.push(Placed { card, at: f.at });
+        list.push(PlacedCard { card, at: f.at });
     }
 }
 
 /// Adds the entries of a card that has several, each in `width` fields. Entries of blank fields are left out, the first one excepted.
 fn keep_several<T>(
-    list: &mut Vec<Placed<T>>,
+    list: &mut Vec<PlacedCard<T>>,
     f: &mut Fields,
     (most, width): (usize, usize),
     read: impl Fn(&mut Fields, usize) -> T,
@@ -148,9 +148,13 @@ fn keep_several<T>(
     }
 }
 
-fn keep_one<T>(place: &mut Option<Placed<T>>, f: &mut Fields, read: impl FnOnce(&mut Fields) -> T) {
+fn keep_one<T>(
+    place: &mut Option<PlacedCard<T>>,
+    f: &mut Fields,
+    read: impl FnOnce(&mut Fields) -> T,
+) {
     let card = read(f);
     if !f.unusable {
-        *place = Some(Placed { card, at: f.at });
+        *place = Some(PlacedCard { card, at: f.at });
     }
 }

@@ -1,12 +1,12 @@
 //! PARAM.
 
-use super::super::fault::Wrong;
+use super::super::fault::DeckFaultKind;
 use super::super::fields::{Fields, Value};
 use crate::cards::{Param, ParamValue};
 
 pub(super) fn param(f: &mut Fields) -> Param {
     if f.is_blank(0) {
-        f.fault(0, "N", Wrong::Missing);
+        f.fault(0, "N", DeckFaultKind::Missing);
         f.unusable = true;
     }
     let mut values = Vec::new();

@@ -1,12 +1,12 @@
 //! PBEAM: a beam with properties at stations along it.
 
-use super::super::fault::Wrong;
+use super::super::fault::DeckFaultKind;
 use super::super::fields::Fields;
 use super::property::recovery;
 use crate::cards::{BeamStation, Pbeam};
 
 /// A station as written: blank properties are filled when all stations are known.
-struct Written {
+struct RawStation {
     x_xb: f64,
     output: bool,
     /// A I1 I2 I12 J NSM.
@@ -40,7 +40,7 @@ pub(super) fn pbeam(f: &mut Fields) -> Pbeam {
             f.fault(
                 i + 1,
                 "X/XB",
-                Wrong::OutOfRange {
+                DeckFaultKind::OutOfRange {
                     found,
                     allowed: "more than 0, at most 1",
                 },
@@ -54,7 +54,7 @@ pub(super) fn pbeam(f: &mut Fields) -> Pbeam {
             points = recovery(f, i);
             i += 8;
         }
-        written.push(Written {
+        written.push(RawStation {
             x_xb,
             output: word != "NO",
             values,
@@ -85,7 +85,7 @@ pub(super) fn pbeam(f: &mut Fields) -> Pbeam {
 fn stations(
     values_a: [f64; 6],
     points_a: [[f64; 2]; 4],
-    mut written: Vec<Written>,
+    mut written: Vec<RawStation>,
 ) -> Vec<BeamStation> {
     written.sort_by(|a, b| a.x_xb.total_cmp(&b.x_xb));
     let end_b = written.iter().rev().find(|w| w.x_xb >= 1.0);

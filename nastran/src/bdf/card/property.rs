@@ -1,6 +1,6 @@
 //! PSHELL, PCOMP, PCOMPG, PSHEAR, PBAR, PROD, PTUBE, PSOLID.
 
-use super::super::fault::Wrong;
+use super::super::fault::DeckFaultKind;
 use super::super::fields::Fields;
 use crate::cards::{Pbar, Pcomp, Ply, Prod, Pshear, Pshell, Psolid, Ptube};
 
@@ -42,10 +42,10 @@ pub(super) fn pcomp(f: &mut Fields) -> Pcomp {
             .or(last.map(|p| p.mid));
         let t = f.opt_real(i + 1, "T").or(last.map(|p| p.t));
         if mid.is_none() {
-            f.fault(i, "MID1", Wrong::Missing);
+            f.fault(i, "MID1", DeckFaultKind::Missing);
         }
         if t.is_none() {
-            f.fault(i + 1, "T1", Wrong::Missing);
+            f.fault(i + 1, "T1", DeckFaultKind::Missing);
         }
         let theta_deg = f.real_or(i + 2, "THETA", 0.0);
         plies.push(Ply {
@@ -56,7 +56,7 @@ pub(super) fn pcomp(f: &mut Fields) -> Pcomp {
         });
     }
     if plies.is_empty() {
-        f.fault(8, "MID1", Wrong::Missing);
+        f.fault(8, "MID1", DeckFaultKind::Missing);
     }
     // SYMEM, SYBEND and SYSMEAR are symmetric too
     let symmetric = lam.starts_with("SY");

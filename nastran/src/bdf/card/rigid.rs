@@ -1,6 +1,6 @@
 //! RBE1, RBE2, RBE3, RBAR, RBAR1, RTRPLT, RSPLINE.
 
-use super::super::fault::Wrong;
+use super::super::fault::DeckFaultKind;
 use super::super::fields::{Fields, Value};
 use super::ids::id_lists;
 use crate::cards::{Dofs, IdList, Rbar, Rbe1, Rbe2, Rbe3, Rbe3Group, Rspline};
@@ -85,7 +85,7 @@ pub(super) fn rbe3(f: &mut Fields) -> Rbe3 {
         }
     }
     if groups.iter().all(|g| g.grids.is_empty()) {
-        f.fault(6, "G1,1", Wrong::Missing);
+        f.fault(6, "G1,1", DeckFaultKind::Missing);
     }
     let mut um = Vec::new();
     let mut alpha = 0.0;

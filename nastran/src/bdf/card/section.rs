@@ -1,6 +1,6 @@
 //! PBARL and PBEAML: bars and beams by cross-section.
 
-use super::super::fault::Wrong;
+use super::super::fault::DeckFaultKind;
 use super::super::fields::Fields;
 use crate::cards::{BeamlStation, Pbarl, Pbeaml};
 
@@ -39,7 +39,7 @@ fn dims(
         };
         let default = of_end_a.and_then(|a| a.get(k).copied()).or(of_type);
         if given.is_none() && default.is_none() && f.is_blank(first + k) {
-            f.fault(first + k, "DIM", Wrong::Missing);
+            f.fault(first + k, "DIM", DeckFaultKind::Missing);
         }
         all.push(given.or(default).unwrap_or(0.0));
     }
@@ -49,7 +49,7 @@ fn dims(
 /// Dimensions a section has: of an unknown type, up to the last field.
 fn count(f: &mut Fields, section: &str) -> usize {
     if section.is_empty() {
-        f.fault(3, "TYPE", Wrong::Missing);
+        f.fault(3, "TYPE", DeckFaultKind::Missing);
     }
     n_dims(section).unwrap_or_else(|| f.len().saturating_sub(8))
 }
@@ -92,7 +92,7 @@ pub(super) fn pbeaml(f: &mut Fields) -> Pbeaml {
             f.fault(
                 i,
                 "SO",
-                Wrong::NotOneOf {
+                DeckFaultKind::NotOneOf {
                     found,
                     allowed: "YES, NO",
                 },

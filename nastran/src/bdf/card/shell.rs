@@ -1,6 +1,6 @@
 //! CQUAD4, CQUADR, CQUAD8, CTRIA3, CTRIAR, CTRIA6, CSHEAR.
 
-use super::super::fault::Wrong;
+use super::super::fault::DeckFaultKind;
 use super::super::fields::{Fields, Value};
 use crate::cards::{MaterialAngle, ShearPanel, Shell, ShellShape, Snorm};
 
@@ -72,7 +72,7 @@ fn angle(f: &mut Fields, i: usize) -> MaterialAngle {
                 f.fault(
                     i,
                     "MCID",
-                    Wrong::OutOfRange {
+                    DeckFaultKind::OutOfRange {
                         found,
                         allowed: "0 and more",
                     },

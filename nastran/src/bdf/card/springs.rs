@@ -1,6 +1,6 @@
 //! CBUSH, CELAS1 to CELAS4, PBUSH, PELAS.
 
-use super::super::fault::Wrong;
+use super::super::fault::DeckFaultKind;
 use super::super::fields::Fields;
 use super::line::orientation;
 use crate::cards::{Bush, Pbush, Pelas, Spring, SpringStiffness};
@@ -113,7 +113,7 @@ pub(super) fn pbush(f: &mut Fields) -> Pbush {
                 f.fault(
                     line + 1,
                     "TYPE",
-                    Wrong::NotOneOf {
+                    DeckFaultKind::NotOneOf {
                         found,
                         allowed: "K, B, GE, RCV, M",
                     },

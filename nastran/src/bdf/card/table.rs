@@ -1,6 +1,6 @@
 //! MATT1, TABLEM1 to TABLEM4.
 
-use super::super::fault::Wrong;
+use super::super::fault::DeckFaultKind;
 use super::super::fields::Fields;
 use crate::cards::{MaterialTable, MaterialTableForm, Matt1};
 
@@ -60,7 +60,7 @@ fn divisor(f: &mut Fields) -> f64 {
     if x2 == 0.0 && !f.is_blank(2) {
         let found = f.word(2);
         let allowed = "a number other than 0";
-        f.fault(2, "X2", Wrong::OutOfRange { found, allowed });
+        f.fault(2, "X2", DeckFaultKind::OutOfRange { found, allowed });
     }
     x2
 }
@@ -91,7 +91,7 @@ fn points(f: &mut Fields) -> Vec<(f64, f64)> {
         }
     }
     if points.len() < 2 {
-        f.fault(8, "x1", Wrong::Missing);
+        f.fault(8, "x1", DeckFaultKind::Missing);
     }
     let ordered = |less: fn(&f64, &f64) -> bool| {
         let mut pairs = points.windows(2);
@@ -100,7 +100,7 @@ fn points(f: &mut Fields) -> Vec<(f64, f64)> {
     if !(ordered(f64::le) || ordered(f64::ge)) {
         let found = "values of x out of order".to_owned();
         let allowed = "ascending, or descending";
-        f.fault(8, "x", Wrong::OutOfRange { found, allowed });
+        f.fault(8, "x", DeckFaultKind::OutOfRange { found, allowed });
     }
     points
 }
@@ -108,7 +108,7 @@ fn points(f: &mut Fields) -> Vec<(f64, f64)> {
 fn coefficients(f: &mut Fields) -> Vec<f64> {
     let end = end_of_table(f);
     if end == 8 {
-        f.fault(8, "A0", Wrong::Missing);
+        f.fault(8, "A0", DeckFaultKind::Missing);
     }
     (8..end).map(|i| f.real_or(i, "A", 0.0)).collect()
 }

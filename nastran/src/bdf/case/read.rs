@@ -1,6 +1,6 @@
 //! Reads the statements of case control.
 
-use super::super::fault::{Fault, Wrong};
+use super::super::fault::{DeckFaultKind, Fault};
 use super::super::fields::note_fault;
 use super::super::number::{Number, read_number};
 use super::super::sections::Statement;
@@ -137,7 +137,7 @@ struct Reader<'a> {
 impl Reader<'_> {
     fn fault(&mut self, name: &str, found: &str, why: &'static str) {
         let found: String = found.chars().take(60).collect();
-        let what = Wrong::Statement { found, why };
+        let what = DeckFaultKind::Statement { found, why };
         note_fault(
             self.faults,
             Fault {

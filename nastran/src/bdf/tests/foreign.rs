@@ -1,6 +1,6 @@
 //! Texts that are no decks: nothing of them is shown.
 
-use super::super::{MemoryLoader, Wrong, read_deck};
+use super::super::{DeckFaultKind, MemoryLoader, read_deck};
 use super::fault_texts;
 
 fn read(main: &str, included: &str) -> Vec<String> {
@@ -26,7 +26,7 @@ fn a_text_that_is_no_deck_is_called_that_and_not_shown() {
             &mut MemoryLoader::default(),
         );
         assert_eq!(deck.faults.len(), 1, "{text}");
-        assert_eq!(deck.faults[0].what, Wrong::NotADeck, "{text}");
+        assert_eq!(deck.faults[0].what, DeckFaultKind::NotADeck, "{text}");
         assert!(deck.others.is_empty() && deck.counts.is_empty(), "{text}");
     }
 }

@@ -1,4 +1,4 @@
-use super::super::Named;
+use super::super::NameOwner;
 use super::read_clean_deck;
 
 #[test]
@@ -22,7 +22,7 @@ fn comments_of_preprocessors_name_properties() {
     ];
     for form in forms {
         let deck = read_clean_deck(&format!("{form}{card}"));
-        assert_eq!(deck.label(Named::Property, 5), Some("rail"), "{form}");
+        assert_eq!(deck.label(NameOwner::Property, 5), Some("rail"), "{form}");
         assert_eq!(deck.labels.len(), 1, "{form}");
     }
 }
@@ -32,10 +32,10 @@ fn components_and_materials_have_names_of_their_own() {
     let deck = read_clean_deck(
         "$HMNAME COMP                  75\"Barre, lang\"\n$HMNAME MAT 1 \"steel\"\n$ Material Record : alu\nMAT1,2,7.+10,,.3\n$ Femap Material 3 : brass\n",
     );
-    assert_eq!(deck.label(Named::Component, 75), Some("Barre, lang"));
-    assert_eq!(deck.label(Named::Material, 1), Some("steel"));
-    assert_eq!(deck.label(Named::Material, 2), Some("alu"));
-    assert_eq!(deck.label(Named::Material, 3), Some("brass"));
+    assert_eq!(deck.label(NameOwner::Component, 75), Some("Barre, lang"));
+    assert_eq!(deck.label(NameOwner::Material, 1), Some("steel"));
+    assert_eq!(deck.label(NameOwner::Material, 2), Some("alu"));
+    assert_eq!(deck.label(NameOwner::Material, 3), Some("brass"));
 }
 
 #[test]
@@ -86,9 +86,9 @@ fn a_component_names_its_property() {
     let deck = read_clean_deck(
         "$HMNAME COMP                   3\"left rail\" 5 \"rail of 8 mm\" 4\nPSHELL,5,1,8.\n",
     );
-    let component = deck.labels.iter().find(|l| l.kind == Named::Component);
+    let component = deck.labels.iter().find(|l| l.kind == NameOwner::Component);
     assert_eq!(component.map(|l| (l.id, l.property)), Some((3, Some(5))));
-    assert_eq!(deck.label(Named::Property, 5), Some("rail of 8 mm"));
+    assert_eq!(deck.label(NameOwner::Property, 5), Some("rail of 8 mm"));
 }
 
 #[test]

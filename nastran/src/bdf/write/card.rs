@@ -1,6 +1,6 @@
 //! A card as text, in small field where that loses nothing, else in large field.
 
-use super::real::{format_real, shortest_real};
+use super::real_format::{format_real, shortest_real};
 
 /// A field to be written.
 #[derive(Clone, Debug, PartialEq)]

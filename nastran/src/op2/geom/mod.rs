@@ -6,7 +6,7 @@
 //! - [`fields`] the words of a card one after the other; [`records`] cards of fixed and of varying length;
 //! - [`grids`], [`shells`], [`lines`], [`solids`], [`masses`], [`rigid`], [`constraints`], [`loads`], [`properties`], [`sections`],
 //!   [`materials`], [`params`] the cards; [`dispatch`] which code is which; [`tidy`] what solvers add on their own;
-//!   [`unread`] records without a reader.
+//!   [`unread_records`] records without a reader.
 
 mod constraints;
 mod dispatch;
@@ -24,7 +24,7 @@ mod sections;
 mod shells;
 mod solids;
 mod tidy;
-mod unread;
+mod unread_records;
 
 pub(super) use dispatch::read_record;
 pub(super) use params::read_params;

@@ -1,10 +1,10 @@
 //! Records of cards: cards of fixed length in one of several widths, cards of varying length.
 
 use super::fields::Fields;
-use super::unread::{Code, Unread, classify_unread_record};
+use super::unread_records::{Code, UnreadRecord, classify_unread_record};
 use crate::cards::{Cards, UnreadEntry};
 use crate::op2::words::Words;
-use crate::place::{Place, Placed};
+use crate::place::{Place, PlacedCard};
 use crate::results::Note;
 
 /// Cards read so far, and what was passed over.
@@ -53,17 +53,17 @@ impl Geometry {
     /// Adds the entries of a record without a reader that act, and a note on those that act where case control selects them.
     pub(super) fn add_unread_entries(&mut self, code: Code, record: Record<'_>) {
         match classify_unread_record(code, record.table, record.words, record.stated.map(|s| s.0)) {
-            Unread::Acting(entries) => {
+            UnreadRecord::Acting(entries) => {
                 let entries = entries.into_iter().map(Self::place);
                 self.cards.unread.extend(entries);
             }
-            Unread::Selected(name) => {
+            UnreadRecord::Selected(name) => {
                 let message = format!(
                     "{name} is not read: case control selects it, and the file contains no case control that is read"
                 );
                 self.note(record.table, message);
             }
-            Unread::WithoutInfluence => {}
+            UnreadRecord::WithoutInfluence => {}
         }
     }
 
@@ -77,8 +77,8 @@ impl Geometry {
         }));
     }
 
-    pub(super) fn place<T>(card: T) -> Placed<T> {
-        Placed {
+    pub(super) fn place<T>(card: T) -> PlacedCard<T> {
+        PlacedCard {
             card,
             at: Place::default(),
         }
@@ -92,7 +92,7 @@ impl Geometry {
         card: &str,
         widths: &[usize],
         parse: impl Fn(&mut Fields<'_>) -> Option<T>,
-        list: impl Fn(&mut Cards) -> &mut Vec<Placed<T>>,
+        list: impl Fn(&mut Cards) -> &mut Vec<PlacedCard<T>>,
     ) {
         let n_words = record.words.len();
         let stated = record
@@ -103,7 +103,7 @@ impl Geometry {
             Some(width) => vec![(width, record.is_double())],
             None => widths.iter().map(|w| (*w, record.is_double())).collect(),
         };
-        let mut best: Option<(usize, Vec<Placed<T>>)> = None;
+        let mut best: Option<(usize, Vec<PlacedCard<T>>)> = None;
         for (width, double) in widths {
             let left_over = usize::from(!n_words.is_multiple_of(width.max(1)));
             let mut failed = left_over;
@@ -140,7 +140,7 @@ impl Geometry {
         record: Record<'_>,
         card: &str,
         parse: impl Fn(&mut Fields<'_>) -> Option<T>,
-        list: impl Fn(&mut Cards) -> &mut Vec<Placed<T>>,
+        list: impl Fn(&mut Cards) -> &mut Vec<PlacedCard<T>>,
     ) {
         let mut fields = record.fields();
         while fields.words_left() > 0 {

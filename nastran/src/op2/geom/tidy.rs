@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::fields::LARGEST_ID;
 use super::records::Geometry;
-use crate::place::Placed;
+use crate::place::PlacedCard;
 
 /// Keeps one card of each id; drops properties and materials that the solver made of others: PSHELL and MAT2 of a PCOMP, PBAR of a
 /// PBARL, PBEAM of a PBEAML.
@@ -96,7 +96,7 @@ pub(in crate::op2) fn tidy(g: &mut Geometry) {
 }
 
 /// Keeps the first card of each id; how many went.
-fn remove_duplicate_ids<T>(list: &mut Vec<Placed<T>>, id: impl Fn(&T) -> u32) -> usize {
+fn remove_duplicate_ids<T>(list: &mut Vec<PlacedCard<T>>, id: impl Fn(&T) -> u32) -> usize {
     let before = list.len();
     let mut seen = HashSet::with_capacity(before);
     list.retain(|card| seen.insert(id(&card.card)));

@@ -43,7 +43,7 @@ impl Tangents {
 
 /// Orthonormal axes in the tangent plane, x nearest to a given direction, and derivatives of r, s along them.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Local {
+pub(super) struct TangentFrame {
     pub(super) e1: Vec3,
     pub(super) e2: Vec3,
     pub(super) n: Vec3,
@@ -55,7 +55,7 @@ pub(super) struct Local {
     pub(super) area: f64,
 }
 
-impl Local {
+impl TangentFrame {
     pub(super) fn new(t: &Tangents, x_axis: &Vec3) -> Result<Self, BadShape> {
         let normal = t.gr.cross(&t.gs);
         let area = normal.norm();
@@ -188,7 +188,7 @@ pub(super) fn shear<const N: usize, const M: usize>(
 
 /// Rotation about the surface normal less half the curl of the displacements about the same normal.
 pub(super) fn drilling_row<const N: usize, const M: usize>(
-    local: &Local,
+    local: &TangentFrame,
     shape: &Shape<N>,
 ) -> Row<M> {
     let mut row = [0.0; M];

@@ -43,7 +43,7 @@ impl Lamination {
 }
 
 /// A ply in place: plane-stress law in the element's output frame between two heights.
-pub(super) struct Placed {
+pub(super) struct LaminatePly {
     pub(super) q: [[f64; 3]; 3],
     /// Transverse shear moduli along the output axes; 0 is rigid.
     shear: [f64; 2],
@@ -57,7 +57,7 @@ pub(super) fn place_plies(
     plies: &[ModelPly],
     z0: f64,
     angle_rad: f64,
-) -> Option<Vec<Placed>> {
+) -> Option<Vec<LaminatePly>> {
     let mut z = z0;
     plies
         .iter()
@@ -68,7 +68,7 @@ pub(super) fn place_plies(
             let turned = rotate_shear(&moduli, angle);
             let bottom = z;
             z += ply.t;
-            Some(Placed {
+            Some(LaminatePly {
                 q: rotate(&plane_stress(material)?, angle),
                 shear: [turned[0][0], turned[1][1]],
                 z: [bottom, z],
@@ -78,7 +78,7 @@ pub(super) fn place_plies(
 }
 
 /// The law of a laminate, scaled as a shell law is.
-pub(super) fn law(plies: &[Placed], lamination: Lamination) -> Option<ShellLaw> {
+pub(super) fn law(plies: &[LaminatePly], lamination: Lamination) -> Option<ShellLaw> {
     let (bottom, top) = (plies.first()?.z[0], plies.last()?.z[1]);
     let t = top - bottom;
     if !(t > 0.0) {
@@ -134,8 +134,8 @@ pub(super) fn law(plies: &[Placed], lamination: Lamination) -> Option<ShellLaw> 
 
 /// Transverse shear stiffness along axis `i`: (EI)^2 over the integral of g^2 / G, where g is the first moment of the stiffness about
 /// the neutral axis beyond a height.
-fn transverse_shear_stiffness(plies: &[Placed], i: usize) -> f64 {
-    let e = |p: &Placed| p.q[i][i];
+fn transverse_shear_stiffness(plies: &[LaminatePly], i: usize) -> f64 {
+    let e = |p: &LaminatePly| p.q[i][i];
     let (mut area, mut first) = (0.0, 0.0);
     for p in plies {
         area += e(p) * (p.z[1] - p.z[0]);

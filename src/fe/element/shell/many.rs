@@ -150,7 +150,7 @@ fn surface_functions(n: usize, p: [f64; 2], sides: &[usize]) -> Vec<[f64; 4]> {
 }
 
 /// Data that all parts of a shell with mid-side grids share.
-struct Whole<'a> {
+struct ParentShell<'a> {
     model: &'a Model,
     property: &'a ShellProperty,
     frame: Mat3,
@@ -161,7 +161,7 @@ struct Whole<'a> {
     heat: Option<&'a Heat>,
 }
 
-impl Whole<'_> {
+impl ParentShell<'_> {
     /// A quadrilateral of four points and the angle of the element's x axis in its frame.
     fn part(&self, p: [&Point; 4]) -> Result<(ShellMatrices<4, 24>, f64), BadShape> {
         let x = p.map(|p| p.x);
@@ -211,7 +211,7 @@ pub(super) fn many_shell(
     let corners: Vec<Vec3> = points[..n].iter().map(|p| p.x).collect();
     let frame = output_frame(&corners).ok_or(BadShape)?;
     let (sin, cos) = material_angle_rad.sin_cos();
-    let whole = Whole {
+    let whole = ParentShell {
         model,
         property,
         frame,

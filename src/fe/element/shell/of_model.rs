@@ -8,7 +8,7 @@ use super::tria3::tria3;
 use super::types::{BadShape, Heat, Parts, ShellInput, ShellLaw, ShellMatrices, Sides, StrainRows};
 use crate::fe::element::ElementMatrix;
 use crate::fe::error::Refusal;
-use crate::fe::prepared::Prepared;
+use crate::fe::prepared_model::PreparedModel;
 use crate::fe::temperature::Temperatures;
 use crate::model::{Model, Shell, ShellKind, Vec3};
 use nastran::cards::ShellShape;
@@ -55,7 +55,7 @@ pub(crate) fn material_angle(model: &Model, shell: &Shell) -> Option<f64> {
 /// # Errors
 /// Shapes, thicknesses and properties that make no element.
 pub(crate) fn shell_matrices(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     i: usize,
     parts: Parts,
     heat: Option<&Heat>,
@@ -138,7 +138,10 @@ pub(crate) fn shell_matrices(
 ///
 /// # Errors
 /// As `shell_matrices`.
-pub(crate) fn shell_stiffness(prepared: &Prepared<'_>, i: usize) -> Result<ElementMatrix, Refusal> {
+pub(crate) fn shell_stiffness(
+    prepared: &PreparedModel<'_>,
+    i: usize,
+) -> Result<ElementMatrix, Refusal> {
     let grids = &prepared.model.shells[i].grids;
     Ok(match shell_matrices(prepared, i, Parts::All, None)? {
         AnyShell::Quad(m) => ElementMatrix::from_rows(&grids[..4], &m.stiffness),
@@ -171,7 +174,7 @@ pub(crate) fn shell_heat(model: &Model, i: usize, t: &Temperatures) -> Option<He
 /// # Errors
 /// As `shell_matrices`.
 pub(crate) fn shell_thermal_force(
-    prepared: &Prepared<'_>,
+    prepared: &PreparedModel<'_>,
     i: usize,
     t: &Temperatures,
 ) -> Result<Vec<f64>, Refusal> {

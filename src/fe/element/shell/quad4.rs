@@ -1,8 +1,8 @@
 //! CQUAD4: MITC4 bending and shear, QM6 membrane, drilling stiffness.
 
 use super::kinematics::{
-    Local, Section, Shape, Tangents, add_bending_sides, add_thermal, curvature, drilling_row,
-    membrane, shear, shift, shift_rows, shift_stiffness,
+    Section, Shape, TangentFrame, Tangents, add_bending_sides, add_thermal, curvature,
+    drilling_row, membrane, shear, shift, shift_rows, shift_stiffness,
 };
 use super::output_frame::output_frame;
 use super::products::Products;
@@ -39,7 +39,7 @@ pub(super) fn quad_points() -> [Shape<4>; 4] {
 /// Strain rows and geometry at a Gauss point, used several times.
 struct Point {
     shape: Shape<4>,
-    local: Local,
+    local: TangentFrame,
     membrane: [Row<24>; 3],
     curvature: [Row<24>; 3],
     /// Strains xx, yy, xy of the four incompatible modes.
@@ -108,7 +108,7 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
         (shape, Tangents::new(&x, d, &shape))
     };
     let (centre_shape, centre_tangents) = at(0.0, 0.0);
-    let centre_local = Local::new(&centre_tangents, &x_axis)?;
+    let centre_local = TangentFrame::new(&centre_tangents, &x_axis)?;
     let centre_rows = StrainRows {
         membrane: centre_local.strain(&in_plane(&centre_tangents, &centre_shape, 0.0, 0.0)),
         curvature: centre_local.strain(&curvature(&centre_tangents, &centre_shape, d)),
@@ -129,7 +129,7 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
     for (a, b) in CORNERS {
         let (r, s) = (a * GAUSS, b * GAUSS);
         let (shape, t) = at(r, s);
-        let local = Local::new(&t, &x_axis)?;
+        let local = TangentFrame::new(&t, &x_axis)?;
         let share = centre_local.area / local.area;
         let (mr, ms) = (-2.0 * r * share, -2.0 * s * share);
         let (m1x, m1y) = (mr * centre_local.rx, mr * centre_local.ry);

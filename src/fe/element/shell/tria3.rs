@@ -1,8 +1,8 @@
 //! CTRIA3: MITC3+ bending and shear, constant-strain membrane, drilling stiffness.
 
 use super::kinematics::{
-    Local, Section, Shape, Tangents, add_bending_sides, add_thermal, curvature, drilling_row,
-    membrane, shear, shift, shift_rows, shift_stiffness,
+    Section, Shape, TangentFrame, Tangents, add_bending_sides, add_thermal, curvature,
+    drilling_row, membrane, shear, shift, shift_rows, shift_stiffness,
 };
 use super::output_frame::output_frame;
 use super::products::Products;
@@ -43,7 +43,7 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
     let d = &input.directors;
     let centre_shape = shape(1.0 / 3.0, 1.0 / 3.0);
     let centre_tangents = Tangents::new(&x, d, &centre_shape);
-    let local = Local::new(&centre_tangents, &x_axis)?;
+    let local = TangentFrame::new(&centre_tangents, &x_axis)?;
     let (gr, gs) = (centre_tangents.gr, centre_tangents.gs);
     // q = bubble (b1 e1 + b2 e2)
     let along = |g: &crate::model::Vec3| [g.dot(&local.e1), g.dot(&local.e2)];

@@ -17,10 +17,10 @@ pub(super) struct SolidInput {
 
 /// The shape is folded or flat somewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Folded;
+pub(super) struct DegenerateShape;
 
 /// Strain columns at a point: three a grid, then three a mode.
-pub(super) struct At {
+pub(super) struct StrainColumns {
     /// Weight times volume per parameter volume.
     pub(super) volume: f64,
     pub(super) functions: Vec<Function>,
@@ -28,7 +28,7 @@ pub(super) struct At {
 }
 
 /// Stiffness over three translations a grid (row by row) and what the modes follow by: `amount = thermal - share u`.
-pub(super) struct Formed {
+pub(super) struct CondensedSolid {
     pub(super) stiffness: DMatrix<f64>,
     /// Modes by translations.
     pub(super) share: DMatrix<f64>,
@@ -86,12 +86,18 @@ impl SolidInput {
     }
 
     /// Strain columns at a point.
-    pub(super) fn strain_columns_at(&self, point: &TablePoint) -> Result<At, Folded> {
+    pub(super) fn strain_columns_at(
+        &self,
+        point: &TablePoint,
+    ) -> Result<StrainColumns, DegenerateShape> {
         let functions = point.functions(self.shape, &self.mids);
         let j = self.jacobian(&functions);
         let hand = self.hand();
         let det = j.determinant() * hand;
-        let inverse = j.try_inverse().filter(|_| det > 0.0).ok_or(Folded)?;
+        let inverse = j
+            .try_inverse()
+            .filter(|_| det > 0.0)
+            .ok_or(DegenerateShape)?;
         let modes = self.modes();
         let mut columns = Vec::with_capacity(3 * (functions.len() + modes.len()));
         for f in &functions {
@@ -103,14 +109,17 @@ impl SolidInput {
                 .functions(self.shape, &self.mids);
             let j0 = self.jacobian(&centre);
             let det0 = j0.determinant() * hand;
-            let inverse0 = j0.try_inverse().filter(|_| det0 > 0.0).ok_or(Folded)?;
+            let inverse0 = j0
+                .try_inverse()
+                .filter(|_| det0 > 0.0)
+                .ok_or(DegenerateShape)?;
             for &k in modes {
                 let mut slope = Vec3::zeros();
                 slope[k] = 4.0 * (1.0 - 2.0 * point.p[k]);
                 push(&mut columns, &(inverse0 * slope * (det0 / det)));
             }
         }
-        Ok(At {
+        Ok(StrainColumns {
             volume: point.weight * det,
             functions,
             columns,
@@ -122,7 +131,7 @@ impl SolidInput {
         &self,
         law: &Matrix6<f64>,
         thermal: Option<&dyn Fn(&[Function]) -> Vector6<f64>>,
-    ) -> Result<Formed, Folded> {
+    ) -> Result<CondensedSolid, DegenerateShape> {
         let n = 3 * self.x.len();
         let m = 3 * self.modes().len();
         let mut k = DMatrix::zeros(n + m, n + m);
@@ -150,7 +159,7 @@ impl SolidInput {
         if m > 0 {
             let own = k.view((n, n), (m, m)).into_owned();
             let cross = k.view((n, 0), (m, n)).into_owned();
-            let factor = own.cholesky().ok_or(Folded)?;
+            let factor = own.cholesky().ok_or(DegenerateShape)?;
             share = factor.solve(&cross);
             stiffness -= cross.transpose() * &share;
             let own_force = crate::linalg::DVector::from_column_slice(&f[n..]);
@@ -159,7 +168,7 @@ impl SolidInput {
             f.iter_mut().zip(passed.iter()).for_each(|(f, p)| *f -= p);
         }
         f.truncate(n);
-        Ok(Formed {
+        Ok(CondensedSolid {
             stiffness,
             share,
             force: f,

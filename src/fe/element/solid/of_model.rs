@@ -1,6 +1,6 @@
 //! Solids of a model: stiffness, mass, thermal forces, strain.
 
-use super::form::{Folded, SolidInput};
+use super::form::{DegenerateShape, SolidInput};
 use super::law::{SolidLaw, strain_rotation};
 use super::table::{Function, Tables};
 use crate::fe::element::ElementMatrix;
@@ -26,7 +26,7 @@ fn refuse(solid: &Solid, reason: &str, remedy: &str) -> Refusal {
     )
 }
 
-fn refuse_folded(solid: &Solid) -> impl Fn(Folded) -> Refusal + '_ {
+fn refuse_folded(solid: &Solid) -> impl Fn(DegenerateShape) -> Refusal + '_ {
     |_| {
         refuse(
             solid,
@@ -169,7 +169,7 @@ pub(crate) fn solid_strain(
         .sampling
         .iter()
         .map(|p| input.strain_columns_at(p))
-        .collect::<Result<_, Folded>>()
+        .collect::<Result<_, DegenerateShape>>()
         .map_err(refuse_folded(solid))?;
     let share = match input.has_modes() {
         true => {
@@ -203,7 +203,7 @@ pub(crate) fn solid_strain(
                     .map(|(j, u)| share[(m, j)] * u)
                     .sum::<f64>();
             }
-            let at = |at: &super::form::At| -> [f64; 6] {
+            let at = |at: &super::form::StrainColumns| -> [f64; 6] {
                 let total: Vector6<f64> = at
                     .columns
                     .iter()

@@ -3,7 +3,7 @@
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::frame::MotionFrame;
-use crate::series::window::Windowed;
+use crate::series::window::WindowedTransform;
 use crate::vehicle::motion::Motion;
 
 /// Mains, Hz.
@@ -40,7 +40,7 @@ pub(super) fn candidates(frame: &MotionFrame, motion: &Motion) -> Vec<Candidate>
 
 /// Returns the frequencies at which a signal exceeds its neighbourhood where mains may be.
 fn lines(frame: &MotionFrame, motion: &Motion, x: &[f64]) -> Vec<f64> {
-    let window = Windowed::new(motion.n_samples(), motion.rate_hz, frame.band);
+    let window = WindowedTransform::new(motion.n_samples(), motion.rate_hz, frame.band);
     let step = window.step_hz();
     let rate = frame.data.rate_hz;
     let mut out: Vec<f64> = Vec::new();
@@ -63,7 +63,13 @@ fn lines(frame: &MotionFrame, motion: &Motion, x: &[f64]) -> Vec<f64> {
 }
 
 /// Returns the frequency of a line within `reach` of `about`, if the line exceeds its neighbourhood.
-fn line(window: &Windowed, motion: &Motion, x: &[f64], about: f64, reach: f64) -> Option<f64> {
+fn line(
+    window: &WindowedTransform,
+    motion: &Motion,
+    x: &[f64],
+    about: f64,
+    reach: f64,
+) -> Option<f64> {
     /// Number of bins from a line to the first bin of its neighbourhood, either side.
     const NEAR: f64 = 3.0;
     /// Bins of the neighbourhood, either side.

@@ -1,10 +1,10 @@
 //! Measurements at rest: gains and timing of accelerometers.
 
-use super::known::Rows;
+use super::parameter_information::Rows;
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::corrections::adjustments;
-use crate::reconcile::motion::fitted::MotionFit;
 use crate::reconcile::motion::frame::MotionFrame;
+use crate::reconcile::motion::motion_fit::MotionFit;
 use crate::reconcile::motion::part::ColumnOf;
 use crate::vehicle::adjustment::{Adjustment, Lag};
 use crate::vehicle::layout::Measures;

@@ -1,8 +1,8 @@
 //! Possible further measurements.
 
 use crate::reconcile::motion::design::Design;
-use crate::reconcile::motion::fitted::MotionFit;
 use crate::reconcile::motion::frame::MotionFrame;
+use crate::reconcile::motion::motion_fit::MotionFit;
 use crate::series::spectrum::Band;
 use crate::vehicle::layout::{Measures, Point};
 

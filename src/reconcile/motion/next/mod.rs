@@ -1,26 +1,26 @@
 //! Measurement that separates explanations which a record can't separate, selected by the predictions of each.
 //!
 //! Each explanation in turn is taken as true. The others predict the same measurement, with parameters as free as in the present record. Their misfit
-//! over noise is the expected difference of log evidence ([`worth`]). [`measurement`] lists the possible measurements. [`view`] and, at rest,
+//! over noise is the expected difference of log evidence ([`evidence_gain`]). [`measurement`] lists the possible measurements. [`view`] and, at rest,
 //! [`bench`] give the predictions of an explanation.
 
 mod bench;
-mod known;
+mod evidence_gain;
 mod measurement;
-mod obeying;
+mod parameter_information;
+mod rival_misfit;
 mod view;
-mod worth;
 
-use self::known::Known;
+use self::evidence_gain::expected_evidence;
 use self::measurement::{Measurement, measurements};
+use self::parameter_information::ParameterInformation;
 use self::view::{View, view};
-use self::worth::expected_evidence;
-use super::fitted::MotionFit;
-use super::found::other_sets;
+use super::motion_fit::MotionFit;
+use super::ranked_sets::other_sets;
 use super::scorer::MotionScorer;
 use crate::finding::capitalize;
 use crate::reconcile::outcome::Verdict;
-use crate::reconcile::search::{Scored, Scorer};
+use crate::reconcile::search::{ScoredSet, Scorer};
 
 /// Expected difference of log evidence that justifies a measurement: as much as names one effect over another, and half of it again for losses that
 /// no model predicts.
@@ -35,12 +35,12 @@ const AS_IT_IS: &str = "the model as it is";
 const LEFT_OUT: &str = "measure quantities that the model does not contain: the other side and axle, spring travel, a second accelerometer on each body";
 
 /// Measurement with the smallest log evidence that it is expected to bring between the first explanation and each other one.
-struct Weighed {
+struct MeasurementEvidence {
     measurement: Measurement,
     worth: Vec<f64>,
 }
 
-impl Weighed {
+impl MeasurementEvidence {
     /// Returns the number of separated pairs, then the sum of their log evidence. No pair counts for more than certainty: of several measurements
     /// that are as certain, the first one is the least effort.
     fn rank(&self) -> (usize, f64) {
@@ -58,8 +58,8 @@ impl Weighed {
 pub(super) fn next_measurement(
     scorer: &MotionScorer,
     verdict: Verdict,
-    best: &Scored<MotionFit>,
-    all: &[Scored<MotionFit>],
+    best: &ScoredSet<MotionFit>,
+    all: &[ScoredSet<MotionFit>],
 ) -> String {
     let list = explanations(scorer, verdict, best, all);
     let names: Vec<String> = list.iter().map(|s| name(scorer, s)).collect();
@@ -113,9 +113,9 @@ pub(super) fn next_measurement(
 fn explanations<'a>(
     scorer: &MotionScorer,
     verdict: Verdict,
-    best: &'a Scored<MotionFit>,
-    all: &'a [Scored<MotionFit>],
-) -> Vec<&'a Scored<MotionFit>> {
+    best: &'a ScoredSet<MotionFit>,
+    all: &'a [ScoredSet<MotionFit>],
+) -> Vec<&'a ScoredSet<MotionFit>> {
     let empty = all.iter().find(|s| s.set.is_empty());
     let nearest = match best.set.is_empty() {
         true => all.iter().find(|s| !s.set.is_empty()),
@@ -130,7 +130,7 @@ fn explanations<'a>(
         .filter(|s| (level - s.log_evidence).abs() < scorer.frame.rules.indistinguishable)
         .take(MOST)
         .collect();
-    let kinds = |s: &Scored<MotionFit>| -> Vec<String> {
+    let kinds = |s: &ScoredSet<MotionFit>| -> Vec<String> {
         let family = |&c: &usize| scorer.candidates[c].family().to_owned();
         s.set.iter().map(family).collect()
     };
@@ -146,13 +146,13 @@ fn explanations<'a>(
 }
 
 /// Returns the measurement that separates most; `None` if no measurement is worth its effort.
-fn best_of(scorer: &MotionScorer, list: &[&Scored<MotionFit>]) -> Option<Weighed> {
+fn best_of(scorer: &MotionScorer, list: &[&ScoredSet<MotionFit>]) -> Option<MeasurementEvidence> {
     let frame = scorer.frame;
-    let known: Vec<Known> = list
+    let known: Vec<ParameterInformation> = list
         .iter()
-        .map(|s| Known::from_fit(frame, &s.fit))
+        .map(|s| ParameterInformation::from_fit(frame, &s.fit))
         .collect();
-    let mut best: Option<Weighed> = None;
+    let mut best: Option<MeasurementEvidence> = None;
     for measurement in measurements(frame, known.first()?.fit) {
         if scorer.is_stopped() {
             return None;
@@ -170,19 +170,19 @@ fn best_of(scorer: &MotionScorer, list: &[&Scored<MotionFit>]) -> Option<Weighed
         let worth: Vec<f64> = (1..known.len())
             .map(|k| between(0, k).min(between(k, 0)))
             .collect();
-        let weighed = Weighed { measurement, worth };
-        let better = |b: &Weighed| weighed.rank() > b.rank();
+        let weighed = MeasurementEvidence { measurement, worth };
+        let better = |b: &MeasurementEvidence| weighed.rank() > b.rank();
         if weighed.rank().0 > 0 && best.as_ref().is_none_or(better) {
             best = Some(weighed);
         }
-        if best.as_ref().is_some_and(Weighed::is_sure) {
+        if best.as_ref().is_some_and(MeasurementEvidence::is_sure) {
             break;
         }
     }
     best
 }
 
-fn name(scorer: &MotionScorer, s: &Scored<MotionFit>) -> String {
+fn name(scorer: &MotionScorer, s: &ScoredSet<MotionFit>) -> String {
     let ids: Vec<&str> = (s.set.iter())
         .map(|&c| scorer.candidates[c].id.as_str())
         .collect();

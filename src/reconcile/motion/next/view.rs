@@ -1,21 +1,21 @@
 //! Residual of a measurement under an explanation, and how readings, faults and tolerances enter it.
 
 use super::bench::{stroke_delay_rows, turn_over};
-use super::known::{Known, Rows};
 use super::measurement::{Measurement, is_driven};
+use super::parameter_information::{ParameterInformation, Rows};
 use crate::linalg::tall::left_inverse;
 use crate::reconcile::motion::columns::{fault_columns, nuisance, parameter_column, slices};
 use crate::reconcile::motion::corrections::adjustments;
 use crate::reconcile::motion::design::{BinChannel, BinEquation, Bins, Design, design, size};
-use crate::reconcile::motion::fitted::MotionFit;
 use crate::reconcile::motion::frame::MotionFrame;
+use crate::reconcile::motion::motion_fit::MotionFit;
 use crate::reconcile::motion::noise::{Background, UNDECLARED, Whitener, band_of, covariance};
 use crate::reconcile::motion::part::ColumnOf;
 use crate::reconcile::motion::response::responses;
 use crate::series::channels::{Channel, Channels};
 use crate::series::detrend::mean;
 use crate::series::spectrum::Fourier;
-use crate::series::window::Windowed;
+use crate::series::window::WindowedTransform;
 use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::layout::Point;
 use crate::vehicle::stretch::slow_stretches;
@@ -25,19 +25,19 @@ use std::f64::consts::PI;
 /// Residual of a measurement under an explanation at its present parameters, and the columns by which parameters change it.
 pub(super) enum View {
     /// Equations of motion of a record, or the reading of one more sensor.
-    Record(Box<Recorded>),
+    Record(Box<RecordEquations>),
     /// Numbers measured at rest, with their rows. All explanations have the same numbers.
     AtRest(Rows),
 }
 
 /// A record under an explanation.
-pub(super) struct Recorded {
+pub(super) struct RecordEquations {
     /// Residual by equation, with the present estimates of tolerances included.
     pub(super) left: Vec<Bins>,
     /// Whether each equation predicts the reading of a new channel. Its residual is then that reading, not an error of the record.
     pub(super) is_new: Vec<bool>,
     /// How the channels of the record enter the equations.
-    pub(super) channels: Vec<Entered>,
+    pub(super) channels: Vec<ChannelResponse>,
     /// Whitening by sensor noise and background.
     pub(super) whitener: Whitener,
     /// Columns of the fit, in its order, before whitening.
@@ -53,7 +53,7 @@ pub(super) struct Recorded {
 }
 
 /// A channel of the record.
-pub(super) struct Entered {
+pub(super) struct ChannelResponse {
     /// Name.
     pub(super) name: String,
     /// Power of its noise.
@@ -64,7 +64,7 @@ pub(super) struct Entered {
     pub(super) undone: Bins,
 }
 
-/// Balance of weight, with the entries of the columns of [`Recorded`], in the same order, divided by its standard deviation.
+/// Balance of weight, with the entries of the columns of [`RecordEquations`], in the same order, divided by its standard deviation.
 pub(super) struct Weight {
     /// Weight: g (sum of masses).
     pub(super) weight: f64,
@@ -82,7 +82,7 @@ pub(super) struct Weight {
 pub(super) fn view(
     frame: &MotionFrame,
     measurement: &Measurement,
-    known: &Known,
+    known: &ParameterInformation,
     background: &Background,
 ) -> Option<View> {
     match measurement {
@@ -100,7 +100,7 @@ pub(super) fn view(
 }
 
 impl View {
-    fn record(r: Recorded) -> Self {
+    fn record(r: RecordEquations) -> Self {
         Self::Record(Box::new(r))
     }
 }
@@ -108,14 +108,14 @@ impl View {
 /// Forms the equations of motion of a further drive.
 ///
 /// The motion is the present one with the same filter at every channel, less the channel errors that explain its residual under one explanation
-/// ([`super::obeying`]). It obeys that explanation to first order in the difference of two explanations. The residual of the other explanation is
+/// ([`super::rival_misfit`]). It obeys that explanation to first order in the difference of two explanations. The residual of the other explanation is
 /// the difference of the forces of both at that motion.
 fn form_drive_equations(
     frame: &MotionFrame,
     measurement: &Measurement,
-    known: &Known,
+    known: &ParameterInformation,
     background: &Background,
-) -> Option<Recorded> {
+) -> Option<RecordEquations> {
     let fit = known.fit;
     let mut frame = frame.clone();
     let whole = frame.data.n_samples();
@@ -235,7 +235,7 @@ fn weight(
     frame: &MotionFrame,
     fit: &MotionFit,
     fresh: &[usize],
-    known: &Known,
+    known: &ParameterInformation,
     n_channels: usize,
     sets_scale: bool,
 ) -> Option<Weight> {
@@ -275,7 +275,11 @@ fn weight(
 }
 
 /// Forms the equation for the reading of one more accelerometer at `at`, predicted from the other sensors of the rigid body.
-fn form_sensor_equation(frame: &MotionFrame, fit: &MotionFit, at: Point) -> Option<Recorded> {
+fn form_sensor_equation(
+    frame: &MotionFrame,
+    fit: &MotionFit,
+    at: Point,
+) -> Option<RecordEquations> {
     let mut d = (*fit.design).clone();
     let v = d.vehicle.clone();
     let own: Vec<usize> = (0..v.sensors.len())
@@ -294,7 +298,7 @@ fn form_sensor_equation(frame: &MotionFrame, fit: &MotionFit, at: Point) -> Opti
             vec![Complex64::new(share, 0.0); n]
         })
         .collect();
-    let mut window = Windowed::new(d.motion.n_samples(), d.motion.rate_hz, d.band);
+    let mut window = WindowedTransform::new(d.motion.n_samples(), d.motion.rate_hz, d.band);
     let mut reading: Bins = vec![Complex64::default(); n];
     for (phi, q) in phi.iter().zip(d.motion.bodies.get(at.body)?) {
         reading
@@ -331,7 +335,7 @@ fn with_columns(
     h: &[Vec<Vec<Complex64>>],
     mut left: Vec<Bins>,
     whitener: Whitener,
-) -> Recorded {
+) -> RecordEquations {
     let nothing = || vec![Bins::new(); d.equations.len()];
     let mut tolerances: Vec<Option<(ColumnOf, Vec<Bins>, f64)>> = nuisance(frame, d, h, &fit.parts)
         .into_iter()
@@ -376,7 +380,7 @@ fn with_columns(
         own.push(column);
     }
     let adjust = adjustments(frame, &fit.parts);
-    Recorded {
+    RecordEquations {
         left,
         is_new: vec![true; d.equations.len()],
         channels: channel_entries(d, h, &adjust),
@@ -392,7 +396,11 @@ fn with_columns(
 }
 
 /// Returns the channels of a design with their noise, their responses and the corrections `adjust`.
-fn channel_entries(d: &Design, h: &[Vec<Vec<Complex64>>], adjust: &[Adjustment]) -> Vec<Entered> {
+fn channel_entries(
+    d: &Design,
+    h: &[Vec<Vec<Complex64>>],
+    adjust: &[Adjustment],
+) -> Vec<ChannelResponse> {
     let one = |(c, channel): (usize, &BinChannel)| {
         let n = channel.bins.len().max(1) as f64;
         let assumed = UNDECLARED * size(&channel.bins) / n.sqrt();
@@ -402,7 +410,7 @@ fn channel_entries(d: &Design, h: &[Vec<Vec<Complex64>>], adjust: &[Adjustment])
             own.as_ref()
                 .map_or(one, |a| a.inverse_response(2.0 * PI * f))
         };
-        Entered {
+        ChannelResponse {
             name: channel.name.clone(),
             power: channel.noise.unwrap_or(assumed).powi(2),
             responses: h.iter().map(|e| e[c].clone()).collect(),
@@ -412,7 +420,7 @@ fn channel_entries(d: &Design, h: &[Vec<Vec<Complex64>>], adjust: &[Adjustment])
     d.channels.iter().enumerate().map(one).collect()
 }
 
-impl Recorded {
+impl RecordEquations {
     /// Unit-variance rows of a column, or of a residual.
     pub(super) fn whiten_bins(&self, bins: &[Bins]) -> Vec<f64> {
         self.whitener.rows(&slices(bins))

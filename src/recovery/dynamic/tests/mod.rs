@@ -1,4 +1,4 @@
-mod held;
+mod interval_coverage;
 
 use super::{AtRest, Dynamics, ElasticMode, Unfit, readings_at_rest};
 use crate::linalg::{Complex, Matrix};

@@ -1,14 +1,14 @@
 //! Recovered loads on a terminal.
 
-use super::compared;
+use super::load_comparison;
 use crate::host::outcome::Outcome;
 use crate::host::words::count_of;
 use crate::report::console::{Console, ConsoleTable};
 use crate::units::{half_width, number, plus_minus};
-use crate::workflow::recover::{LoadSpan, Recovered, RecoveredRuns, States};
+use crate::workflow::recover::{LoadSpan, RecoveredLoads, RecoveredRuns, States};
 
 /// Returns a row a run where they fit, else a row a load.
-pub(super) fn console(outcome: &Outcome<Recovered>) -> Console {
+pub(super) fn console(outcome: &Outcome<RecoveredLoads>) -> Console {
     let spans = outcome.spans();
     let (n, of_what) = match &outcome.states {
         States::Runs(runs) => (runs.runs.len(), count_of(runs.runs.len(), "run")),
@@ -65,10 +65,10 @@ fn by_run(runs: &RecoveredRuns, spans: &[LoadSpan]) -> ConsoleTable {
 }
 
 /// Returns a table with a row for each load and its differences from the recorded load.
-fn against_recorded(outcome: &Outcome<Recovered>, spans: &[LoadSpan]) -> ConsoleTable {
+fn against_recorded(outcome: &Outcome<RecoveredLoads>, spans: &[LoadSpan]) -> ConsoleTable {
     let row = |s: &LoadSpan| {
         let value = format!("{} {}", plus_minus(s.peak(), s.half), s.unit);
-        let cells = compared::cells(&outcome.comparison, &s.name);
+        let cells = load_comparison::cells(&outcome.comparison, &s.name);
         [s.name.clone(), value].into_iter().chain(cells).collect()
     };
     let head = [
@@ -125,7 +125,7 @@ fn peak_load_table(spans: &[LoadSpan], n: usize, of_what: &str) -> ConsoleTable 
 }
 
 /// Stress follows from loads where there is a model.
-fn next(outcome: &Outcome<Recovered>) -> Option<String> {
+fn next(outcome: &Outcome<RecoveredLoads>) -> Option<String> {
     let job = &outcome.job;
     job.model.as_ref()?;
     Some(format!(

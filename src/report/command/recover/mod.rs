@@ -3,10 +3,10 @@
 //! Loads of a record are written while they are recovered, by a [`RecordFolder`]; everything else is written of the outcome.
 
 mod columns;
-mod compared;
 mod console;
-mod first;
 mod folder;
+mod load_comparison;
+mod load_tables;
 mod nastran;
 #[cfg(feature = "parquet")]
 mod parquet;
@@ -24,13 +24,13 @@ use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::{KeyNumber, Page};
-use crate::workflow::recover::{Recovered, States};
+use crate::workflow::recover::{RecoveredLoads, States};
 
-impl Report for Outcome<Recovered> {
+impl Report for Outcome<RecoveredLoads> {
     const FILES: &'static [&'static str] = &["result.json", "report.html", "loads.csv"];
 
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
-        compared::write(out, self)?;
+        load_comparison::write(out, self)?;
         match &self.states {
             States::Runs(runs) => runs::write(out, self, runs),
             States::Record(record) => record::write(out, self, record),
@@ -42,16 +42,16 @@ impl Report for Outcome<Recovered> {
             States::Runs(runs) => runs::page(self, runs),
             States::Record(record) => record::page(self, record),
         };
-        compared::add_sections(&mut page, self);
+        load_comparison::add_sections(&mut page, self);
         Some(page)
     }
 
     fn key_numbers(&self) -> Vec<KeyNumber> {
-        first::key_numbers(self)
+        load_tables::key_numbers(self)
     }
 
     fn result_table(&self) -> ConsoleTable {
-        first::result_table(self)
+        load_tables::result_table(self)
     }
 
     fn console(&self) -> Console {

@@ -10,7 +10,7 @@ use crate::job::{JobLoad, LoadActs};
 use crate::model::Model;
 use crate::strain_chain::LoadUnits;
 use crate::workflow::cases::{dynamic_ids, load_card, load_ids};
-use crate::workflow::recover::{RecordHead, Recovered, RecoveredRuns, Samples};
+use crate::workflow::recover::{RecordHead, RecoveredLoads, RecoveredRuns, Samples};
 use nastran::bdf::{Field, format_card};
 use nastran::cards::Force;
 use std::io::Write;
@@ -29,7 +29,7 @@ struct Unit {
 }
 
 /// Returns the cards of size 1 of each load, the loads of these cards, and the next free set. Loads without a place in the job are left out.
-fn unit_sets(recovered: &Recovered, names: &[String]) -> (String, Vec<Unit>, u32) {
+fn unit_sets(recovered: &RecoveredLoads, names: &[String]) -> (String, Vec<Unit>, u32) {
     let fields = recovered.prepared.fields.as_ref();
     let deck = fields.map(|f| &f.deck.deck);
     let model = fields.map(|f| &f.deck.model);
@@ -82,7 +82,7 @@ fn clean_text(text: &str) -> String {
         .collect()
 }
 
-fn heading(recovered: &Recovered, what: &str) -> String {
+fn heading(recovered: &RecoveredLoads, what: &str) -> String {
     format!(
         "$ Recovered loads of {}, units {}\n$ {what}\n",
         clean_text(&recovered.job.title),
@@ -96,7 +96,7 @@ fn heading(recovered: &Recovered, what: &str) -> String {
 /// A file that can't be written.
 pub(super) fn write_runs(
     out: &mut Output,
-    recovered: &Recovered,
+    recovered: &RecoveredLoads,
     runs: &RecoveredRuns,
 ) -> Result<(), Faults> {
     let (cards, units, mut next) = unit_sets(recovered, &runs.names);
@@ -138,7 +138,7 @@ pub(super) fn write_runs(
 /// A file that can't be written.
 pub(super) fn write_history(
     out: &mut Output,
-    recovered: &Recovered,
+    recovered: &RecoveredLoads,
     head: &RecordHead,
     loads: &LoadsFile,
 ) -> Result<(), Faults> {

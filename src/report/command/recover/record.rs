@@ -11,11 +11,11 @@ use crate::report::command::{write_book, write_page};
 use crate::report::csv_cell;
 use crate::report::figure::LoadTrace;
 use crate::report::page::{Page, number};
-use crate::report::scene::{Pointing, Shown, run_arrows, scene_of_job};
+use crate::report::scene::{LoadRange, PickTargets, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{HistoryLoad, history_sheet, residual_sheet};
-use crate::report::strain::{Recovered as OnPage, RecoveredRun, recover_page};
+use crate::report::strain::{RecoveredRun, RecoveryPage as OnPage, recover_page};
 use crate::units::format_fixed;
-use crate::workflow::recover::{LoadDamage, Recovered, RecoveredRecord};
+use crate::workflow::recover::{LoadDamage, RecoveredLoads, RecoveredRecord};
 use std::io::Write;
 
 /// Blocks formed at a time.
@@ -27,7 +27,7 @@ const GROUP: usize = 8;
 /// The first file that can't be written.
 pub(super) fn write(
     out: &mut Output,
-    outcome: &Outcome<Recovered>,
+    outcome: &Outcome<RecoveredLoads>,
     record: &RecoveredRecord,
 ) -> Result<(), Faults> {
     let head = &record.head;
@@ -61,7 +61,7 @@ pub(super) fn write(
 /// Files that are made of `loads.bin`.
 fn write_derived_files(
     out: &mut Output,
-    outcome: &Outcome<Recovered>,
+    outcome: &Outcome<RecoveredLoads>,
     record: &RecoveredRecord,
 ) -> Result<(), Faults> {
     let loads = LoadsFile::read_back(out)?;
@@ -129,7 +129,7 @@ fn of_history(l: &crate::workflow::recover::RecordLoad) -> HistoryLoad {
 }
 
 /// The page.
-pub(super) fn page(outcome: &Outcome<Recovered>, record: &RecoveredRecord) -> Page {
+pub(super) fn page(outcome: &Outcome<RecoveredLoads>, record: &RecoveredRecord) -> Page {
     let (job, file) = (&outcome.job, &record.head.file);
     let row = |name: &str, value: String| (name.to_owned(), value);
     let numbers = [
@@ -150,8 +150,8 @@ pub(super) fn page(outcome: &Outcome<Recovered>, record: &RecoveredRecord) -> Pa
             .collect(),
     }];
     let scene = scene_of_job(job, &outcome.prepared).map(|mut scene| {
-        scene.arrows = run_arrows(job, scene.model, &runs, Shown::Extremes);
-        scene.pointing = Pointing::Gauges;
+        scene.arrows = run_arrows(job, scene.model, &runs, LoadRange::Extremes);
+        scene.pointing = PickTargets::Gauges;
         scene
     });
     let found = OnPage {

@@ -1,7 +1,7 @@
 //! Static states: `loads.csv`, `loads.xlsx`, the page, `loads.bdf`, `loads.vtu`.
 
 use super::columns::{by_gauge, columns, columns_with_units};
-use super::first::by_run;
+use super::load_tables::by_run;
 use super::{nastran, vtu};
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
@@ -12,11 +12,11 @@ use crate::report::command::{write_book, write_page};
 use crate::report::csv_cell;
 use crate::report::figure::GaugePoints;
 use crate::report::page::{Page, number};
-use crate::report::scene::{Pointing, Shown, run_arrows, scene_of_job};
+use crate::report::scene::{LoadRange, PickTargets, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{residual_sheet, runs_sheet};
-use crate::report::strain::{Recovered as OnPage, RecoveredRun, recover_page};
+use crate::report::strain::{RecoveredRun, RecoveryPage as OnPage, recover_page};
 use crate::units::MICROSTRAIN;
-use crate::workflow::recover::{Recovered, RecoveredRuns};
+use crate::workflow::recover::{RecoveredLoads, RecoveredRuns};
 use std::io::Write;
 
 /// Writes everything.
@@ -25,7 +25,7 @@ use std::io::Write;
 /// The first file that can't be written.
 pub(super) fn write(
     out: &mut Output,
-    outcome: &Outcome<Recovered>,
+    outcome: &Outcome<RecoveredLoads>,
     runs: &RecoveredRuns,
 ) -> Result<(), Faults> {
     let job = &outcome.job;
@@ -89,7 +89,7 @@ fn shown_run(runs: &RecoveredRuns, r: &RunEstimate) -> RecoveredRun {
 }
 
 /// The page.
-pub(super) fn page(outcome: &Outcome<Recovered>, runs: &RecoveredRuns) -> Page {
+pub(super) fn page(outcome: &Outcome<RecoveredLoads>, runs: &RecoveredRuns) -> Page {
     let shown = shown_runs(runs);
     let (job, s) = (&outcome.job, &outcome.prepared.sensitivity);
     let numbers = vec![
@@ -104,8 +104,8 @@ pub(super) fn page(outcome: &Outcome<Recovered>, runs: &RecoveredRuns) -> Page {
         ),
     ];
     let scene = scene_of_job(job, &outcome.prepared).map(|mut scene| {
-        scene.arrows = run_arrows(job, scene.model, &shown, Shown::Interval);
-        scene.pointing = Pointing::Gauges;
+        scene.arrows = run_arrows(job, scene.model, &shown, LoadRange::Interval);
+        scene.pointing = PickTargets::Gauges;
         scene
     });
     let (table, is_cut) = by_run(outcome, runs);

@@ -4,7 +4,7 @@ use crate::host::fault::Faults;
 use crate::host::output::Output;
 use crate::job::LoadActs;
 use crate::report::{PointValues, write_points_vtu};
-use crate::workflow::recover::{Recovered, RecoveredRuns};
+use crate::workflow::recover::{RecoveredLoads, RecoveredRuns};
 
 /// Writes a point a loaded grid with force and moment of every run, basic frame, report units; nothing without a model.
 ///
@@ -12,7 +12,7 @@ use crate::workflow::recover::{Recovered, RecoveredRuns};
 /// A file that can't be written.
 pub(super) fn write(
     out: &mut Output,
-    recovered: &Recovered,
+    recovered: &RecoveredLoads,
     runs: &RecoveredRuns,
 ) -> Result<(), Faults> {
     let Some(model) = recovered.prepared.fields.as_ref().map(|f| f.model()) else {

@@ -211,7 +211,7 @@ impl RecordReader for Csv {
 }
 
 /// Seconds from the first row to the date or time of day at the beginning of `rest`, and the length of the field.
-fn moment(rest: &[u8], delimiter: u8, kind: TimeKind) -> Result<(f64, usize), Wrong> {
+fn moment(rest: &[u8], delimiter: u8, kind: TimeKind) -> Result<(f64, usize), CsvRowFault> {
     let used = text::field_end(rest, delimiter);
     let shown = text::trim_field(rest.get(..used).unwrap_or_default());
     let found = match kind {
@@ -239,7 +239,7 @@ fn moment(rest: &[u8], delimiter: u8, kind: TimeKind) -> Result<(f64, usize), Wr
 }
 
 /// Message about a wrong row, and its remedy.
-type Wrong = (String, &'static str);
+type CsvRowFault = (String, &'static str);
 
 /// Reads rows of one table.
 struct Parser<'a> {
@@ -251,7 +251,7 @@ struct Parser<'a> {
 
 impl Parser<'_> {
     /// Reads the row that begins at `at` into `slots`, and returns the beginning of the next line.
-    fn row(&self, text: &[u8], mut at: usize, slots: &mut [f64]) -> Result<usize, Wrong> {
+    fn row(&self, text: &[u8], mut at: usize, slots: &mut [f64]) -> Result<usize, CsvRowFault> {
         let n = self.layout.columns.len();
         let delimiter = self.layout.delimiter;
         let mut field = 0;
@@ -300,7 +300,7 @@ impl Parser<'_> {
 
     /// Refuses a number in the form of thousands if no row of the beginning determines the decimal mark.
     #[inline(always)]
-    fn check_mark(&self, rest: &[u8], used: usize) -> Result<(), Wrong> {
+    fn check_mark(&self, rest: &[u8], used: usize) -> Result<(), CsvRowFault> {
         if self.layout.mark != DecimalMark::CommaOrPoint {
             return Ok(());
         }
@@ -312,7 +312,7 @@ impl Parser<'_> {
     }
 
     /// Value of the field at the beginning of `rest`, and its length up to the delimiter or the end of the line.
-    fn value(&self, rest: &[u8], field: usize) -> Result<(f64, usize), Wrong> {
+    fn value(&self, rest: &[u8], field: usize) -> Result<(f64, usize), CsvRowFault> {
         let delimiter = self.layout.delimiter;
         let mark = self.layout.mark;
         let time = self.layout.time.filter(|t| t.0 == field).map(|t| t.1);

@@ -1,7 +1,7 @@
 //! Batches of a Feather file: lists of buffers, and their bytes decompressed.
 
 use crate::series::error::SeriesError;
-use crate::series::record::arrow::{Field, Stored, content, fields, message};
+use crate::series::record::arrow::{ColumnStorage, Field, content, fields, message};
 use crate::series::record::flat_buffer::Buffer;
 use std::borrow::Cow;
 use std::io::Read;
@@ -89,15 +89,15 @@ pub(super) fn parts(file: &[u8]) -> Option<(Vec<Field>, Vec<Batch>, Vec<(usize, 
         let values = fields
             .iter()
             .find_map(|f| f.dictionary.filter(|d| d.0 == id));
-        let Some((_, stored)) = values.filter(|v| v.1 != Stored::Other) else {
+        let Some((_, stored)) = values.filter(|v| v.1 != ColumnStorage::Other) else {
             continue;
         };
         let field = Field {
             name: String::new(),
             unit: String::new(),
             stored,
-            buffers: 2 + usize::from(matches!(stored, Stored::Text { .. })),
-            is_view: stored == Stored::TextView,
+            buffers: 2 + usize::from(matches!(stored, ColumnStorage::Text { .. })),
+            is_view: stored == ColumnStorage::TextView,
             has_validity: true,
             dictionary: None,
             children: Vec::new(),

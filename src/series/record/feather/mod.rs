@@ -5,12 +5,12 @@ mod batch;
 mod tests;
 mod values;
 
-use super::arrow::{Field, Stored};
+use super::arrow::{ColumnStorage, Field};
 use super::column::Column;
 use super::flat_buffer::Buffer;
 use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
 use super::tile::Tile;
-use super::typed::{Meaning, Precision, TimeColumn, Typed};
+use super::typed_columns::{Meaning, Precision, TimeColumn, TypedChannels};
 use crate::series::error::SeriesError;
 use batch::{Batch, MAGIC, parts, read_error};
 use std::borrow::Cow;
@@ -41,7 +41,7 @@ pub struct Feather {
 }
 
 impl Feather {
-    /// Returns the table in a file. Columns of numbers alone are channels; a null is NaN. [`Typed::from_columns`] determines the column of time.
+    /// Returns the table in a file. Columns of numbers alone are channels; a null is NaN. [`TypedChannels::from_columns`] determines the column of time.
     ///
     /// # Errors
     /// A file that is cut off or damaged.
@@ -53,7 +53,7 @@ impl Feather {
         let (fields, batches, dictionaries) =
             parts(file).ok_or_else(|| read_error("its list of columns or batches is damaged"))?;
         let numbers = fields.iter().enumerate();
-        let typed = Typed::from_columns(
+        let typed = TypedChannels::from_columns(
             numbers.filter_map(|(at, f)| Some((at, &*f.name, f.meaning()?, &*f.unit))),
         );
         let (leaves, columns) = typed.channels.into_iter().unzip();
@@ -100,8 +100,8 @@ impl Feather {
         }
         let stored = self.fields.get(time.at).map(Field::values);
         let precision = match stored {
-            Some(Stored::Integer { .. }) => Precision::Integer,
-            Some(Stored::Real { bytes: 4 }) => Precision::Single,
+            Some(ColumnStorage::Integer { .. }) => Precision::Integer,
+            Some(ColumnStorage::Real { bytes: 4 }) => Precision::Single,
             _ => Precision::Double,
         };
         self.times = time.times(precision, factor, self.epoch);
@@ -114,7 +114,10 @@ impl Feather {
     /// Buffers that can't be read.
     pub(super) fn texts(&self, name: &str) -> Result<Option<Vec<String>>, SeriesError> {
         let is_it = |f: &Field| {
-            let is_text = matches!(f.values(), Stored::Text { .. } | Stored::TextView);
+            let is_text = matches!(
+                f.values(),
+                ColumnStorage::Text { .. } | ColumnStorage::TextView
+            );
             f.name.eq_ignore_ascii_case(name) && is_text
         };
         let Some(at) = self.fields.iter().position(is_it) else {
@@ -148,7 +151,7 @@ impl Feather {
         &self,
         batch: &Batch,
         at: usize,
-        stored: Stored,
+        stored: ColumnStorage,
         out: &mut Vec<String>,
     ) -> Result<(), SeriesError> {
         let buffers: Vec<Cow<'_, [u8]>> = batch.field_buffers(at, (*self.bytes).as_ref())?;
@@ -158,7 +161,7 @@ impl Feather {
         let places = Buffer(places);
         let text = |i: usize| {
             let bytes = match stored {
-                Stored::TextView => {
+                ColumnStorage::TextView => {
                     let at = i.checked_mul(16)?;
                     let length = places.word(at)? as usize;
                     let (data, from) = match length {
@@ -170,7 +173,7 @@ impl Feather {
                     };
                     data.get(from..from.checked_add(length)?)?
                 }
-                Stored::Text { bytes: 8 } => {
+                ColumnStorage::Text { bytes: 8 } => {
                     let end = places.size(8 * i + 8)?;
                     data.first()?.get(places.size(8 * i)?..end)?
                 }
@@ -196,15 +199,17 @@ impl Feather {
         &'a self,
         batch: &Batch,
         at: usize,
-        stored: Stored,
+        stored: ColumnStorage,
     ) -> Result<Values<'a>, SeriesError> {
         let buffers = batch.field_buffers(at, (*self.bytes).as_ref())?;
         let [validity, data]: [Cow<'a, [u8]>; 2] = buffers
             .try_into()
             .map_err(|_| read_error("a column of numbers has too few buffers"))?;
         let needed = match stored {
-            Stored::Bits => Some(batch.rows.div_ceil(8)),
-            Stored::Integer { bytes, .. } | Stored::Real { bytes } => batch.rows.checked_mul(bytes),
+            ColumnStorage::Bits => Some(batch.rows.div_ceil(8)),
+            ColumnStorage::Integer { bytes, .. } | ColumnStorage::Real { bytes } => {
+                batch.rows.checked_mul(bytes)
+            }
             _ => None,
         };
         let is_whole = needed.is_some_and(|n| data.len() >= n)
@@ -303,16 +308,16 @@ impl RecordReader for Feather {
 
 impl Field {
     /// Storage of its values, or of those of its dictionary.
-    fn values(&self) -> Stored {
+    fn values(&self) -> ColumnStorage {
         self.dictionary.map_or(self.stored, |d| d.1)
     }
 
     /// Meaning of its values; `None` for a column that is no channel.
     fn meaning(&self) -> Option<Meaning> {
         match self.values() {
-            Stored::Integer { meaning, .. } => Some(meaning),
-            Stored::Bits | Stored::Real { .. } => Some(Meaning::Number(1.0)),
-            Stored::Text { .. } | Stored::TextView | Stored::Other => None,
+            ColumnStorage::Integer { meaning, .. } => Some(meaning),
+            ColumnStorage::Bits | ColumnStorage::Real { .. } => Some(Meaning::Number(1.0)),
+            ColumnStorage::Text { .. } | ColumnStorage::TextView | ColumnStorage::Other => None,
         }
     }
 }

@@ -1,12 +1,12 @@
 //! Numbers of a Feather file as they are stored.
 
-use crate::series::record::arrow::Stored;
+use crate::series::record::arrow::ColumnStorage;
 use crate::series::record::strip::of_half;
 use std::borrow::Cow;
 
 /// Values of one field in one batch.
 pub(super) struct Values<'a> {
-    pub stored: Stored,
+    pub stored: ColumnStorage,
     /// A bit a row; empty where no value is missing.
     pub validity: Cow<'a, [u8]>,
     pub data: Cow<'a, [u8]>,
@@ -19,12 +19,12 @@ impl Values<'_> {
     pub(super) fn write_rows(&self, first: usize, worth: f64, off: f64, out: &mut [f64]) {
         let data = &*self.data;
         match self.stored {
-            Stored::Bits => {
+            ColumnStorage::Bits => {
                 for (slot, i) in out.iter_mut().zip(first..) {
                     *slot = f64::from(u8::from(bit(data, i)));
                 }
             }
-            Stored::Integer {
+            ColumnStorage::Integer {
                 bytes, is_signed, ..
             } => match (bytes, is_signed) {
                 (1, true) => decode_numbers(data, first, out, |b| f64::from(i8::from_le_bytes(b))),
@@ -40,14 +40,14 @@ impl Values<'_> {
                 (_, true) => decode_numbers(data, first, out, |b| i64::from_le_bytes(b) as f64),
                 (_, false) => decode_numbers(data, first, out, |b| u64::from_le_bytes(b) as f64),
             },
-            Stored::Real { bytes: 2 } => {
+            ColumnStorage::Real { bytes: 2 } => {
                 decode_numbers(data, first, out, |b| of_half(u16::from_le_bytes(b)));
             }
-            Stored::Real { bytes: 4 } => {
+            ColumnStorage::Real { bytes: 4 } => {
                 decode_numbers(data, first, out, |b| f64::from(f32::from_le_bytes(b)));
             }
-            Stored::Real { .. } => decode_numbers(data, first, out, f64::from_le_bytes),
-            Stored::Text { .. } | Stored::TextView | Stored::Other => {}
+            ColumnStorage::Real { .. } => decode_numbers(data, first, out, f64::from_le_bytes),
+            ColumnStorage::Text { .. } | ColumnStorage::TextView | ColumnStorage::Other => {}
         }
         for (slot, i) in out.iter_mut().zip(first..) {
             if !is_valid(&self.validity, i) {

@@ -1,21 +1,21 @@
 //! ASAM MDF 4: the channels sampled together with those that are wanted, read by parts of their data blocks.
 //!
-//! `falcon_mdf` determines the layout of the file. Groups of fixed records in blocks, plain or deflated, are read a piece at a time ([`fixed`]).
+//! `falcon_mdf` determines the layout of the file. Groups of fixed records in blocks, plain or deflated, are read a piece at a time ([`fixed_records`]).
 //! Other forms (groups whose records alternate, values apart from invalidation, Zstandard, LZ4) are decoded whole by the library.
 
 mod fault;
 mod field;
-mod fixed;
+mod fixed_records;
 
 use super::column::Column;
+use super::memory_record::MemoryRecord;
 use super::reader::{Bytes, OtherChannel, RecordReader, Times};
-use super::whole::Whole;
 use crate::series::error::SeriesError;
 use falcon_mdf::io::{ByteSlice, ByteSource};
 use falcon_mdf::{ChannelGroup, Mf4Error, Mf4File};
 use fault::read_error;
 use field::{Field, values};
-use fixed::{Fixed, Group};
+use fixed_records::{FixedRecordReader, Group};
 use std::sync::Arc;
 
 /// Times of two groups that are the same to this share of a step count as one clock.
@@ -99,7 +99,7 @@ pub(super) fn open(bytes: Bytes, wanted: &[String]) -> Result<Box<dyn RecordRead
     if !names.is_empty() {
         return Err(SeriesError::Apart { names });
     }
-    Ok(Box::new(Fixed::new(bytes, list, apart)))
+    Ok(Box::new(FixedRecordReader::new(bytes, list, apart)))
 }
 
 /// Channels of a group that is not read.
@@ -114,7 +114,7 @@ fn list_other_channels(group: &ChannelGroup) -> impl Iterator<Item = OtherChanne
 }
 
 /// A group decoded whole.
-fn decode_group(file: &Mf4File, group: &ChannelGroup) -> Result<Whole, SeriesError> {
+fn decode_group(file: &Mf4File, group: &ChannelGroup) -> Result<MemoryRecord, SeriesError> {
     let mut columns = Vec::new();
     let mut samples = Vec::new();
     let decode = |c: &falcon_mdf::Channel| -> Result<Vec<f64>, SeriesError> {
@@ -133,7 +133,7 @@ fn decode_group(file: &Mf4File, group: &ChannelGroup) -> Result<Whole, SeriesErr
     }
     let clock = group.channels.iter().find(|c| c.is_time_channel());
     let stored = clock.map(decode).transpose()?;
-    Ok(Whole {
+    Ok(MemoryRecord {
         columns,
         times: match (&stored, clock) {
             (Some(_), Some(c)) => Times::Stored {

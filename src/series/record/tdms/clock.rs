@@ -4,7 +4,7 @@ use super::fault::read_error;
 use super::segments::{Channel, Kind, Value};
 use crate::series::error::SeriesError;
 use crate::series::record::column::{is_time, seconds_in};
-use crate::series::record::together::Sampling;
+use crate::series::record::simultaneous_channels::Sampling;
 
 /// Clocks of computers are read in steps of a 64th of a second.
 const COMPUTER_CLOCK_S: f64 = 1.0 / 64.0;

@@ -12,8 +12,8 @@ mod tests;
 
 use super::column::{Column, seconds_in};
 use super::reader::{BLOCK, Block, Bytes, OtherChannel, Pick, RecordReader, Sink, Times};
+use super::simultaneous_channels::{Sampling, sampled_together};
 use super::time_unit::single_rounding_s;
-use super::together::{Sampling, sampled_together};
 use crate::series::error::SeriesError;
 use clock::{check_clocks, check_restarts, is_over_time, samplings};
 use fault::read_error;

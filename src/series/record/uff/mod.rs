@@ -7,7 +7,7 @@ mod tests;
 
 use super::column::Column;
 use super::reader::{BLOCK, Block, Bytes, OtherChannel, Pick, RecordReader, Sink, Times};
-use super::together::{Sampling, sampled_together};
+use super::simultaneous_channels::{Sampling, sampled_together};
 use crate::series::error::SeriesError;
 use dataset::{Dataset, Samples, datasets};
 use fault::read_error;

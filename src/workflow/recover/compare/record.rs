@@ -12,8 +12,8 @@ use crate::measured::recorded_loads::{LoadRecord, RecordedLoads, quantity_of, re
 use crate::measured::runs_file::read_runs;
 use crate::recovery::Gain as Estimate;
 use crate::series::record::Clock;
-use crate::series::shift::{NoShift, Sampled, ShiftRules, estimate_shift};
-use crate::workflow::recover::damage::{Counting, PIECE, damage_of_recorded};
+use crate::series::shift::{NoShift, SampledSignals, ShiftRules, estimate_shift};
+use crate::workflow::recover::damage::{CycleCountInput, PIECE, damage_of_recorded};
 use crate::workflow::recover::sink::RecordHead;
 use crate::workflow::recover::task::Task;
 use rayon::prelude::*;
@@ -59,8 +59,8 @@ pub fn record_of_job(
 }
 
 /// Loads of both records, report units.
-struct Both<'a> {
-    counting: Counting<'a>,
+struct LoadRecordPair<'a> {
+    counting: CycleCountInput<'a>,
     gaps: &'a [Gap],
     recorded: LoadRecord,
     /// Column of each recorded load among the recovered ones.
@@ -80,7 +80,7 @@ struct Both<'a> {
 pub fn record(
     work: &mut Work,
     job: &Job,
-    (counting, gaps): (Counting, &[Gap]),
+    (counting, gaps): (CycleCountInput, &[Gap]),
     (clock, mut recorded): (&Clock, LoadRecord),
 ) -> Result<Comparison, Faults> {
     let (head, compare) = (counting.head, job.compare.as_ref());
@@ -102,7 +102,7 @@ pub fn record(
     let shift = shift_of(job, compare, counting, (&recorded, &columns, start_s))?;
     work.findings.extend(shift_found(&shift));
     let sigma = head.filter.sigma(&vec![0.0; head.n_loads()]);
-    let both = Both {
+    let both = LoadRecordPair {
         quiet: columns
             .iter()
             .map(|c| sigma[*c] * head.units[*c].factor)
@@ -142,9 +142,9 @@ pub fn record(
     Ok(out)
 }
 
-impl Both<'_> {
-    fn recorded_samples(&self) -> Sampled<'_> {
-        Sampled {
+impl LoadRecordPair<'_> {
+    fn recorded_samples(&self) -> SampledSignals<'_> {
+        SampledSignals {
             start_s: self.start_s,
             rate_hz: self.recorded.clock.rate_hz,
             signals: &self.recorded.samples,
@@ -201,7 +201,7 @@ impl Both<'_> {
     }
 
     fn of_piece(&self, piece: Range<usize>, range: &Range<usize>) -> Vec<(Differences, f64)> {
-        let Counting { head, samples, .. } = self.counting;
+        let CycleCountInput { head, samples, .. } = self.counting;
         let k = head.n_loads();
         let all: Vec<usize> = (0..k).collect();
         let mut values = Vec::with_capacity(piece.len() * k);
@@ -285,7 +285,7 @@ impl Both<'_> {
 fn shift_of(
     job: &Job,
     compare: &Compare,
-    counting: Counting,
+    counting: CycleCountInput,
     (recorded, columns, start_s): (&LoadRecord, &[usize], f64),
 ) -> Result<ComparisonShift, Faults> {
     let mut out = ComparisonShift {
@@ -300,12 +300,12 @@ fn shift_of(
     }
     let head = counting.head;
     let recovered = recovered_columns(counting, columns);
-    let fixed = Sampled {
+    let fixed = SampledSignals {
         start_s: head.first_s,
         rate_hz: 1.0 / head.step_s,
         signals: &recovered,
     };
-    let moving = Sampled {
+    let moving = SampledSignals {
         start_s,
         rate_hz: recorded.clock.rate_hz,
         signals: &recorded.samples,
@@ -319,7 +319,7 @@ fn shift_of(
 }
 
 /// The recovered loads of these columns, report units, in memory.
-fn recovered_columns(counting: Counting, columns: &[usize]) -> Vec<Vec<f32>> {
+fn recovered_columns(counting: CycleCountInput, columns: &[usize]) -> Vec<Vec<f32>> {
     let n = counting.samples.n_samples();
     let mut out = vec![Vec::with_capacity(n); columns.len()];
     let mut values = Vec::new();

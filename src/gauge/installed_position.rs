@@ -1,0 +1,165 @@
+//! A gauge where it was glued, a little way off its drawing.
+
+use super::arms::Gauge;
+use super::build::build_by;
+use super::grid_average::SMOOTH;
+use super::side::same_side;
+use super::spec::{CornerRows, GaugePlace, GaugeSpec};
+use super::surface::{centre, corners, nearest_of, to_side};
+use crate::fe::shell_frame::{ShellPlace, shell_axes};
+use crate::model::{Model, ShellIx, Vec3};
+
+/// How far a gauge sits from its drawing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Offset {
+    /// Along its axis, length of the deck.
+    pub along: f64,
+    /// Across it: along normal x axis, the normal being that of the element.
+    pub across: f64,
+    /// Turned, right-handed about the element's normal, radians.
+    pub angle_rad: f64,
+}
+
+impl Offset {
+    /// Creates a move along the axis of the gauge.
+    pub fn shift_along(length: f64) -> Self {
+        Self {
+            along: length,
+            ..Self::default()
+        }
+    }
+
+    /// Creates a move across the axis of the gauge.
+    pub fn shift_across(length: f64) -> Self {
+        Self {
+            across: length,
+            ..Self::default()
+        }
+    }
+}
+
+/// Share of a step by which a foot may be off the requested point: `sin^2 20` on a smooth shell, at 20 degrees. An edge stopped a foot that is
+/// farther off.
+const BESIDE: f64 = 1.0 - SMOOTH * SMOOTH;
+
+/// How often a step is halved where edges stop it on both sides.
+const HALVINGS: usize = 8;
+
+/// A gauge on shells as drawn, and the shells that it may sit on.
+#[derive(Clone, Debug)]
+pub struct NominalGauge<'m> {
+    model: &'m Model,
+    spec: GaugeSpec,
+    gauge: Gauge,
+    corners: CornerRows,
+    near: Vec<ShellIx>,
+    /// On the reference surface.
+    at: Vec3,
+}
+
+impl<'m> NominalGauge<'m> {
+    /// A channel of `spec` and what lies within `reach` of it. `None` for gauges on bars.
+    pub fn new(
+        model: &'m Model,
+        spec: &GaugeSpec,
+        gauge: &Gauge,
+        corner_rows: CornerRows,
+        reach: f64,
+    ) -> Option<Self> {
+        if matches!(spec.place, GaugePlace::Beam { .. }) {
+            return None;
+        }
+        let home = model.shell_ix(gauge.element)?;
+        let side = to_side(model, model.shells.get(home.us())?, gauge.surface);
+        let at = gauge.position - gauge.normal * side;
+        let close = |ix: &ShellIx| -> Option<bool> {
+            let shell = model.shells.get(ix.us())?;
+            let (p, c) = (corners(model, shell)?, centre(model, shell)?);
+            let radius = p.iter().map(|q| (q - c).norm()).fold(0.0, f64::max);
+            if (c - at).norm() > radius + reach {
+                return Some(false);
+            }
+            let axes = shell_axes(model, shell, ShellPlace::Centre)?;
+            Some(axes.row(2).transpose().dot(&gauge.normal).abs() >= SMOOTH)
+        };
+        let all = (0..model.shells.len() as u32).map(ShellIx);
+        Some(Self {
+            model,
+            spec: spec.clone(),
+            gauge: gauge.clone(),
+            corners: corner_rows,
+            near: all.filter(|ix| close(ix) == Some(true)).collect(),
+            at,
+        })
+    }
+
+    /// Returns the gauge at its nominal position.
+    pub fn spec(&self) -> &GaugeSpec {
+        &self.spec
+    }
+
+    /// The gauge at an offset, as a job with this position and direction would lay it, and its point on the reference surface. Past the
+    /// edge of the surface it stays on the edge.
+    pub fn gauge_at_offset(&self, offset: Offset) -> Option<(Gauge, Vec3)> {
+        let axis = self.gauge.direction;
+        let across = self.gauge.normal.cross(&axis);
+        // Without corner rows a gauge reads the middle of its shell wherever it sits on it.
+        let x = match self.corners {
+            CornerRows::Present => self.at + axis * offset.along + across * offset.across,
+            CornerRows::Absent => self.at,
+        };
+        let foot = nearest_of(self.model, x, self.near.iter().copied())?;
+        let home = (self.model.shell_ix(self.gauge.element)?, self.gauge.surface);
+        let (sin, cos) = offset.angle_rad.sin_cos();
+        let spec = GaugeSpec {
+            name: self.gauge.name.clone(),
+            place: GaugePlace::Nearest(foot.point),
+            surface: Some(same_side(self.model, home, foot.shell)?),
+            direction: Some(axis * cos + across * sin),
+            angle_rad: 0.0,
+            rosette: None,
+            ..self.spec.clone()
+        };
+        let (built, _) = build_by(self.model, &spec, self.corners, |_| Some(foot)).ok()?;
+        Some((built.into_iter().next()?, foot.point))
+    }
+
+    /// Change of what `read` gives per unit of length that the gauge is glued off along `way`: the central difference over `step` either way;
+    /// where an edge of the surface stops the gauge on one side, the difference on the other side. `None` where both are stopped however short
+    /// the step, or nothing is read.
+    pub fn slope(
+        &self,
+        way: fn(f64) -> Offset,
+        step: f64,
+        read: impl Fn(&Gauge) -> Option<Vec<f64>>,
+    ) -> Option<Vec<f64>> {
+        // Where it comes to lie along the way, and what it reads there.
+        let end = |asked: f64| -> Option<(f64, Vec<f64>)> {
+            let (gauge, x) = self.gauge_at_offset(way(asked))?;
+            let unit = way(1.0);
+            let axis = self.gauge.direction;
+            let across = self.gauge.normal.cross(&axis);
+            let off = x - self.at;
+            let (a, c) = (off.dot(&axis), off.dot(&across));
+            let beside = (a - unit.along * asked).hypot(c - unit.across * asked);
+            if beside > BESIDE * asked.abs() {
+                return None;
+            }
+            Some((a * unit.along + c * unit.across, read(&gauge)?))
+        };
+        let here = end(0.0)?;
+        (0..HALVINGS).find_map(|n| {
+            let step = step * 0.5_f64.powi(n as i32);
+            let (from, to) = match (end(-step), end(step)) {
+                (None, None) => return None,
+                (from, to) => (
+                    from.unwrap_or_else(|| here.clone()),
+                    to.unwrap_or_else(|| here.clone()),
+                ),
+            };
+            let span = to.0 - from.0;
+            let change = to.1.iter().zip(&from.1).map(|(b, a)| (b - a) / span);
+            Some(change.collect())
+        })
+    }
+}

@@ -1,0 +1,39 @@
+//! Counts the missing readings in the samples of a record.
+
+/// Numbers of samples of a record with and without missing readings.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MissingReadings {
+    /// Samples in which every gauge gave a reading.
+    pub whole: u64,
+    /// Samples in which some gauge gave nothing.
+    pub gaps: u64,
+    /// Readings too large to be strain, which count as missing.
+    pub impossible: u64,
+    /// Samples with a gap in which a load is known nevertheless, by load.
+    pub known_in_gaps: Vec<u64>,
+}
+
+impl MissingReadings {
+    /// Returns the counts of an empty record, for `k` loads.
+    pub fn new(k: usize) -> Self {
+        Self {
+            known_in_gaps: vec![0; k],
+            ..Self::default()
+        }
+    }
+
+    /// How many samples there are.
+    pub fn samples(&self) -> u64 {
+        self.whole + self.gaps
+    }
+
+    /// Both together.
+    pub fn merge(&mut self, other: &Self) {
+        self.whole += other.whole;
+        self.gaps += other.gaps;
+        self.impossible += other.impossible;
+        for (a, b) in self.known_in_gaps.iter_mut().zip(&other.known_in_gaps) {
+            *a += b;
+        }
+    }
+}

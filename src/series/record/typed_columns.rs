@@ -1,0 +1,126 @@
+//! Columns of files that state a type for each: numbers, points in time, durations. Parquet and Feather.
+
+use super::column::{Column, is_time, name_and_unit, seconds_in, take_unit_below};
+use super::reader::Times;
+use super::time_unit::single_rounding_s;
+use crate::series::error::SeriesError;
+
+/// Meaning of the values of a column, with the worth of one stored unit: a plain number, or s.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Meaning {
+    Number(f64),
+    Instant(f64),
+    /// Time that has passed.
+    Duration(f64),
+}
+
+/// How the values of a column are stored.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Precision {
+    Integer,
+    /// Reals of 32 bits.
+    Single,
+    /// Other reals.
+    Double,
+}
+
+/// Column of time of a file.
+pub(super) struct TimeColumn {
+    /// Number of the column in the file.
+    pub at: usize,
+    pub meaning: Meaning,
+    pub unit: String,
+}
+
+/// Channels of a file, each with its number in the file and the worth of one stored unit, and the column of time.
+pub(super) struct TypedChannels {
+    pub time: Option<TimeColumn>,
+    pub channels: Vec<((usize, f64), Column)>,
+}
+
+impl Meaning {
+    pub(super) fn unit_factor(self) -> f64 {
+        match self {
+            Self::Number(w) | Self::Instant(w) | Self::Duration(w) => w,
+        }
+    }
+}
+
+impl TypedChannels {
+    /// Returns the channels and the column of time of columns that have a number in the file, a name, a meaning and a unit that the file states
+    /// apart from the name, or a blank. A column of time (`time`, `t`, `timestamp`) gives the times; else the first column of timestamps or
+    /// durations, such as the index that pandas writes.
+    pub(super) fn from_columns<'a>(
+        list: impl Iterator<Item = (usize, &'a str, Meaning, &'a str)>,
+    ) -> Self {
+        let mut time: Option<(TimeColumn, bool)> = None;
+        let mut found = Vec::new();
+        for (at, name, meaning, unit) in list {
+            let mut column = name_and_unit(name);
+            take_unit_below(&mut column, unit);
+            let is_named = is_time(&column.name, at == 0);
+            let is_typed = !matches!(meaning, Meaning::Number(_));
+            let is_better = match &time {
+                None => is_named || is_typed,
+                Some((_, named)) => is_named && !named,
+            };
+            if is_better {
+                let unit = column.unit.clone();
+                time = Some((TimeColumn { at, meaning, unit }, is_named));
+            }
+            found.push((at, meaning, column));
+        }
+        let time = time.map(|t| t.0);
+        let of_time = time.as_ref().map(|t| t.at);
+        let channels = found
+            .into_iter()
+            // A row number that pandas or others left over is no channel.
+            .filter(|(at, _, c)| Some(*at) != of_time && !c.name.starts_with("__index_level_"))
+            .map(|(at, meaning, c)| ((at, meaning.unit_factor()), c));
+        Self {
+            channels: channels.collect(),
+            time,
+        }
+    }
+}
+
+impl TimeColumn {
+    /// Returns s in one stored unit. The type of the column precedes its name.
+    ///
+    /// # Errors
+    /// A unit in brackets that is no unit of time.
+    pub(super) fn factor(&self) -> Result<f64, SeriesError> {
+        match self.meaning {
+            Meaning::Instant(worth) | Meaning::Duration(worth) => Ok(worth),
+            Meaning::Number(worth) => {
+                let s = seconds_in(&self.unit).ok_or_else(|| SeriesError::Broken {
+                    wrong: format!("`{}` is not a unit of time", self.unit),
+                    remedy: "give times in s or ms",
+                })?;
+                Ok(worth * s)
+            }
+        }
+    }
+
+    /// Whether its values are points in time, which count from 1970.
+    pub(super) fn is_instant(&self) -> bool {
+        matches!(self.meaning, Meaning::Instant(_))
+    }
+
+    /// Returns the times of the record: `factor` s in one stored unit, `epoch` s since 1970 taken off points in time.
+    pub(super) fn times(&self, precision: Precision, factor: f64, epoch: f64) -> Times {
+        let is_instant = self.is_instant();
+        Times::Stored {
+            // A stored unit is rounded to a half; seconds since 1970 in 64 bits are good to a quarter of a microsecond; a real of 32
+            // bits to 2^-24 of itself, of which the end of a day's record is taken.
+            rounding_s: match (is_instant, precision) {
+                (true, _) => 0.5 * factor + 2.5e-7,
+                (false, Precision::Integer) => 0.5 * factor,
+                (false, Precision::Single) => single_rounding_s(factor),
+                (false, Precision::Double) => 0.0,
+            },
+            epoch_s: is_instant.then_some(epoch),
+            unit_stated: !matches!(self.meaning, Meaning::Number(_)) || !self.unit.is_empty(),
+        }
+    }
+}

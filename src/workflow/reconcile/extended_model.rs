@@ -1,0 +1,110 @@
+//! The extended model: a copy of the job whose files contain the named effects, so that every command runs it unchanged.
+//!
+//! Faults of a channel become `[[correction]]` entries. Effects of structure change S (`sensitivity_extended.csv`) or the deck. Loads that were left
+//! out become columns of S or loads of the job. Errors in the records of a run are corrected in `runs_extended.csv`. Readings are rewritten
+//! (`strain_extended.csv`) only if no entry can express their fault.
+
+use serde::{Serialize, Serializer};
+use std::path::Path;
+
+/// The deck with effects in it.
+pub const DECK: &str = "deck_extended.bdf";
+/// Readings, corrected.
+pub const STRAIN: &str = "strain_extended.csv";
+/// S with effects in it.
+pub const SENSITIVITY: &str = "sensitivity_extended.csv";
+/// Signature of the payload.
+pub const PAYLOAD: &str = "payload_extended.csv";
+/// Recorded loads and payload of each run.
+pub const RUNS: &str = "runs_extended.csv";
+
+/// Job with the named effects in it, and the content of its files; in `result.json` its path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExtendedModel {
+    /// File name of the job.
+    pub name: &'static str,
+    /// Path of the job: its name, until `ExtendedModel::put_into`.
+    pub path: String,
+    /// Text of the job as it was read.
+    pub job_text: String,
+    /// Deck; `None` if it does not change.
+    pub deck: Option<Vec<u8>>,
+    /// Corrections of channels, which apply to every reading.
+    pub corrections: Vec<ReadingCorrection>,
+    /// Corrected readings, microstrain, `n_runs x n_gauges`; `None` if [`Self::corrections`] can express the faults.
+    pub readings: Option<Vec<f64>>,
+    /// Nominal x of the payload, m, if the payload is at another place than recorded in every run.
+    pub nominal_x_m: Option<f64>,
+    /// S; `None` if it is not given or does not change.
+    pub sensitivity: Option<ExtendedS>,
+    /// Recorded loads and payload of the runs; `None` if they do not change.
+    pub runs: Option<ExtendedRuns>,
+}
+
+impl ExtendedModel {
+    /// A job named `name` of this text, in which no file changes.
+    pub(super) fn from_job_text(name: &'static str, job_text: String) -> Self {
+        Self {
+            name,
+            path: name.to_owned(),
+            job_text,
+            deck: None,
+            corrections: Vec::new(),
+            readings: None,
+            nominal_x_m: None,
+            sensitivity: None,
+            runs: None,
+        }
+    }
+
+    /// Sets the path of the job for output into `folder`.
+    pub(super) fn put_into(&mut self, folder: &Path) {
+        let path = folder.join(self.name);
+        self.path = path.display().to_string().replace('\\', "/");
+    }
+}
+
+impl Serialize for ExtendedModel {
+    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
+        s.serialize_str(&self.path)
+    }
+}
+
+/// Correction of the readings of a channel: `(reading - offset) / factor`, as in `[[correction]]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReadingCorrection {
+    /// Gauge.
+    pub gauge: String,
+    /// Reading over strain, sign included.
+    pub factor: f64,
+    /// Reading without strain, microstrain.
+    pub offset_microstrain: f64,
+    /// Gauge that this gauge's channel is exchanged with.
+    pub exchanged_with: Option<String>,
+    /// Rotation of the gauge, degrees.
+    pub angle_deg: f64,
+    /// Whether the channel is left out.
+    pub ignore: bool,
+}
+
+/// Recorded loads and payload of the runs, with the effects in them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExtendedRuns {
+    /// Wheel loads, kN and kN m, `n_runs x n_loads`.
+    pub loads: Vec<f64>,
+    /// Payload by run: mass, kg, distance in x and in y from its nominal place, m.
+    pub payload: Vec<[f64; 3]>,
+}
+
+/// S with effects in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExtendedS {
+    /// Influence of loads and payload, microstrain, `n_gauges x n_columns`.
+    pub influence: Vec<f64>,
+    /// Whether the influence is another than the job's: then the payload's signature is, too.
+    pub changed: bool,
+    /// Loads that the job knows besides: name, microstrain per unit by gauge.
+    pub known: Vec<(String, Vec<f64>)>,
+    /// Loads that were left out: name, microstrain per kN or kN m (or degree) by gauge, usual size in these.
+    pub left_out: Vec<(String, Vec<f64>, f64)>,
+}
