@@ -2,8 +2,8 @@
 //!
 //! Let `Z` be directions along which no run determines the loads. Then `S` and `S (1 + Z B)` explain all runs equally well for any `B`: the columns
 //! along `Z` are known up to size and mixture. Only the sum is known, a functional of strain that these columns do not affect. The columns therefore
-//! start from patterns of strain that the known sums leave (`start.rs`), and the loads along `Z` are free in each run ([`FreeDirections`]). The covariance of S
-//! along `S Z B` keeps its prior width: recovered loads along `Z` are unknown, their sums are known.
+//! start from patterns of strain that the known sums leave (`start.rs`), and the loads along `Z` are free in each run ([`FreeDirections`]). The
+//! covariance of S along `S Z B` keeps its prior width: recovered loads along `Z` are unknown, their sums are known.
 
 use super::types::{KnownLoads, KnownRun, Task};
 use crate::linalg::{Matrix, dense, spd};

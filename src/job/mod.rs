@@ -1,4 +1,4 @@
-//! job.toml: `parse` turns text into `raw` structs with the place of every value, `resolve` turns those into the plain
+//! job.toml: `parse` turns text into `raw_job` structs with the place of every value, `resolve` turns those into the plain
 //! structs of `types`; [`gauges`], [`given_columns`] and [`table`] read the tables a job names; [`schema`] describes
 //! a job to editors.
 

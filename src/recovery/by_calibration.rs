@@ -12,8 +12,8 @@ use crate::sensitivity::{Sensitivity, Uncertainty};
 use rayon::prelude::*;
 
 /// Returns the loads of every run, and findings. Gauges that contradict the other gauges are reported. They are excluded if S was estimated from runs
-/// and `handling` asks for it. A run that no loads explain gets wider intervals ([`uncalibrated_strain::estimate_loosely`]). A run with several loads at once,
-/// after calibration runs with one load each, is widened as well ([`simultaneous_loads::check`]).
+/// and `handling` asks for it. A run that no loads explain gets wider intervals ([`uncalibrated_strain::estimate_loosely`]). A run with several loads
+/// at once, after calibration runs with one load each, is widened as well ([`simultaneous_loads::check`]).
 pub(super) fn recover(
     s: &Sensitivity,
     readings: &[Readings],

@@ -1,7 +1,7 @@
 //! `fleet`: records of many vehicles and days, one small result a file, merged by vehicle.
 //!
-//! [`kernel`] turns a record into a [`day::Day`], by any number of threads and without a file; [`stored_results`] keeps it by the digest of what it depends on,
-//! so that a second run processes only new records and many machines can share one folder; [`merge`] joins the days of a vehicle exactly.
+//! [`kernel`] turns a record into a [`day::Day`], by any number of threads and without a file; [`stored_results`] keeps it by the digest of what it
+//! depends on, so that a second run processes only new records and many machines can share one folder; [`merge`] joins the days of a vehicle exactly.
 
 mod calibration_range;
 mod damage_references;

@@ -41,7 +41,8 @@ pub struct Feather {
 }
 
 impl Feather {
-    /// Returns the table in a file. Columns of numbers alone are channels; a null is NaN. [`TypedChannels::from_columns`] determines the column of time.
+    /// Returns the table in a file. Columns of numbers alone are channels; a null is NaN. [`TypedChannels::from_columns`] determines the column of
+    /// time.
     ///
     /// # Errors
     /// A file that is cut off or damaged.

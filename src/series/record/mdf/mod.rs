@@ -1,7 +1,8 @@
 //! ASAM MDF 4: the channels sampled together with those that are wanted, read by parts of their data blocks.
 //!
-//! `falcon_mdf` determines the layout of the file. Groups of fixed records in blocks, plain or deflated, are read a piece at a time ([`fixed_records`]).
-//! Other forms (groups whose records alternate, values apart from invalidation, Zstandard, LZ4) are decoded whole by the library.
+//! `falcon_mdf` determines the layout of the file. Groups of fixed records in blocks, plain or deflated, are read a piece at a time
+//! ([`fixed_records`]). Other forms (groups whose records alternate, values apart from invalidation, Zstandard, LZ4) are decoded whole by the
+//! library.
 
 mod fault;
 mod field;
