@@ -1,6 +1,6 @@
 //! The job as written: every key of every section, each value with its place in the text, nothing required here.
 
-use super::shapes::{Counts, Ids, NumberOrNumbers, NumberOrWord, PropertyIds, Texts};
+use super::shapes::{Counts, DampingValue, Ids, NumberOrNumbers, NumberOrWord, PropertyIds, Texts};
 use super::spanned_value::SpannedValue;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -281,7 +281,7 @@ pub(super) struct RawPayload {
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawDynamic {
     pub up_to_hz: S<f64>,
-    pub damping: S<f64>,
+    pub damping: S<DampingValue>,
     pub frequency_uncertainty_rel: S<f64>,
     pub damping_uncertainty_rel: S<f64>,
 }

@@ -234,6 +234,58 @@ impl<'de> Deserialize<'de> for NumberOrNumbers {
     }
 }
 
+/// Damping: a number, a list of bands, or a word.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DampingValue {
+    /// One for all modes.
+    One(f64),
+    /// By band.
+    Bands(Vec<DampingBand>),
+    /// A word.
+    Word(String),
+}
+
+/// Damping of the modes up to a frequency.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DampingBand {
+    /// Upper end of the band, Hz.
+    pub up_to_hz: f64,
+    /// Damping, share of critical.
+    pub damping: f64,
+}
+
+impl<'de> Deserialize<'de> for DampingValue {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        struct V;
+        impl<'de> Visitor<'de> for V {
+            type Value = DampingValue;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str(
+                    "a number, a list such as [{ up_to_hz = 5, damping = 0.2 }, { up_to_hz = 50, damping = 0.02 }], or \"estimate\"",
+                )
+            }
+            fn visit_i64<E: Error>(self, v: i64) -> Result<DampingValue, E> {
+                Ok(DampingValue::One(v as f64))
+            }
+            fn visit_f64<E: Error>(self, v: f64) -> Result<DampingValue, E> {
+                Ok(DampingValue::One(v))
+            }
+            fn visit_str<E: Error>(self, v: &str) -> Result<DampingValue, E> {
+                Ok(DampingValue::Word(v.to_owned()))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut s: A) -> Result<DampingValue, A::Error> {
+                let mut out = Vec::new();
+                while let Some(band) = s.next_element::<DampingBand>()? {
+                    out.push(band);
+                }
+                Ok(DampingValue::Bands(out))
+            }
+        }
+        d.deserialize_any(V)
+    }
+}
+
 /// One whole number, or a list of them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Counts(pub Vec<u32>);
@@ -297,6 +349,18 @@ schema!(NumberOrWord, { "type": ["number", "string"] });
 schema!(NumberOrNumbers, {
     "type": ["number", "object"],
     "additionalProperties": { "type": "number" }
+});
+schema!(DampingValue, {
+    "type": ["number", "string", "array"],
+    "items": {
+        "type": "object",
+        "properties": {
+            "up_to_hz": { "type": "number" },
+            "damping": { "type": "number" }
+        },
+        "required": ["up_to_hz", "damping"],
+        "additionalProperties": false
+    }
 });
 schema!(Counts, {
     "type": ["integer", "array"],

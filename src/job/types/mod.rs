@@ -31,7 +31,7 @@ pub use calibration::{CalibrationKeys, Terms};
 pub use candidates::{AngleStep, Candidates, Clearances, NamedSpot};
 pub use compare::{Compare, TimeShift};
 pub use correction::StrainCorrection;
-pub use dynamic::Dynamic;
+pub use dynamic::{Damping, Dynamic};
 pub use fleet::{Fleet, MissionKind, ReferenceDay, TargetDamage};
 pub use gauge::{JobGauge, StatedPlace};
 pub use job::Job;

@@ -26,7 +26,8 @@ pub(super) struct Block {
     pub loads: Vec<Vec<f64>>,
 }
 
-type Spectrum = Vec<Complex<f64>>;
+/// Spectrum of a channel: one value a frequency of the filter.
+pub(super) type Spectrum = Vec<Complex<f64>>;
 
 impl Kernel {
     /// The readings `from` of the samples `span`, a channel each, put at rest and handed to `sink` in blocks. Samples nearer than the reach to an
@@ -59,7 +60,7 @@ impl Kernel {
             .collect();
         let loads = self.loads_of(&spectra);
         let at_rest = self.remove_dynamic_strain(&spectra, &loads);
-        let back = |bins: &[Complex<f64>], length: usize| course(bins, length, self.length);
+        let back = |bins: &[Complex<f64>], length: usize| time_history(bins, length, self.length);
         let kept = self.reach..self.reach + wanted.len();
         let whole = |bins: &Spectrum| back(bins, self.length)[kept.clone()].to_vec();
         // A transform as short as the band allows.
@@ -91,7 +92,7 @@ impl Kernel {
     }
 
     /// `G eps` by load.
-    fn loads_of(&self, spectra: &[Spectrum]) -> Vec<Spectrum> {
+    pub fn loads_of(&self, spectra: &[Spectrum]) -> Vec<Spectrum> {
         let of_load = |l: usize| -> Spectrum {
             let bins = self.bins.iter().enumerate();
             let of_bin = |(b, bin): (usize, &Bin)| -> Complex<f64> {
@@ -189,7 +190,7 @@ impl Kernel {
 }
 
 /// The transform of `length` samples.
-fn spectrum(length: usize, sample: impl Fn(usize) -> f64) -> Spectrum {
+pub(super) fn spectrum(length: usize, sample: impl Fn(usize) -> f64) -> Spectrum {
     let plan = forward(length);
     let mut input = plan.make_input_vec();
     input
@@ -203,7 +204,7 @@ fn spectrum(length: usize, sample: impl Fn(usize) -> f64) -> Spectrum {
 }
 
 /// The course over `length` samples of what has the first `bins` of a transform of `of` samples, nothing above them.
-fn course(bins: &[Complex<f64>], length: usize, of: usize) -> Vec<f64> {
+pub(super) fn time_history(bins: &[Complex<f64>], length: usize, of: usize) -> Vec<f64> {
     let back = inverse(length);
     let mut input = back.make_input_vec();
     input.iter_mut().zip(bins).for_each(|(v, b)| *v = *b);

@@ -12,7 +12,7 @@ use std::ops::Range;
 /// Sets of gauges that read: samples of any further set are blank.
 const MOST_SETS: usize = 8;
 /// Numbers that the filters of all sets may hold: 256 MB.
-const MOST_NUMBERS: usize = 32_000_000;
+pub(super) const MOST_NUMBERS: usize = 32_000_000;
 
 /// Quasi-static readings of a record, with their errors.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +39,7 @@ pub struct AtRest {
 }
 
 /// Stretches of a record by the gauges that read in them.
-struct Stretches {
+pub(super) struct Stretches {
     /// Gauges that read, all of them first, then by how long they do.
     sets: Vec<Vec<usize>>,
     /// Set and samples; those without any reading are left out.
@@ -131,7 +131,7 @@ pub fn window(dynamics: &Dynamics, rate_hz: f64) -> usize {
 
 impl Stretches {
     /// Stretches in which the same gauges read.
-    fn from_readings(readings: &[Vec<f64>], samples: usize) -> Self {
+    pub fn from_readings(readings: &[Vec<f64>], samples: usize) -> Self {
         let reads = |i: usize| readings.iter().map(move |c| c[i].is_finite());
         let mut numbers: BTreeMap<Vec<bool>, usize> = BTreeMap::new();
         numbers.insert(vec![true; readings.len()], 0);
@@ -162,6 +162,14 @@ impl Stretches {
         }
         list.iter_mut().for_each(|(set, _)| *set = place[*set]);
         Self { sets, list }
+    }
+}
+
+impl Stretches {
+    /// Returns the stretches in which all gauges read.
+    pub fn of_all_gauges(self) -> Vec<Range<usize>> {
+        let all = self.list.into_iter().filter(|(set, _)| *set == 0);
+        all.map(|(_, span)| span).collect()
     }
 }
 

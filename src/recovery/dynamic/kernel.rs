@@ -1,7 +1,7 @@
 //! The filter that puts readings at rest, and how far round a sample it reaches.
 
 use super::plant::Plant;
-use super::types::{BAND_END, Dynamics, Unfit};
+use super::types::{BAND_END, Unfit};
 use crate::linalg::complex::ComplexMatrix;
 use crate::linalg::{Complex, Matrix};
 use crate::series::plans::inverse;
@@ -68,6 +68,22 @@ impl Kernel {
     /// # Errors
     /// See [`Unfit`].
     pub fn new(plant: &Plant<'_>, rate_hz: f64, most_numbers: usize) -> Result<Self, Unfit> {
+        let mut kernel = Self::without_errors(plant, rate_hz, most_numbers)?;
+        let length = kernel.length as f64;
+        kernel.noise = kernel.noise_of();
+        kernel.err(plant, |b| b as f64 * rate_hz / length);
+        Ok(kernel)
+    }
+
+    /// Returns the filter without the covariance of its noise and without its errors. Arguments as in [`Kernel::new`].
+    ///
+    /// # Errors
+    /// See [`Unfit`].
+    pub fn without_errors(
+        plant: &Plant<'_>,
+        rate_hz: f64,
+        most_numbers: usize,
+    ) -> Result<Self, Unfit> {
         let up_to = plant.dynamics().up_to_hz;
         let end_hz = BAND_END * up_to;
         if !(2.0 * end_hz < rate_hz) {
@@ -102,7 +118,7 @@ impl Kernel {
             let loads = of_loads(&at_rest, &bins);
             let reach = reach_of(&loads, length, at_rest.shape());
             if reach <= length / SIDE {
-                let mut kernel = Self {
+                return Ok(Self {
                     length,
                     reach,
                     bins,
@@ -110,10 +126,7 @@ impl Kernel {
                     at_rest,
                     noise: Matrix::zeros(0, 0),
                     numbers,
-                };
-                kernel.noise = kernel.noise_of();
-                kernel.err(plant, hz);
-                return Ok(kernel);
+                });
             }
             length *= 2;
         }
@@ -149,10 +162,7 @@ impl Kernel {
                 .column_iter()
                 .map(|c| c.iter().copied().collect())
                 .collect();
-            bin.errors = erring
-                .iter()
-                .map(|j| errors_of(plant, *j, hz(b), d))
-                .collect();
+            bin.errors = erring.iter().map(|j| errors_of(plant, *j, hz(b))).collect();
             let rest =
                 || bin.remove_dynamic_strain(&plant.rest) * plant.omitted_mode_response(hz(b));
             bin.further = d.further_hz.map(|_| rest());
@@ -165,9 +175,12 @@ impl Kernel {
 }
 
 /// Returns the increase of the response of mode `j` for one standard deviation more of its frequency and of its damping.
-fn errors_of(plant: &Plant<'_>, j: usize, hz: f64, d: &Dynamics) -> [Complex<f64>; 2] {
-    let a = plant.answer(j, hz);
-    [a.by_frequency * d.frequency_sd, a.by_damping * d.damping_sd]
+fn errors_of(plant: &Plant<'_>, j: usize, hz: f64) -> [Complex<f64>; 2] {
+    let (a, mode) = (plant.answer(j, hz), &plant.dynamics().modes[j]);
+    [
+        a.by_frequency * mode.frequency_sd,
+        a.by_damping * mode.damping_sd,
+    ]
 }
 
 /// Returns the modes whose errors are large enough to compute.
@@ -183,7 +196,7 @@ fn find_uncertain_modes(
         let spread = bin.remove_dynamic_strain(&plant.shapes);
         let of_mode = |(j, c): (usize, &Vec<f64>)| {
             let by = ComplexMatrix::from_fn(1, c.len(), |_, l| Complex::new(c[l], 0.0)) * &bin.gain;
-            let [f, z] = errors_of(plant, j, hz(b), plant.dynamics());
+            let [f, z] = errors_of(plant, j, hz(b));
             spread.column(j).norm_squared() * by.norm_squared() * (f.norm_sqr() + z.norm_sqr())
         };
         let variances: Vec<f64> = moved.iter().enumerate().map(of_mode).collect();

@@ -19,12 +19,14 @@
 mod block;
 mod correct;
 mod doubt;
+mod estimate;
 mod kernel;
 mod plant;
 mod types;
 
 pub use correct::{AtRest, readings_at_rest, window};
 pub use doubt::{AddedCovariance, Doubt, triangle};
+pub use estimate::{Deviation, EstimatedModes, estimate_modes};
 pub use types::{Dynamics, ElasticMode, Unfit};
 
 #[cfg(test)]

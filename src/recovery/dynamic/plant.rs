@@ -59,10 +59,10 @@ impl<'a> Plant<'a> {
         0.5 * (1.0 + (PI * share).cos())
     }
 
-    /// Returns the response at `hz` of a mode of the frequency `own_hz`, both Hz.
-    fn answer_of(&self, own_hz: f64, hz: f64) -> Answer {
+    /// Returns the response at `hz` of a mode of the frequency `own_hz`, both Hz, and of the damping `damping`, share of critical.
+    fn answer_of(own_hz: f64, damping: f64, hz: f64) -> Answer {
         let r = hz / own_hz;
-        let damped = Complex::new(0.0, 2.0 * self.dynamics.damping * r);
+        let damped = Complex::new(0.0, 2.0 * damping * r);
         let x = Complex::new(1.0 - r * r, 0.0) + damped;
         Answer {
             added: x.inv() - 1.0,
@@ -73,13 +73,17 @@ impl<'a> Plant<'a> {
 
     /// Returns the response of mode `j` at `hz`, Hz.
     pub fn answer(&self, j: usize, hz: f64) -> Answer {
-        self.answer_of(self.dynamics.modes[j].hz, hz)
+        let mode = &self.dynamics.modes[j];
+        Self::answer_of(mode.hz, mode.damping, hz)
     }
 
     /// Returns the upper limit of the added response of modes outside the model: the response of the first of them; 0 without such modes.
     pub fn omitted_mode_response(&self, hz: f64) -> Complex<f64> {
         let first = self.dynamics.further_hz;
-        first.map_or(Complex::default(), |own| self.answer_of(own, hz).added)
+        let damping = self.dynamics.further_damping;
+        first.map_or(Complex::default(), |own| {
+            Self::answer_of(own, damping, hz).added
+        })
     }
 
     /// Returns the strain that the modes add to the static strain of unit loads, `Psi a C`, `n x k`.

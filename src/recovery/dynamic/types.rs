@@ -12,6 +12,12 @@ pub struct ElasticMode {
     pub strain: Vec<f64>,
     /// Work of a unit of every load of S on that shape.
     pub work: Vec<f64>,
+    /// Damping, share of critical.
+    pub damping: f64,
+    /// One standard deviation of the frequency, share of it.
+    pub frequency_sd: f64,
+    /// One standard deviation of the damping, share of it.
+    pub damping_sd: f64,
 }
 
 /// Dynamic properties of the structure, and the frequency range of the loads.
@@ -21,14 +27,10 @@ pub struct Dynamics {
     pub modes: Vec<ElasticMode>,
     /// Frequency from which on further modes exist, Hz; their dynamic response is part of the uncertainty. `None` without further modes.
     pub further_hz: Option<f64>,
+    /// Damping of those further modes, share of critical.
+    pub further_damping: f64,
     /// Highest frequency of the wanted loads, Hz.
     pub up_to_hz: f64,
-    /// Damping of every mode, share of critical.
-    pub damping: f64,
-    /// One standard deviation of the frequencies, share of each.
-    pub frequency_sd: f64,
-    /// One standard deviation of the damping, share of it.
-    pub damping_sd: f64,
 }
 
 /// Reasons why quasi-static readings can't be computed.

@@ -32,7 +32,7 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
         return Err(Fault::new(&*job.file, "measured", "the job has no [measured]", remedy).into());
     };
     no_zero_runs(job, measured, "FILES")?;
-    if let Some(dynamic) = job.dynamic {
+    if let Some(dynamic) = &job.dynamic {
         let wrong = "records of a fleet are read in pieces, and the vibration of the structure cannot be subtracted";
         let remedy = "delete [dynamic], and low-pass filter the strain below a third of the first mode; or `recover` the records one by one";
         return Err(Fault::with_line(&*job.file, dynamic.line, "dynamic", wrong, remedy).into());

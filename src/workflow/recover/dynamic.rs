@@ -1,15 +1,17 @@
 //! `[dynamic]`: the vibration of the structure taken out of a record, with the modes of the model.
 
 use super::task::Task;
+use crate::estimate::NORMAL_95;
 use crate::fe::{CaseResult, LoadCase, modal_loads};
 use crate::finding::{Finding, Severity};
 use crate::gauge::gauge_reading;
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
-use crate::job::Dynamic;
+use crate::job::{Damping, Dynamic};
 use crate::measured::record::Record;
 use crate::recovery::dynamic::{
-    AtRest, Doubt, Dynamics, ElasticMode, Unfit, readings_at_rest, triangle, window,
+    AtRest, Deviation, Doubt, Dynamics, ElasticMode, EstimatedModes, Unfit, estimate_modes,
+    readings_at_rest, triangle, window,
 };
 use crate::sensitivity::Sensitivity;
 use crate::strain_chain::built_in_solver::{ElasticModes, cases_of_job, faults_of, modes_kept};
@@ -24,6 +26,14 @@ const FIRST_MODES: usize = 16;
 const MOST_MODES: usize = 256;
 /// How many more modes are looked for than lie in the band if they are as dense as those below.
 const MARGIN: f64 = 1.25;
+/// Damping from which an estimate starts; the search tries others.
+const START_DAMPING: f64 = 0.03;
+/// Standard deviations by which a mode may differ from its stated frequency or damping: 3 in 1,000 modes differ by more if these are right.
+const OFF_BY: f64 = 3.0;
+/// Share of the mean square of the vibration in the residual that the modes may leave: a third of its amplitude.
+const UNEXPLAINED: f64 = 0.1;
+/// Mean square of the residual over that of noise from which it is vibration.
+const OVER_NOISE: f64 = 2.0;
 /// Numbers of a record that are held in memory: 0.8 GB of readings and of what they are off by, and the readings again at rest.
 const MOST_NUMBERS: usize = 100_000_000;
 
@@ -34,10 +44,33 @@ pub struct Motion {
     pub up_to_hz: f64,
     /// Frequencies of the modes used; the intervals contain the effect of further modes.
     pub modes_hz: Vec<f64>,
+    /// The same modes with their damping, and intervals.
+    pub modes: Vec<ModeInUse>,
     /// Time without known loads at either end of the record and of every gap.
     pub blank_s: f64,
     /// Error of each load without the correction, rms, as a share of the rms of the load about its mean.
     pub change_rel: Vec<Option<f64>>,
+}
+
+/// Mode that was removed from a record. `low` and `high` are the ends of 95 % intervals.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ModeInUse {
+    /// Frequency of the model, Hz.
+    pub model_hz: f64,
+    /// Frequency with which the vibration was removed, Hz.
+    pub hz: f64,
+    /// Low end of the frequency, Hz.
+    pub hz_low: f64,
+    /// High end of the frequency, Hz.
+    pub hz_high: f64,
+    /// Damping with which the vibration was removed, share of critical.
+    pub damping: f64,
+    /// Low end of the damping.
+    pub damping_low: f64,
+    /// High end of the damping.
+    pub damping_high: f64,
+    /// Whether the record changed the stated values.
+    pub estimated: bool,
 }
 
 /// Quasi-static record, and the errors of its readings.
@@ -65,7 +98,7 @@ pub(super) fn remove_vibration(
     record: &Record,
     s: &Sensitivity,
 ) -> Result<Option<QuasiStaticRecord>, Faults> {
-    let Some(asked) = task.job.dynamic else {
+    let Some(asked) = &task.job.dynamic else {
         return Ok(None);
     };
     let fault = |wrong: String, remedy: &str| {
@@ -79,9 +112,9 @@ pub(super) fn remove_vibration(
     };
     let samples = record.clock().samples;
     let n = s.gauges.len();
-    let dynamics = dynamics(work, task, asked, s)?;
+    let stated = dynamics(work, task, asked, s)?;
     let (first_s, step_s) = record.first_and_step();
-    let errors = samples / window(&dynamics, 1.0 / step_s) * triangle(n);
+    let errors = samples / window(&stated, 1.0 / step_s) * triangle(n);
     if samples.saturating_mul(n).saturating_add(errors) > MOST_NUMBERS {
         return Err(fault(
             format!(
@@ -95,12 +128,26 @@ pub(super) fn remove_vibration(
     let readings = record.columns()?;
     work.go_on()?;
     let noise = task.errors.noise_variance(1.0).sqrt();
+    let open = asked.damping == Damping::Estimate;
+    let with = (noise, &*readings, 1.0 / step_s);
+    let estimated = work.stage("modes", |_| estimate_modes(s, &stated, open, with));
+    let estimated = estimated.map_err(|e| fault(e.to_string(), remedy_of(&e)))?;
+    if open && estimated.is_none() {
+        return Err(fault(
+            "the record does not determine the damping: this takes more gauges than loads, a mode below 1.5 `up_to_hz`, and a stretch \
+             without gaps"
+                .to_owned(),
+            "state the damping as a number, or add gauges",
+        ));
+    }
+    let dynamics = estimated.as_ref().map_or(&stated, |e| &e.dynamics);
+    work.go_on()?;
     let rested = work.stage("vibration", |_| {
-        readings_at_rest(s, &dynamics, noise, &readings, 1.0 / step_s)
+        readings_at_rest(s, dynamics, noise, &readings, 1.0 / step_s)
     });
     let rested = rested.map_err(|e| fault(e.to_string(), remedy_of(&e)))?;
     drop(readings);
-    let motion = motion_of(&dynamics, &rested, step_s);
+    let motion = motion_of((&stated, dynamics), &rested, step_s);
     if rested.known == 0 && rested.read > 0 {
         return Err(fault(
             format!(
@@ -116,10 +163,14 @@ pub(super) fn remove_vibration(
         asked,
         &task.measured.strain.given,
     ));
+    let contradicted = estimated
+        .as_ref()
+        .and_then(|e| contradiction(&stated, e, &task.measured.strain.given));
+    work.findings.extend(contradicted);
     Ok(Some(QuasiStaticRecord {
         noise_factor: task.noise_factor - 1.0 + rested.noise_share,
         doubt: rested.doubt,
-        apart: independent_spacing(&dynamics, step_s),
+        apart: independent_spacing(dynamics, step_s),
         blank: rested.blank,
         motion,
         record: record.with_readings(rested.readings, (first_s, step_s))?,
@@ -153,7 +204,7 @@ fn remedy_of(e: &Unfit) -> &'static str {
 fn dynamics(
     work: &mut Work,
     task: &Task,
-    asked: Dynamic,
+    asked: &Dynamic,
     s: &Sensitivity,
 ) -> Result<Dynamics, Faults> {
     let job = task.job;
@@ -207,6 +258,8 @@ fn dynamics(
         };
         s.gauges.iter().map(at).collect()
     };
+    // A damping that the record determines starts from any value.
+    let damping_at = |hz: f64| asked.damping.stated_at(hz).unwrap_or(START_DAMPING);
     let modes = (0..solved.hz.len())
         .map(|j| {
             let of_load = |l: &usize| work_of[*l][j] / job.loads[*l].applied;
@@ -214,16 +267,17 @@ fn dynamics(
                 hz: solved.hz[j],
                 strain: strain_of(&solved.strain.cases[j])?,
                 work: columns.iter().map(of_load).collect(),
+                damping: damping_at(solved.hz[j]),
+                frequency_sd: asked.frequency_uncertainty_rel,
+                damping_sd: asked.damping_uncertainty_rel,
             })
         })
         .collect::<Result<_, Faults>>()?;
     Ok(Dynamics {
         modes,
         further_hz: last.filter(|_| further),
+        further_damping: damping_at(last.unwrap_or(asked.up_to_hz)),
         up_to_hz: asked.up_to_hz,
-        damping: asked.damping,
-        frequency_sd: asked.frequency_uncertainty_rel,
-        damping_sd: asked.damping_uncertainty_rel,
     })
 }
 
@@ -248,18 +302,94 @@ fn modes_up_to(
     }
 }
 
-fn motion_of(dynamics: &Dynamics, rested: &AtRest, step_s: f64) -> Motion {
+fn motion_of((stated, dynamics): (&Dynamics, &Dynamics), rested: &AtRest, step_s: f64) -> Motion {
     let share = |(moves, load): (&f64, &f64)| Some((moves / load).sqrt()).filter(|r| r.is_finite());
     Motion {
         up_to_hz: dynamics.up_to_hz,
         modes_hz: dynamics.modes.iter().map(|m| m.hz).collect(),
+        modes: (stated.modes.iter().zip(&dynamics.modes))
+            .map(|(stated, used)| ModeInUse::new(stated, used))
+            .collect(),
         blank_s: rested.reach as f64 * step_s,
         change_rel: rested.motion.iter().zip(&rested.load).map(share).collect(),
     }
 }
 
+impl ModeInUse {
+    fn new(stated: &ElasticMode, used: &ElasticMode) -> Self {
+        let ends = |value: f64, sd: f64| [-1.0, 1.0].map(|s| value * (s * NORMAL_95 * sd).exp());
+        let [hz_low, hz_high] = ends(used.hz, used.frequency_sd);
+        let [damping_low, damping_high] = ends(used.damping, used.damping_sd);
+        Self {
+            model_hz: stated.hz,
+            hz: used.hz,
+            hz_low,
+            hz_high,
+            damping: used.damping,
+            damping_low,
+            damping_high,
+            estimated: used != stated,
+        }
+    }
+}
+
+/// Returns the error that the record contradicts the modes: a frequency or a damping that differs from the stated one by more than its stated
+/// uncertainty, or vibration that no frequency and damping of the modes explains.
+fn contradiction(stated: &Dynamics, found: &EstimatedModes, file: &str) -> Option<Finding> {
+    let off = |(j, by_kind): (usize, &[Option<Deviation>; 2])| {
+        let of_kind = |(kind, d): (usize, &Option<Deviation>)| {
+            let d = d.as_ref()?;
+            let off = d.standardised()?.abs();
+            (off > OFF_BY).then(|| (off, j, kind, *d))
+        };
+        let worst = by_kind.iter().enumerate().filter_map(of_kind);
+        worst.max_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let modes = found.deviations.iter().enumerate().filter_map(off);
+    let worst = modes.max_by(|a, b| a.0.total_cmp(&b.0));
+    let what = match worst {
+        Some((off, j, kind, deviation)) => {
+            let mode = &stated.modes[j];
+            let [frequency, damping] = [
+                deviation.log.exp() * mode.hz,
+                deviation.log.exp() * mode.damping,
+            ];
+            let half = NORMAL_95 * deviation.sd;
+            let shown = match kind {
+                0 => format!(
+                    "mode {} vibrates at {frequency:.4} ± {:.2} Hz in the record and at {:.4} Hz in the model",
+                    j + 1,
+                    frequency * half,
+                    mode.hz
+                ),
+                _ => format!(
+                    "mode {} at {:.4} Hz has a damping of {damping:.3} ± {:.3} in the record and a stated damping of {:.3}",
+                    j + 1,
+                    mode.hz,
+                    damping * half,
+                    mode.damping
+                ),
+            };
+            format!("{shown}, a difference of {off:.1} stated standard deviations, limit {OFF_BY}")
+        }
+        None if found.unexplained > UNEXPLAINED && found.over_noise > OVER_NOISE => format!(
+            "no frequency and damping of the modes explains {:.0} % of the mean square of the vibration in the residual, limit {:.0} %",
+            100.0 * found.unexplained,
+            100.0 * UNEXPLAINED
+        ),
+        None => return None,
+    };
+    Some(Finding::new(
+        Severity::Error,
+        "modes-contradicted",
+        file,
+        format!("{what}; recovered loads contain the vibration that remains"),
+        "correct the stiffness or the mass of the model, state a larger `frequency_uncertainty_rel`, or set `damping = \"estimate\"`",
+    ))
+}
+
 /// Returns the finding on the vibration that was removed from the record.
-fn vibration_finding(motion: &Motion, asked: Dynamic, file: &str) -> Finding {
+fn vibration_finding(motion: &Motion, asked: &Dynamic, file: &str) -> Finding {
     let known: Option<Vec<f64>> = motion.change_rel.iter().copied().collect();
     let most = known.map(|k| k.into_iter().fold(0.0_f64, f64::max));
     let as_at_rest = match most {
@@ -271,15 +401,19 @@ fn vibration_finding(motion: &Motion, asked: Dynamic, file: &str) -> Finding {
     };
     let first = motion.modes_hz.first();
     let first = first.map_or_else(String::new, |f| format!(", the first at {f:.2} Hz"));
+    let damping = match &asked.damping {
+        Damping::Uniform(damping) => format!("damping {damping}"),
+        Damping::Bands(_) => "damping by band".to_owned(),
+        Damping::Estimate => "damping estimated from the record".to_owned(),
+    };
     let finding = Finding::new(
         Severity::Info,
         "vibration-taken-out",
         file,
         format!(
-            "loads up to {} Hz, with {} modes{first}, damping {}: {as_at_rest}; {:.3} s at either end and next to gaps are blank",
+            "loads up to {} Hz, with {} modes{first}, {damping}: {as_at_rest}; {:.3} s at either end and next to gaps are blank",
             asked.up_to_hz,
             motion.modes_hz.len(),
-            asked.damping,
             motion.blank_s
         ),
         "",

@@ -162,7 +162,7 @@ fn recover_measured_loads(
             (States::Record(Box::new(record)), beside)
         }
         MeasuredStrain::Runs(table) => {
-            let unused = job.dynamic.map(|_| dynamic::without_record());
+            let unused = job.dynamic.as_ref().map(|_| dynamic::without_record());
             work.findings.extend(unused);
             let (runs, beside) = runs::runs(work, &task, &table)?;
             (States::Runs(Box::new(runs)), beside)

@@ -170,7 +170,7 @@ pub(super) fn content(
     let rate = if step > 0.0 { 1.0 / step } else { 0.0 };
     let content_hz = content_of_loads(&pieces, &sigma, rate);
     // With [dynamic] the first mode that is not taken lies at three times the band's end or higher: what comes near it lies beyond the band.
-    work.findings.extend(match task.job.dynamic {
+    work.findings.extend(match &task.job.dynamic {
         Some(dynamic) => check_band(names, &content_hz, dynamic.up_to_hz),
         None => check_content(names, &content_hz, first_elastic_mode_hz, &held),
     });

@@ -1,3 +1,4 @@
+mod estimated_modes;
 mod interval_coverage;
 
 use super::{AtRest, Dynamics, ElasticMode, Unfit, readings_at_rest};
@@ -33,14 +34,15 @@ fn oscillator(damping: f64, up_to_hz: f64) -> (Sensitivity, Dynamics) {
         hz: 10.0,
         strain: vec![1.0],
         work: vec![(TAU * 10.0_f64).powi(2)],
+        damping,
+        frequency_sd: 0.0,
+        damping_sd: 0.0,
     }];
     let dynamics = Dynamics {
         modes,
         further_hz: None,
+        further_damping: damping,
         up_to_hz,
-        damping,
-        frequency_sd: 0.0,
-        damping_sd: 0.0,
     };
     (sensitivity(Matrix::from_element(1, 1, 1.0)), dynamics)
 }
@@ -136,14 +138,15 @@ impl Structure {
             hz: self.hz[j],
             strain: self.strain[j].to_vec(),
             work: self.work[j].to_vec(),
+            damping: self.damping,
+            frequency_sd: sd[0],
+            damping_sd: sd[1],
         });
         let dynamics = Dynamics {
             modes: modes.collect(),
             further_hz: None,
+            further_damping: self.damping,
             up_to_hz,
-            damping: self.damping,
-            frequency_sd: sd[0],
-            damping_sd: sd[1],
         };
         (sensitivity(s), dynamics)
     }
