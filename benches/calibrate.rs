@@ -1,6 +1,6 @@
-//! S of 41 gauges and 9 loads from 40 runs of known load: calibration, and the next known load worth applying.
+//! Calibrates S of 41 gauges and 9 loads from 40 calibration runs, and finds the best load for the next run.
 //!
-//! Run: `cargo bench --bench calibrate`. Asked: under a second, by noise alone and with repeats that scatter.
+//! Run: `cargo bench --bench calibrate`. Target: less than a second, with noise only and with scatter between repeats.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -28,7 +28,8 @@ fn draw_normal(random: &mut ChaCha8Rng) -> f64 {
     (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
 }
 
-/// Rows off the model by 5 % common to a gauge and 2 % more; every loading twice, off by `scatter` each time.
+/// Returns a calibration task. Each gauge deviates from the model by a common 5 %, and each coefficient by 2 % more. Every loading occurs twice, with
+/// deviations of `scatter`.
 fn task(scatter: f64) -> Task {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let model = Matrix::from_fn(GAUGES, LOADS, |_, _| 1e-8 * draw_normal(&mut random));

@@ -1,4 +1,4 @@
-//! 64 s of a quarter truck at 500 Hz: identification.
+//! Identifies a quarter truck from a record of 64 s at 500 Hz.
 //!
 //! Run: `cargo bench --bench identify`. The record is a sum of sines that follows the model exactly.
 
@@ -17,7 +17,8 @@ fn main() {
 
 const RATE_HZ: f64 = 500.0;
 
-/// Stretch is 60 sines between 0.9 and 18 Hz; body and wheel follow from m_b a_b = -(k d + c v), F = m_b a_b + m_f a_w.
+/// Returns a record that follows the model exactly. The stretch is 60 sines between 0.9 and 18 Hz. Body and wheel follow from m_b a_b = -(k d + c v)
+/// and F = m_b a_b + m_f a_w.
 fn record() -> Channels {
     let (m_b, m_f, k, c) = (3200.0, 1100.0, 490e3, 8000.0);
     let (mut body, mut wheel, mut force) = (vec![], vec![], vec![]);
@@ -34,7 +35,7 @@ fn record() -> Channels {
         }
         let a_b = -(k * d + c * v) / m_b;
         let a_w = a_b - a;
-        // A little deterministic unrest stands for sensor noise.
+        // A small deterministic signal represents sensor noise.
         let unrest = |p: f64| 0.02 * (i as f64 * p).sin() * (i as f64 * 0.7 * p).cos();
         body.push(9.81 + a_b + unrest(1.1));
         wheel.push(9.81 + a_w + unrest(1.3));

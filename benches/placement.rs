@@ -1,12 +1,14 @@
-//! Placement at the sizes of the README, certificate included.
+//! Placement at the sizes of the README, with the certificate.
 //!
-//! On candidates of a ladder frame (`../shared/benchmarks/frames/frame.py`), solved here, in two steps so that memory is that of placing:
+//! The candidates are from a ladder frame (`../shared/benchmarks/frames/frame.py`) that this program solves. Solving and placing are two steps, so
+//! that the measured memory is the memory of placing:
 //!
 //!     python ../shared/benchmarks/frames/frame.py --k 3 --loads none k3.bdf
 //!     cargo bench --bench placement -- solve k3.bdf 6 k3_6.bin          # unit forces up at the wheels, or 36: all six components
 //!     cargo bench --bench placement -- place k3_6.bin 12 5 0 6,9,20,40  # angles, every n-th element, spacing, gauges
 //!
-//! On the matrices of `../shared/benchmarks/doptimal`, on one thread, against the processor seconds of R's AlgDesign there:
+//! The matrices of `../shared/benchmarks/doptimal` are placed on one thread. That folder also contains the processor seconds of R's AlgDesign for
+//! comparison:
 //!
 //!     cargo bench --bench placement -- anchors ../shared/benchmarks/doptimal
 
@@ -62,8 +64,8 @@ impl Loader for NoFiles {
     }
 }
 
-/// Strain tensors (microstrain at the expected loads) and positions of both sides of every shell, as f64, little endian: places, loads, then place
-/// by place x y z and exx eyy gxy by load.
+/// Writes strain tensors (microstrain at the expected loads) and positions of both sides of every shell, as f64, little endian. The order is: number
+/// of places, number of loads, then for each place x y z, and exx eyy gxy for each load.
 fn solve(path: &str, count: usize, out: &str) -> Outcome {
     let deck = read_deck(path, std::fs::read(path)?, &mut NoFiles);
     let (model, _) = Model::from_cards(&deck.cards);
@@ -74,7 +76,7 @@ fn solve(path: &str, count: usize, out: &str) -> Outcome {
     };
     let mut loads = Vec::new();
     let mut scales = Vec::new();
-    // Components FZ FX FY MX MY MZ, six wheels each.
+    // The components are FZ FX FY MX MY MZ, each at six wheels.
     for component in [2, 0, 1, 3, 4, 5].into_iter().take(count.div_ceil(6)) {
         for wheel in 0..6 {
             let mut unit = Vec3::zeros();
@@ -141,7 +143,7 @@ fn on_frame(
     };
     let (all, k) = (number(0) as usize, number(1) as usize);
     let width = 3 + 3 * k;
-    // Every n-th shell, both its sides.
+    // Select both sides of every n-th shell.
     let places: Vec<usize> = (0..all).filter(|p| (p / 2) % every == 0).collect();
     let step = std::f64::consts::PI / angles as f64;
     let grid = if angles == 0 {
@@ -202,7 +204,7 @@ fn say(out: &mut impl Write, s: usize, l: &Layout, wall: f64, cpu: Option<f64>) 
     Ok(())
 }
 
-/// Processor seconds of this process so far, in hundredths; `None` where the system does not say.
+/// Returns the processor seconds of this process so far, to a hundredth; `None` if the system does not report them.
 fn processor_seconds() -> Option<f64> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
     let fields: Vec<&str> = stat.rsplit(')').next()?.split_whitespace().collect();

@@ -1,10 +1,10 @@
-//! Wall seconds of the solver on a deck: `cargo bench --bench solve -- DECK [LOADS] [MATRIX.mtx]`.
+//! Measures wall seconds of the solver on a deck: `cargo bench --bench solve -- DECK [LOADS] [MATRIX.mtx]`.
 //!
-//! Loads are vertical unit forces at grids spread over the model. With a third argument the supported stiffness goes to a Matrix
-//! Market file, which `../shared/benchmarks/frames/pardiso_anchor.py` reads: run both in one sitting and compare.
+//! Loads are vertical unit forces at grids spread over the model. With a third argument the supported stiffness is written to a Matrix Market file,
+//! which `../shared/benchmarks/frames/pardiso_anchor.py` reads. Run both directly after each other and compare.
 //!
-//! `--paper`: work and longest chain of the elimination tree, and what many threads come to.
-//! `--zones`: ten zones, a fortieth of the shells each and a tenth thicker, as variants on one factor, over the time of the solution.
+//! `--paper`: work and longest chain of the elimination tree, and the possible speed-up with many threads.
+//! `--zones`: time of ten variants on one factor, relative to the time of the solution. In each variant a fortieth of the shells is a tenth thicker.
 
 use nastran::bdf::{IncludeRequest, LoadedFile, Loader, read_deck};
 use std::io::Write;
@@ -23,10 +23,10 @@ impl Loader for NoFiles {
     }
 }
 
-/// Zones that are changed one at a time.
+/// Number of zones that are changed, one at a time.
 const ZONES: usize = 10;
 
-/// The model with one of the zones a tenth thicker.
+/// Returns the model with one zone a tenth thicker.
 fn thicken_zone(model: &Model, zone: usize) -> Model {
     let mut out = model.clone();
     let n = out.shells.len();

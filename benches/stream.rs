@@ -1,6 +1,6 @@
-//! A record of 41 channels: reading it piece by piece and discarding it, and recovering six loads from it.
+//! Streams a record of 41 channels: reads and discards it piece by piece, and recovers six loads from it.
 //!
-//! Run: `cargo bench --bench stream`. A million samples of f32 in memory; the ratio of the two holds for any length.
+//! Run: `cargo bench --bench stream`. The record is a million samples of f32 in memory; the ratio of both times is valid for any length.
 
 use strainbridge::linalg::Matrix;
 use strainbridge::recovery::history::{Filter, SampleLoads};
@@ -15,7 +15,7 @@ fn main() {
 const GAUGES: usize = 41;
 const LOADS: usize = 6;
 const SAMPLES: usize = 1_000_000;
-/// Samples a piece, as the command takes them.
+/// Number of samples in a piece, as in the command.
 const PIECE: usize = 512;
 
 fn record() -> Vec<u8> {

@@ -1,8 +1,8 @@
-//! Hides effects in frames and counts what the workflow says of them: hit rate, false names, gap closed, detectable size.
+//! Hides effects in frames and counts the results of `reconcile`: hit rate, false names, gap closed, detectable size.
 //!
-//! `cargo run --example hidden_effects [SEEDS] [CONTROLS] [EFFECT,EFFECT..]` prints the table of the README (2 seeds, 200 controls). The
-//! frames are those of two cases of ../shared/hidden_effects; runs, loads, noise, background and effect are new in every case. Cases
-//! that go wrong are listed on standard error.
+//! `cargo run --example hidden_effects [SEEDS] [CONTROLS] [EFFECT,EFFECT..]` prints the table of the README (2 seeds, 200 controls). The frames are
+//! from two cases of ../shared/hidden_effects; runs, loads, noise, background and effect are new in every case. Cases without a correct result are
+//! listed on standard error.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 #[path = "../tests/reconcile/hidden/mod.rs"]
@@ -13,7 +13,7 @@ use hidden::judge::{Answer, judge};
 use rayon::prelude::*;
 use strainbridge::reconcile::strain::{StrainFrame, examine};
 
-/// One case, answered.
+/// Result of one case.
 struct Line {
     size: f64,
     answer: Answer,
@@ -52,13 +52,13 @@ fn answer(
     }
 }
 
-/// Share of `lines` with an answer among `wanted`, in percent.
+/// Returns the share of `lines` with an answer among `wanted`, in percent.
 fn percent(lines: &[Line], wanted: &[Answer]) -> f64 {
     let n = lines.iter().filter(|l| wanted.contains(&l.answer)).count();
     100.0 * n as f64 / lines.len().max(1) as f64
 }
 
-/// The smallest size from which on every case was hit.
+/// Returns the smallest size from which on every case is a hit.
 fn always_hit(lines: &[Line], sizes: &[f64; 5]) -> String {
     let missed = |size: f64| {
         lines
@@ -149,9 +149,9 @@ fn main() {
     }
 }
 
-/// Pairs of effects, joined by `+`.
+/// Returns pairs of effects, joined by `+`.
 fn pairs(n: u64) -> Vec<String> {
-    // Those that change what the analyst's model is can't be put on top of another.
+    // Effects that change the analyst's model cannot be combined with another effect.
     let alone = [
         "payload_gravity_missing",
         "uneven_ground",

@@ -1,10 +1,10 @@
-//! Hides effects in a frame whose truth is made on a mesh four times as wide each way as the analyst's is fine, and lets `reconcile`
-//! look for them from the analyst's deck alone.
+//! Hides effects in a frame that is solved on a mesh four times finer than the analyst's mesh. `reconcile` then searches for them with the analyst's
+//! deck only.
 //!
-//! `cargo build --release && cargo run --release --example hidden_in_deck [SEEDS] [EFFECT,EFFECT..]` prints one row for each effect: five sizes, one seed by default. The
-//! deck and its gauges are those of `../shared/hidden_effects/deck/dev-f1`; loads, noise, background and effect are new in every case:
-//! 1 % of gain scatter, 1 degree of placement scatter, coefficients off by a fraction of a percent, the mesh. What goes wrong is listed
-//! on standard error.
+//! `cargo build --release && cargo run --release --example hidden_in_deck [SEEDS] [EFFECT,EFFECT..]` prints one row for each effect: five sizes, one
+//! seed by default. The deck and its gauges are from `../shared/hidden_effects/deck/dev-f1`. Loads, noise, background and effect are new in every
+//! case. The background is 1 % of gain scatter, 1 degree of placement scatter, coefficient errors of a fraction of a percent, and the mesh. Cases
+//! without a correct result are listed on standard error.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 #[path = "../tests/reconcile/hidden/mod.rs"]
@@ -48,13 +48,13 @@ const PLACES: [(&str, u32); 4] = [
     ("mid_right", 9203),
     ("rear", 9204),
 ];
-/// Zones and their properties that are tried, one a size.
+/// Zones that are tried, with their properties, one zone for each size.
 const ZONES: [(&str, u32); 5] = [("L2", 12), ("R4", 24), ("L4", 14), ("R2", 22), ("L3", 13)];
 const NOMINAL_X_M: f64 = 5.2;
 const GRAVITY: f64 = 9.81;
-/// Strain of a free quarter bridge per degree, microstrain, as the job says.
+/// Strain of a free quarter bridge, microstrain per degree, as in the job.
 const PER_DEGREE: f64 = 1.404;
-/// kN and kN m in N and N mm.
+/// Factor from kN and kN m to N and N mm.
 const KILO: f64 = 1e3;
 const MICRO: f64 = 1e6;
 
@@ -63,9 +63,9 @@ fn deck(text: &str) -> Deck {
     read_deck("nominal.bdf", text.as_bytes().to_vec(), &mut none)
 }
 
-/// The deck with a property's thickness times `factor`.
+/// Returns the deck with a property's thickness times `factor`.
 fn thicken_property(text: &str, property: u32, factor: f64) -> String {
-    // Fields of eight columns.
+    // The deck is in fields of eight columns.
     let change = |line: &str| {
         let field = |k: usize| line.get(8 * k..8 * k + 8).unwrap_or_default().trim();
         if field(0) == "PSHELL" && field(1) == property.to_string() {
@@ -139,7 +139,7 @@ fn build_gauge(model: &Model, g: &Glued, degrees: f64) -> Gauge {
     built.0.into_iter().next().expect("one channel")
 }
 
-/// Microstrain by gauge and load on the mesh divided twice.
+/// Returns microstrain by gauge and load, on the mesh divided twice.
 fn truth_of(text: &str, gauges: &[Glued], loads: &[(u32, usize, f64)], degrees: f64) -> Vec<f64> {
     let deck = deck(text);
     let model = Model::from_deck(&deck).0;
@@ -172,11 +172,11 @@ fn truth_of(text: &str, gauges: &[Glued], loads: &[(u32, usize, f64)], degrees: 
     out
 }
 
-/// The truth as a frame. Columns: wheels, payload weight, its moments for a metre, then side loads and masses.
+/// Returns the true frame. Columns: wheels, payload weight, its moments for a metre, then side loads and masses.
 fn truth(text: &str, gauges: &[Glued], runs: &str) -> StrainFrame {
     let weight = GRAVITY;
     let mut loads: Vec<(u32, usize, f64)> = WHEELS.iter().map(|w| (w.1, 2, KILO)).collect();
-    // Per kg at the nominal place, per kg and m forward, per kg and m to the left (N mm).
+    // Payload columns: per kg at the nominal place, per kg and m forward, per kg and m to the left (N mm).
     loads.push((PAYLOAD, 2, -weight));
     loads.push((PAYLOAD, 4, weight * KILO));
     loads.push((PAYLOAD, 3, -weight * KILO));
@@ -317,7 +317,7 @@ fn truth(text: &str, gauges: &[Glued], runs: &str) -> StrainFrame {
     }
 }
 
-/// Writes the case beside a job that names the analyst's deck; the job.
+/// Writes the case and a job that uses the analyst's deck; returns the path of the job.
 fn write(case: &Hidden, shared: &Path, folder: &Path) -> PathBuf {
     let f = &case.frame;
     let n_g = f.n_gauges();
@@ -353,7 +353,7 @@ fn write(case: &Hidden, shared: &Path, folder: &Path) -> PathBuf {
             "model_uncertainty_rel = 0.02",
             "model_uncertainty_rel = 0.01",
         )
-        // What the background is made of is what a workshop declares.
+        // The tolerance that the job declares is the placement scatter of the background.
         .replace(
             "[reconcile]\n",
             "[reconcile]\ntolerance = { angle_deg = 1.0 }\n",
@@ -382,7 +382,7 @@ fn kinds(ids: &[String]) -> Vec<&str> {
     out
 }
 
-/// `named`, `rival`, `none`, `unknown`, `false`; gap before, after.
+/// Returns the score (`named`, `rival`, `none`, `unknown`, `false`) and the share of the gap that is explained.
 fn score_answer(case: &Hidden, result: &Value) -> (&'static str, f64) {
     let texts = |v: &Value| -> Vec<String> {
         let list = v.as_array().into_iter().flatten();
@@ -447,7 +447,7 @@ fn main() {
         let (mut shares, mut n) = (0.0, 0);
         for (i, size) in sizes.into_iter().enumerate() {
             let mut one = base.clone();
-            // The zone whose exact change was solved at this size.
+            // Select the zone whose exact change was solved at this size.
             one.stiffness = vec![base.stiffness[i].clone()];
             for seed in 0..seeds {
                 let case = hide(

@@ -1,4 +1,4 @@
-//! How often hidden effects of motion are named: by effect, size and background.
+//! Counts how often hidden effects of motion are identified, by effect, size and background.
 //!
 //! Run: `cargo run --example moving_effects -- SEEDS CONTROLS [EFFECT,..] [clean|messy]`. Prints the table of the README.
 
@@ -11,7 +11,7 @@ use moving::generator::{Background, Layout, hide};
 use moving::{Score, frame_of, score};
 use strainbridge::reconcile::motion::examine;
 
-/// Effects with the vehicles they are hidden in.
+/// Effects, with the vehicles in which they are hidden.
 const EFFECTS: [(&str, &[Layout]); 16] = [
     ("viscous_damper", &[Layout::Front, Layout::Rear]),
     (

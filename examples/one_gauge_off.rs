@@ -1,7 +1,7 @@
-//! What one gauge that reads 10 % too much does to loads and their intervals: the table of docs/4-recovering-loads.md.
+//! Computes how one gauge that reads 10 % too much changes loads and their intervals: the table of docs/4-recovering-loads.md.
 //!
 //! `cargo run --release --example one_gauge_off [JOBS] [GAUGE,GAUGE..]` (300 jobs, all gauges). The frame is ../shared/nastran/mystran_frame_units:
-//! 20 gauges, 9 loads, 12 runs. In every job the noise, 1 microstrain, and the model's error, 2 % of each coefficient of S, are new.
+//! 20 gauges, 9 loads, 12 runs. Every job draws new noise (1 microstrain) and a new model error (2 % of each coefficient of S).
 #![allow(clippy::print_stdout)]
 
 use rand::{RngExt, SeedableRng};
@@ -17,9 +17,9 @@ use strainbridge::recovery::{
 use strainbridge::sensitivity::{Load, Sensitivity};
 
 const FOLDER: &str = "../shared/nastran/mystran_frame_units/measured";
-/// What the gauge reads too much, a share.
+/// Gain error of the gauge, as a share of its reading.
 const OFF: f64 = 0.1;
-/// As the job states them, and as they are.
+/// Noise and model error that the job states; the true errors have the same size.
 const ERRORS: ErrorModel = ErrorModel {
     noise: 1e-6,
     model_rel: 0.02,
@@ -31,15 +31,16 @@ struct Frame {
     runs: Vec<Vec<f64>>,
 }
 
-/// What a job comes to.
+/// Counts of one job, or of several jobs together.
 #[derive(Default)]
 struct Counts {
     jobs: usize,
     stopped: usize,
-    /// Jobs not stopped in which a gauge is named, and intervals of those in which none is.
+    /// Jobs without a stop in which a gauge is identified as suspect. `silent` counts the intervals of the jobs in which no gauge is identified, as
+    /// in `kept`.
     named: usize,
     silent: [usize; 2],
-    /// Intervals of the jobs not stopped: those that hold the load, and all.
+    /// Intervals of the jobs without a stop: intervals that contain the load, and all intervals.
     kept: [usize; 2],
     asked: usize,
 }
@@ -78,7 +79,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The line of one gauge that is off, or of none.
+/// Prints the line of the table for one gauge with a gain error, or for no such gauge.
 fn line(frame: &Frame, jobs: u64, off: Option<usize>) {
     let total = (0..jobs)
         .into_par_iter()
@@ -104,7 +105,7 @@ fn line(frame: &Frame, jobs: u64, off: Option<usize>) {
     );
 }
 
-/// One job with that gauge off.
+/// Runs one job with a gain error of one gauge.
 fn job(frame: &Frame, seed: u64, off: Option<usize>) -> Counts {
     let got = recover(&frame.s, &readings(frame, seed, off), ERRORS);
     let asked = frame.runs.len() * frame.s.loads.len();
@@ -125,7 +126,7 @@ fn job(frame: &Frame, seed: u64, off: Option<usize>) -> Counts {
     out
 }
 
-/// Intervals that hold the load.
+/// Returns the number of intervals that contain the load.
 fn count_holding_intervals(frame: &Frame, got: &Recovery) -> usize {
     let pairs = got.runs.iter().zip(&frame.runs);
     pairs
@@ -137,7 +138,7 @@ fn count_holding_intervals(frame: &Frame, got: &Recovery) -> usize {
         .count()
 }
 
-/// Readings of the runs by an S that errs.
+/// Returns the readings of the runs, computed with model errors in S.
 fn readings(frame: &Frame, seed: u64, off: Option<usize>) -> Vec<Readings> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let (n, k) = (frame.s.gauges.len(), frame.s.loads.len());
@@ -158,7 +159,7 @@ fn readings(frame: &Frame, seed: u64, off: Option<usize>) -> Vec<Readings> {
     frame.runs.iter().enumerate().map(run).collect()
 }
 
-/// The estimate for weights at the loads of the runs.
+/// Returns the load estimator, with weights for the typical loads of the runs.
 fn gain(frame: &Frame) -> Option<Gain> {
     let all: Vec<usize> = (0..frame.s.gauges.len()).collect();
     let n = frame.runs.len() as f64;
@@ -172,7 +173,7 @@ fn leverage(frame: &Frame, gauge: usize) -> f64 {
     gain(frame).map_or(f64::NAN, |g| g.leverage[gauge])
 }
 
-/// The largest shift of a load of a run over the half width of its interval.
+/// Returns the largest shift of a load in a run, relative to the half width of its interval.
 fn largest_shift(frame: &Frame, gauge: usize) -> f64 {
     let Some(gain) = gain(frame) else {
         return f64::NAN;
@@ -193,8 +194,9 @@ fn largest_shift(frame: &Frame, gauge: usize) -> f64 {
     frame.runs.iter().map(of_run).fold(0.0, f64::max)
 }
 
-/// `t^2 = d' P d`, `P = V^-1 - V^-1 X (X' V^-1 X)^-1 X' V^-1`: `V` is the covariance of all readings, a block `V_g` over the runs for each gauge,
-/// `X` what the loads of each run make, `d` what the gauge reads too much.
+/// Returns the mean of `t` for a gauge with the gain error: `t^2 = d' P d`, `P = V^-1 - V^-1 X (X' V^-1 X)^-1 X' V^-1`. `V` is the covariance of all
+/// readings, with a block `V_g` over the runs for each gauge. `X` is the strain under the loads of each run, and `d` is the excess reading of the
+/// gauge.
 fn mean_t(frame: &Frame, gauge: usize) -> f64 {
     let (n, k, runs) = (frame.s.gauges.len(), frame.s.loads.len(), &frame.runs);
     let row = |g: usize| Vector::from_fn(k, |l, _| frame.s.values[(g, l)]);
@@ -225,14 +227,14 @@ fn mean_t(frame: &Frame, gauge: usize) -> f64 {
     square.max(0.0).sqrt()
 }
 
-/// Box and Muller's.
+/// Draws a standard normal number with the method of Box and Muller.
 fn draw_gaussian(rng: &mut ChaCha8Rng) -> f64 {
     let u: f64 = rng.random_range(f64::MIN_POSITIVE..1.0);
     let v: f64 = rng.random_range(0.0..1.0);
     (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
 }
 
-/// Names in the header and in the first column, and the numbers after `skip` columns.
+/// Names in the header, names in the first column, and the numbers after `skip` columns.
 type Table = (Vec<String>, Vec<String>, Vec<Vec<f64>>);
 
 fn table(file: &str, skip: usize) -> Result<Table, Box<dyn Error>> {
@@ -249,7 +251,7 @@ fn table(file: &str, skip: usize) -> Result<Table, Box<dyn Error>> {
     Ok((head, names, rows))
 }
 
-/// The frame; the files are in microstrain per kN and kN.
+/// Reads the frame; the files are in microstrain per kN and in kN.
 fn read() -> Result<Frame, Box<dyn Error>> {
     let (names, gauges, s) = table("sensitivity_truth.csv", 1)?;
     let (_, _, loads) = table("loads_truth.csv", 2)?;

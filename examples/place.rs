@@ -1,11 +1,12 @@
-//! Four gauges on a cantilever strip for two tip loads: deck in, layout with its certificate out, everything in memory.
+//! Places four gauges on a cantilever strip for two tip loads. The input is a deck, the output a layout with its certificate; all files are in
+//! memory.
 
 use std::error::Error;
 use std::fmt::Write;
 use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Job, place};
 
-/// A strip of ten plates along x, 2 mm thick, held at x = 0.
+/// Returns a deck of a strip of ten plates along x, 2 mm thick, clamped at x = 0.
 fn deck() -> Result<String, std::fmt::Error> {
     let mut deck = String::from("SOL 101\nCEND\nSPC = 1\nBEGIN BULK\n");
     for i in 0..11 {
@@ -29,7 +30,7 @@ load = [
 placement = { gauges = 4, spacing = 10.0, model_uncertainty_rel = 0.02 }
 "#;
 
-/// Chooses, and gives the certified efficiency.
+/// Places the gauges, and prints the certified efficiency.
 pub fn main() -> Result<(), Box<dyn Error>> {
     let files = InMemory::default()
         .with_file("strip.bdf", deck()?)

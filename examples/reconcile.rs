@@ -1,4 +1,4 @@
-//! Eight gauges under two known loads, one of them wired the wrong way round: which one, and what is left of the gap.
+//! Finds the gauge with reversed polarity among eight gauges under two known loads, and the residual after its correction.
 
 use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Job, reconcile};
@@ -11,7 +11,7 @@ runs = { file = "runs.csv", units = { force = "kN" }, noise = { force = 0.02 } }
 reconcile = { path = "static" }
 "#;
 
-/// S, readings with a scatter below a microstrain, and loads; gauge `G5` reads the negative.
+/// Returns S, readings with a scatter below a microstrain, and loads; gauge `G5` has reversed polarity.
 fn tables() -> [String; 3] {
     let s = |g: u8, l: u8| 20.0 * (f64::from(g) * (1.3 + 0.7 * f64::from(l))).sin();
     let load = |r: u8, l: u8| 3.0 + 2.5 * ((2.1 + f64::from(l)) * f64::from(r + 1)).cos();
@@ -32,7 +32,7 @@ fn tables() -> [String; 3] {
     out
 }
 
-/// Names the gauge.
+/// Identifies the gauge.
 pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [s, strain, runs] = tables();
     let files = InMemory::default()

@@ -1,10 +1,10 @@
-//! False names on controls: 400 cases in which nothing is hidden, every second one static, the others dynamic.
+//! Counts false names on controls: 400 cases without a hidden effect, alternately static and dynamic.
 //!
-//! `cargo run --release --example reconcile_controls -- [--from 0] [--to 400]` prints a line a case and the share of false names with its
-//! interval (Wilson 1927, 95 %). A case that can't be judged is counted apart, and the exit code is then 1. A case is made of its number
-//! alone, so that parts of the sweep can be run one after the other and their lines joined. Among them are gauges glued 2 mm from their place
-//! (one standard deviation), noise 1.5 times or 1/1.5 of what is stated, the vehicles of all shared cases, records of 200 to 1,000 Hz from
-//! four layouts of sensors.
+//! `cargo run --release --example reconcile_controls -- [--from 0] [--to 400]` prints one line for each case, and the share of false names with its
+//! interval (Wilson 1927, 95 %). A case without a verdict is counted separately, and the exit code is then 1. A case depends only on its number, so
+//! parts of the sweep can be run separately and their lines joined. The cases include position errors of the gauges (standard deviation 2 mm), and
+//! stated noise of 1/1.5 and 1.5 times the true noise. They use the vehicles of all shared cases, and records of 200 to 1,000 Hz from four layouts of
+//! sensors.
 #![allow(clippy::print_stdout)]
 
 #[path = "../tests/reconcile/hidden/mod.rs"]
@@ -20,29 +20,29 @@ use strainbridge::reconcile::Verdict;
 use strainbridge::reconcile::strain::{Scatter, StrainFrame};
 use strainbridge::reconcile::{motion, strain};
 
-/// Factors of the noise that is stated on the true one.
+/// Ratios of the stated noise to the true noise.
 const STATED: [f64; 3] = [1.0, 1.0 / 1.5, 1.5];
-/// Standard deviation of a gauge's place along its axis, mm.
+/// Standard deviation of a gauge's position along its axis, mm.
 const PLACE_MM: f64 = 2.0;
-/// Lengths over which strain changes by its own size, mm: the width of a rail to the distance of two cross members.
+/// Lengths over which strain changes by its own size, mm: from the width of a rail to the distance between two cross members.
 const CHANGES_MM: [f64; 2] = [100.0, 600.0];
 
-/// What was said of a case.
+/// Result of a case.
 struct Said {
     what: String,
-    /// The verdict and the names; else why there is none.
+    /// The verdict and the identified causes, or the reason why there is no verdict.
     found: Result<(Verdict, Vec<String>), String>,
     seconds: f64,
 }
 
-/// What came of the cases.
+/// Counts of cases.
 #[derive(Default)]
 struct Tally {
-    /// Those with a verdict.
+    /// Cases with a verdict.
     judged: usize,
     wrong: usize,
     unknown: usize,
-    /// Those without one: neither passed nor failed.
+    /// Cases without a verdict, which neither pass nor fail.
     failed: usize,
 }
 
@@ -88,7 +88,7 @@ fn main() {
         100.0 * low,
         100.0 * high
     );
-    // A control that was not judged did not pass.
+    // A control without a verdict did not pass.
     if failed > 0 {
         std::process::exit(1);
     }
@@ -98,7 +98,7 @@ fn percent(k: usize, n: usize) -> f64 {
     100.0 * k as f64 / n.max(1) as f64
 }
 
-/// Wilson's interval of a share, 95 %.
+/// Returns Wilson's 95 % interval of a share.
 fn wilson(k: usize, n: usize) -> [f64; 2] {
     const Z: f64 = 1.959_964;
     let n = n.max(1) as f64;
@@ -109,7 +109,7 @@ fn wilson(k: usize, n: usize) -> [f64; 2] {
     [(middle - half).max(0.0) / scale, (middle + half) / scale]
 }
 
-/// Frames of the shared static cases, with the name of each.
+/// Returns the frames of the shared static cases, each with its name.
 fn bases() -> Vec<(String, StrainFrame)> {
     let folder = hidden::find_shared_folder().expect("../shared/hidden_effects");
     let names = (1..=9).map(|k| format!("dev-s{k}"));
@@ -145,7 +145,7 @@ fn case(bases: &[(String, StrainFrame)], number: usize) -> Said {
     }
 }
 
-/// A static control: gains, angles and coefficients off as the generator has them, and places where `placed`.
+/// Returns a static control. Gains, angles and coefficients have the generator's errors; positions have errors if `placed`.
 fn make_static_control(base: &StrainFrame, seed: u64, stated: f64, placed: bool) -> StrainFrame {
     use hidden::generator::{Background, hide};
     let mut frame = hide(base, "none", 0.0, Background::Messy, seed).frame;
@@ -179,7 +179,7 @@ fn make_static_control(base: &StrainFrame, seed: u64, stated: f64, placed: bool)
     frame
 }
 
-/// A dynamic control.
+/// Runs a dynamic control.
 fn run_dynamic_control(
     number: usize,
     seed: u64,

@@ -1,9 +1,10 @@
-//! What halving and doubling each threshold of `reconcile` does to names.
+//! Shows how halving and doubling each threshold of `reconcile` changes the identified causes.
 //!
-//! `cargo run --release --example reconcile_thresholds -- [--controls 40] [--effects 1] [--from 0] [--to 21] [--only static|motion]` prints a row
-//! a threshold: of the controls (nothing hidden) those that got a name, of the effects those that were hit and those that got a wrong name,
-//! with the threshold halved, as it is, and doubled. Every threshold sees the same cases: `--controls` in each world, and every effect of the
-//! generators `--effects` times. `--from` and `--to` are numbers of thresholds, strain first, so that parts can be run one after the other.
+//! `cargo run --release --example reconcile_thresholds -- [--controls 40] [--effects 1] [--from 0] [--to 21] [--only static|motion]` prints one row
+//! for each threshold. The row counts controls (no hidden effect) with an identified cause, effects that are hit, and effects with a wrong cause.
+//! Each count is with the threshold halved, as it is, and doubled. Every threshold uses the same cases: `--controls` for strain and for motion, and
+//! every effect of the generators `--effects` times. `--from` and `--to` are numbers of thresholds, strain first, so that parts of the table can be
+//! run separately.
 #![allow(clippy::print_stdout)]
 
 #[path = "../tests/reconcile/hidden/mod.rs"]
@@ -19,9 +20,9 @@ use strainbridge::reconcile::{MotionRules, Rule, StrainRules, Verdict, motion, s
 
 /// Factors on a threshold.
 const FACTORS: [f64; 3] = [0.5, 1.0, 2.0];
-/// Which of an effect's sizes is hidden in strain: the fourth of five.
+/// Index of the effect size that is hidden in strain: the fourth of five.
 const SIZE: usize = 3;
-/// Effects of motion, with where they are hidden.
+/// Effects of motion, each with the layout in which it is hidden.
 const MOVING: [(&str, Layout); 12] = [
     ("viscous_damper", Layout::Front),
     ("cubic_stiffness", Layout::Front),
@@ -36,7 +37,7 @@ const MOVING: [(&str, Layout); 12] = [
     ("quadratic_damping", Layout::Front),
     ("dead_zone", Layout::Front),
 ];
-/// Layouts of the controls of motion.
+/// Layouts of the motion controls.
 const LAYOUTS: [Layout; 4] = [
     Layout::Front,
     Layout::FrontAccelerationsOnly,
@@ -44,15 +45,15 @@ const LAYOUTS: [Layout; 4] = [
     Layout::Rear,
 ];
 
-/// What came of the cases.
+/// Counts of cases.
 #[derive(Clone, Copy, Default)]
 struct Tally {
     controls: usize,
-    /// Controls with a name.
+    /// Controls with an identified cause.
     named: usize,
     effects: usize,
     hit: usize,
-    /// Effects with a name that is not there.
+    /// Effects with a wrong cause.
     wrong: usize,
     /// Cases without a verdict.
     failed: usize,
@@ -77,7 +78,7 @@ impl Tally {
     }
 }
 
-/// How many cases.
+/// Numbers of cases.
 #[derive(Clone, Copy)]
 struct Cases {
     controls: u64,
@@ -120,7 +121,7 @@ fn main() {
     }
 }
 
-/// Prints a row for each threshold whose number is wanted; how many cases had no verdict.
+/// Prints a row for each requested threshold; returns the number of cases without a verdict.
 fn rows<R: Copy + Default>(
     world: &str,
     list: &[Rule<R>],
@@ -155,7 +156,7 @@ fn rows<R: Copy + Default>(
     failed
 }
 
-/// Frames of shared static cases.
+/// Returns the frames of the shared static cases.
 fn bases() -> Vec<StrainFrame> {
     let folder = hidden::find_shared_folder().expect("../shared/hidden_effects");
     ["dev-s1", "dev-s2"]
@@ -163,7 +164,7 @@ fn bases() -> Vec<StrainFrame> {
         .into()
 }
 
-/// Strain: controls on messy backgrounds, then every effect.
+/// Counts strain cases: controls on messy backgrounds, then every effect.
 fn tally_static_cases(bases: &[StrainFrame], cases: Cases, rules: StrainRules) -> Tally {
     use hidden::generator::{Background, EFFECTS, hide};
     use hidden::judge::{Answer, judge};
@@ -196,7 +197,7 @@ fn tally_static_cases(bases: &[StrainFrame], cases: Cases, rules: StrainRules) -
     all.par_iter().map(one).reduce(Tally::default, Tally::join)
 }
 
-/// Motion: controls on clean and messy backgrounds, then every effect.
+/// Counts motion cases: controls on clean and messy backgrounds, then every effect.
 fn tally_dynamic_cases(cases: Cases, rules: MotionRules) -> Tally {
     use moving::generator::{Background, hide};
     use moving::{Score, score};

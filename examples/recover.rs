@@ -1,4 +1,4 @@
-//! Two loads from three gauges whose sensitivity is known, readings with errors: loads with intervals, everything in memory.
+//! Recovers two loads with intervals from three gauges with known sensitivity. The readings have errors; all files are in memory.
 
 use std::error::Error;
 use strainbridge::host::context::InMemory;
@@ -13,10 +13,10 @@ measured = { strain = "strain.csv", noise_microstrain = 1.0 }
 
 /// Microstrain per newton.
 const S: &str = "gauge,left,right\nG1,0.10,0.02\nG2,0.02,0.10\nG3,0.05,0.05\n";
-/// Under 2000 N and 1000 N, each gauge off by one microstrain.
+/// Readings under 2000 N and 1000 N, each with an error of one microstrain.
 const STRAIN: &str = "run,G1,G2,G3\nR1,221,139,151\n";
 
-/// Recovers, and compares with what was put on.
+/// Recovers the loads, and compares them with the applied loads.
 pub fn main() -> Result<(), Box<dyn Error>> {
     let files = InMemory::default()
         .with_file("job.toml", JOB)

@@ -14,7 +14,7 @@ use std::fmt::Display;
 /// Name of a finding's code.
 pub type CodeName = &'static str;
 
-/// A measured fact about a result, its limit, and what to do.
+/// A measured fact about a result, its limit, and the remedy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
     /// How much it matters.
@@ -26,11 +26,11 @@ pub struct Finding {
     pub subject: String,
     /// Sentences with the consequence.
     pub message: String,
-    /// The measured number, where there is one.
+    /// The measured number, if there is one.
     pub measured: Option<f64>,
     /// The limit it is held against.
     pub limit: Option<f64>,
-    /// Chance that right data make as much of it, where that decided.
+    /// Chance that correct data give a number of this size, if this chance decided the finding.
     #[serde(skip)]
     pub chance: Option<f64>,
     /// Remedy, as an imperative.
@@ -87,8 +87,8 @@ impl Finding {
 }
 
 impl Finding {
-    /// Returns the measured number and its limit as they are shown to people. `None` for a limit of 0: the number then counts what the message
-    /// names.
+    /// Returns the measured number and its limit as shown to people. `None` for a limit of 0, because the number then counts the items that the
+    /// message names.
     pub fn shown_numbers(&self) -> Option<(f64, Option<f64>)> {
         let measured = self.measured.filter(|_| self.limit != Some(0.0))?;
         Some((measured, self.limit))

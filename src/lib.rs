@@ -1,6 +1,6 @@
 //! strainbridge turns a structure into its own load cell.
 //!
-//! Data flows one way, and so do imports (`tests/tidy.rs` checks it):
+//! Data flows one way, and so do imports (`tests/tidy/main.rs` checks it):
 //!
 //! | row | module | turns | into |
 //! |---|---|---|---|
@@ -11,16 +11,16 @@
 //! | 7.7 | [`strain_chain`] | a job's deck, results, gauges | S with its uncertainty |
 //! | 7.6 | [`mod@job`] | job.toml and the tables it names | a checked [`Job`], every fault with its line |
 //! | 7.5 | [`host`] | paths | files, kept solutions, the output folder, progress |
-//! | 7 | [`mod@reconcile`], [`mod@study`], [`mod@payload`], [`mod@calibrate`] | channels | ranked effects, studies, weighings, a learnt S |
+//! | 7 | [`mod@reconcile`], [`mod@study`], [`mod@payload`], [`mod@calibrate`] | channels | ranked effects, studies, payload masses, a calibrated S |
 //! | 6 | [`placement`], [`recovery`], [`mod@respond`], [`vehicle`] | S, strain, accelerations | layouts, loads, stress |
 //! | 5 | [`mod@sensitivity`] | [`fe::Solution`]s and [`gauge::Gauge`]s | S in eps = S f |
-//! | 4 | [`gauge`] | strain at a place | what that gauge reads |
+//! | 4 | [`gauge`] | strain at a place | the reading of that gauge |
 //! | 3 | [`fe`] | [`model::Model`] and load cases, or result files | [`fe::Solution`] |
 //! | 2 | [`model`] | a deck's cards | a checked, immutable [`model::Model`] |
-//! | 1 | [`series`], [`input_faults`], [`units`], [`estimate`], [`linalg`], [`finding`], [`stop`] | no word of finite elements here | |
+//! | 1 | [`series`], [`input_faults`], [`units`], [`estimate`], [`linalg`], [`finding`], [`stop`] | independent of finite elements | |
 //! | 0 | crate `nastran` | bytes | cards and tables |
 //!
-//! Gauges placed and loads recovered by one job:
+//! Place gauges and recover loads with one job:
 //!
 //! ```
 //! use strainbridge::{Context, Disk, Folder, Job, Severity};
@@ -52,14 +52,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Conventions, once and for all:
+//! Conventions:
 //! - strain is dimensionless inside (microstrain only in files and reports), tension positive; shear in an element frame is engineering
 //!   shear, in a basic-frame tensor it is tensor shear;
 //! - `bottom` is fibre distance Z1, `top` is Z2 of the element normal z = d13 x d24;
 //! - angles are radians inside, right-handed about the element normal;
-//! - model quantities are in the deck's own units; `units` converts at the door.
+//! - model quantities are in the deck's own units; `units` converts inputs and outputs.
 //!
-//! The finite element layer never sees a gauge; a report never opens a file; numerics never print.
+//! The finite element layer does not use gauges, reports do not open files, and numerics do not print.
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
 pub mod calibrate;

@@ -1,34 +1,34 @@
-//! Whether work is to stop: looked at between the parts of long computations.
+//! Stop request for long computations, which check it between their parts.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A handle on the wish to stop; those cloned from one another share it. The default is never stopped.
+/// Handle of a stop request. Clones share the request. The default handle is never stopped.
 ///
-/// What was stopped comes back early with less than was asked for: whoever may stop asks [`Stop::is_asked`] before using the answer.
+/// A stopped computation returns early with an incomplete result. Callers check [`Stop::is_asked`] before they use the result.
 #[derive(Clone, Debug, Default)]
 pub struct Stop(Option<Arc<AtomicBool>>);
 
 impl Stop {
-    /// One that can be asked for.
+    /// Returns a handle with which a stop can be requested.
     pub fn new() -> Self {
         Self(Some(Arc::new(AtomicBool::new(false))))
     }
 
-    /// Asks to stop; nothing where this is the default.
+    /// Requests a stop. Has no effect on the default handle.
     pub fn ask(&self) {
         if let Some(asked) = &self.0 {
             asked.store(true, Ordering::Relaxed);
         }
     }
 
-    /// Whether the work is to stop.
+    /// Returns whether a stop was requested.
     pub fn is_asked(&self) -> bool {
         self.0.as_ref().is_some_and(|a| a.load(Ordering::Relaxed))
     }
 }
 
-/// No part of what is asked: all are alike.
+/// A stop request is not a part of a question, so all values are equal.
 impl PartialEq for Stop {
     fn eq(&self, _: &Self) -> bool {
         true

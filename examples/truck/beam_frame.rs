@@ -9,7 +9,7 @@ const LEFT: u32 = 11;
 const RIGHT: u32 = 21;
 const MEMBER: u32 = 31;
 
-/// Area, inertia about the strong and the weak axis, torsion constant and centroid distance from the web of a thin channel.
+/// Returns area, inertia about the strong and the weak axis, torsion constant and centroid distance from the web of a thin channel.
 fn channel(height: f64, flange: f64, t: f64) -> [f64; 5] {
     let (web, leg) = (height - t, flange - t / 2.0);
     let area = web * t + 2.0 * leg * t;
@@ -26,7 +26,7 @@ fn channel(height: f64, flange: f64, t: f64) -> [f64; 5] {
     ]
 }
 
-/// Writes the frame and returns the grids of its rails for whatever is mounted on them.
+/// Writes the frame and returns the rail grids for the parts that are mounted on them.
 pub fn build(truck: &Truck, deck: &mut DeckText) -> Frame {
     let rails = &truck.rails;
     let section = channel(rails.height, rails.flange, rails.thickness);
@@ -47,7 +47,7 @@ pub fn build(truck: &Truck, deck: &mut DeckText) -> Frame {
     }
     let mut points = Vec::new();
     for (side, sign, pid) in [(Side::Left, -1.0, LEFT), (Side::Right, 1.0, RIGHT)] {
-        // The bar's own z axis points to the left: C and D are the corners at the web, E and F the tips of the lower and upper flange.
+        // The bar's z axis points to the left. C and D are the corners at the web; E and F are the tips of the lower and upper flange.
         for zone in 0..=rails.zone_bounds_in.len() as u32 {
             deck.card(
                 "PBAR",

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-/// A deck in the making.
+/// Text of a deck that is being written.
 pub struct DeckText {
     text: String,
     next_grid: u32,
@@ -44,7 +44,7 @@ macro_rules! fields {
 }
 
 impl DeckText {
-    /// An empty deck; grids and elements count from 1.
+    /// Returns an empty deck; grids and elements count from 1.
     pub fn new() -> Self {
         Self {
             text: String::new(),
@@ -53,12 +53,12 @@ impl DeckText {
         }
     }
 
-    /// A comment line.
+    /// Writes a comment line.
     pub fn comment(&mut self, words: &str) {
         let _ = writeln!(self.text, "$ {words}");
     }
 
-    /// A card in 8-column fields.
+    /// Writes a card in 8-column fields.
     pub fn card(&mut self, name: &str, fields: Vec<Field>) {
         for (i, line) in fields.chunks(8).enumerate() {
             let _ = write!(self.text, "{:<8}", if i == 0 { name } else { "" });
@@ -84,32 +84,32 @@ impl DeckText {
         self.next_grid
     }
 
-    /// Writes a grid with an id of its own.
+    /// Writes a grid with a given id.
     pub fn grid_with_id(&mut self, id: u32, x: [f64; 3]) {
         self.card("GRID", fields![id, "", x[0], x[1], x[2]]);
     }
 
-    /// The next element id.
+    /// Returns the next element id.
     pub fn element(&mut self) -> u32 {
         self.next_element += 1;
         self.next_element
     }
 
-    /// RBE2: all six dofs of `dependent` follow `independent`.
+    /// Writes an RBE2: all six dofs of `dependent` follow `independent`.
     pub fn rbe2(&mut self, independent: u32, dependent: &[u32]) {
         let mut fields = fields![self.element(), independent, 123456_u32];
         fields.extend(dependent.iter().map(|g| Field::Int(*g)));
         self.card("RBE2", fields);
     }
 
-    /// RBE3: `reference` moves as the mean of the translations of `arms`.
+    /// Writes an RBE3: `reference` moves as the mean of the translations of `arms`.
     pub fn rbe3(&mut self, reference: u32, arms: &[u32]) {
         let mut fields = fields![self.element(), "", reference, 123456_u32, 1.0, 123_u32];
         fields.extend(arms.iter().map(|g| Field::Int(*g)));
         self.card("RBE3", fields);
     }
 
-    /// The whole deck.
+    /// Returns the complete deck.
     pub fn finish(self, name: &str) -> String {
         format!(
             "SOL 101\nCEND\nTITLE = {name}\nECHO = NONE\nBEGIN BULK\n$ t, mm, s, N; x to the rear, y to the right, z up from the ground\n\
@@ -119,7 +119,7 @@ impl DeckText {
     }
 }
 
-/// The shortest form of a real that fits eight columns with the least loss.
+/// Returns a form of a real that fits eight columns, with as many digits as fit.
 fn format_real(value: f64) -> String {
     let plain = format!("{value:?}");
     if plain.len() <= 8 && plain.contains('.') && !plain.contains('e') {

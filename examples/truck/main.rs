@@ -2,8 +2,8 @@
 //!
 //!     cargo run --example truck -- models/truck.toml models [--size MM] [--without-ballast]
 //!
-//! The physics is in the parameter file and in the README beside each deck. Axes: x to the rear, y to the right, z up from the
-//! ground; tonne, mm, second, newton.
+//! The parameter file and the README next to each deck describe the physics. Axes: x to the rear, y to the right, z up from the ground; tonne, mm,
+//! second, newton.
 
 mod beam_frame;
 mod deck;

@@ -50,21 +50,21 @@ pub struct Rails {
 }
 
 impl Rails {
-    /// y of the right rail's web, mid-plane.
+    /// Returns y of the right rail's web, mid-plane.
     pub fn web_y(&self) -> f64 {
         self.outboard_width_in * INCH / 2.0 - self.thickness / 2.0
     }
-    /// z of the lower and upper flange, mid-plane.
+    /// Returns z of the lower and upper flange, mid-plane.
     pub fn z(&self) -> [f64; 2] {
         let low = self.lower_flange_above_ground_in * INCH + self.thickness / 2.0;
         [low, low + self.height - self.thickness]
     }
-    /// Mid-height.
+    /// Returns the mid-height.
     pub fn z_mid(&self) -> f64 {
         let [low, high] = self.z();
         (low + high) / 2.0
     }
-    /// Zone 0 to 4 of a station in mm.
+    /// Returns the zone 0 to 4 of a station in mm.
     pub fn zone(&self, x: f64) -> u32 {
         self.zone_bounds_in
             .iter()
@@ -138,10 +138,10 @@ pub struct Mass {
     pub station_in: f64,
     #[serde(default)]
     pub y: f64,
-    /// Above the upper flange.
+    /// Height above the upper flange.
     pub above_rail: f64,
     pub feet_in: Vec<f64>,
-    /// `left` or `right` where only one rail carries it.
+    /// `left` or `right` if only one rail carries the mass.
     #[serde(default)]
     pub side: Option<String>,
 }

@@ -4,7 +4,7 @@ use crate::deck::{DeckText, Field};
 use crate::fields;
 use crate::parameters::{INCH, Mass, Truck};
 
-/// Which rail.
+/// Side of a rail.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Side {
     Left,
@@ -24,7 +24,7 @@ pub struct RailPoint {
     pub side: Side,
 }
 
-/// What the frame offers to mount on.
+/// Grids of the frame on which parts can be mounted.
 pub struct Frame {
     pub rail_points: Vec<RailPoint>,
     /// Grids in the middle of each cross member's web.
@@ -32,7 +32,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The same in ascending ids, so that every run writes the same deck.
+    /// Sorts the grids by id, so that every run writes the same deck.
     pub fn sort_by_id(mut self) -> Self {
         self.rail_points.sort_by_key(|p| p.id);
         self.member_centres
@@ -41,7 +41,7 @@ impl Frame {
         self
     }
 
-    /// Grids of a rail near a station, between two heights; where the mesh is a line of bars, the nearest grid.
+    /// Returns the grids of a rail near a station, between two heights; if the mesh is a line of bars, the nearest grid.
     fn rail_grids_near(&self, side: Side, x: f64, reach: f64, z: [f64; 2]) -> Vec<u32> {
         let on_side = || self.rail_points.iter().filter(move |p| p.side == side);
         let found: Vec<u32> = on_side()
@@ -72,7 +72,7 @@ const TRUNNION: u32 = 73;
 const LEAF_END: u32 = 74;
 const MASSLESS: u32 = 2;
 
-/// Adds everything that is not frame.
+/// Adds all parts except the frame.
 pub fn add(truck: &Truck, frame: &Frame, deck: &mut DeckText) {
     properties(truck, deck);
     let axles = &truck.axles;
@@ -170,7 +170,7 @@ fn properties(truck: &Truck, deck: &mut DeckText) {
             mean.powi(3) * wall,
             "",
             "",
-            // Gauges go on top, below, behind and in front of the tube.
+            // Stress recovery points at the gauges: on top of, below, behind and in front of the tube.
             a / 2.0,
             0.0,
             -a / 2.0,
@@ -181,7 +181,7 @@ fn properties(truck: &Truck, deck: &mut DeckText) {
             -a / 2.0
         ],
     );
-    // Simply supported leaf: rate = 48 E I / L^3; width 90 mm gives the weak axis.
+    // Leaf, simply supported: rate = 48 E I / L^3; a width of 90 mm gives the weak axis.
     let length = (truck.front_spring.rear_hanger_in - truck.front_spring.front_hanger_in) * INCH;
     let i1 = truck.front_spring.rate * length.powi(3) / 48.0 / m.youngs_modulus;
     leaf(deck, FRONT_LEAF, i1, 90.0);
@@ -246,7 +246,7 @@ fn properties(truck: &Truck, deck: &mut DeckText) {
     );
 }
 
-/// A leaf pack as one bar: its bending inertia, and a width that gives the weak axis of an equal solid section.
+/// Writes a leaf pack as one bar, with its bending inertia, and a width that gives the weak axis of an equal solid section.
 fn leaf(deck: &mut DeckText, pid: u32, i1: f64, width: f64) {
     let height = (12.0 * i1 / width).cbrt();
     let i2 = height * width.powi(3) / 12.0;
@@ -300,7 +300,7 @@ fn bush(deck: &mut DeckText, pid: u32, a: u32, b: u32) {
     deck.card("CBUSH", fields![id, pid, a, b, "", "", "", 0_u32]);
 }
 
-/// Ties a mount to rail grids: a rigid spider on shells; on a line of bars the mount follows the bar's grid.
+/// Ties a mount to rail grids: on shells by a rigid spider; on a line of bars the mount follows the bar's grid.
 fn tie(deck: &mut DeckText, mount: u32, rail: &[u32]) {
     match rail {
         [single] => deck.rbe2(*single, &[mount]),
@@ -308,7 +308,7 @@ fn tie(deck: &mut DeckText, mount: u32, rail: &[u32]) {
     }
 }
 
-/// A bracket: a grid at `x` tied rigidly to the lower flange of a rail.
+/// Writes a bracket: a grid at `x` tied rigidly to the lower flange of a rail.
 fn lower_bracket(
     truck: &Truck,
     frame: &Frame,
@@ -375,7 +375,7 @@ fn rear_spring(
     }
 }
 
-/// A longitudinal rod to the bogey cross member and a lateral rod to the left rail.
+/// Writes a longitudinal rod to the bogey cross member and a lateral rod to the left rail.
 fn torque_rods(truck: &Truck, frame: &Frame, deck: &mut DeckText, axle: &Axle) {
     let z = truck.rails.z_mid();
     let [top, side_lug] = [0.0, 300.0].map(|y| deck.grid([axle.x, y, z]));
@@ -426,7 +426,7 @@ fn add_mass(truck: &Truck, frame: &Frame, deck: &mut DeckText, grid: u32, mass: 
     arms.sort_unstable();
     arms.dedup();
     match arms.as_slice() {
-        // The feet on one line of bars can't hold a mass by their translations alone.
+        // The translations of feet on one line of bars cannot support a mass, so the mass is tied rigidly.
         [first, ..] if sides.len() == 1 && arms.len() < 4 => deck.rbe2(*first, &[grid]),
         many => deck.rbe3(grid, many),
     }

@@ -23,7 +23,7 @@ impl Part {
         self.0.entry(key).or_insert_with(|| (deck.grid(x), x)).0
     }
 
-    /// Quads over the product of two lists of coordinates.
+    /// Writes quads over the product of two lists of coordinates.
     fn patch(
         &mut self,
         deck: &mut DeckText,
@@ -43,7 +43,7 @@ impl Part {
         }
     }
 
-    /// The four grids nearest to a point: the corners of the element that a bolt goes through.
+    /// Returns the four grids nearest to a point: the corners of the element that a bolt goes through.
     fn nearest4(&self, x: [f64; 3]) -> Vec<u32> {
         let mut all: Vec<(f64, u32)> = self
             .0
@@ -55,13 +55,13 @@ impl Part {
     }
 }
 
-/// Points from `a` to `b` with steps of at most `size`.
+/// Returns points from `a` to `b` with steps of at most `size`.
 fn steps(a: f64, b: f64, size: f64) -> Vec<f64> {
     let n = ((b - a).abs() / size).ceil().max(1.0) as usize;
     (0..=n).map(|i| a + (b - a) * i as f64 / n as f64).collect()
 }
 
-/// Steps through given break points.
+/// Returns steps through given break points.
 fn steps_through(breaks: &[f64], size: f64) -> Vec<f64> {
     let mut out = vec![breaks[0]];
     for pair in breaks.windows(2) {
@@ -70,7 +70,7 @@ fn steps_through(breaks: &[f64], size: f64) -> Vec<f64> {
     out
 }
 
-/// Writes the frame and returns the grids of its rails for whatever is mounted on them.
+/// Writes the frame and returns the rail grids for the parts that are mounted on them.
 pub fn build(truck: &Truck, deck: &mut DeckText) -> Frame {
     let (rails, size, half) = (&truck.rails, truck.mesh.size, truck.bracket.length / 2.0);
     let mut breaks = vec![rails.start_in * INCH, rails.end_in * INCH];

@@ -1,4 +1,4 @@
-//! Nastran files as bytes in and tables out: bulk data, OP2, punch and HDF5. No physics, no file is opened here.
+//! Nastran files as bytes in and tables out: bulk data, OP2, punch and HDF5. The crate computes no physics and opens no file.
 //!
 //! - [`bdf`] reads a deck (executive, case control, bulk data) into a [`bdf::Deck`] and writes it back line for line.
 //! - [`op2`], [`punch`] and [`h5`] read results; all three give the same [`results::Block`]s and [`results::Rows`].

@@ -1,6 +1,6 @@
 //! Place of an entry in its file, so that every message can name file and line.
 
-/// Which of the files that were read; an index into the list that the reader returns.
+/// Index of a file in the list of files that the reader returns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct SourceIx(pub u32);
 

@@ -1,5 +1,5 @@
 //! Calibration of gauges that may differ from their nominal position. A row of S is not linear in the moves of its gauge. It is computed again at the
-//! position that was found, until that settles.
+//! estimated position until the position converges.
 
 use super::fit::calibrate;
 use super::types::{Calibration, ModelPrior, Move, MoveKind, Task};
@@ -41,7 +41,7 @@ pub fn calibrate_as_glued(
     .into_iter()
     .filter(|m| m.1 > 0.0)
     .collect();
-    // S may hold more than the field that rows are taken from, such as what its mesh makes: that moves with the gauge.
+    // S may contain more than the field gives, such as a correction for the mesh. This part moves with the gauge.
     let besides: Vec<Vec<f64>> = (0..n)
         .map(|g| match row(g, [0.0; 3]) {
             Some(r) => (0..k).map(|l| drawn.values[(g, l)] - r[l]).collect(),

@@ -6,17 +6,18 @@ use super::prior::rows;
 use super::types::{ModelError, ModelPrior, OffDrawing, ShiftWord};
 use crate::linalg::{Matrix, spd};
 
-/// Natural log of the odds over every alternative explanation from which a turned or displaced gauge is reported: 150 to 1.
-/// This is "very strong" on the scale of R. E. Kass and A. E. Raftery, J. Am. Stat. Assoc. 90 (1995) 773. A wrong cause costs more than no cause.
+/// Natural log of the odds over every alternative explanation above which a turned or displaced gauge is reported: 150 to 1. This is "very strong" on
+/// the scale of R. E. Kass and A. E. Raftery, J. Am. Stat. Assoc. 90 (1995) 773. A wrong cause costs more than no cause.
 const CLEAR: f64 = 5.0;
 /// Natural log of the odds over angle and place from which a gain is reported: 7 to 1, "positive" on this scale. A wrong gain is the most usual
 /// fault.
 const GAIN_RATHER: f64 = 2.0;
-/// Sd of a gain that nobody stated: half or double, or reversed.
+/// Standard deviation of a gain that nobody stated: half or double, or reversed.
 const GAIN_SD: f64 = 1.0;
-/// Sd of an angle that nobody stated, degrees: as in `reconcile`, a gauge glued across is as usual a mistake as one glued askew.
+/// Standard deviation of an installation angle that nobody stated, degrees. As in `reconcile`, a gauge installed across its axis is as common a
+/// mistake as a slightly turned one.
 const ANGLE_SD: f64 = 30.0;
-/// Step of the angles that are tried, degrees, and how many to each side of the drawing: up to a gauge glued across.
+/// Step of the tried angles, degrees, and their number to each side of the nominal angle, up to a gauge installed across its axis.
 const ANGLE_STEP: f64 = 0.05;
 const ANGLES: i32 = 1800;
 
@@ -80,7 +81,7 @@ impl Rivals {
             &changes.across,
         ]
         .map(scaled);
-        // A gauge on a bar, or of a table.
+        // The row of a gauge on a bar, or from a table, does not change with its angle.
         if turned.iter().chain(&crossed).all(|v| *v == 0.0) {
             return None;
         }
@@ -99,8 +100,8 @@ impl Rivals {
     }
 }
 
-/// A row turned by `a` is `s + t sin(2a) / 2 + c sin(a)^2`, `t` its change per radian and `c` that at a right angle: strain is a tensor. Mean of
-/// the likelihood over the angles.
+/// Returns the mean of the likelihood over the angles. The row of a gauge turned by `a` is `s + t sin(2a) / 2 + c sin(a)^2`, because strain is a
+/// tensor. `t` is its change per radian and `c` its change at a right angle.
 fn of_angle(usual: &RowEvidence, turned: &[f64], crossed: &[f64]) -> Option<f64> {
     let (first, second) = usual.orders(&[turned, crossed]);
     let (&[l, m], &[p, q, _, r]) = (first.as_slice(), second.as_slice()) else {

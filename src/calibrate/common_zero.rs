@@ -1,8 +1,8 @@
-//! A common zero: strain that the gauges read without load, `eps = S f + z`. Inside a calibration it is a column of S more, for a load that is 1 in
-//! every run ([`add_zero_column`]); outside, S has the loads of the task, and readings are less `z`.
+//! Common zero: strain that the gauges read without load, `eps = S f + z`. Inside a calibration it is one more column of S, for a load that is 1 in
+//! every run ([`add_zero_column`]). Outside, S has the loads of the task, and `z` is subtracted from the readings.
 //!
-//! Errors of `S` and `z` go together: what the runs determine best is the strain at loads in their middle. With `c` these loads, `eps = S (f - c) +
-//! (z + S c)`, the two parts are taken as uncorrelated, and their covariances are kept apart ([`CentredPosterior`]).
+//! The errors of `S` and `z` are correlated, because the runs determine best the strain at the loads in their middle. With `c` these loads,
+//! `eps = S (f - c) + (z + S c)`. The two parts are taken as uncorrelated, and their covariances are stored separately ([`CentredPosterior`]).
 
 use super::posterior::Posterior;
 use super::types::{Calibration, CommonZero, KnownLoads, Task};
@@ -18,7 +18,7 @@ impl Task {
         self.loads.len() - usize::from(self.is_extended())
     }
 
-    /// Whether the last column is the common zero.
+    /// Returns whether the last column is the common zero.
     pub(super) fn is_extended(&self) -> bool {
         self.common_zero == CommonZero::Column
     }
@@ -94,7 +94,7 @@ pub(super) struct CentredPosterior {
 }
 
 impl CentredPosterior {
-    /// `c = -(sum_g Cov S_g)^-1 sum_g Cov(S_g, z_g)`, zero where loads are not determined.
+    /// `c = -(sum_g Cov S_g)^-1 sum_g Cov(S_g, z_g)`, zero if loads are not determined.
     pub fn from_posterior(posterior: &Posterior) -> Self {
         let (n, all) = (posterior.n, posterior.k);
         let k = all - 1;

@@ -1,4 +1,4 @@
-//! Whether loads come out larger with a column of the runs, such as speed.
+//! Dependence of recovered loads on a column of the runs, such as speed.
 
 use super::fit::calibrate;
 use super::types::{LeftOut, Task};
@@ -18,18 +18,19 @@ pub struct Dependence {
     pub dof: f64,
 }
 
-/// Rounds between the slope and the calibration that knows of it; they settle in three.
+/// Iterations between the slope and a calibration that includes it; they converge in three.
 const ROUNDS: usize = 4;
 /// Share of its sigma up to which a slope counts as settled.
 const SETTLED: f64 = 0.1;
 
-/// Relative change of the loads with the column (a value a run of the task; NaN: blank); `left_out` of the task's calibration.
+/// Returns the relative change of the loads with a column. `column` has a value for each run of the task (NaN: blank), and `left_out` comes from the
+/// calibration of the task.
 ///
-/// A calibration that does not know of a slope takes it for scatter of the runs, several times as large, and learns which patterns of noise go with
-/// it by chance: the slope that its left-out runs show is off by more than they scatter. So, where there is one, the loads are made what the slope
-/// makes of them, `f (1 + slope (x - mean x))`, and the runs calibrated again, until nothing of a slope is left.
+/// A calibration without the slope counts its effect as scatter of the runs, which is then several times as large. The calibration then includes
+/// patterns of noise that go with the slope by chance. The slope of its left-out runs therefore has a larger error than their scatter. If there is a
+/// slope, the known loads are replaced by `f (1 + slope (x - mean x))`, and the runs are calibrated again until no slope remains.
 ///
-/// `None` where no freedom is left for it, or where the column does not change but with the loads.
+/// `None` if no degree of freedom remains, or if the column changes only together with the loads.
 pub fn depends_on(task: &Task, left_out: &[LeftOut], column: &[f64]) -> Option<Dependence> {
     let mut found = slope(task, left_out, column)?;
     if found.slope_rel.abs() <= found.sigma {
@@ -57,7 +58,7 @@ pub fn depends_on(task: &Task, left_out: &[LeftOut], column: &[f64]) -> Option<D
     Some(found)
 }
 
-/// The task with known loads times what a slope makes of them; `None` where that turns the sign of one.
+/// Returns the task with known loads times the effect of a slope; `None` if the effect changes the sign of a load.
 fn with_slope(task: &Task, column: &[f64], slope_rel: f64) -> Option<Task> {
     let known: Vec<f64> = column.iter().copied().filter(|x| x.is_finite()).collect();
     let mean = known.iter().sum::<f64>() / known.len() as f64;
@@ -144,5 +145,5 @@ fn slope(task: &Task, left_out: &[LeftOut], column: &[f64]) -> Option<Dependence
     })
 }
 
-/// Share of a column's square from which what the loads leave of it is no rounding.
+/// Least share of a column's sum of squares that the loads leave; a smaller share is rounding.
 const CHANGES: f64 = 1e-12;

@@ -1,4 +1,4 @@
-//! How probable the readings of one gauge are with one prior of its row or another.
+//! Probability of the readings of one gauge under different priors of its row.
 
 use super::given_others::ByGauge;
 use crate::linalg::precision::Precision;
@@ -44,10 +44,10 @@ impl NormalEquations {
     }
 }
 
-/// Log marginal likelihood of a gauge's readings where its row is `s + e`, `Cov e = B`, and how it changes with what is added to the row.
+/// Log marginal likelihood of a gauge's readings if its row is `s + e`, `Cov e = B`, and its change with additions to the row.
 ///
-/// With `W = B^-1 + A` and `d = b - A s`, up to what does not depend on the prior, it is `L(0) = (d' W^-1 d - ln |B| - ln |W|) / 2`; a row
-/// that is `s + t + e` makes it `L(t) = L(0) + t' B^-1 W^-1 d - t' B^-1 W^-1 A t / 2`.
+/// With `W = B^-1 + A` and `d = b - A s`, up to terms that do not depend on the prior, it is `L(0) = (d' W^-1 d - ln |B| - ln |W|) / 2`. For a row
+/// `s + t + e` it is `L(t) = L(0) + t' B^-1 W^-1 d - t' B^-1 W^-1 A t / 2`.
 pub(super) struct RowEvidence<'a> {
     normal: &'a NormalEquations,
     /// `B^-1` and `W^-1`.
@@ -60,7 +60,7 @@ pub(super) struct RowEvidence<'a> {
 }
 
 impl<'a> RowEvidence<'a> {
-    /// With a row of this mean and covariance; `None` where that is not positive definite.
+    /// Returns the evidence for a row of this mean and covariance; `None` if the covariance is not positive definite.
     pub fn from_row_prior(
         mean: &[f64],
         covariance: &[f64],
@@ -77,7 +77,7 @@ impl<'a> RowEvidence<'a> {
         let d = normal.right.iter().zip(&known).map(|(b, a)| b - a);
         let d: Vec<f64> = d.collect();
         let found = posterior.apply(&d);
-        // `log_det` is that of what was inverted: B, and W.
+        // `log_det` returns the log determinant of the inverted matrix: of B for the prior, of W for the posterior.
         let log = 0.5 * (spd::dot(&found, &d) - prior.log_det() - posterior.log_det());
         Some(Self {
             normal,
@@ -106,8 +106,8 @@ impl<'a> RowEvidence<'a> {
         (first.collect(), second)
     }
 
-    /// Log marginal likelihood where each direction is added with an independent amount of standard deviation `sd`:
-    /// `L(0) - ln |I + Q| / 2 + l' (I + Q)^-1 l / 2`, `l` and `Q` the first and second order in units of `sd`.
+    /// Returns the log marginal likelihood if each direction is added with an independent amount of standard deviation `sd`. It is
+    /// `L(0) - ln |I + Q| / 2 + l' (I + Q)^-1 l / 2`, with `l` and `Q` the first and second order in units of `sd`.
     pub fn log_with_directions(&self, directions: &[&[f64]], sd: f64) -> f64 {
         let n = directions.len();
         let (first, second) = self.orders(directions);

@@ -7,10 +7,10 @@ use crate::finding::{Finding, Severity};
 /// Share of the runs that may be excluded as suspect: labels and zeros are wrong in one run of twenty, seldom in one of ten.
 const MOST: f64 = 0.1;
 
-/// An error where more than a tenth of the runs is excluded as suspect.
+/// Returns an error if more than a tenth of the runs is excluded as suspect.
 pub(super) fn too_many(excluded: usize, runs: usize) -> Option<Finding> {
     let share = excluded as f64 / runs.max(1) as f64;
-    // One wrong label is one mistake, however few the runs are.
+    // A single excluded run may be one wrong label, even if it is more than this share of a few runs.
     (excluded > 1 && share > MOST).then(|| {
         Finding::new(
             Severity::Error,
@@ -26,7 +26,7 @@ pub(super) fn too_many(excluded: usize, runs: usize) -> Option<Finding> {
     })
 }
 
-/// An error where significantly fewer than 95 % of the left-out runs lie within their 95 % regions.
+/// Returns an error if significantly fewer than 95 % of the left-out runs are within their 95 % regions.
 pub(super) fn held_too_few(coverage: &Coverage) -> Option<Finding> {
     let of = coverage.of;
     let chance = chance_of_so_few(coverage.held, of);

@@ -1,4 +1,4 @@
-//! The whole calibration: one fit of all runs, runs left out, contradicting ones refused, then words.
+//! Whole calibration: one fit of all runs, runs left out, exclusion of contradicting runs, and findings.
 
 use super::common_zero::{add_zero_column, remove_zero_column, zero_of};
 use super::label_exchange::LabelExchange;
@@ -10,13 +10,13 @@ use super::{
 };
 use crate::finding::{Finding, Severity};
 
-/// Share of the runs that may be refused: with more, it is not the runs that are wrong.
+/// Largest share of the runs that may be refused. If more contradict each other, the runs are not the cause.
 const MOST_REFUSED: f64 = 0.25;
 
-/// S from runs of known load.
+/// Computes S from runs of known load.
 ///
 /// # Errors
-/// A sentence where there are no runs, or numbers that are not finite.
+/// A sentence if there are no runs, or if numbers are not finite.
 pub fn calibrate(task: &Task) -> Result<Calibration, String> {
     let readings = task
         .runs
@@ -44,7 +44,7 @@ fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
     let mut shifts = shift::check(task, &fitted.state);
     let mut wrongly_wired = shift::wrongly_wired(&shifts);
     if task.model.is_some() && !wrongly_wired.is_empty() {
-        // A gauge that is wired backwards says nothing of the model.
+        // A gauge with reversed polarity contains no information on the error of the model.
         fitted = ConsistentFit::from_task(task, &wrongly_wired)?;
         shifts = shift::check(task, &fitted.state);
         wrongly_wired = shift::wrongly_wired(&shifts);
@@ -89,7 +89,7 @@ fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
             &sensitivity,
         ));
     }
-    // Where the known loads are in a wrong unit or of a wrong sign, every gauge is far from the model for that reason.
+    // If the known loads have a wrong unit or sign, every gauge is far from the model for that reason.
     let wrong_loads = known_load_faults::wrong_loads(task, &state.used, wrongly_wired);
     if wrong_loads.is_empty() {
         findings.extend(shift::findings(task, &shifts));
@@ -122,18 +122,18 @@ fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
     })
 }
 
-/// A fit of the runs that don't contradict each other.
+/// A fit of the runs that do not contradict each other.
 struct ConsistentFit {
     state: State,
     left_out: Vec<LeftOut>,
-    /// The others, with their numbers.
+    /// Runs that contradict the other runs and are not used, with their numbers.
     refused: Vec<(usize, LeftOut)>,
-    /// Two with each other's label: not used where that is certain.
+    /// Pairs of runs with exchanged labels. They are not used if the exchange is certain.
     exchanged: Vec<LabelExchange>,
 }
 
 impl ConsistentFit {
-    /// One contradicting run is refused after the other; see [`State::fit_runs`] on `wrongly_wired`.
+    /// Refuses contradicting runs one after the other; see [`State::fit_runs`] on `wrongly_wired`.
     fn from_task(task: &Task, wrongly_wired: &[usize]) -> Result<Self, String> {
         let mut used: Vec<usize> = (0..task.runs.len()).collect();
         let most = (MOST_REFUSED * used.len() as f64).floor() as usize;
@@ -271,15 +271,15 @@ fn statements(
     out
 }
 
-/// Scatter over the strain from which S explains nothing of the runs: zeros would leave less.
+/// Scatter over the strain above which S explains nothing of the runs, because zeros would leave smaller residuals.
 const NO_CALIBRATION: f64 = 1.0;
 
-/// Whether some runs contain a loading twice.
+/// Returns whether some runs contain a loading twice.
 fn repeats(task: &Task, used: &[usize]) -> bool {
     let group = |r: &usize| task.runs.get(*r).map(|run| run.group);
     let groups: Vec<usize> = used.iter().filter_map(group).collect();
     (1..groups.len()).any(|i| groups[..i].contains(&groups[i]))
 }
 
-/// Ratio of learnt to stated model error from which something else is wrong.
+/// Ratio of estimated to stated model error above which something else is wrong.
 const BEYOND_STATED: f64 = 3.0;

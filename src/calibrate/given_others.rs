@@ -15,13 +15,14 @@ pub(super) struct ByGauge {
     pub variance: Vec<f64>,
 }
 
-/// Returns a run's readings by gauge. `spread`: the part of the covariance of `e` from the error of the loads, which is common to the gauges.
-/// If only the sum of a lorry's loads is known, one gauge alone determines its row hardly at all. Together with the other gauges, which determine
-/// the distribution of the load, it determines the row nearly as well as known loads:
+/// Returns a run's readings by gauge. `spread` is the part of the covariance of `e` from the error of the loads, which is common to the gauges. If
+/// only the sum of a lorry's loads is known, one gauge alone determines its row hardly at all. Together with the other gauges, which determine the
+/// distribution of the load, it determines the row nearly as well as known loads:
 ///
-/// `y_g + sum_h P_gh (y_h - s_h phi) / P_gg` over the other gauges, variance `1 / P_gg`, `P` the inverse of spread and own variances.
+/// `y_g + sum_h P_gh (y_h - s_h phi) / P_gg` over the other gauges, with variance `1 / P_gg`. `P` is the inverse of the matrix with `spread` off the
+/// diagonal and the variances of `e` on it.
 ///
-/// `s`: rows of S by gauge so far, `n` of them.
+/// `s` contains the current rows of S by gauge, `n` of them.
 ///
 /// # Reference
 /// J. Besag, J. R. Stat. Soc. B 36 (1974) 192, section 4 (conditional distributions of a normal scheme, and their product as a likelihood).

@@ -16,10 +16,10 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 
 /// Chance under which left-out runs count as farther off than expected: then a factor is applied.
 const WIDEN: f64 = 0.05;
-/// Chance, over all runs together, under which a run contradicts the others beyond doubt and is not used. Scatter of repeats has longer tails
-/// than a Gaussian (a truck off its lane), so that a thousandth is not enough.
+/// Chance over all runs together below which a run certainly contradicts the other runs and is not used. The scatter of repeats has longer tails than
+/// a Gaussian (a truck off its lane), so that a chance of 0.001 is not enough.
 pub(super) const REFUSE: f64 = 1e-6;
-/// Chance, over all runs together, under which a run is named and does not widen the intervals of the others.
+/// Chance over all runs together below which a run is reported and does not widen the intervals of the other runs.
 pub(super) const SUSPECT: f64 = 1e-3;
 
 /// Recovers every run from the other runs, if these determine it.
@@ -30,7 +30,8 @@ pub(super) fn leave_out(task: &Task, state: &State) -> Vec<LeftOut> {
         .collect()
 }
 
-/// Recovers used run `i` with S from the other runs except `beside`, and compares it with `loads`; `None` if these do not determine its loads.
+/// Recovers used run `i` with S from the other runs except `beside`, and compares it with `loads`. Returns `None` if those runs do not determine its
+/// loads.
 pub(super) fn recover_left_out(
     task: &Task,
     state: &State,
@@ -47,7 +48,7 @@ pub(super) fn recover_left_out(
     let order = (state.posterior.n * state.posterior.k) as f64;
     let affordable = order.powi(3) * state.used.len() as f64 <= AFFORDABLE;
     let cheap = affordable || state.equations.iter().all(Equation::is_by_gauge);
-    // Each gauge's own error of the model is learnt of the others alone too: learnt of this run as well, it lies nearer than a new one does.
+    // Each gauge's own model error is estimated without this run too. With this run included, the run would be closer to S than a new run.
     let learnt = task.model.as_ref().zip(state.error_evidence.as_ref());
     let learnt = learnt.filter(|_| cheap).map(|(model, evidence)| {
         let wrong = &state.wrongly_wired;
@@ -55,7 +56,7 @@ pub(super) fn recover_left_out(
         rows(model, &state.scales, errors.into_iter().enumerate())
     });
     let prior = learnt.as_deref().unwrap_or(&state.prior);
-    // Repeats that have something in common with it would tell that of this run too, as they will not of others.
+    // Repeats share an error with this run that new runs do not have, so that they are left out too.
     let group: Vec<usize> = (0..state.used.len())
         .filter(|j| task.runs[state.used[*j]].group == run.group)
         .collect();
@@ -69,10 +70,10 @@ pub(super) fn recover_left_out(
         true => solve_without_runs(state, prior, &out, &state.scatter_used)?,
         false => state.posterior.without_equation(&state.equations[i])?,
     };
-    // One wrong run may be all the scatter there is: what the others then leave is noise, and the run is held against that.
+    // A single wrong run may be the whole scatter. The residuals of the other runs are then noise, and the run is tested against noise.
     let scatters = state.scatter.dof.is_finite();
     let mut scatter = Scatter::none(posterior.n);
-    // Twice: with a wrong run among them the equations gave the others too little weight at first.
+    // Two rounds, because with a wrong run included the equations gave the other runs too little weight.
     let rounds = match (scatters, affordable) {
         (false, _) => 0,
         (true, false) => 1,
@@ -187,7 +188,7 @@ impl KnownLoadPart {
     }
 }
 
-/// Rounds between the scatter of the others and the posterior that it gives.
+/// Iterations between the scatter of the other runs and the posterior from this scatter.
 const ROUNDS: usize = 2;
 
 /// Returns the residuals of the runs other than `out` under this posterior.
@@ -207,7 +208,7 @@ fn others_left(
 
 /// Number of operations up to which every left-out run gets a separate posterior with separate scatter: about a second. Above it, the scatter behind
 /// the covariance of S (not the scatter of the run) includes the run's own share. Each gauge's error then comes from all runs if readings are
-/// correlated. No finding reports this: the left-out run appears slightly closer to the other runs, and applied intervals don't change.
+/// correlated. No finding reports this: the left-out run appears slightly closer to the other runs, and applied intervals do not change.
 const AFFORDABLE: f64 = 1e9;
 
 /// The posterior of the runs other than `out` with this scatter.
@@ -243,7 +244,7 @@ fn solve_without_runs(
     solve(prior, &equations)
 }
 
-/// Whether the other runs' loads span what those of `out` do.
+/// Returns whether the loads of the other runs span the loads of the runs `out`.
 fn others_span(state: &State, out: &[usize]) -> bool {
     let k = state.scales.len();
     let rank = |skip: &[usize]| {
@@ -279,21 +280,22 @@ fn mahalanobis(covariance: &[f64], x: &[f64]) -> Option<f64> {
     )
 }
 
-/// Mean of `distance / loads` where the covariance was estimated with `dof` degrees of freedom.
+/// Returns the mean of `distance / loads` if the covariance was estimated with `dof` degrees of freedom.
 fn expected_ratio(dof: f64) -> f64 {
     if dof > 4.0 && dof.is_finite() {
         dof / (dof - 2.0)
     } else if dof.is_finite() {
-        // The mean of F has no use at so few; its value at 4 degrees of freedom.
+        // The mean of F is too large or infinite here. Its value at 4 degrees of freedom replaces it.
         2.0
     } else {
         1.0
     }
 }
 
-/// Returns the factor for scatter estimated from runs. Few left-out runs that are far off need not be significant. The variance of the intervals
+/// Returns the factor for scatter estimated from runs. A few left-out runs that are far off need not be significant. The variance of the intervals
 /// relative to the scatter is its posterior mean, `(dof + runs z2) / (dof + runs)`, at least 1. The scatter, known with `dof` degrees of freedom,
-/// gives 1. The left-out runs give `z2`, their largest mean square. With more runs it adds less to the test of [`judge`].
+/// contributes 1. The left-out runs contribute `z2`, their largest mean square. The more runs there are, the less the factor adds to the test of
+/// [`judge`].
 ///
 /// # Reference
 /// A. Gelman and others, Bayesian Data Analysis (3rd ed., 2013), section 2.6: a variance with a scaled inverse chi-square prior.
@@ -370,7 +372,7 @@ fn region(loads: usize, dof: f64) -> f64 {
     }
 }
 
-/// Chance that a run lies at least as far off, where `scale` widens everything.
+/// Returns the chance that a run is at least as far off if `scale` widens all intervals.
 pub(super) fn chance(l: &LeftOut, scale: f64) -> f64 {
     crate::recovery::uncalibrated_strain::chance_estimated(
         l.distance / (scale * scale),
@@ -379,7 +381,7 @@ pub(super) fn chance(l: &LeftOut, scale: f64) -> f64 {
     )
 }
 
-/// How much farther than expected the runs in the middle lie: the ratio of medians, at least 1. One wrong run does not move it.
+/// Returns the root of the median squared distance over its expected value, at least 1. One wrong run does not change it.
 fn typical_scale(left_out: &[LeftOut]) -> f64 {
     let mut ratios: Vec<f64> = left_out
         .iter()
@@ -397,7 +399,7 @@ fn typical_scale(left_out: &[LeftOut]) -> f64 {
         .max(1.0)
 }
 
-/// The run that contradicts the others most, where it does so beyond doubt: its number.
+/// Returns the number of the run that contradicts the other runs most, if its chance is below `REFUSE`.
 pub(super) fn find_contradicting_run(left_out: &[LeftOut]) -> Option<usize> {
     let scale = typical_scale(left_out);
     let worst = left_out

@@ -17,7 +17,7 @@ pub(super) fn findings(task: &Task) -> Vec<Finding> {
     let k = task.loads.len();
     let known = |l: usize| -> Vec<f64> {
         let runs = task.runs.iter();
-        // A load that is not known exactly is the same as no other.
+        // A load with uncertainty equals no other load (NaN).
         runs.map(|r| match r.loads.covariance[l * k + l] == 0.0 {
             true => r.loads.mean[l],
             false => f64::NAN,

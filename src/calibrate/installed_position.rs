@@ -1,8 +1,8 @@
 //! Position, angle and gain of each gauge, as determined from the runs.
 //!
-//! With `r` a row of S and `u = (gain, along, across, angle)`, the prior of a row is `r = r0 + D' u + e`: `D` contains the row itself and its change
-//! with each move, `e` is the model's error entry by entry. From the posterior of `r`, mean `m` and covariance `V`, the posterior of `u` is
-//! `E = K (m - r0)`, `Cov = C - K D' C + K V K'` with `K = C D (D' C D + E_e)^-1`, C the prior of `u`.
+//! With `r` a row of S and `u = (gain, along, across, angle)`, the prior of a row is `r = r0 + D' u + e`. `D` contains the row itself and its change
+//! with each move. `e` is the error of the model in each entry, with covariance `E_e`. The posterior of `r` has mean `m` and covariance `V`, and `u`
+//! has the prior covariance `C`. The posterior of `u` is `E = K (m - r0)`, `Cov = C - K D' C + K V K'` with `K = C D (D' C D + E_e)^-1`.
 
 use super::state::State;
 use super::types::{AsGlued, Glue, ModelError, ModelPrior, Task};
@@ -21,7 +21,7 @@ pub(super) fn as_glued(task: &Task, state: &State, all: Option<ModelError>) -> V
     let gauges = state.row_errors.iter().enumerate();
     let glued = gauges.map(|(g, error)| {
         let mut glued = estimate_as_glued(model, state, g, error.common)?;
-        // Its own error was learnt from its readings: it is not what was known before.
+        // The gauge's own error was estimated from its readings, so that the stated value is the error of all gauges.
         glued.gain.stated = all.common;
         Some(glued)
     });

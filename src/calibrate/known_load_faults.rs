@@ -1,4 +1,4 @@
-//! Known loads of a calibration, as the search for wrong inputs takes them. A prior that is off by a unit or a sign must not be learnt from: all
+//! Known loads of a calibration as input of the search for wrong inputs. A model with a wrong unit or sign must not be the prior. Otherwise the whole
 //! strain of the loads would count as scatter of the runs.
 
 use super::start::is_known;
@@ -32,8 +32,8 @@ pub(super) fn wrong_loads(task: &Task, used: &[usize], wrongly_wired: Vec<usize>
     findings_of_recorded_loads(&runs, "the runs file")
 }
 
-/// Returns the findings on gauges that known loads show an offset, another unit, or one reading of in all runs; without a model there are none. What
-/// their rows of S show is in `shifts`. S holds what the runs show: none is an error.
+/// Returns the findings on gauges for which known loads show an offset, another unit, or the same reading in all runs. Without a model there are
+/// none. `shifts` contains the faults that the rows of S show. S includes the effect of these faults, so that no finding is an error.
 pub(super) fn wrong_gauges(task: &Task, used: &[usize], shifts: &[GaugeShift]) -> Vec<Finding> {
     let Some(model) = &task.model else {
         return Vec::new();

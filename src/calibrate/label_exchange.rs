@@ -76,10 +76,10 @@ fn is_certain(task: &Task, state: &State, at: [usize; 2], tried: usize) -> bool 
     own * (tried as f64) < REFUSE
 }
 
-/// Returns the residual sum of squares of all runs by least squares, and its value with each pair of different known loads exchanged:
+/// Returns the residual sum of squares of all runs by least squares, and its value with each pair of different known loads exchanged.
 ///
-/// with `X` the loads by run, `Y` the strain, `G = X'X`, `B = X'Y`, an exchange of rows `i` and `j` of `X` does not change `G` and adds
-/// `(x_i - x_j)(y_j - y_i)'` to `B`; the residual is `|Y|^2 - tr(B' G^-1 B)`.
+/// `X` are the loads by run, `Y` the strain, `G = X'X` and `B = X'Y`. An exchange of rows `i` and `j` of `X` does not change `G` and adds
+/// `(x_i - x_j)(y_j - y_i)'` to `B`. The residual is `|Y|^2 - tr(B' G^-1 B)`.
 fn left_by_pair(task: &Task, state: &State) -> Option<(f64, Vec<Pair>)> {
     let (n, k) = (state.posterior.n, state.posterior.k);
     let known: Vec<bool> = (state.used.iter())
@@ -94,7 +94,7 @@ fn left_by_pair(task: &Task, state: &State) -> Option<(f64, Vec<Pair>)> {
             false => e.phi.clone(),
         })
         .collect();
-    // A reading that is missing is what S makes of the loads: it has no part in it.
+    // A missing reading is replaced by the prediction of S, so that it does not contribute to the residual.
     let y: Vec<Vec<f64>> = (state.used.iter().zip(&x))
         .map(|(r, x)| {
             let made = state.posterior.predict(x);

@@ -19,14 +19,14 @@ use std::collections::BTreeMap;
 /// Limits of the tests.
 #[derive(Clone, Copy, Debug)]
 struct FitRules {
-    /// Chance, over all gauges and terms of a kind, under which a term is taken for one: three kinds are tested, and one calibration of 300
-    /// without any is to have one.
+    /// Chance below which a term is significant, over all gauges and terms of a kind. Three kinds are tested, and one calibration in 300 without any
+    /// such term may report one.
     significant: f64,
-    /// Square of a term that the loads themselves do not make, over its own: a term below it is a combination of the loads.
+    /// Least share of a term's square that the loads themselves do not make. A term with less is a combination of the loads.
     apart: f64,
     /// Terms found at most: a structure that needs more is not described by second order.
     most: usize,
-    /// Loadings beyond the coefficients of a gauge that a test needs: Student's t with one alone decides nothing.
+    /// Least number of loadings beyond the coefficients of a gauge that a test needs. Student's t with one degree of freedom decides nothing.
     fewest: usize,
 }
 
@@ -53,11 +53,11 @@ impl Candidate {
     }
 }
 
-/// Terms found, and what they do.
+/// Terms found, and their effects.
 pub(super) struct LackOfFitTest {
     pub answer: LackOfFit,
     pub findings: Vec<Finding>,
-    /// Covariance of readings that the terms make over the loadings, `n x n` by rows; empty where no term is found.
+    /// Covariance of readings that the terms make over the loadings, `n x n` by rows; empty if no term is found.
     pub covariance: Vec<f64>,
 }
 
@@ -144,7 +144,7 @@ struct CandidateTest {
     p: f64,
 }
 
-/// The clearest term of each kind, one more than those `added`: `F = (RSS - RSS') / (RSS' / (m - p - 1))` for `m` loadings and `p` coefficients.
+/// Returns the clearest term of each kind that is not in `added`: `F = (RSS - RSS') / (RSS' / (m - p - 1))` for `m` loadings and `p` coefficients.
 ///
 /// # Reference
 /// N. R. Draper, H. Smith, Applied Regression Analysis (3rd ed., 1998), section 6.1: the extra sum of squares.
@@ -217,7 +217,7 @@ fn basis(read: &[&Loading], root: &[f64], added: &[Candidate]) -> Vec<Vec<f64>> 
     for mut x in (0..k + added.len()).map(column) {
         let own = spd::dot(&x, &x);
         project_out(&mut x, &out);
-        // Twice is enough against rounding.
+        // The second projection removes the rounding error of the first.
         project_out(&mut x, &out);
         let size = spd::dot(&x, &x);
         if size > RULES.apart * RULES.apart * own && size > 0.0 {
@@ -256,7 +256,7 @@ fn changes(loadings: &[Loading], added: &[Candidate]) -> Vec<Vec<f64>> {
     out
 }
 
-/// Mean over the loadings of the squares of the changes, or what a common zero makes of a small load where it is larger.
+/// Returns the mean over the loadings of the squared changes, or the effect of a common zero on a small load if it is larger.
 fn covariance(loadings: &[Loading], changes: &[Vec<f64>], added: &[Candidate]) -> Vec<f64> {
     let n = changes.first().map_or(0, Vec::len);
     let mut out = vec![0.0; n * n];
@@ -308,7 +308,7 @@ fn zero_by_gauge(loadings: &[Loading], added: &[Candidate]) -> Vec<f64> {
         .collect()
 }
 
-/// The finding on the terms of a kind, with what they do to the loads.
+/// Returns the finding on the terms of a kind, with their effect on the loads.
 fn finding(
     task: &Task,
     state: &State,
@@ -322,7 +322,7 @@ fn finding(
         .copied()
         .collect();
     let own: Vec<Candidate> = kind.iter().map(|t| t.candidate).collect();
-    // What these terms change beside the others that were found.
+    // Change that these terms make in addition to the other terms.
     let with = changes(loadings, added);
     let without = match rest.is_empty() {
         true => vec![vec![0.0; task.gauges.len()]; loadings.len()],

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 pub(super) struct Loading {
     /// Loads of unit size, the common zero among them.
     pub phi: Vec<f64>,
-    /// Strain; not a number where a gauge has none.
+    /// Strain; not a number if a gauge has none.
     pub strain: Vec<f64>,
     /// Weight by gauge: runs over the variance of one.
     pub weight: Vec<f64>,

@@ -1,12 +1,14 @@
 //! S from runs of known load, combined with the model's S if the job has a model.
 //!
-//! `eps_r = S f_r + e_r`, S unknown with a Gaussian prior: rows of the model with a stated relative error (`prior`), or almost no information.
-//! `posterior` solves for all entries together, because the scatter of repeats (`scatter`) is correlated across gauges. `known` carries the
-//! errors of the loads. `held_out` leaves out run by run and states how far intervals must be widened. `exchanged` finds two runs with each
-//! other's label. `shift` computes the shift of each gauge, `cause` its cause by the `evidence` of its readings, `glued` its installed
-//! position. `next` finds the load with the most information, `undetermined` the combinations that no run determines, `unknown` the directions
-//! that runs with a known sum leave open. `lack_of_fit` tests terms beyond the straight line, `common_zero` models one of them, `check`
-//! recovers check runs.
+//! `eps_r = S f_r + e_r`. S is unknown with a Gaussian prior: rows of the model with a stated relative error (`prior`), or almost no information.
+//! `posterior` solves for all entries together, because the scatter of repeats (`scatter`) is correlated across gauges. `load_correction` corrects
+//! uncertain known loads. `held_out` leaves out each run in turn and states how far intervals must be widened. `label_exchange` finds two runs with
+//! exchanged labels.
+//!
+//! `shift` computes the shift of each gauge. `cause` finds its cause by the `evidence` of its readings, and `installed_position` estimates its
+//! position. `next` finds the load with the most information. `undetermined_combinations` finds the combinations that no run determines.
+//! `unknown_directions` finds the directions that runs with a known sum leave open. `lack_of_fit` tests terms beyond the straight line, `common_zero`
+//! models one of them, and `check` recovers check runs.
 
 mod as_glued;
 mod cause;

@@ -11,7 +11,7 @@ const STEPS: i32 = 8;
 /// Uncertainty of the stated error, 1 sd of its natural logarithm: half or double is common.
 const STATED_LN_SD: f64 = 0.7;
 /// Degrees of freedom of Student's distribution over the gauges. Most rows of a model are better than its error. A few, where strain changes fast,
-/// are off by several times as much. Four is the usual choice if few data can't determine it.
+/// are off by several times as much. Four is the usual choice if few data cannot determine it.
 ///
 /// # Reference
 /// K. L. Lange, R. J. A. Little, J. M. G. Taylor, J. Am. Stat. Assoc. 84 (1989) 881.
@@ -189,8 +189,8 @@ pub(super) fn error_evidence(
     }
 }
 
-/// Each step of a gauge's own error with the log of its probability: Student's distribution of unit variance is a normal one whose variance `v`
-/// has the density `v^(-FREEDOM / 2 - 1) exp(-(FREEDOM - 2) / (2 v))`; times `v`, that of `ln v`.
+/// Returns each step of a gauge's own error with the log of its probability. Student's distribution of unit variance is a normal one with a random
+/// variance `v`. The density of `v` is `v^(-FREEDOM / 2 - 1) exp(-(FREEDOM - 2) / (2 v))`. Multiplied by `v`, it is the density of `ln v`.
 fn own_steps() -> Vec<(i32, f64)> {
     let log = |step: i32| {
         let v = factor(step).powi(2);
@@ -225,7 +225,7 @@ fn of_gauge(
         }
     };
     let total: f64 = logs.iter().flatten().map(weight).sum();
-    // Mean square of the gauge's own factor, by floor, times how probable the floor is.
+    // For each floor, the mean square of the gauge's own factor, times the probability of the floor.
     let mut squares = [0.0; FLOORS.len()];
     for (square, logs) in squares.iter_mut().zip(&logs) {
         let each = logs.iter().zip(own);
@@ -245,7 +245,8 @@ fn of_gauge(
     }
 }
 
-/// Log marginal likelihoods of each gauge's readings with one of the floors, for all steps that the error of all and a gauge's own make together.
+/// Log marginal likelihoods of each gauge's readings with one of the floors. The steps cover all products of the error common to all gauges and a
+/// gauge's own error.
 struct Table {
     logs: Vec<f64>,
     gauges: usize,
@@ -274,7 +275,7 @@ impl Table {
             };
             error.entries[floor] = stated * factor(entry);
             let rows = rows(model, scales, (0..n).map(|g| (g, error)));
-            // The part common to a gauge is one direction more: with what is known of the rest it costs a few products.
+            // The common error of a gauge's row adds one direction. Its likelihood costs a few products, because the other terms are known.
             let one = |((row, normal), s): ((&RowPrior, &NormalEquations), &Vec<f64>)| {
                 let e = RowEvidence::from_row_prior(&row.mean, &row.covariance, normal)?;
                 let (first, second) = e.orders(&[s.as_slice()]);

@@ -6,7 +6,7 @@ use crate::recovery::{ErrorModel, Readings, estimate};
 use crate::sensitivity::{Sensitivity, Uncertainty};
 use rayon::prelude::*;
 
-/// A load that could be applied, with what it would buy.
+/// A load that could be applied, with its benefit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NextRun {
     /// Loads, job units.
@@ -21,11 +21,11 @@ pub struct NextRun {
     pub sigma_after: f64,
 }
 
-/// Candidates by information gained, the best first; none where S is not calibrated. `sizes`: how large each load would be; every load by
-/// itself is tried, and all together.
+/// Returns candidates by information gained, the best first; no candidates if S is not calibrated. `sizes` states the size of each load. Each load
+/// alone and all loads together are tried.
 ///
 /// # Errors
-/// Sizes that are not one finite number a load.
+/// `sizes` does not contain one finite number for each load.
 pub fn next_runs(
     calibration: &Calibration,
     noise: f64,
@@ -118,7 +118,7 @@ fn evaluate_run(
     let lower = spd::cholesky(&total, n)?;
     let information = 0.5 * (spd::log_det(&lower, n) - spd::log_det(&spd::cholesky(&own, n)?, n));
     let root = spd::inverse_lower(&lower, n);
-    // Rows of L^-1 A V: the covariance of S after the run is V less the sum of their squares.
+    // Rows of L^-1 A V. The covariance of S after the run is V minus the sum of their outer products.
     let rows: Vec<Vec<f64>> = (0..n)
         .map(|i| {
             let mut row = vec![0.0; order];
@@ -151,7 +151,7 @@ fn evaluate_run(
     })
 }
 
-/// Covariance of the strain that load `l` at its size makes, `n x n`: scatter, and what its column of S is uncertain by.
+/// Returns the covariance of the strain of load `l` at its size, `n x n`: scatter plus the uncertainty of its column of S.
 fn strain_covariance(s: &Sensitivity, known: &Uncertainty, sizes: &[f64], l: usize) -> Vec<f64> {
     let (n, k) = s.values.shape();
     let (order, square) = (n * k, sizes[l] * sizes[l]);
@@ -164,7 +164,8 @@ fn strain_covariance(s: &Sensitivity, known: &Uncertainty, sizes: &[f64], l: usi
     (0..n * n).map(entry).collect()
 }
 
-/// Standard deviation of load `l`, recovered where it acts at its size and no other; `covariance` is that of its strain, noise left out.
+/// Returns the standard deviation of load `l`, recovered from a run in which it acts alone at its size. `covariance` is the covariance of its strain
+/// without noise.
 fn sigma(s: &Sensitivity, noise: f64, sizes: &[f64], l: usize, covariance: &[f64]) -> f64 {
     let Some(known) = &s.uncertainty else {
         return f64::NAN;

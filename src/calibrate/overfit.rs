@@ -1,18 +1,18 @@
 //! Correction of a shrunk scatter that is too small. Recovered loads are corrected by the readings outside the span of S. The factors of this
 //! correction come from the few runs that gave the scatter.
 //!
-//! With an orthonormal basis `U` of the columns of S, loads in these coordinates are `u = H U' C^-1 eps`, `H = (U' C^-1 U)^-1` their covariance,
-//! `C` the scatter. As a regression of `U' eps` on the other directions this is a ridge: shrinking keeps `1 - w` of the sample in these directions
-//! and adds `w` times their mean variance. The residuals of the calibration runs are smaller than those of other runs.
+//! With an orthonormal basis `U` of the columns of S, loads in these coordinates are `u = H U' C^-1 eps`. `H = (U' C^-1 U)^-1` is their covariance,
+//! and `C` is the scatter. As a regression of `U' eps` on the other directions this is a ridge. Shrinking keeps `1 - w` of the sample in these
+//! directions and adds `w` times their mean variance. The residuals of the calibration runs are smaller than the residuals of other runs.
 
 use crate::linalg::{Matrix, dense, spd};
 
-/// Returns the addition to the scatter, `n x n` by rows, that widens the intervals of loads to the scatter of other runs; `None` if they are wide
-/// enough.
+/// Returns the addition to the scatter, `n x n` by rows, that widens the intervals of loads to the scatter of other runs. Returns `None` if the
+/// intervals are wide enough.
 ///
-/// The addition is `(k - 1) U H U'`. It changes no estimate, because it is in the span of S.
-/// `k = tr(H^-1 V) / rank`, `V = H U' C^-1 A C^-1 U H / (1 - p / dof)^2` with the sample `A`. `V` is at most `U' A U`, the scatter of loads without
-/// any correction. `p = sum (1 - w) d / ((1 - w) d + w mean(d))` over the variances `d` of the other directions.
+/// The addition is `(k - 1) U H U'`. It changes no estimate, because it is in the span of S. The factor is `k = tr(H^-1 V) / rank`,
+/// `V = H U' C^-1 A C^-1 U H / (1 - p / dof)^2` with the sample `A`. `V` is at most `U' A U`, the scatter of loads without any correction.
+/// `p = sum (1 - w) d / ((1 - w) d + w mean(d))` over the variances `d` of the other directions.
 ///
 /// # Reference
 /// G. H. Golub, M. Heath, G. Wahba, Technometrics 21 (1979) 215: generalised cross-validation of a ridge.
@@ -67,7 +67,7 @@ pub(super) fn overfit_scatter(
     })
 }
 
-/// Factors that the ridge has learnt, `p`.
+/// Effective number of factors of the ridge, `p`.
 fn effective_factor_count(sample: &[f64], basis: &[Vec<f64>], w: f64) -> f64 {
     let n = basis.first().map_or(0, Vec::len);
     let outside = |x: &mut [f64]| {
@@ -81,7 +81,7 @@ fn effective_factor_count(sample: &[f64], basis: &[Vec<f64>], w: f64) -> f64 {
     rest.chunks_exact_mut(n.max(1)).for_each(outside);
     let mut rest: Vec<f64> = (0..n * n).map(|i| rest[i % n * n + i / n]).collect();
     rest.chunks_exact_mut(n.max(1)).for_each(outside);
-    // Ascending: the first are those of the basis, zero but for rounding.
+    // Eigenvalues ascend. The first ones belong to the basis and are zero except for rounding.
     let mut variances = spd::eigenvalues(&rest, n);
     variances.drain(..basis.len().min(n));
     let mean = variances.iter().sum::<f64>() / variances.len().max(1) as f64;
@@ -92,7 +92,7 @@ fn effective_factor_count(sample: &[f64], basis: &[Vec<f64>], w: f64) -> f64 {
     variances.iter().map(kept).sum()
 }
 
-/// Orthonormal patterns over the gauges that loads make; `None` where numbers are not finite.
+/// Returns orthonormal patterns over the gauges that loads make; `None` if numbers are not finite.
 pub(super) fn basis(columns: &Matrix) -> Option<Vec<Vec<f64>>> {
     let d = dense::svd(&dense::unit_columns(columns))?;
     let limit = d.s.first().copied().unwrap_or(0.0) * dense::RANK_TOLERANCE;

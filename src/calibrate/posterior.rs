@@ -28,7 +28,7 @@ pub(super) struct Posterior {
     pub covariance: Vec<f64>,
 }
 
-/// The posterior: precision `blockdiag(P_g^-1) + sum_r R_r^-1 (x) phi_r phi_r'`. `None` where a covariance is not positive definite.
+/// Returns the posterior with precision `blockdiag(P_g^-1) + sum_r R_r^-1 (x) phi_r phi_r'`. `None` if a covariance is not positive definite.
 pub(super) fn solve(prior: &[RowPrior], equations: &[Equation]) -> Option<Posterior> {
     let n = prior.len();
     let k = prior.first().map_or(0, |p| p.mean.len());
@@ -124,7 +124,7 @@ fn solve_by_gauge(prior: &[RowPrior], equations: &[Equation]) -> Option<Posterio
 }
 
 impl Equation {
-    /// Whether the errors of its readings are independent of each other.
+    /// Returns whether the errors of its readings are independent of each other.
     pub fn is_by_gauge(&self) -> bool {
         let step = self.gauges.len() + 1;
         let mut entries = self.covariance.iter().enumerate();
@@ -168,7 +168,7 @@ impl Posterior {
         project(&columns, gauges, phi, self.k)
     }
 
-    /// The posterior without one of its equations; `None` where the rest does not determine it.
+    /// Returns the posterior without one of its equations; `None` if the other equations do not determine it.
     ///
     /// `s' = s - V A' M^-1 (y - A s)`, `V' = V + V A' M^-1 A V`, `M = R - A V A'`.
     pub fn without_equation(&self, e: &Equation) -> Option<Self> {
@@ -218,7 +218,7 @@ impl Posterior {
     }
 }
 
-/// `a += x x'`, where `x` is zero but for a stretch: that of one gauge where errors do not go across gauges.
+/// Adds `x x'` to `a`. `x` is zero outside one stretch, which is a single gauge if errors are independent across gauges.
 fn add_outer_within(a: &mut [f64], x: &[f64]) {
     let order = x.len();
     let from = x.iter().position(|v| *v != 0.0).unwrap_or(order);

@@ -14,8 +14,8 @@ pub(super) struct RowPrior {
 /// Standard deviation of an entry without a model over the largest strain measured: no information, but invertible.
 const DIFFUSE: f64 = 100.0;
 /// Shares of a row's root mean square below which an entry's error no longer falls with the entry. The first is for errors proportional to the
-/// entries, as of a stiffness: an entry that is zero in the model is not known exactly. The second, the root mean square itself, is for errors
-/// proportional to all the strain around the gauge, as of a mesh: the errors of all entries below it are equal.
+/// entries, such as errors of a stiffness. An entry that is zero in the model is not known exactly. The second, the root mean square itself, is for
+/// errors proportional to all the strain around the gauge, such as mesh errors. The errors of all entries below it are equal.
 pub(super) const FLOORS: [f64; 2] = [0.1, 1.0];
 /// Share of the root mean square of all rows that replaces the root mean square of a smaller row. A smaller row gives no scale for entries near zero.
 const SMALL_ROW: f64 = 0.1;
@@ -51,8 +51,9 @@ pub(super) fn diffuse_prior(n: usize, k: usize, largest_strain: f64) -> Vec<RowP
     vec![row; n]
 }
 
-/// With a model: `common^2 s s' + sum entry^2 diag(max(s^2, floor^2 q^2)) + sum sd^2 t t'` a row, `s` the row, `q` its root mean square, `t` its
-/// change with each move of the gauge, the first sum over [`FLOORS`], and the errors those of the gauge.
+/// Returns the prior of each row from a model. The covariance of a row is `common^2 s s' + sum entry^2 diag(max(s^2, floor^2 q^2)) + sum sd^2 t t'`.
+/// `s` is the row, `q` its root mean square, and `t` its change with each move of the gauge. The first sum is over [`FLOORS`], and the errors are the
+/// errors of the gauge.
 pub(super) fn rows(
     model: &ModelPrior,
     scales: &[f64],

@@ -1,11 +1,11 @@
-//! Range of what a calibration was made with.
+//! Range of the runs of a calibration.
 
 use super::types::{CalibratedRange, Task};
 use super::unknown_directions::known_of;
 
 impl CalibratedRange {
-    /// Range of the runs with these numbers, strain less the zero of each gauge. A run in which a load is not known does not count for the range
-    /// of this load.
+    /// Returns the range of the runs with these numbers, with strain minus the zero of each gauge. A run without a known value of a load does not
+    /// count for the range of this load.
     pub(super) fn from_runs(task: &Task, used: &[usize], zero: &[f64]) -> Self {
         let over = |value: &dyn Fn(usize) -> Option<f64>| {
             let values = used.iter().filter_map(|r| value(*r));
@@ -22,7 +22,7 @@ impl CalibratedRange {
         }
     }
 
-    /// Largest size of load `l`; 0 where no run has it.
+    /// Returns the largest size of load `l`; 0 if no run has it.
     pub fn largest_load(&self, l: usize) -> f64 {
         let [low, high] = self.loads.get(l).copied().unwrap_or([0.0; 2]);
         low.abs().max(high.abs())

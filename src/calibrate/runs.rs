@@ -1,4 +1,4 @@
-//! Words for runs that contradict the others.
+//! Findings on runs that contradict the other runs.
 
 use super::held_out::suspects;
 use super::types::{LeftOut, Task};
@@ -82,5 +82,5 @@ fn words(task: &Task, l: &LeftOut) -> String {
     )
 }
 
-/// Misfit (chi2 over its degrees of freedom) from which strain is that of no loads at all.
+/// Misfit (chi2 over its degrees of freedom) above which no loads explain the strain.
 const STRANGE: f64 = 3.0;

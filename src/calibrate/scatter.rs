@@ -1,4 +1,4 @@
-//! Scatter of repeats: covariance over gauges of what the fitted runs leave, shrunk because runs are few and gauges many.
+//! Scatter of repeats: covariance over gauges of the residuals of the fitted runs, shrunk because runs are few and gauges many.
 
 use super::overfit;
 use crate::estimate::chi_square_tail;
@@ -9,14 +9,14 @@ use std::collections::BTreeMap;
 /// Scatter over gauges in units of the run's root mean square strain.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Scatter {
-    /// `n x n` by rows; zeros where noise explains everything.
+    /// `n x n` by rows; zeros if noise explains everything.
     pub covariance: Vec<f64>,
-    /// Degrees of freedom behind `covariance`; infinite where it is zero.
+    /// Degrees of freedom behind `covariance`; infinite if it is zero.
     pub dof: f64,
     /// Degrees of freedom of a pattern outside the span of S. Shrinking such patterns towards their common mean raises them.
     pub dof_outside: f64,
-    /// Share of the variance that repeats of one loading have in common: the error of S for that loading, or a property of that loading (a truck's
-    /// axles, the position in a lane). Zero if repeats differ from each other as much as from S.
+    /// Share of the variance that repeats of one loading have in common. The cause is the error of S for that loading, or a property of that loading
+    /// (a truck's axles, the position in a lane). Zero if repeats differ from each other as much as from S.
     pub common: f64,
 }
 
@@ -35,7 +35,7 @@ pub(super) struct RunResiduals {
 
 /// Chance under which residuals count as larger than noise makes them.
 const SIGNIFICANT: f64 = 1e-3;
-/// Degrees of freedom below which the scatter can't be separated from the fit.
+/// Degrees of freedom below which the scatter cannot be separated from the fit.
 const FEWEST: f64 = 0.9;
 
 impl Scatter {
@@ -58,13 +58,13 @@ impl Scatter {
         1.0 + (repeats.max(1) - 1) as f64 * self.common
     }
 
-    /// Estimates the scatter from the residuals of runs. `fitted` is the number of runs' worth of freedom that the fit of S took from each gauge.
-    /// `columns` are the columns of S by gauge.
+    /// Estimates the scatter from the residuals of runs. `fitted` is the number of degrees of freedom, counted in runs, that the fit of S took from
+    /// each gauge. `columns` are the columns of S by gauge.
     ///
-    /// Scatter is of two kinds: patterns that loads make (size and place of the load: dynamic share, lateral place), which determine the scatter of
-    /// recovered loads, and all other patterns. The sample is shrunk towards a target that separates these kinds: the block within the span of S,
-    /// shrunk towards its mean, and the mean of the rest, without cross terms. The result underestimates the scatter of loads; [`overfit`] gives the
-    /// difference, which is added.
+    /// Scatter is of two kinds. Patterns that loads make (size and place of the load: dynamic share, lateral place) determine the scatter of
+    /// recovered loads. All other patterns are the second kind. The sample is shrunk towards a target that separates these kinds, without cross
+    /// terms. The first block of the target is the block within the span of S, shrunk towards its mean. The second block is the mean of the other
+    /// patterns. The result underestimates the scatter of loads. [`overfit`] gives the difference, which is added.
     ///
     /// # Reference
     /// Weight of the target: Y. Chen, A. Wiesel, Y. C. Eldar, A. O. Hero, IEEE Trans. Signal Process. 58 (2010) 5016, eq. 23 (oracle
@@ -93,7 +93,7 @@ impl Scatter {
             explained,
         } = Sample::from_residuals(runs, n, dof);
         let trace: f64 = (0..n).map(|g| sample[g * n + g]).sum();
-        // Noise stands in the residuals too; it is counted beside the scatter.
+        // The residuals contain noise too, which is counted in addition to the scatter.
         let noise_share = explained * n as f64 / trace;
         let keep = (1.0 - noise_share).max(LEAST_KEPT);
         let shrink = shrinkage(&sample, n, dof);
@@ -109,7 +109,7 @@ impl Scatter {
             covariance: all.map(|(c, a)| keep * (c + a)).collect(),
             dof,
             dof_outside: dof_of_shrunk(dof, shrink, outside),
-            // Noise is no part of what repeats have in common.
+            // Noise does not contribute to the common error of repeats.
             common: (common / keep).min(1.0),
         }
     }
@@ -141,10 +141,11 @@ struct Squares {
 }
 
 impl Sample {
-    /// With groups whose runs leave more alike than chance makes them it is a sum of the two variances, that within groups and that between
-    /// them, each with its own degrees of freedom; else the runs are independent. `dof`: runs less what the fit of S took.
+    /// Computes the covariance of residuals. If the residuals in a group are more similar than chance allows, it is the sum of two variances: within
+    /// groups and between groups. Each variance has its own degrees of freedom. Otherwise the runs are independent. `dof` is the number of runs minus
+    /// the degrees of freedom that the fit of S took.
     ///
-    /// `W = SS_within / (R - G)`, `M = SS_between / (G - fitted)`, `C = W + (M - W) / m`, `m` the runs of a group.
+    /// `W = SS_within / (R - G)`, `M = SS_between / (G - fitted)`, `C = W + (M - W) / m`, with `m` runs in a group.
     ///
     /// # Reference
     /// S. R. Searle, G. Casella, C. E. McCulloch, Variance Components (1992), chapter 3 (analysis of variance, one way); degrees of freedom
@@ -162,7 +163,8 @@ impl Sample {
         }
         let explained = explained / readings.max(1.0);
         let all = kept.len() as f64;
-        // Of a pair of gauges, by how many runs have the one and the other: by those that have both, it need not be a covariance.
+        // The divisor of a pair of gauges comes from the number of runs of each gauge. With the number of runs that have both, the result need not be
+        // a covariance.
         let scaled = |squares: &[f64], dof: f64| -> Vec<f64> {
             let share = |g: usize| (read[g] * dof / all).max(FEWEST.min(dof));
             let pairs = squares.iter().enumerate();
@@ -191,7 +193,7 @@ impl Sample {
         let between = scaled(&between, of_between);
         let trace = |c: &[f64]| (0..n).map(|g| c[g * n + g]).sum::<f64>();
         let (w, m) = (trace(&within), trace(&between));
-        // Gauges scatter together: as many independent ones as their covariance has directions.
+        // Gauges scatter together. The number of independent gauges is the number of directions of their covariance.
         let patterns = trace(&total).powi(2) / total.iter().map(|v| v * v).sum::<f64>();
         let chance = FisherSnedecor::new(of_between * patterns, of_within * patterns)
             .map_or(1.0, |f| f.sf(m / w));
@@ -215,7 +217,7 @@ impl Sample {
     }
 }
 
-/// Chance of repeats that leave so much alike, where they are independent, under which they are not.
+/// Chance below which repeats with such similar residuals are not independent.
 const ALIKE: f64 = 0.05;
 
 impl Squares {
@@ -306,8 +308,8 @@ fn target(sample: &[f64], columns: &Matrix, dof: f64) -> Vec<f64> {
 /// Share of the residuals' variance that is kept as scatter however large the stated noise.
 const LEAST_KEPT: f64 = 0.05;
 
-/// Degrees of freedom of a variance that is `1 - w` times a sample's in one of `n` patterns, of `dof` each, and `w` times their mean, all of one
-/// size (the relative variance of such an estimate is 2 over them):
+/// Returns the degrees of freedom of a shrunk variance. It is `1 - w` times a sample's variance in one of `n` patterns, of `dof` each, plus `w` times
+/// their mean. All patterns have one size, and the relative variance of such an estimate is 2 over its degrees of freedom.
 ///
 /// `1 / v = ((1 - w)^2 + (1 - (1 - w)^2) / n) / dof`
 ///
@@ -336,7 +338,7 @@ fn shrinkage(sample: &[f64], n: usize, dof: f64) -> f64 {
 /// believed.
 const SHRINK_LEAST: f64 = 0.02;
 
-/// Whether the residuals are larger than noise makes them.
+/// Returns whether the residuals exceed the noise.
 fn exceeds_noise(runs: &[RunResiduals], dof: f64) -> bool {
     let (mut chi2, mut readings) = (0.0, 0usize);
     for r in runs {

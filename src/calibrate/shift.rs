@@ -1,4 +1,4 @@
-//! How far each gauge's row moved, and what that looks like.
+//! Shift of each gauge's row, and its likely cause.
 
 use super::cause::off_drawing;
 use super::prior::rows as model_rows;
@@ -8,7 +8,7 @@ use crate::finding::{Finding, Severity};
 use crate::linalg::precision::Precision;
 use crate::linalg::spd;
 
-/// Distance from which a shift is worth a word.
+/// Distance above which a shift is reported.
 const NOTABLE: f64 = 3.0;
 /// Share of the shift that one cause must explain to be named.
 const EXPLAINED: f64 = 0.8;
@@ -22,7 +22,7 @@ const SAME: f64 = 0.3;
 /// Largest posterior sd, over the change that a cause makes, at which the runs separate the cause from no change.
 const TOLD: f64 = 0.2;
 
-/// A gauge's row in loads of unit size: as the model has it and as calibrated, with the latter's covariance.
+/// Row of a gauge for loads of unit size: from the model, and as calibrated with its covariance.
 struct Row {
     model: Vec<f64>,
     found: Vec<f64>,
@@ -73,8 +73,8 @@ impl Row {
     }
 }
 
-/// Every gauge's shift. The distance is measured with the model's error as learnt from the others: not from the gauge itself, nor from those
-/// that something is wrong with, since one turned gauge makes any error of the model probable.
+/// Returns the shift of every gauge. The distance is measured with the model error that the other gauges determine. The gauge itself and gauges with
+/// a known fault do not contribute, since one reversed gauge makes any error of the model probable.
 pub(super) fn check(task: &Task, state: &State) -> Vec<GaugeShift> {
     let n = task.gauges.len();
     let Some((model, evidence)) = task.model.as_ref().zip(state.error_evidence.as_ref()) else {
@@ -91,7 +91,7 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<GaugeShift> {
             (spd::dot(&p.apply(&moved), &moved) / k.max(1) as f64).sqrt()
         })
     };
-    // What needs no judgement of the model first.
+    // Faults that need no estimate of the model error.
     let mut words: Vec<Option<ShiftWord>> = vec![None; n];
     for (g, row) in rows.iter().enumerate() {
         let expected = row.model.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
@@ -109,7 +109,7 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<GaugeShift> {
     }
     for (g, (word, row)) in words.iter_mut().zip(&rows).enumerate() {
         if word.is_none() && row.scale().abs() < DEAD {
-            // A gauge glued across may read next to nothing of what it should, and still reads.
+            // A gauge installed across its axis may read almost nothing without being dead.
             let error = evidence.most_probable(&[g]);
             let turned = off_drawing(model, &state.scales, evidence, error, g);
             let turned = turned.filter(|w| *w == ShiftWord::Angle);
@@ -128,7 +128,8 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<GaugeShift> {
         }
         let news = (0..n).filter(|g| words[*g].is_none() && shifts[*g] >= NOTABLE);
         let news: Vec<usize> = news.collect();
-        // With most gauges far off it is the model's error that is large, not the gauges that are wrong: they are named and stay in it.
+        // If most gauges are far off, the error of the model is large and the gauges are not wrong. They are reported and stay in the estimate of the
+        // model error.
         let stop = news.is_empty() || 2 * (wrong.len() + news.len()) > n;
         for g in news {
             let mut without = wrong.clone();
@@ -156,7 +157,8 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<GaugeShift> {
     .collect()
 }
 
-/// Gauges whose sign is turned, that are exchanged, or dead, unless they are half of all: then it is rather the loads that are wrong.
+/// Returns the gauges with reversed sign, exchanged gauges and dead gauges. If they are half of all gauges or more, the loads are more likely wrong,
+/// and the list is empty.
 pub(super) fn wrongly_wired(shifts: &[GaugeShift]) -> Vec<usize> {
     let is = |w: &ShiftWord| {
         matches!(
@@ -202,7 +204,7 @@ fn find_exchanged_pairs(rows: &[Row]) -> Vec<(usize, usize)> {
             let Some((x, y)) = off.zip(second.explained_by(&first.model)) else {
                 continue;
             };
-            // Two turned gauges of a pair above and below look much the same.
+            // Two reversed gauges on top and bottom look much like two exchanged gauges.
             let turned = first
                 .reversed_sign_distance()
                 .zip(second.reversed_sign_distance());
@@ -228,7 +230,7 @@ fn cause(row: &Row, off_drawing: Option<ShiftWord>) -> ShiftWord {
         .zip(&row.model)
         .map(|(a, b)| a - b)
         .collect();
-    // Of the square of the change, what a gain explains.
+    // Share of the squared change that a gain explains.
     let own = spd::dot(&row.model, &row.model);
     let all = spd::dot(&moved, &moved);
     let gain = spd::dot(&row.model, &moved).powi(2);
@@ -252,7 +254,7 @@ pub(super) fn findings(task: &Task, shifts: &[GaugeShift]) -> Vec<Finding> {
         .model
         .as_ref()
         .map_or(0.0, |m| 100.0 * m.uncertainty_rel);
-    // Of two exchanged gauges the first speaks for both.
+    // The finding on the first of two exchanged gauges is for both.
     let notable = shifts.iter().enumerate().filter(|(g, s)| match s.word {
         ShiftWord::None => false,
         ShiftWord::Exchanged { with } => *g < with,

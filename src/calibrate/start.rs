@@ -1,4 +1,4 @@
-//! S to begin with where no model gives one: from the runs whose loads are known, or from what is known of each.
+//! First S if the job has no model: from the runs with known loads, or from the known part of the loads of each run.
 
 use super::posterior::{Equation, Posterior, solve};
 use super::prior::RowPrior;
@@ -6,7 +6,7 @@ use super::types::{KnownRun, Task};
 use super::unknown_directions::{SPANNED, UNKNOWN, UnknownDirections, project_out, span_alike};
 use crate::linalg::{Matrix, dense, spd};
 
-/// Whether every load of a run is known to better than [`UNKNOWN`] of its size.
+/// Returns whether every load of a run is known to better than [`UNKNOWN`] of its size.
 pub(super) fn is_known(run: &KnownRun, sizes: &[f64]) -> bool {
     let k = sizes.len();
     (0..k).all(|l| {
@@ -67,8 +67,9 @@ fn with_noise(task: &Task, run: &KnownRun, phi: Vec<f64>) -> Equation {
     }
 }
 
-/// Returns rows of S by gauge if no run determines the loads along some directions. For the known parts of the loads they come from least squares.
-/// Along the free directions they are the patterns over gauges in the remaining strain, the largest first, each for loads of a root mean square of 1.
+/// Returns rows of S by gauge if no run determines the loads along some directions. For the known parts of the loads, the rows come from least
+/// squares. Along the free directions, they are the patterns over gauges in the remaining strain, the largest first. Each pattern is for loads of a
+/// root mean square of 1.
 ///
 /// # Reference
 /// M. E. Tipping, C. M. Bishop, J. R. Stat. Soc. B 61 (1999) 611: principal components are the most probable columns if noise is equal.

@@ -39,13 +39,13 @@ pub(super) struct State {
     pub repeats: Vec<usize>,
     /// Runs' worth of freedom that the fit took from each gauge.
     pub fitted: f64,
-    /// Error of the model in each gauge's row, as learnt; empty without a model.
+    /// Estimated error of the model in each gauge's row; empty without a model.
     pub row_errors: Vec<RowError>,
     /// Evidence for the model's error, gauge by gauge.
     pub error_evidence: Option<ErrorEvidence>,
     /// Gauges that are wired wrongly, which are excluded from the estimate of the model's error.
     pub wrongly_wired: Vec<usize>,
-    /// Covariance of readings at any load from terms that the model lacks, `n x n` by rows; empty where none is found.
+    /// Covariance of readings at any load from terms that the model lacks, `n x n` by rows; empty if none is found.
     pub lack: Vec<f64>,
 }
 
@@ -151,8 +151,8 @@ impl State {
     }
 }
 
-/// S of a posterior, for the loads of the job and readings less the common zero, with the terms of its intervals, in job units of load; `lack` as
-/// [`State::lack`].
+/// Returns S of a posterior with the terms of its intervals, in job units of load. It is for the loads of the job and for readings minus the common
+/// zero. See [`State::lack`] for `lack`.
 pub(super) fn sensitivity_of(
     task: &Task,
     (scales, posterior, scatter): (&[f64], &Posterior, &Scatter),
@@ -201,7 +201,7 @@ pub(super) fn sensitivity_of(
     }
 }
 
-/// Size of each load: the root mean square over the runs in which it acts, else `expected`, else that of the others.
+/// Returns the size of each load. It is the root mean square over the runs in which the load acts, else `expected`, else the size of the other loads.
 fn load_scales(task: &Task, runs: &[&KnownRun]) -> Vec<f64> {
     let rms = |l: usize| {
         let known: Vec<f64> = runs
@@ -230,7 +230,7 @@ fn rows_of(posterior: &Posterior) -> Vec<Vec<f64>> {
     rows.map(<[f64]>::to_vec).collect()
 }
 
-/// Rows of the model by gauge, as drawn, in loads of unit size.
+/// Returns the rows of the model by gauge at the nominal position, for loads of unit size.
 fn scaled_model_rows(model: &ModelPrior, scales: &[f64]) -> Vec<Vec<f64>> {
     let none = RowError {
         common: 0.0,
@@ -283,7 +283,7 @@ impl StartValues {
 /// Equation of a run for S.
 struct RunEquation {
     equation: Equation,
-    /// Readings' worth of freedom that the correction of its loads takes.
+    /// Degrees of freedom, counted in readings, that the correction of its loads takes.
     freedom: f64,
     /// Part of the equation's covariance that the loads' own error makes.
     spread: Vec<f64>,

@@ -1,4 +1,4 @@
-//! Error of left-out runs with and without a common zero: what recommends the terms of the model.
+//! Error of left-out runs with and without a common zero, on which the recommended terms of the model depend.
 
 use super::loading::Loading;
 use super::types::{HeldOutError, LackOfFit, Task};
@@ -6,7 +6,7 @@ use crate::linalg::{precision::Precision, spd};
 
 /// Loadings beyond the coefficients of a gauge from which errors are compared.
 const FEWEST: usize = 3;
-/// Held-out error of the recommended model over that of the simpler one: less is chance.
+/// Held-out error of the recommended model over the error of the simpler model. A smaller improvement is chance.
 const BETTER: f64 = 0.9;
 
 /// Error of left-out loadings with and without a common zero, by least squares with weights of the gauges.
@@ -37,7 +37,7 @@ fn left_out_error(loadings: &[&Loading], k: usize, with_zero: bool) -> Option<f6
     let weight: Vec<f64> = (0..n)
         .map(|g| loadings.iter().map(|l| l.weight[g]).sum::<f64>() / loadings.len() as f64)
         .collect();
-    // One weight a loading, alike for all gauges: the mean.
+    // One weight for each loading, equal for all gauges: the mean.
     let of_loading = |l: &Loading| {
         let share = l.weight.iter().zip(&weight).map(|(a, b)| a / b);
         share.sum::<f64>() / n as f64
@@ -80,7 +80,7 @@ fn left_out_error(loadings: &[&Loading], k: usize, with_zero: bool) -> Option<f6
 }
 
 impl LackOfFit {
-    /// Whether a common zero is recommended: left-out runs err less with it than chance makes.
+    /// Returns whether a common zero is recommended: it reduces the error of left-out runs by more than chance.
     pub fn recommends_intercept(&self) -> Option<bool> {
         let held_out = self.held_out?;
         Some(held_out.intercept < BETTER * held_out.linear)

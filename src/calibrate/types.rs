@@ -10,7 +10,7 @@ use crate::sensitivity::{GaugeNoise, Load, Sensitivity};
 pub struct KnownLoads {
     /// Mean by load.
     pub mean: Vec<f64>,
-    /// Covariance, `k x k` by rows; zero where a load is known exactly.
+    /// Covariance, `k x k` by rows; zero if a load is known exactly.
     pub covariance: Vec<f64>,
 }
 
@@ -30,7 +30,7 @@ impl KnownLoads {
 pub struct KnownRun {
     /// Name.
     pub run: String,
-    /// Strain by gauge, zero subtracted; NaN where a gauge gave nothing.
+    /// Strain by gauge, zero subtracted; NaN if a gauge has no reading.
     pub strain: Vec<f64>,
     /// Noise variance of these readings in units of the variance of a single reading.
     pub noise_factor: f64,
@@ -45,7 +45,7 @@ pub struct KnownRun {
 pub struct ModelPrior {
     /// `n x k`, strain per job unit.
     pub values: Matrix,
-    /// Ways in which gauges may sit off their drawing; empty where nothing is stated.
+    /// Ways in which gauges may differ from their nominal positions; empty if no tolerance is stated.
     pub moves: Vec<Move>,
     /// Change of rows for gauges that are not at their nominal position; `None` if it is not known, as for a table.
     pub off_drawing: Option<OffDrawing>,
@@ -61,7 +61,7 @@ pub struct OffDrawing {
     pub turned: Matrix,
     /// At a right angle to the nominal direction.
     pub crossed: Matrix,
-    /// Per length along its axis; zeros where strain is known at one place of an element only.
+    /// Per length along its axis; zeros if strain is known at one place of an element only.
     pub along: Matrix,
     /// Per length across it.
     pub across: Matrix,
@@ -101,7 +101,7 @@ pub enum CommonZero {
     None,
     /// To be found: `eps = S f + z`.
     Sought,
-    /// The last column of the task, for a load that is 1 in every run: how a calibration holds it inside.
+    /// The last column of the task, for a load that is 1 in every run. A calibration uses this form inside.
     Column,
 }
 
@@ -116,7 +116,7 @@ pub struct Task {
     pub noise: f64,
     /// Noise of the gauges in units of `noise`; `None` if each gauge has this noise, independent of other gauges.
     pub gauge_noise: Option<GaugeNoise>,
-    /// The model, where there is one.
+    /// The model, if the job has one.
     pub model: Option<ModelPrior>,
     /// Runs of known load.
     pub runs: Vec<KnownRun>,
@@ -138,7 +138,7 @@ impl Task {
     }
 }
 
-/// Smallest and largest value of the calibration runs by column; not a number where no run has one.
+/// Smallest and largest value of the calibration runs by column; not a number if no run has one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CalibratedRange {
     /// Known load, job units.
@@ -150,10 +150,10 @@ pub struct CalibratedRange {
 /// Test of the linear model against further terms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LackOfFit {
-    /// By kind of term; empty where runs are too few.
+    /// By kind of term; empty if runs are too few.
     pub tests: Vec<TermTest>,
-    /// Root mean square error of left-out runs over the largest load, over all loads: of a straight line through zero and of one with a common
-    /// zero, both by least squares; `None` where runs are too few.
+    /// Root mean square error of left-out runs over the largest load, over all loads, by least squares. It has a value for a straight line through
+    /// zero and a value for a line with a common zero. `None` if runs are too few.
     pub held_out: Option<HeldOutError>,
 }
 
@@ -169,7 +169,7 @@ pub enum Term {
 }
 
 impl Term {
-    /// Word of `result.json`.
+    /// Returns the name in `result.json`.
     pub fn name(self) -> &'static str {
         match self {
             Self::CommonZero => "common zero",
@@ -269,7 +269,7 @@ pub struct LeftOut {
     pub each: f64,
     /// Number of individually known loads.
     pub alone: usize,
-    /// Squared distance of each sum of loads that the task names, in units of its variance.
+    /// Squared distance of each sum of loads of the task, in units of its variance.
     pub sums: Vec<f64>,
     /// Residual strain over the expected residual: chi2 over its degrees of freedom.
     pub misfit: f64,
@@ -300,7 +300,7 @@ pub enum ShiftWord {
 }
 
 impl ShiftWord {
-    /// Word of `result.json`.
+    /// Returns the name in `result.json`.
     pub fn name(self) -> &'static str {
         match self {
             Self::None => "none",
@@ -320,10 +320,10 @@ impl ShiftWord {
 pub struct GaugeShift {
     /// Name.
     pub name: String,
-    /// Distance between model and calibrated row in prior sigmas (with the model's error as the gauges without a word show it, this one left
-    /// out), root mean square over loads; 0 without a model.
+    /// Distance between model and calibrated row in prior sigmas, root mean square over loads; 0 without a model. The prior has the model error that
+    /// the gauges without a reported cause show, without this gauge.
     pub shift: f64,
-    /// Calibrated row along the model's: 1 where its size was right; 1 without a model.
+    /// Calibrated row along the model's: 1 if its size was right; 1 without a model.
     pub scale: f64,
     /// Cause of the change.
     pub word: ShiftWord,

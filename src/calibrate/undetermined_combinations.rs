@@ -14,7 +14,7 @@ use crate::sensitivity::Sensitivity;
 /// Share of a load in a combination from which it is named.
 const NAMED: f64 = 0.1;
 
-/// Directions of the loads, in their sizes, along which what is known of the runs' loads is nothing.
+/// Returns the directions of the loads, in units of their sizes, along which no run has a known load.
 pub(super) fn check(task: &Task, state: &State) -> Vec<UndeterminedCombination> {
     let runs: Vec<&KnownRun> = (state.used.iter())
         .filter_map(|r| task.runs.get(*r))
@@ -33,7 +33,7 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<UndeterminedCombination> 
     directions.iter().map(one).collect()
 }
 
-/// The task's sums of loads that no undetermined combination changes, in words.
+/// Lists the task's sums of loads that no undetermined combination changes.
 fn known_sums(task: &Task, all: &[UndeterminedCombination]) -> String {
     let is_known = |terms: &&Vec<f64>| {
         let size = |a: &[f64]| spd::dot(a, a).sqrt();
@@ -54,7 +54,7 @@ fn known_sums(task: &Task, all: &[UndeterminedCombination]) -> String {
 /// Cosine under which a combination does not change a sum.
 const UNCHANGED: f64 = 1e-6;
 
-/// `LF.FZ - 0.5 RF.FZ`; all loads where the shares are no numbers.
+/// Returns a combination as text, such as `LF.FZ - 0.5 RF.FZ`; all loads if the shares are not numbers.
 fn combination(task: &Task, terms: &[f64]) -> String {
     let mut out = String::new();
     for (load, t) in task
@@ -119,15 +119,17 @@ pub(super) fn findings(task: &Task, all: &[UndeterminedCombination]) -> Vec<Find
 /// Half width of the 95 % interval over the largest load of the kind, from which a load counts as undetermined, as in
 /// `crate::recovery::determined`.
 const WIDE: f64 = 0.5;
-/// Degrees of freedom of the scatter above which runs are many: Student's factor is less than a third above that of a normal distribution.
+/// Degrees of freedom of the scatter above which runs count as many. Student's factor is then less than a third above the factor of a normal
+/// distribution.
 const ENOUGH: f64 = 5.0;
 
-/// Returns a finding on loads that the calibrated S determines worse than half of their size, in half of the runs or more, although the runs
-/// determine S by count. With one run of known loads and many runs with a known sum, that run decides by chance how the sum is shared.
+/// Returns a finding on loads that S determines worse than half of their size, in half of the runs or more. By their number, the runs determine S.
+/// With one run of known loads and many runs with a known sum, that run decides by chance how the sum is shared.
 ///
-/// The finding is an error in three cases: only a sum is known for some runs; a load is undetermined; or, without a model, many runs leave a half
-/// width larger than the load, because they do not fit their loads. With few runs of known loads it is a warning: their scatter is badly known, and
-/// repeats narrow it. With a model, which determines S, it is a warning too: the cause is then gauges with little strain under a load.
+/// The finding is an error if only a sum is known for some runs, or if a load is undetermined. Many runs without a model may leave a half width
+/// larger than the load, because they do not fit their loads. This is an error too. With few runs of known loads it is a warning: their scatter is
+/// badly known, and repeats narrow it. With a model, which determines S, it is a warning too: the cause is then gauges with little strain under a
+/// load.
 pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Finding> {
     let errors = ErrorModel {
         noise: task.noise,

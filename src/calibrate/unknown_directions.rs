@@ -65,7 +65,7 @@ impl UnknownDirections {
         }
     }
 
-    /// Whether the loads of any run are unknown along a direction that no run determines.
+    /// Returns whether the loads of any run are unknown along a direction that no run determines.
     pub fn is_any(&self) -> bool {
         self.free.iter().any(|f| !f.is_empty())
     }
@@ -110,8 +110,8 @@ pub(super) fn wide_directions(loads: &KnownLoads, scales: &[f64]) -> Vec<Vec<f64
         .collect()
 }
 
-/// Returns the known value of a sum of loads (their numbers and factors) in a run of the task; `None` if its sd exceeds `UNKNOWN` times the largest
-/// value of the sum in any run.
+/// Returns the known value of a sum of loads (their numbers and factors) in a run of the task. Returns `None` if its standard deviation exceeds
+/// `UNKNOWN` times the largest value of the sum in any run.
 pub fn known_of(task: &Task, run: usize, terms: &[(usize, f64)]) -> Option<f64> {
     let k = task.loads.len();
     let value = |r: &KnownRun| -> f64 { terms.iter().map(|(l, c)| c * r.loads.mean[*l]).sum() };
@@ -125,7 +125,7 @@ pub fn known_of(task: &Task, run: usize, terms: &[(usize, f64)]) -> Option<f64> 
     (variance.max(0.0).sqrt() <= UNKNOWN * largest).then(|| value(run))
 }
 
-/// Takes from `x` what lies along orthonormal directions.
+/// Removes from `x` its parts along orthonormal directions.
 pub(super) fn project_out(x: &mut [f64], directions: &[Vec<f64>]) {
     for z in directions {
         let along = spd::dot(x, z);
@@ -133,12 +133,12 @@ pub(super) fn project_out(x: &mut [f64], directions: &[Vec<f64>]) {
     }
 }
 
-/// Whether two orthonormal sets span the same.
+/// Returns whether two orthonormal sets have the same span.
 pub(super) fn span_alike(a: &[Vec<f64>], b: &[Vec<f64>]) -> bool {
     a.len() == b.len() && common_directions(a, b).len() == a.len()
 }
 
-/// Directions of a `k x k` matrix of squares along which there is nothing.
+/// Returns the directions along which a `k x k` matrix of squares is zero.
 fn null_space(gram: &[f64], k: usize) -> Vec<Vec<f64>> {
     let Some(d) = dense::svd(&Matrix::from_row_slice(k, k, gram)) else {
         return Vec::new();
@@ -149,7 +149,7 @@ fn null_space(gram: &[f64], k: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Directions that lie in the spans of both sets: those of `a` whose cosine with `b` is 1.
+/// Returns the directions in the spans of both sets: the directions of `a` whose cosine with `b` is 1.
 ///
 /// # Reference
 /// G. H. Golub, C. F. Van Loan, Matrix Computations (4th ed.), section 6.4.3: principal angles.

@@ -1,4 +1,4 @@
-//! `explain`: what findings mean.
+//! `explain`: the meaning of findings.
 
 use super::arguments::ExplainArguments;
 use super::run::refuse;
@@ -47,7 +47,7 @@ fn entry_lines(c: &Code, width: usize) -> Vec<String> {
         ("example", c.example),
     ];
     let field = |(name, text): (&str, &str)| {
-        // Names and texts stand in two columns.
+        // Names and texts are in two columns.
         let lines = wrap_lines(text, width.saturating_sub(11), 0);
         let at = |(i, line): (usize, String)| match i {
             0 => format!("  {name:<7}  {line}"),

@@ -1,4 +1,4 @@
-//! Progress on a terminal, for work that takes over a second: the stage, how long it has run and, where that is known, the time left.
+//! Progress on a terminal, for work that takes over a second: the stage, its elapsed time and, if known, the time left.
 
 use crate::host::context::Progress;
 use std::io::IsTerminal;
@@ -27,7 +27,7 @@ impl Meter {
         self.done.fetch_add(parts as u64, Ordering::Relaxed);
     }
 
-    /// Share done and time left after `elapsed`; `None` where nothing is known yet.
+    /// Returns the share done and the time left after `elapsed`; `None` if nothing is known yet.
     fn estimate_time_left(&self, elapsed: Duration) -> Option<(f64, Duration)> {
         let done = self.done.load(Ordering::Relaxed);
         let total = self.total.load(Ordering::Relaxed);
@@ -44,7 +44,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// Period at which the remaining time is updated.
 const TICK: Duration = Duration::from_millis(250);
 
-/// A line on standard error for the stage that runs; silent where that is no terminal.
+/// A line on standard error for the stage in progress; silent if standard error is not a terminal.
 #[derive(Default)]
 pub struct Terminal {
     meter: Arc<Meter>,

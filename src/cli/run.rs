@@ -1,4 +1,4 @@
-//! One run of a command: context, threads, what is printed, exit code.
+//! One run of a command: context, threads, printed texts, exit code.
 
 use super::progress::Terminal;
 use super::voice::Voice;
@@ -21,7 +21,7 @@ use crate::workflow::recover::{RecoveredLoads, recover_into};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Bytes of stack of a working thread, what a main thread has on most systems.
+/// Bytes of stack of a working thread, the size for a main thread on most systems.
 const STACK: usize = 8 << 20;
 
 /// A command's surroundings.
@@ -154,7 +154,7 @@ impl Run {
         self.print(done, self.common.out.as_deref())
     }
 
-    /// Asks a question that writes only into `--out`, where that names a folder.
+    /// Runs a question that writes only into `--out`, if that names a folder.
     pub fn question<A>(
         &self,
         out: Option<&Path>,
@@ -176,8 +176,8 @@ impl Run {
         self.print(done, out)
     }
 
-    /// Work on the asked number of threads. It begins on a thread of the pool: from outside, each of a factorisation's many small
-    /// parallel steps would wake two threads and put one to sleep.
+    /// Runs work on the requested number of threads. It begins on a thread of the pool. From outside, each of a factorisation's many small parallel
+    /// steps would wake two threads and put one to sleep.
     fn run_in_pool<T: Send>(
         &self,
         work: impl FnOnce(&Context) -> Result<T, Faults> + Send,
@@ -233,7 +233,7 @@ impl Run {
         let faults = outcome.answer.faults();
         let summary = outcome.summary();
         let texts = Texts {
-            // Faults go to standard error, and so does what they mean.
+            // Faults go to standard error, and their summary too.
             summary: if faults.is_empty() {
                 summary.as_str()
             } else {
@@ -259,10 +259,10 @@ impl Run {
     }
 }
 
-/// Recovers the loads of a job into a folder; the outcome and the text of `result.json`.
+/// Recovers the loads of a job into a folder. Returns the outcome and the text of `result.json`.
 ///
 /// # Errors
-/// Every fault of the job, a file that can't be written.
+/// Every fault of the job, a file that cannot be written.
 pub(super) fn recover_and_save(
     job: &Job,
     cx: &Context,

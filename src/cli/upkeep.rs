@@ -13,7 +13,7 @@ use std::process::{Command, ExitCode, Stdio};
 
 /// Runs the command that made a folder again, into another folder, and compares both.
 pub(super) fn verify(a: &VerifyArguments) -> ExitCode {
-    // A sibling of the folder: paths in the jobs that a command writes are relative to it.
+    // The scratch folder is next to the folder, because paths in the jobs that a command writes are relative to it.
     let folder = std::fs::canonicalize(&a.folder).unwrap_or_else(|_| a.folder.clone());
     let beside = format!(".strainbridge-verify-{}", std::process::id());
     let scratch = Scratch(folder.with_file_name(beside));
@@ -47,7 +47,7 @@ fn rerun_command(
         command.args(made.results());
     }
     if !made.records.is_empty() {
-        // A list, because a call with thousands of names is too long for some systems.
+        // The files go to standard input as a list, because a call with thousands of names is too long for some systems.
         command.args(["--files", "-"]);
     }
     command.args(["--no-cache", "--out"]).arg(out);
@@ -60,7 +60,7 @@ fn rerun_command(
         .map_err(failed)?;
     let list: String = made.records.iter().map(|r| format!("{r}\n")).collect();
     if let Some(mut input) = child.stdin.take() {
-        // A command that ended early doesn't read the list; it says why.
+        // A command that ended early does not read the list and reports the reason.
         let _ = input.write_all(list.as_bytes());
     }
     let done = child.wait_with_output().map_err(failed)?;
@@ -88,7 +88,7 @@ impl Drop for Scratch {
     }
 }
 
-/// Whether a person at the terminal agrees; `None` where no person is there to ask.
+/// Returns whether a person at the terminal agrees; `None` if no person is there to ask.
 fn agrees(question: &str) -> Option<bool> {
     if !(std::io::stdin().is_terminal() && std::io::stderr().is_terminal()) {
         return None;

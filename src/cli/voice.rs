@@ -1,4 +1,5 @@
-//! Texts of a command on standard output and standard error: in the width of the terminal, quieter or louder as asked, in colour on a terminal.
+//! Texts of a command on standard output and standard error. They fit the width of the terminal, are as quiet or loud as requested, and have colour
+//! on a terminal.
 
 use super::CommonArguments;
 use crate::finding::{Finding, Severity};
@@ -61,8 +62,8 @@ impl Voice {
         self.level == Level::Quiet
     }
 
-    /// Prints an outcome: table, summary and next step on standard output, findings in between on standard error. Where `result.json` is asked
-    /// for, that alone goes to standard output. Returns whether standard output could be written.
+    /// Prints an outcome: table, summary and next step on standard output, findings in between on standard error. If `result.json` is requested, only
+    /// this text goes to standard output. Returns whether standard output could be written.
     pub fn outcome(self, console: &Console, texts: &Texts, json: &str) -> bool {
         let layout = match self.level {
             Level::Quiet => {
@@ -204,8 +205,8 @@ fn locale() -> Option<String> {
     ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(value)
 }
 
-/// Returns whether printed text may contain UTF-8. A stated locale decides. Without one, `is_read_as_utf8` does: it is false for a pipe or a file on
-/// Windows, which other programs read in the code page of the console. To a Windows console the standard library writes Unicode.
+/// Returns whether printed text may contain UTF-8. A stated locale decides. Without one, `is_read_as_utf8` decides. It is false for a pipe or a file
+/// on Windows, which other programs read in the code page of the console. The standard library writes Unicode to a Windows console.
 fn shows_utf8(locale: Option<&str>, is_read_as_utf8: bool) -> bool {
     locale.map_or(is_read_as_utf8, |l| {
         let l = l.to_ascii_lowercase();
@@ -219,7 +220,7 @@ fn text_of(lines: &[String]) -> String {
 }
 
 fn say(text: &str) {
-    // A closed pipe is no fault of ours.
+    // A closed pipe is not a fault of this program.
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
@@ -235,7 +236,7 @@ pub(super) fn print(text: &[u8]) -> ExitCode {
 fn is_printed(text: &[u8]) -> bool {
     let mut out = std::io::stdout().lock();
     match out.write_all(text).and_then(|()| out.flush()) {
-        // A closed pipe (`| head`) is no fault of ours.
+        // A closed pipe (`| head`) is not a fault of this program.
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
             say(&format!(
                 "standard output cannot be written ({e}): the printed text is incomplete\n"

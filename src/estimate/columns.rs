@@ -7,7 +7,7 @@ use crate::linalg::tall::{solve, triangle};
 pub struct PriorColumn {
     /// Entries, each over the standard deviation of its reading.
     pub rows: Vec<f64>,
-    /// Standard deviation of the coefficient; `None` where nothing is known of it.
+    /// Standard deviation of the coefficient; `None` if there is no prior.
     pub prior: Option<f64>,
 }
 
@@ -22,7 +22,7 @@ pub struct TargetSolution {
     pub chi2: f64,
     /// Squared coefficients over their priors.
     pub penalty: f64,
-    /// Residual: target - A x of the data rows, then that of the priors.
+    /// Residual: `target - A x` of the data rows, then the residual of the priors.
     pub residual: Vec<f64>,
 }
 
@@ -111,7 +111,7 @@ impl Basis {
         &self.columns
     }
 
-    /// Adds what is new in a column; false where nothing is.
+    /// Adds the part of a column that other columns do not span. Returns false if there is no such part.
     fn join(&mut self, mut rows: Vec<f64>) -> bool {
         let before = norm(&rows);
         self.reduce(&mut rows);
@@ -133,7 +133,7 @@ impl Basis {
         }
     }
 
-    /// Norm of what is new in a column: one over the standard deviation of its coefficient.
+    /// Returns the norm of the part of a column that other columns do not span. It is one over the standard deviation of the coefficient.
     pub fn left_of(&self, column: &[f64]) -> f64 {
         let mut c = column.to_vec();
         c.extend(vec![0.0; self.n_priors]);

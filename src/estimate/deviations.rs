@@ -1,4 +1,4 @@
-//! Whether differences from true values exceed the intervals that are stated for them.
+//! Test whether differences from true values exceed their stated intervals.
 
 use super::tails::chi_square_tail;
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -39,8 +39,8 @@ pub struct Deviations {
 }
 
 impl Deviations {
-    /// Whether the differences are larger than the intervals allow: more than one common error alone makes with a chance of 0.001, or more than
-    /// independent errors make with that chance together with a common error of that chance.
+    /// Returns whether the differences are larger than the intervals allow. The first limit is a common error alone that has a chance of 0.001. The
+    /// second limit is independent errors of that chance, together with a common error of that chance.
     pub fn is_significant(&self) -> bool {
         let common = self.common.clamp(0.0, 1.0);
         let inflated = 1.0 - common + common * largest_square();
@@ -49,8 +49,8 @@ impl Deviations {
         chi_square_tail(self.mean_square, 1.0) < SIGNIFICANT || independent < SIGNIFICANT
     }
 
-    /// Returns the number of independent squares behind the mean of `blocks` of them: the variance of a mean of `n` squares of normal errors
-    /// is `2 / n` of its square.
+    /// Returns the number of independent squares in all `blocks`, each of which is a mean of squares. The variance of a mean of `n` squares of normal
+    /// errors is `2 / n` of its square.
     pub fn effective_count(blocks: &[f64]) -> f64 {
         let n = blocks.len() as f64;
         let mean = blocks.iter().sum::<f64>() / n;
@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn blocks_of_ten_independent_squares_count_ten_each() {
-        // Means of ten squares scatter by a variance of 2 / 10: values one standard deviation to either side of 1.
+        // The mean of ten squares has a variance of 2 / 10. The values are one standard deviation to either side of 1.
         let sd = (0.2_f64 * 3.0 / 4.0).sqrt();
         let blocks = [1.0 - sd, 1.0 + sd, 1.0 - sd, 1.0 + sd];
         assert!((Deviations::effective_count(&blocks) - 40.0).abs() < 1e-9);

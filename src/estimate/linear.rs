@@ -66,9 +66,8 @@ pub struct LinearEstimate {
 }
 
 impl LinearGaussian<'_> {
-    /// Estimates `f` from the readings `y` by singular value decomposition of the whitened rows `L^-1 A diag(scales)`, `C = L L'`, with a row
-    /// `scale / prior_sd` for each parameter that has a prior. Returns `None` where a number is not finite or the covariance is not positive
-    /// definite.
+    /// Estimates `f` from the readings `y` by singular value decomposition of the whitened rows `L^-1 A diag(scales)`, `C = L L'`. Each parameter
+    /// with a prior adds a row `scale / prior_sd`. Returns `None` if a number is not finite or the covariance is not positive definite.
     pub fn estimate(&self, y: &[f64]) -> Option<LinearEstimate> {
         match self.errors {
             ReadingErrors::Variances(variances) => self.estimate_independent(y, variances),
@@ -193,7 +192,7 @@ mod tests {
         let f = (w1 * y[0] + w2 * y[1]) / (w1 + w2);
         let (a, b) = (y[0] - f, y[1] - f);
         let chi2 = (a * a * v2 - 2.0 * a * b * c + b * b * v1) / det;
-        // A Cholesky factor and a division each: a few roundings.
+        // Each value comes from a Cholesky factor and a division, with a few rounding errors.
         for (got, wanted) in [
             (out.value[0], f),
             (out.covariance[(0, 0)], 1.0 / (w1 + w2)),

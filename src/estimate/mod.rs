@@ -1,4 +1,4 @@
-//! Estimates with their uncertainty, for strain and motion alike.
+//! Estimates with their uncertainty, for strain and for motion.
 //!
 //! - [`LinearGaussian`]: parameters of a linear model with correlated errors and priors
 //! - [`columns`]: the same model with many rows, by columns

@@ -2,7 +2,7 @@
 
 use crate::linalg::Matrix;
 
-/// Half of the values are smaller; of an even number the upper one of the middle. `None` of none.
+/// Returns the median: half of the values are smaller. Of an even number it is the upper one of the middle. `None` for an empty list.
 pub fn median(mut values: Vec<f64>) -> Option<f64> {
     let middle = values.len() / 2;
     if values.is_empty() {
@@ -49,8 +49,8 @@ fn correlations(rows: &Matrix, sigmas: f64) -> impl Iterator<Item = f64> {
         .take_while(move |r| *r > significant)
 }
 
-/// Returns the number of rows of white noise whose covariance scatters as much as the covariance of these rows, a sample each in order of time:
-/// `n / (1 + 2 sum_k r_k^2)`.
+/// Returns the number of rows of white noise whose covariance scatters as much as the covariance of these rows. Each row is a sample, in order of
+/// time: `n / (1 + 2 sum_k r_k^2)`.
 ///
 /// # Reference
 /// M. S. Bartlett, J. R. Stat. Soc. Suppl. 8 (1946) 27: variance of the covariance of series.

@@ -1,10 +1,10 @@
-//! Chances of a value at least as large, for any result of arithmetic; 1 for NaN (nothing over nothing), which is no evidence.
+//! Chances of a value at least as large, for any result of arithmetic. The chance is 1 for NaN (zero over zero), which is no evidence.
 
 use statrs::distribution::{
     Binomial, ChiSquared, ContinuousCDF, DiscreteCDF, FisherSnedecor, StudentsT,
 };
 
-/// A ratio beyond which the chance is 0 to every digit, and whose square and products don't overflow.
+/// A ratio beyond which the chance is 0 to every digit, and whose square and products do not overflow.
 const FAR: f64 = 1e100;
 
 fn evaluate_tail(x: f64, tail: impl Fn(f64) -> Option<f64>) -> f64 {
@@ -73,14 +73,14 @@ mod tests {
     #[test]
     fn tails_are_those_of_tables() {
         assert!((chi_square_tail(11.0705, 5.0) - 0.05).abs() < 1e-6);
-        // The table has three digits after the point: half a unit times the density.
+        // The table has three digits after the point. The tolerance is half a unit of the last digit times the density.
         assert!((student_tail(2.776, 4.0) - 0.025).abs() < 1.2e-5);
         assert!((f_tail(5.19, 4.0, 5.0) - 0.05).abs() < 1e-4);
     }
 
     #[test]
     fn nothing_over_nothing_tells_nothing_and_what_is_far_is_impossible() {
-        // Of Student's t one side: half of it lies above zero.
+        // Student's tail is one-sided: half of the distribution is above zero.
         for (tail, at_zero) in [
             ((|x| chi_square_tail(x, 3.0)) as fn(f64) -> f64, 1.0),
             (|x| student_tail(x, 3.0), 0.5),

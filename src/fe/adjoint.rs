@@ -160,7 +160,7 @@ pub(super) fn forces_of(
                 }
                 (AnyShell::Tria(m), _) => {
                     let u: [f64; 18] = std::array::from_fn(|i| u[i]);
-                    // As the solution has it: the strain of a triangle is that of its centre.
+                    // The solution gives every corner of a triangle the strain of the triangle's centre.
                     surfaces(&m.centre, fibres.centre, &u, &free)
                 }
                 (AnyShell::Many(m), ShellPlace::Centre) => m.centre.surfaces(z, u, &free),

@@ -69,8 +69,9 @@ pub(crate) struct AssembledStiffness {
     pub(crate) stiffness: BlockMatrix,
 }
 
-/// Grids whose free dofs an element's stiffness falls on, with those dofs, a bit each. `dofs` are those of its grids that the
-/// element gives stiffness to: the rotations of a grid that holds solids alone are no unknowns.
+/// Returns the grids at whose free dofs an element's stiffness acts, and these dofs as bits.
+///
+/// `dofs` are the degrees of freedom that the element gives stiffness to. The rotations of a grid with solids alone are not unknowns.
 fn find_reached_dofs(reduction: &Reduction, grids: &[GridIx], dofs: u8) -> Vec<(u32, u8)> {
     let mut list: Vec<(u32, u8)> = Vec::with_capacity(grids.len());
     for g in grids {

@@ -47,10 +47,11 @@ impl Weak {
     }
 }
 
-/// Returns the springs that leave no direction at a single grid without stiffness.
+/// Returns the springs to add so that no direction at a single grid is without stiffness.
 ///
-/// With AUTOSPC off, only directions without any stiffness get one: no force acts on them, and a solver removes its null columns.
-/// A direction of negative stiffness gets none: it changes the displacements, and the factor shows whether the rest of the stiffness exceeds it.
+/// With AUTOSPC off, a spring is added only to directions without any stiffness: no force acts on them, and a solver removes its null columns. A
+/// direction of negative stiffness gets no spring, because its stiffness changes the displacements. The factor shows whether the remaining stiffness
+/// exceeds the negative stiffness.
 pub(super) fn weak_unknowns(assembled: &AssembledStiffness, autospc: bool) -> Vec<Weak> {
     let limit = if autospc { EPZERO } else { NOTHING };
     let diagonal = assembled.stiffness.diagonal_values(&assembled.symbolic);
@@ -68,11 +69,11 @@ pub(super) fn weak_unknowns(assembled: &AssembledStiffness, autospc: bool) -> Ve
             }
             let k = DMatrix::from_fn(m, m, |i, j| block[(part.start + i) * n + part.start + j]);
             let largest = k.diagonal().max();
-            // Cheap and sufficient for most grids: strictly dominant diagonals of like size.
+            // This cheap test is sufficient for most grids: their diagonals are strictly dominant and of similar size.
             if well_held(&k, largest) {
                 continue;
             }
-            // The factor names the grid of a stiffness that is not a number.
+            // Factoring reports the grid of a stiffness that is not a number.
             if k.iter().any(|v| !v.is_finite()) {
                 continue;
             }

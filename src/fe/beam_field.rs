@@ -44,10 +44,10 @@ pub(crate) struct BeamShape {
 }
 
 impl BeamField {
-    /// Returns the strain of a bar or beam at a station: C D E F, and the neutral axis. `None` where the field does not determine it.
+    /// Returns the strain of a bar or beam at a station: at C, D, E, F, and on the neutral axis. `None` if the field does not determine it.
     ///
-    /// Solved elements: from the section forces at the station, loads between the ends included, and the section there. Strain of result
-    /// files: that of the station, or linear between two stations of a uniform bar without loads between its ends.
+    /// For solved elements, the strain follows from the section forces at the station, including loads between the ends, and from the section there.
+    /// For result files, it is the strain at the station. Between two stations, it is linear if the bar is uniform without loads between its ends.
     pub fn strain_at(&self, beam: BeamIx, station: f64) -> Option<([f64; 4], f64)> {
         let row = self.elements.binary_search(&beam).ok()?;
         let stations = self.stations.get(row)?;
@@ -79,7 +79,7 @@ impl BeamField {
         Some((std::array::from_fn(|i| mix(p0[i], p1[i])), mix(a0, a1)))
     }
 
-    /// Returns stations at which strain may be larger than at those of the element: none without loads between its ends.
+    /// Returns the stations between the ends where strain may exceed the strain at the element's own stations. Empty without loads between the ends.
     pub fn inner_stations(&self, beam: BeamIx) -> &'static [f64] {
         let row = self.elements.binary_search(&beam).ok();
         let loaded = row.zip(self.solved.as_ref());

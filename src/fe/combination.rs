@@ -37,7 +37,7 @@ pub fn combine_results(
                 to.iter_mut().zip(c).for_each(|(t, c)| *t += by * c);
             })?,
             elements: first.beams.elements.clone(),
-            // Section forces are those of one case: strain is determined at the stations alone.
+            // Section forces belong to one case, so a combination has strain at the stations alone.
             solved: None,
             stations_alone: first.beams.elements.iter().copied().collect(),
         },

@@ -79,7 +79,7 @@ pub enum FeError {
         dofs: Vec<FreeDof>,
         /// Number of the dofs.
         count: usize,
-        /// Descriptions of the parts that are not joined to the rest.
+        /// Descriptions of the parts that are not connected to the remaining structure.
         parts: Vec<String>,
         /// SPC set that supports the structure; `None` if none is selected.
         spc: Option<u32>,

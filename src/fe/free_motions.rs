@@ -1,7 +1,7 @@
 //! Rigid motions of a model that neither its constraints nor springs to ground resist.
 //!
-//! A held dof and a spring to ground each resist the rigid motions that move them: one row of six numbers, of the order of one. The
-//! motions that no row moves are free. Stiffness enters as zero or not zero alone, so that a soft spring counts like a stiff one.
+//! A held dof and a spring to ground each resist the rigid motions that move them. Each gives a row of six numbers, of the order of one. The motions
+//! that no row moves are free. Only whether a stiffness is zero matters, so that a soft spring counts like a stiff one.
 
 use super::constraint::{Reduction, State, reduce};
 use super::grid_frames::{grid_axes, to_local};
@@ -210,8 +210,8 @@ pub(super) struct HeldMotions {
     pub(super) by_springs: usize,
 }
 
-/// Calls `with` with the structure of a model where it selects no SPC set; `None` where its equations contradict each other, which is
-/// refused where the model is solved.
+/// Calls `with` with the structure of a model that selects no SPC set. Returns `None` if the model's equations contradict each other; the solver
+/// refuses such a model.
 fn with_structure<T>(model: &Model, with: impl FnOnce(&RigidStructure<'_>) -> T) -> Option<T> {
     let axes = grid_axes(model);
     let reduction = reduce(model, &axes, (None, model.mpc, &[])).ok()?;
@@ -255,13 +255,13 @@ pub(super) fn held_motions(model: &Model) -> HeldMotions {
     held.unwrap_or(unheld)
 }
 
-/// Returns grids and dofs (1 to 6) that hold the free motions of a model determinately where it selects no SPC set: at each step the
-/// translation that moves most under the motions not yet held, a rotation where no translation moves.
+/// Returns the grids and dofs (1 to 6) that hold the free motions of a model without an SPC set statically determinate. Each step takes the
+/// translation that moves most under the motions not yet held, or a rotation if no translation moves.
 pub fn determinate_dofs(model: &Model) -> Vec<(GridIx, u8)> {
     with_structure(model, |s| s.determinate_dofs()).unwrap_or_default()
 }
 
-/// Returns the springs to ground of a model in words (`CBUSH 2, CELAS2 7`).
+/// Returns the names of a model's springs to ground as text (`CBUSH 2, CELAS2 7`).
 pub(crate) fn springs_in_words(model: &Model) -> String {
     let all = with_structure(model, |s| s.springs()).unwrap_or_default();
     let named = all.iter().map(|ground| {

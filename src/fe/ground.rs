@@ -56,7 +56,7 @@ pub(super) fn grounds(model: &Model, reduction: &Reduction) -> Vec<Ground> {
         if s.k == 0.0 {
             continue;
         }
-        // A free scalar point counts where its other springs meet grids; one that follows grids hands on to these.
+        // A free scalar point counts at the grids of its other springs. A dependent scalar point transfers the spring's force to its grids.
         let counts = |g: GridIx| !scalar(g) || matches!(state(g), State::Dependent(_));
         match s.ends {
             [Some((g, _)), None] if counts(g) => all.push(Ground::Spring(i, 0, None)),

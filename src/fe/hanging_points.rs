@@ -1,4 +1,4 @@
-//! Scalar points that springs alone hold between grids: they go along with a rigid motion of these.
+//! Scalar points that only springs hold between grids. They move with a rigid motion of the grids.
 
 use super::constraint::{Reduction, State};
 use super::grid_frames::to_local;
@@ -7,11 +7,11 @@ use crate::linalg::{DMatrix, Vector6};
 use crate::model::{GridIx, Mat3, Model, Vec3};
 use std::collections::HashMap;
 
-/// More points than this are left where they are: springs in series are few.
+/// Largest number of such points that are moved; springs in series are few.
 const MOST: usize = 500;
 
-/// Where the springs put each of these points in the six rigid motions about `centre`: `K_ss u_s = -K_sb u_b`. Empty where the springs leave one
-/// of them free.
+/// Returns the displacement of each of these points in the six rigid motions about `centre`: `K_ss u_s = -K_sb u_b`. Empty if the springs leave a
+/// point free.
 pub(super) fn find_hanging_points(
     model: &Model,
     axes: &[Option<Mat3>],

@@ -4,8 +4,8 @@ use crate::finding::{Finding, Severity, list_few};
 use crate::model::{Model, RigidElement};
 use std::collections::BTreeMap;
 
-/// Returns the degrees of freedom that an SPC set, or PS of a GRID, holds and that a rigid element, an RBE3 or an equation of the MPC set
-/// makes dependent. Nastran and the built-in solver refuse to solve them.
+/// Returns a finding for degrees of freedom that are both held and dependent. An SPC set or PS of a GRID holds them; a rigid element, an RBE3 or an
+/// equation of the MPC set makes them dependent. Nastran and the built-in solver refuse to solve them.
 pub fn held_dependents(model: &Model, spc: Option<u32>, mpc: Option<u32>) -> Option<Finding> {
     let mut dependents: BTreeMap<(u32, usize), String> = BTreeMap::new();
     for rigid in &model.rigids {

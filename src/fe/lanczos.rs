@@ -19,7 +19,7 @@ const VECTORS_A_MODE: usize = 8;
 /// Six components by grid.
 pub(super) type Field = Vec<[f64; 6]>;
 
-/// No bound on a frequency is below this: what the factor's rounding leaves.
+/// Smallest bound on the relative error of a frequency: the rounding error of the factor.
 const ROUNDING: f64 = 1e-12;
 
 /// Limits below which modes count as found.
@@ -58,8 +58,8 @@ pub(super) struct Pair {
 }
 
 impl Pair {
-    /// Bound on the relative error of the frequency: half that of theta, which the residual bounds, and its square over the gap where
-    /// values lie apart (Kato and Temple).
+    /// Returns a bound on the relative error of the frequency, half the relative error of theta. The bound on theta is the residual, or the squared
+    /// residual over the gap if that is smaller (Kato and Temple).
     pub(super) fn frequency_error(&self) -> f64 {
         frequency_error(self.residual, self.gap)
     }
@@ -98,10 +98,11 @@ fn residuals(
         .collect()
 }
 
-/// The lowest elastic modes from a factor of the stiffness, free structures held determinately; fewer where the structure has fewer.
+/// Computes the lowest elastic modes from a factor of the stiffness; fewer if the structure has fewer. Free structures are held statically
+/// determinate.
 ///
-/// Block Lanczos with full reorthogonalization on P K^-1 P' M in the inner product of M, where P takes the rigid motions out
-/// (R'M u = 0): a balanced load needs no more than the stiffness that statics use.
+/// The method is block Lanczos with full reorthogonalization on P K^-1 P' M in the inner product of M. P removes the rigid motions (R'M u = 0), so
+/// that a balanced load needs only the stiffness that statics use.
 ///
 /// # Reference
 /// R. G. Grimes, J. G. Lewis and H. D. Simon, SIAM J. Matrix Anal. Appl. 15 (1994) 228; T. Kato, J. Phys. Soc. Japan 4 (1949) 334
@@ -124,7 +125,7 @@ pub(super) fn find_lowest_modes(
     } = wanted;
     let n = system.symbolic.n_unknowns();
     let most = (VECTORS_A_MODE * count).max(4 * BLOCK).min(n);
-    // P u from unknowns.
+    // Returns P u for values at the unknowns.
     let field = |values: &[f64]| {
         let mut u = system.unpack(prepared, values);
         if let Some(body) = &system.body {
@@ -145,19 +146,19 @@ pub(super) fn find_lowest_modes(
         .into_par_iter()
         .map(|c| field(&start_values(n, c)))
         .collect();
-    // One step on random values: what has no mass is gone.
+    // One step on random values removes the components without mass.
     let mut block = apply(mass_times(mass, &start))?;
     drop(start);
     let mut basis: Vec<Field> = Vec::new();
     let mut masses = mass_times(mass, &block);
-    // Q' M A Q, row and column by basis vector, and of it what the last block brought.
+    // `projected` is Q' M A Q by basis vectors; `along` has its columns for the last block.
     let mut projected = DMatrix::<f64>::zeros(0, 0);
     let mut along = DMatrix::zeros(0, block.len());
     let found = loop {
         let (q, f, kept) = orthonormalize_block(mass, &basis, block, (masses, &along));
         let before = basis.len();
         let size = before + q.len();
-        // Entries that tie the new vectors to the last ones are those of `kept`, found while they were made orthogonal.
+        // `kept` couples the new vectors to the last block. The orthogonalization of the new vectors gives it.
         let pairs = ritz(&projected);
         let last = q.is_empty() || (size > most && before > 0);
         if let Some((values, vectors)) = pairs {
@@ -243,7 +244,7 @@ fn orthonormalize_block(
     let scale = block.iter().zip(&masses).map(square).fold(0.0, f64::max);
     drop(masses);
     if !basis.is_empty() {
-        // A step of Lanczos ties a block to the last two alone: they are taken out first, then what rounding leaves along all.
+        // A Lanczos step couples a block only to the last two. Their components are removed first, then the rounding error along all basis vectors.
         let first = basis.len().saturating_sub(2 * BLOCK);
         let tied = along.rows(first, basis.len() - first).into_owned();
         subtract(&mut block, &basis[first..], &tied);
@@ -251,7 +252,7 @@ fn orthonormalize_block(
         subtract(&mut block, basis, &left);
     }
     let mut factor = DMatrix::identity(block.len(), block.len());
-    // Twice: the second round repairs what rounding leaves of the first.
+    // The second pass removes the rounding error of the first pass.
     for _ in 0..2 {
         let weight = gram(&block, &mass_times(mass, &block));
         let n = block.len();
@@ -310,7 +311,7 @@ fn gram(a: &[Field], b: &[Field]) -> DMatrix<f64> {
 }
 
 fn dot(a: &[[f64; 6]], b: &[[f64; 6]]) -> f64 {
-    // Six sums, which the processor runs side by side.
+    // Six separate sums, which the processor computes in parallel.
     let mut sums = [0.0; 6];
     for (a, b) in a.iter().zip(b) {
         for i in 0..6 {

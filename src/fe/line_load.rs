@@ -73,7 +73,7 @@ impl<'a> BeamLoads<'a> {
         }
     }
 
-    /// Returns the loads along beams, those of their coupled mass included, by beam.
+    /// Returns the loads along beams by beam, including the loads of their coupled mass.
     pub(crate) fn loads_by_beam(&self, model: &Model) -> HashMap<usize, Vec<LineLoad>> {
         let mut loads = self.loads.clone();
         if let Some(acceleration) = &self.acceleration {

@@ -10,7 +10,7 @@ pub enum Relief {
     None,
     /// By inertia, supports chosen by us (PARAM,INREL,-2).
     Automatic,
-    /// By inertia, displacements relative to the SUPORT dofs and those of this SUPORT1 set (PARAM,INREL,-1).
+    /// Inertia relief, with displacements relative to the SUPORT dofs and the dofs of this SUPORT1 set (PARAM,INREL,-1).
     Suport(Option<u32>),
 }
 

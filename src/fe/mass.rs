@@ -21,7 +21,7 @@ pub(crate) struct Mass {
     blocks: BTreeMap<GridIx, Matrix6<f64>>,
     /// Coupled masses of elements.
     coupled: Vec<ElementMatrix>,
-    /// Masses that couple grids in the three translations alike: grids, and row by row their shares.
+    /// Masses that couple grids equally in all three translations: the grids, and their shares by rows.
     scalar: Vec<(Vec<GridIx>, Vec<f64>)>,
     /// Whether each grid is a scalar point. Scalar points have no location: rigid motions and fields of acceleration leave them out.
     points: Vec<bool>,
@@ -176,7 +176,7 @@ impl Mass {
         f
     }
 
-    /// Returns the displacements of rigid motion `mode` about a point: those of [`rigid_displacement`], and zeros at scalar points.
+    /// Returns the displacements of rigid motion `mode` about a point: [`rigid_displacement`] at grids, zero at scalar points.
     pub(crate) fn rigid_field(&self, mode: usize, x: &[Vec3], centre: &Vec3) -> Vec<[f64; 6]> {
         let pairs = x.iter().zip(&self.points);
         pairs

@@ -66,8 +66,8 @@ pub struct ModalSolution {
 
 /// Computes the lowest elastic modes with their strain; rigid motions are left out.
 ///
-/// `spc` supports the structure; rigid motions without a support remain free. Mass and stiffness equal those of statics,
-/// PARAM,WTMASS and PARAM,COUPMASS included.
+/// `spc` supports the structure; rigid motions without a support remain free. Mass and stiffness are the same as in statics, including PARAM,WTMASS
+/// and PARAM,COUPMASS.
 ///
 /// # Errors
 /// Returns every error of [`FeError`], for example [`FeError::NoMassToVibrate`] for a structure without mass.
@@ -181,7 +181,7 @@ fn pairs_of(
 ) -> Result<(Vec<Pair>, usize, usize), FeError> {
     let sets = (spc, mpc, [].as_slice());
     let mut system = System::new(prepared, mass, sets, Relief::Automatic, findings)?;
-    // Supports that are moved in statics stand still.
+    // Enforced displacements of statics are zero in modes.
     system.reduction.forget_enforced();
     let n = system.symbolic.n_unknowns();
     let rigid_motions = system.body.as_ref().map_or(0, |b| b.n_free());

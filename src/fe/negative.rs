@@ -5,7 +5,8 @@ use crate::finding::LISTED;
 use crate::model::Model;
 use nastran::place::Place;
 
-/// CELAS and CBUSH with negative stiffness, each as what stops a solution that the rest of the structure does not outweigh.
+/// Returns a refusal for each CELAS and CBUSH with negative stiffness. They stop a solution if the negative stiffness exceeds the stiffness of the
+/// remaining structure.
 pub(super) fn negative_springs(model: &Model) -> Vec<Refusal> {
     let springs = model.springs.iter();
     let springs = springs.map(|s| (format!("CELAS {}", s.id), s.at, s.k));

@@ -47,8 +47,8 @@ pub struct Reactions {
 /// Fields are by grid in the basic frame.
 pub(super) type SolvedCase<'a> = (u32, &'a [[f64; 6]], &'a [[f64; 6]]);
 
-/// Reactions of solved cases: K u - f at held dofs, what dependent dofs hand on included, and the forces of springs to ground; each with a
-/// finding where they leave loads unbalanced. Empty where nothing is held. `mpc`: whether equations of an MPC set take part.
+/// Computes the reactions of solved cases: K u - f at held dofs, and the forces of springs to ground. K u - f includes the forces that dependent dofs
+/// transfer. Reactions that leave loads unbalanced have a finding. Empty if nothing is held. `mpc` states whether equations of an MPC set are active.
 ///
 /// # Errors
 /// Elements that can't be formed.
@@ -162,7 +162,7 @@ fn internal_forces(
     elements: &[ElementRef],
     cases: &[SolvedCase<'_>],
 ) -> Result<Vec<Vec<[f64; 6]>>, FeError> {
-    // By element: its grids and, case by case, six forces a grid.
+    // For each element: its grids, and for each case six forces per grid.
     let parts: Vec<Vec<_>> = elements
         .par_chunks(CHUNK)
         .map(|chunk| {

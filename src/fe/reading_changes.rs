@@ -16,13 +16,14 @@ use crate::model::{ElementRef, GridIx, Model};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Changes of readings on variants of `base`: by variant, `n_readings x n_loads` by rows, strain. Exact where bushes alone differ, else to first
-/// order.
+/// Computes the changes of readings (strain) on variants of `base`: by variant, `n_readings x n_loads` by rows. The changes are exact if only bushes
+/// differ, else to first order.
 ///
-/// With `K u = f`, a reading `r = b' u` and `K l = b`, a small change of K, f and b changes the reading by
-/// `(db)' u + l' (df - dK u)`; the error is of the second order in the change. Bushes act between few dofs V, where their stiffness changes by
-/// the matrix W. The change of the reading is then exactly `-l' V (1 + W V' K^-1 V)^-1 W V' u` (Woodbury). One factor of K serves all variants.
-/// `None` where variants differ from `base` in more than shells and bushes or have a motion without support, or where the loads have different
+/// With `K u = f`, a reading `r = b' u` and `K l = b`, a small change of K, f and b changes the reading by `(db)' u + l' (df - dK u)`. The error is
+/// of the second order in the change. Bushes act between few dofs V, where their stiffness changes by the matrix W. The change of the reading is then
+/// exactly `-l' V (1 + W V' K^-1 V)^-1 W V' u` (Woodbury). One factor of K serves all variants.
+///
+/// Returns `None` if variants differ from `base` in more than shells and bushes, have a motion without support, or if the loads have different
 /// supports.
 ///
 /// # Errors
@@ -81,7 +82,7 @@ pub fn reading_changes(
 /// Unit forces at dofs of a grid, and the displacements that they cause, at the unknowns: a column a dof.
 type GridColumns = (Vec<f64>, Vec<f64>);
 
-/// The forces that stand for readings and the displacements that they cause, at the unknowns, a column a reading.
+/// Adjoint forces of readings and the displacements that they cause, at the unknowns, one column per reading.
 struct AdjointReadings<'a> {
     base: &'a Base<'a>,
     forces: Vec<f64>,
@@ -163,7 +164,7 @@ impl AdjointReadings<'_> {
 }
 
 impl Base<'_> {
-    /// Returns the forces that stand for readings on a variant, at the unknowns, a column a reading.
+    /// Returns the adjoint forces of readings on a variant, at the unknowns, one column per reading.
     fn forces_of_readings(
         &self,
         variant: &PreparedModel<'_>,

@@ -231,8 +231,8 @@ impl RigidBody {
         }
     }
 
-    /// A statically determinate set of translations that holds every free motion: at each step the dof that moves most under
-    /// the motions not yet held (QR with row pivoting), which spreads it over far grids. Unknown numbers.
+    /// Returns the unknown numbers of a statically determinate set of dofs that holds every free motion. Each step takes the translation that moves
+    /// most under the motions not yet held, or a rotation if no translation moves. This QR with row pivoting spreads the set over distant grids.
     pub(super) fn choose_supports(
         &self,
         axes: &[Option<Mat3>],
@@ -263,7 +263,7 @@ impl RigidBody {
                 }
                 r
             };
-            // The first of those that are as far.
+            // Among equal distances, the first unknown is taken.
             let farther = |a: (f64, usize), b: (f64, usize)| if b.0 > a.0 { b } else { a };
             let none = || (1e-12, usize::MAX);
             let farthest = |pick: bool| {
@@ -277,7 +277,7 @@ impl RigidBody {
                     })
                     .reduce(none, farther)
             };
-            // A straight bar turns about its own axis without a translation anywhere.
+            // A straight bar can rotate about its own axis without any translation; then a rotation is held.
             let mut best = farthest(true);
             if best.1 == usize::MAX {
                 best = farthest(false);

@@ -6,7 +6,7 @@ use super::grid_frames::{to_basic, to_local};
 use super::prepared_model::PreparedModel;
 use crate::model::{Grid, Model};
 
-/// Returns whether each grid is a warping point of a beam: no motion of the body moves it, and a load on it is a bimoment.
+/// Returns whether each grid is a warping point of a beam. No rigid motion moves a warping point, and a load on it is a bimoment.
 fn warping_points(model: &Model) -> Vec<bool> {
     let mut warps = vec![false; model.grids.len()];
     for g in model.beams.iter().filter_map(|b| b.warping).flatten() {
@@ -15,7 +15,9 @@ fn warping_points(model: &Model) -> Vec<bool> {
     warps
 }
 
-/// Moves loads on scalar points that follow grids (MPC) to these grids by virtual work: f_j += c_j f for u = sum of c_j u_j. Basic frame.
+/// Moves loads on scalar points that depend on grids (MPC) to these grids by virtual work, basic frame.
+///
+/// With u = sum of c_j u_j, the load moves as f_j += c_j f.
 pub(super) fn carry_to_grids(
     prepared: &PreparedModel<'_>,
     reduction: &Reduction,

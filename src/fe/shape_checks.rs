@@ -4,7 +4,7 @@ use super::element::solid::is_inverted;
 use crate::finding::{Finding, Severity, list_few};
 use crate::model::{Model, Shell, Vec3};
 
-/// Distance of the corners from the mean plane over the mean diagonal above which a quadrilateral counts as folded: the default limit of
+/// Limit of the corners' distance from the mean plane over the mean diagonal. A quadrilateral above it counts as folded. It is the default limit of
 /// the surface warping factor in Nastran's GEOMCHECK (Q4_WARP).
 const FOLDED: f64 = 0.05;
 
@@ -93,7 +93,7 @@ fn warp(x: &[Vec3; 4]) -> f64 {
         return 0.0;
     };
     let diagonal = 0.5 * ((x[2] - x[0]).norm() + (x[3] - x[1]).norm());
-    // The corners stand off by the same distance in turn, up and down.
+    // All corners have the same distance from the mean plane, alternately above and below it.
     let off = 0.25 * (x[0] - x[1] + x[2] - x[3]).dot(&normal).abs();
     off / diagonal
 }

@@ -1,11 +1,11 @@
-//! The frame in which solvers put out shell strain.
+//! Frame in which solvers output shell strain.
 //!
 //! | element | x axis | z axis | evidence |
 //! |---|---|---|---|
 //! | CQUAD4, CQUADR | bisector of the diagonals: `unit(unit(d13) - unit(d24))` | `unit(d13 x d24)` | CQUAD4: MSC, NX (note); CQUADR: the manuals |
 //! | CTRIA3, CTRIAR | side 1-2 | side 1-2 x side 1-3 | CTRIA3: MSC (note); CTRIAR: the manuals |
 //! | CTRIA6 | side 1-2 (flat elements with straight sides) | as CTRIA3 | MSC, all digits |
-//! | CQUAD8 | at the same angle to the curves of constant s as y is to those of constant r, at the place of output | r x s | the manuals |
+//! | CQUAD8 | its angle to the curves of constant s equals the angle of y to the curves of constant r, at the place of output | r x s | the manuals |
 //!
 //! Note: output of these programs against displacement gradients, CQUAD4 to 1e-6, CTRIA3 in all digits.
 //!
@@ -85,7 +85,7 @@ fn quad8_tangents(p: &[Vec3], place: ShellPlace) -> Option<[Vec3; 2]> {
         if m == a || m == b { (a + b) / 2.0 } else { m }
     };
     let m = [middle(0), middle(1), middle(2), middle(3)];
-    // A parabola through the ends a, c and the middle b has the slopes -3a + 4b - c and a - 4b + 3c at its ends.
+    // A parabola has the ends a, c and the middle b. Its slope is -3a + 4b - c at a and a - 4b + 3c at c.
     let at_start = |a: Vec3, b: Vec3, c: Vec3| -3.0 * a + 4.0 * b - c;
     let at_end = |a: Vec3, b: Vec3, c: Vec3| a - 4.0 * b + 3.0 * c;
     let [c1, c2, c3, c4] = corner;

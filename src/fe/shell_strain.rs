@@ -52,7 +52,7 @@ pub(super) fn shell_fields(
             from_stress: false,
         })
         .collect();
-    // By chunk of shells: the part of every field that it fills.
+    // For each chunk of shells: the part of every field that the chunk fills.
     let mut pieces: Vec<Vec<Piece<'_>>> = (0..n.div_ceil(CHUNK))
         .map(|_| Vec::with_capacity(u.len()))
         .collect();
@@ -88,7 +88,7 @@ fn fill(
     let matrices = shell_matrices(prepared, i, Parts::WithoutStiffness, None)?;
     for ((u, t), (centre, corners)) in u.iter().zip(temperatures).zip(pieces) {
         let heat = t.as_ref().and_then(|t| shell_heat(prepared.model, i, t));
-        // Thermal strain at the centre, and at a corner.
+        // Thermal strain at the centre (`None`) or at a corner.
         let free = |corner: Option<usize>| {
             heat.as_ref().map_or([[0.0; 3]; 2], |h| {
                 let rise = match corner {
@@ -109,7 +109,7 @@ fn fill(
                 }
             }
             AnyShell::Many(plain) => {
-                // Temperature moves the centre: the rows of this case.
+                // Temperature moves the eliminated centre, so each case needs its own rows.
                 let heated = match &heat {
                     Some(h) => Some(shell_matrices(
                         prepared,

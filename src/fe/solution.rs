@@ -29,8 +29,8 @@ pub struct CaseResult {
     pub beams: BeamField,
     /// Strain of solids; solved ones only.
     pub solids: SolidField,
-    /// Displacements in the displacement frames as the file has them turned to basic: translation and rotation by grid index;
-    /// empty where absent, NaN where a grid has none.
+    /// Displacements in the basic frame, transformed from the displacement frames of a file: translation and rotation by grid index. Empty if absent,
+    /// NaN at a grid without displacements.
     pub displacement: Vec<[f64; 6]>,
 }
 

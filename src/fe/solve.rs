@@ -89,7 +89,7 @@ pub fn solve_cases(
     with_strain(&prepared, cases, solved, options)
 }
 
-/// Displacements of load cases, without strain: what is worth keeping of a solution.
+/// Solves load cases and returns their displacements without strain, the part of a solution worth storing.
 ///
 /// # Errors
 /// Returns every error of [`FeError`].
@@ -217,7 +217,7 @@ fn solve_group(
         report.factor_nonzeros = system.symbolic.factor_nonzeros();
         report.ordering = Some(system.symbolic.method());
     }
-    // Cases that AUTOSPC takes load of: why their reactions don't balance is told.
+    // Cases with loads on springs of AUTOSPC. A finding already states why their reactions don't balance.
     let mut lost = Vec::new();
     if n == 0 {
         findings.push(nothing_free(cases));
@@ -379,7 +379,8 @@ pub(super) fn form_case_loads(
     })
 }
 
-/// Work of the factor of the free structure, longest chain in it, and what the busiest of 1, 2, 4, .. 64 threads does: `Symbolic::tree_work`.
+/// Returns the work of factoring the free structure, its longest chain, and the work of the busiest of 1, 2, 4, .. 64 threads. See
+/// `Symbolic::tree_work`.
 ///
 /// # Errors
 /// Returns every error of [`FeError`].

@@ -17,10 +17,10 @@ pub struct StrainRow {
     pub location: Location,
     /// Which face or recovery point.
     pub point: Point,
-    /// Element frame: exx, eyy, gxy (engineering shear). Bars: exx along the bar, the others NaN.
+    /// Element frame: exx, eyy, gxy (engineering shear). Bars: exx along the bar; eyy and gxy are NaN.
     pub local: PlaneStrain,
-    /// Basic frame, tensor shear: xx, yy, zz, xy, yz, zx. Shells: with the normal strain of plane stress; where the material does not
-    /// give it ([`without_normal_strain`]) the part in the surface alone, which is all that a gauge sees. Bars: exx along the axis
+    /// Basic frame, tensor shear: xx, yy, zz, xy, yz, zx. Shells include the normal strain of plane stress. If the material does not give it
+    /// ([`without_normal_strain`]), the tensor has only the strain in the surface, which is all that a gauge measures. Bars: exx along the axis
     /// alone, no lateral contraction.
     pub basic: [f64; 6],
 }
@@ -75,10 +75,10 @@ pub fn n_rows(model: &Model, case: &CaseResult) -> usize {
     shells.sum::<usize>() + beams.sum::<usize>()
 }
 
-/// Calls `each` with the rows of elements `range` of a case, numbered as [`n_elements`] counts.
+/// Calls `each` with the rows of the elements `range` of a case, numbered as in [`n_elements`].
 ///
-/// Order: shells by id, then bars by id; a shell's centre, then its corners G1 to G4, bottom before top; a bar's stations from A to B,
-/// points C D E F. Places without strain are left out.
+/// Shells come first by id, then bars by id. A shell has its centre, then its corners G1 to G4, bottom before top. A bar has its stations from A to
+/// B, each with points C, D, E, F. Places without strain are left out.
 pub fn each_row(
     model: &Model,
     case: &CaseResult,

@@ -16,7 +16,7 @@ impl Surface {
     /// Both, bottom first.
     pub const BOTH: [Surface; 2] = [Surface::Bottom, Surface::Top];
 
-    /// The word of files and reports.
+    /// Returns the name in files and reports.
     pub fn word(self) -> &'static str {
         match self {
             Self::Bottom => "bottom",

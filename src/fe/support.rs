@@ -63,8 +63,8 @@ fn list_known_sets(sets: &[u32]) -> String {
 }
 
 impl Support {
-    /// Returns the support of a model under no SPC set: springs to ground and permanent constraints hold what they resist, and inertia
-    /// balances the loads along the rigid motions that nothing resists. PARAM,INREL,-1 states that displacements count from the SUPORT dofs.
+    /// Returns the support of a model without an SPC set. Springs to ground and permanent constraints hold the rigid motions that they resist.
+    /// Inertia balances the loads along the other rigid motions. With PARAM,INREL,-1, displacements are relative to the SUPORT dofs.
     pub fn without_spc(model: &Model) -> Self {
         let held = held_motions(model);
         Self {
@@ -88,7 +88,7 @@ impl Support {
         self.spc.is_some() || self.relief == Relief::None
     }
 
-    /// Returns the support in words: `held by SPC set 1`, `free (inertia relief)`, `held by springs to ground`.
+    /// Returns a description of the support: `held by SPC set 1`, `free (inertia relief)`, `held by springs to ground`.
     pub fn words(&self) -> String {
         match (self.spc, self.relief, self.by_springs) {
             (Some(set), Relief::None, _) => format!("held by SPC set {set}"),
@@ -150,15 +150,16 @@ pub fn support_of(model: &Model, wanted: SupportChoice) -> Result<Support, Suppo
     })
 }
 
-/// Returns a finding where inertia relief is assumed, or acts on fewer motions than stated.
+/// Returns a finding if inertia relief is assumed, or acts on fewer motions than stated.
 ///
-/// Assumed: the deck neither holds the structure nor asks for inertia relief, where Nastran stops at a mechanism. Fewer: the job states
-/// `support = "free"` or the deck PARAM,INREL, and springs to ground resist some of the six rigid motions. Inertia balances loads along
-/// the others alone. Nastran takes all motions that SUPORT or INREL name as free, so that its rigid body check fails for such a model.
+/// Inertia relief is assumed if the deck neither holds the structure nor requests inertia relief; Nastran stops at a mechanism for such a deck.
+/// Inertia relief acts on fewer motions than stated if springs to ground resist some of the six rigid motions. The job states `support = "free"` in
+/// this case, or the deck PARAM,INREL. Inertia then balances loads along the remaining motions alone. Nastran treats all motions that SUPORT or INREL
+/// name as free, so that its rigid body check fails for such a model.
 pub fn relief_finding(model: &Model, support: Support, wanted: SupportChoice) -> Option<Finding> {
     let n = usize::from(support.by_springs);
     let stated = wanted == SupportChoice::Free || model.params.inrel < 0;
-    // SUPORT dofs are refused where they are not as many as the free motions.
+    // The solver refuses SUPORT dofs if their number differs from the number of free motions.
     let exact = matches!(support.relief, Relief::Suport(_));
     if support.spc.is_some() || exact || (n == 0 && support.relief == Relief::None) {
         return None;

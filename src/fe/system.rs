@@ -50,7 +50,7 @@ impl System {
         let model = prepared.model;
         let support = (sets.0, relief);
         let reduction = reduce(model, &prepared.axes, sets)?;
-        // The order of the unknowns leaves a thread idle.
+        // Ordering the unknowns leaves a thread idle, which computes the body meanwhile.
         let (assembled, body) = rayon::join(
             || assemble(prepared, &reduction),
             || body(prepared, mass, &reduction, relief),
@@ -124,10 +124,10 @@ impl System {
         body(prepared, mass, &self.reduction, relief)
     }
 
-    /// The factor.
+    /// Factors the stiffness.
     ///
     /// # Errors
-    /// Mechanisms, each dof named; entries that are not numbers; springs of negative stiffness that outweigh the rest.
+    /// Mechanisms, with each dof; entries that are not numbers; springs whose negative stiffness exceeds the remaining stiffness.
     pub(super) fn factor(
         &self,
         prepared: &PreparedModel<'_>,
@@ -142,7 +142,7 @@ impl System {
         };
         let factor = match Factor::new(&self.symbolic, stiffness) {
             Ok(factor) => factor,
-            // A pivot that stays negative whatever holds its unknown.
+            // Negative stiffness can leave a pivot negative even with a spring at its unknown.
             Err(FactorError::NotANumber { .. }) if !negative.is_empty() => {
                 return Err(FeError::Refused(negative));
             }
@@ -161,7 +161,7 @@ impl System {
         ))
     }
 
-    /// The dofs that nothing holds, and parts that are not joined to the rest.
+    /// Returns the error for a mechanism: the dofs that nothing holds, and the parts that are not connected to the remaining structure.
     fn mechanism(&self, model: &Model, lost: &[(usize, usize)]) -> FeError {
         let dofs = lost
             .iter()
@@ -244,7 +244,7 @@ impl System {
                 dofs.push(pivot);
                 continue;
             };
-            // The others without this motion, so that each names a motion of its own.
+            // Subtract this motion from the other motions, so that each gives the dof of a different motion.
             for other in rest {
                 let share = other[g][dof] / found[0][g][dof];
                 for (o, f) in other.iter_mut().zip(&found[0]) {
@@ -256,7 +256,7 @@ impl System {
         dofs
     }
 
-    /// A failure of the factor in the words of the model.
+    /// Translates an error of the factor to the grids and dofs of the model.
     pub(super) fn translate_factor_error(&self, model: &Model, error: FactorError) -> FeError {
         match error {
             FactorError::NotANumber { unknown } => {
@@ -319,7 +319,7 @@ impl System {
             at: model.grids[g].at,
         };
         let limit = 1e-9 * largest_component(f);
-        // What rigid elements and averages hand on counts where it arrives.
+        // Forces that rigid elements and averages transfer count at the dofs that receive them.
         let mut arrives = f.to_vec();
         for (f, axes) in arrives.iter_mut().zip(axes) {
             *f = to_local(axes, *f);
@@ -350,12 +350,12 @@ impl System {
         Ok(())
     }
 
-    /// Sizes of loads at the unknowns that [`Self::held_loads`] judges by; `None` where AUTOSPC holds nothing.
+    /// Returns the sizes of loads at the unknowns that [`Self::held_loads`] compares with; `None` if AUTOSPC holds nothing.
     pub(super) fn sizes_of(&self, model: &Model, acting: &[f64]) -> Option<[f64; 2]> {
         (!self.weak.is_empty()).then(|| load_sizes(&self.numbering, acting, extent(model)))
     }
 
-    /// A finding where loads of these sizes go into directions that AUTOSPC holds; `moved` at the unknowns.
+    /// Returns a finding if loads of these sizes act in directions that AUTOSPC holds; `moved` is at the unknowns.
     pub(super) fn held_loads(
         &self,
         model: &Model,

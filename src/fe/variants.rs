@@ -1,9 +1,9 @@
-//! Models that differ from one in the stiffness of some elements, solved on its factor.
+//! Solves variants of a model with a different stiffness of some elements, using the factor of the model.
 //!
-//! With K factored, the changed structure is `(K + D) u = f'`, where D is zero away from the elements that changed. Conjugate gradients with
-//! K as preconditioner reach it: the eigenvalues of `K^-1 (K + D)` lie between 1 and the factors by which the elements' stiffness changed, so
-//! halved or doubled stiffness takes ten steps whatever the size of the model. A step is one substitution and the product of D; K itself is
-//! never multiplied, as `K p` follows from the residuals.
+//! With K factored, the changed structure is `(K + D) u = f'`, where D is zero except at the changed elements. Conjugate gradients with K as
+//! preconditioner solve it. The eigenvalues of `K^-1 (K + D)` are between 1 and the factors by which the elements' stiffness changed. Halved or
+//! doubled stiffness therefore takes ten steps whatever the size of the model. A step is one substitution and one product with D; K itself is never
+//! multiplied, as `K p` follows from the residuals.
 //!
 //! # References
 //! M. R. Hestenes, E. Stiefel, Methods of conjugate gradients for solving linear systems, J. Res. NBS 49 (1952). U. Kirsch, Combined
@@ -33,10 +33,10 @@ const TOLERANCE: f64 = 1e-8;
 /// Number of steps after which a variant gets a separate factor: stiffness that changed a hundredfold.
 const MOST_STEPS: usize = 40;
 
-/// Solves unit loads on each variant of `base` and calls `read` with it and its solution, one after the other.
+/// Solves unit loads on each variant of `base` and calls `read` with the variant and its solution, one variant after the other.
 ///
-/// Variants whose shells or bushes alone have another stiffness share the factor of `base`; any other is solved for itself. Displacements
-/// agree with those of a factor of each one's own to 1e-8 of the change, in the norm of the energy. A single variant is solved for itself.
+/// Variants that differ only in the stiffness of shells or bushes share the factor of `base`. Any other variant has its own factor, and so has a
+/// single variant. In the energy norm, displacements agree with the displacements from a separate factor to 1e-8 of the change.
 ///
 /// # Errors
 /// See [`FeError`].
@@ -247,7 +247,7 @@ impl<'a> Base<'a> {
         self.factor.solve(&mut z);
         let mut work = dots(&r, &z, n);
         let enough: Vec<f64> = work.iter().map(|w| w * TOLERANCE * TOLERANCE).collect();
-        // The direction, and K times it.
+        // `p` is the search direction, `kp` is K times `p`.
         let (mut p, mut kp) = (z.clone(), r.clone());
         for _ in 0..MOST_STEPS {
             if work.iter().zip(&enough).all(|(w, e)| w <= e) {

@@ -174,7 +174,7 @@ impl Moments {
             let m: f64 = row.iter().sum();
             sum.add_point(m, *a);
             if consistent {
-                // In place of x x' of the point, its product with the mean of the row.
+                // Replace m x x' of the point by the product of x and the row's sum of m x'.
                 let other: Vec3 = x.iter().zip(row).map(|(b, m)| b * *m).sum();
                 sum.second += a * (other - a * m).transpose();
             }

@@ -20,7 +20,7 @@ pub(super) fn what_hangs(model: &Model, grid: GridIx) -> String {
             all.push(format!("{} {}", r.kind.card(), r.id));
         }
     }
-    // The equations of a rigid bush or a weld go by the name of their card, which is listed already.
+    // The equations of a rigid bush or a weld have the name of their card, which the list already contains.
     let mut seen = std::collections::HashSet::new();
     all.retain(|name| seen.insert(name.clone()));
     match all.is_empty() {

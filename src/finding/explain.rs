@@ -7,7 +7,7 @@ use super::severity::Severity;
 use serde::Serialize;
 use std::sync::LazyLock;
 
-/// The tables, by where the judgement is made.
+/// Tables of codes, one for each subject of the checks.
 const TABLES: [&str; 4] = [
     include_str!("codes/model.txt"),
     include_str!("codes/layout.txt"),
@@ -28,7 +28,7 @@ pub struct Code {
     pub cause: &'static str,
     /// Limit that the measured number is compared with, or `None.`
     pub limit: &'static str,
-    /// The measured number `{m}` and the limit `{l}` in words, `%` for a share in percent; empty where the message has them.
+    /// Text for the measured number `{m}` and the limit `{l}`, with `%` for a share in percent. It is empty if the message contains the numbers.
     #[serde(skip_serializing_if = "str::is_empty")]
     pub numbers: &'static str,
     /// Remedy, as an imperative.
@@ -100,7 +100,7 @@ fn read_table(table: &'static str) -> Vec<Code> {
     codes
 }
 
-/// An entry without words yet; `None` for an empty line.
+/// Reads the head of an entry without its texts; `None` for an empty line.
 fn read_head(line: &'static str) -> Option<Code> {
     let mut parts = line.split(" | ");
     let (code, severity, said_by) = (parts.next()?, parts.next()?, parts.next()?);

@@ -5,8 +5,8 @@ const NAME: usize = 160;
 /// Characters of a message.
 const TEXT: usize = 4000;
 
-/// The text with what is longer than a name or a message cut in its middle: a file may hold a name of a megabyte, and a message that
-/// repeats it is read by nobody.
+/// Returns the text with overlong names, and an overlong message, cut in the middle. A file may contain a name of a megabyte, and nobody reads a
+/// message that repeats it.
 pub fn shorten_names(text: impl Into<String>) -> String {
     let text = text.into();
     if text.len() <= NAME {
@@ -24,7 +24,7 @@ pub fn shorten_names(text: impl Into<String>) -> String {
     cut(&names, TEXT)
 }
 
-/// The text, of more than so many characters two thirds of them from its beginning and a quarter from its end.
+/// Returns the text, cut if it is longer than `most` characters: two thirds of `most` from its beginning and a quarter from its end.
 fn cut(text: &str, most: usize) -> String {
     if text.len() <= most || text.chars().count() <= most {
         return text.to_owned();

@@ -8,7 +8,7 @@ pub fn capitalize(text: &str) -> String {
     })
 }
 
-/// Returns a clause about `subject` as a sentence: with a full stop, and with a capital letter unless it begins with a name, a number or code.
+/// Returns a clause about `subject` as a sentence with a full stop. It begins with a capital letter unless it begins with a name, a number or code.
 pub(super) fn sentence(clause: &str, subject: &str) -> String {
     let clause = clause.trim_end();
     let first = clause.split_whitespace().next().unwrap_or_default();

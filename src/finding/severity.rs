@@ -1,4 +1,4 @@
-//! How much a finding matters, and its words.
+//! Severity of a finding and its name.
 
 use serde::{Deserialize, Serialize};
 
@@ -43,7 +43,7 @@ impl Severity {
         all.into_iter().find(|s| s.name() == name)
     }
 
-    /// Returns the word in messages: an information is a `note` there.
+    /// Returns the name in messages; `Info` is a `note` there.
     pub fn word(self) -> &'static str {
         match self {
             Self::Info => "note",

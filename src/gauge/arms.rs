@@ -75,7 +75,7 @@ impl Gauge {
     }
 }
 
-/// The shells' part of what a gauge reads, for [`crate::fe::Adjoint`]; a bar's arm has none.
+/// Returns the shell terms of the reading of a gauge, for [`crate::fe::Adjoint`]; an arm on a bar has no term.
 pub fn strain_terms(gauge: &Gauge) -> Vec<StrainTerm> {
     let term = |arm: &Arm| match arm.spot {
         Spot::Shell {
@@ -127,7 +127,7 @@ fn finite_or_none(strain: f64) -> Option<f64> {
     strain.is_finite().then_some(strain)
 }
 
-/// Strain of a shell at a place, output frame; `None` where the case has none.
+/// Returns the strain of a shell at a place, output frame; `None` if the case has none.
 pub fn shell_strain(
     case: &CaseResult,
     shell: ShellIx,

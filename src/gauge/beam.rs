@@ -9,7 +9,7 @@ use crate::fe::strain_tensor::Surface;
 use crate::finding::{Finding, Severity};
 use crate::model::{BeamIx, Model, Vec3};
 
-/// Where along which beam, at which of its recovery points C D E F (0 to 3).
+/// Position along a beam, and the recovery point C D E F (0 to 3) there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BeamSeat {
     pub(super) beam: BeamIx,
@@ -109,7 +109,7 @@ pub(super) fn on_beam(
         ]
     };
     let arms = match spec.bridge {
-        // Shear was refused: it is no strain along the axis.
+        // A shear bridge was refused, because shear is not strain along the axis.
         Bridge::Quarter | Bridge::Shear => vec![arm(here, 1.0)],
         Bridge::HalfBending => bending(2.0),
         Bridge::FullBending => bending(4.0),

@@ -17,7 +17,7 @@ use crate::model::{Mat3, Model, Shell, Vec3};
 /// A channel is a linear functional of the strain at the places of its arms; [`gauge_reading`](super::gauge_reading) evaluates it in a load case.
 ///
 /// # Errors
-/// Returns the reason why the gauge can't be placed on the model.
+/// Returns the reason why the gauge cannot be placed on the model.
 ///
 /// # Example
 /// A square plate under tension along x reads `e`, `-nu e`, and `e (1 - nu) / 2` at 45 degrees:
@@ -199,7 +199,7 @@ fn reach(model: &Model, element: &Shell, middle: Vec3) -> f64 {
     across + sides[0].max(sides[1])
 }
 
-/// Distances, in those that a place on the skin may have, beyond which no rounding of a drawing explains it.
+/// Multiple of the largest distance of a place on the skin, beyond which no rounding of a drawing explains the distance.
 const FAR: f64 = 5.0;
 
 fn report_distance(

@@ -1,8 +1,8 @@
-//! Why a gauge can't be laid onto the model.
+//! Reason why a gauge cannot be placed on the model.
 
 use std::fmt;
 
-/// Why a gauge can't be laid onto the model.
+/// Reason why a gauge cannot be placed on the model.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GaugeError {
     /// The direction is normal to the surface.

@@ -52,9 +52,9 @@ pub(super) struct PlacedArms {
     pub(super) past_edge: f64,
 }
 
-/// Tangent of the angle by which the surface may turn away under half a grid; beyond it the grid no longer lies on the part.
+/// Tangent of the largest angle by which the surface may turn away under half a grid. Beyond it the grid is no longer on the part.
 const TURNS_AWAY: f64 = 0.577_350_269_189_625_8;
-/// Share of the grid length up to which lengths count as equal: what rounding leaves.
+/// Share of the grid length up to which lengths count as equal, to allow for rounding.
 const SAME_LENGTH: f64 = 1e-6;
 
 pub(super) struct Site<'m> {
@@ -109,7 +109,7 @@ impl Site<'_> {
         Ok(out)
     }
 
-    /// Returns where the second pair sits, and the direction there of a grid that has `direction` in the first pair.
+    /// Returns the place of the second pair, and the direction there of a grid that has `direction` in the first pair.
     fn on_pair(&self, here: Seat, direction: Vec3) -> Result<(Seat, Vec3), GaugeError> {
         let Some(pair) = self.spec.pair else {
             let surface = opposite_side(here.surface);
@@ -137,7 +137,7 @@ impl Site<'_> {
         Ok((seat, direction))
     }
 
-    /// Returns how far an end of a grid lies past the edge of the part; 0 for one that lies on it.
+    /// Returns how far an end of a grid is past the edge of the part; 0 for an end on the part.
     ///
     /// # Errors
     /// The part is shorter than the grid along its axis, or turns away under it.
@@ -196,7 +196,7 @@ impl Site<'_> {
                 let seat = self.land(grid, along).map_or(grid.seat, |l| Seat {
                     shell: l.foot.shell,
                     surface: l.foot.side,
-                    // Past the edge the strain is that of the edge.
+                    // Past the edge, the grid has the strain at the edge.
                     at: if l.past_edge > SAME_LENGTH * length {
                         l.foot.point
                     } else {

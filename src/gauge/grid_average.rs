@@ -1,9 +1,8 @@
 //! The mean strain over a gauge's grid.
 //!
-//! The strain along the axis is sampled at points over the grid length, each on the shell that lies there, and averaged. Where the result
-//! has corner rows it is bilinear in each shell. Where it has centres only, it is linear about each centre with the gradient along the axis
-//! that fits the neighbours across the shell's edges (least squares); neighbours at an angle of more than 20 degrees lie round a bend and
-//! are left out.
+//! The strain along the axis is sampled at points over the grid length, each on the shell at that point, and averaged. If the result has corner rows,
+//! the strain is bilinear in each shell. If it has centres only, the strain is linear about each centre. Its gradient along the axis then fits the
+//! neighbours across the shell's edges (least squares). Neighbours at an angle of more than 20 degrees are round a bend and are left out.
 
 use super::side::{same_side, shell_normal};
 use super::surface::{Foot, centre, foot_on};
@@ -120,7 +119,7 @@ pub(super) fn place_at(
     let z = shell_normal(model, best.shell)?;
     let off = x - best.point;
     let flat = (off - z * off.dot(&z)).norm();
-    // Over a smooth surface a point is off along the normal; at an edge it is off along the surface.
+    // On a smooth surface the point is off along the normal. At an edge it is off along the surface.
     let at_edge = flat * flat > (1.0 - SMOOTH * SMOOTH) * off.norm_squared();
     Some(Landing {
         foot: best,

@@ -1,4 +1,4 @@
-//! A gauge where it was glued, a little way off its drawing.
+//! Gauge at its installed position, a short distance from its nominal position.
 
 use super::arms::Gauge;
 use super::build::build_by;
@@ -9,12 +9,12 @@ use super::surface::{centre, corners, nearest_of, to_side};
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::model::{Model, ShellIx, Vec3};
 
-/// How far a gauge sits from its drawing.
+/// Offset of a gauge from its nominal position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Offset {
     /// Along its axis, length of the deck.
     pub along: f64,
-    /// Across it: along normal x axis, the normal being that of the element.
+    /// Offset across the axis: along normal x axis, with the normal of the element.
     pub across: f64,
     /// Turned, right-handed about the element's normal, radians.
     pub angle_rad: f64,
@@ -42,10 +42,10 @@ impl Offset {
 /// farther off.
 const BESIDE: f64 = 1.0 - SMOOTH * SMOOTH;
 
-/// How often a step is halved where edges stop it on both sides.
+/// Number of times that a step is halved if edges stop it on both sides.
 const HALVINGS: usize = 8;
 
-/// A gauge on shells as drawn, and the shells that it may sit on.
+/// Gauge on shells at its nominal position, and the shells that it may be on.
 #[derive(Clone, Debug)]
 pub struct NominalGauge<'m> {
     model: &'m Model,
@@ -58,7 +58,7 @@ pub struct NominalGauge<'m> {
 }
 
 impl<'m> NominalGauge<'m> {
-    /// A channel of `spec` and what lies within `reach` of it. `None` for gauges on bars.
+    /// Returns a channel of `spec` with the shells within `reach` of it. `None` for gauges on bars.
     pub fn new(
         model: &'m Model,
         spec: &GaugeSpec,
@@ -98,12 +98,12 @@ impl<'m> NominalGauge<'m> {
         &self.spec
     }
 
-    /// The gauge at an offset, as a job with this position and direction would lay it, and its point on the reference surface. Past the
-    /// edge of the surface it stays on the edge.
+    /// Returns the gauge at an offset and its point on the reference surface, as for a job with this position and direction. Past the edge of the
+    /// surface the gauge stays on the edge.
     pub fn gauge_at_offset(&self, offset: Offset) -> Option<(Gauge, Vec3)> {
         let axis = self.gauge.direction;
         let across = self.gauge.normal.cross(&axis);
-        // Without corner rows a gauge reads the middle of its shell wherever it sits on it.
+        // Without corner rows, a gauge at any position on its shell reads the middle of the shell.
         let x = match self.corners {
             CornerRows::Present => self.at + axis * offset.along + across * offset.across,
             CornerRows::Absent => self.at,
@@ -124,16 +124,16 @@ impl<'m> NominalGauge<'m> {
         Some((built.into_iter().next()?, foot.point))
     }
 
-    /// Change of what `read` gives per unit of length that the gauge is glued off along `way`: the central difference over `step` either way;
-    /// where an edge of the surface stops the gauge on one side, the difference on the other side. `None` where both are stopped however short
-    /// the step, or nothing is read.
+    /// Returns the change of `read` per unit of length of an offset of the gauge along `way`. It is the central difference over `step` to either
+    /// side. If an edge of the surface stops the gauge on one side, it is the difference on the other side. `None` if both sides are stopped for any
+    /// `step`, or if `read` returns nothing.
     pub fn slope(
         &self,
         way: fn(f64) -> Offset,
         step: f64,
         read: impl Fn(&Gauge) -> Option<Vec<f64>>,
     ) -> Option<Vec<f64>> {
-        // Where it comes to lie along the way, and what it reads there.
+        // Distance that the gauge reaches along the way, and its reading there.
         let end = |asked: f64| -> Option<(f64, Vec<f64>)> {
             let (gauge, x) = self.gauge_at_offset(way(asked))?;
             let unit = way(1.0);

@@ -6,7 +6,7 @@ use crate::finding::{Finding, Severity, list_few};
 use crate::model::{Model, ShellKind};
 use crate::units::number;
 
-/// Share of the thickness by which a fibre distance may differ from the skin: what rounding of a deck leaves.
+/// Share of the thickness by which a fibre distance may differ from the skin, to allow for rounding of a deck.
 const ROUNDED: f64 = 0.01;
 
 /// Returns a warning for gauges whose strain is taken at a Z1 or Z2 of PSHELL that is not on the skin.

@@ -45,7 +45,7 @@ pub fn on_refined(gauge: &Gauge, coarse: &Model, fine: &RefinedModel) -> Option<
     })
 }
 
-/// The parts of a shell that strain at one of its places is taken from, with their weights.
+/// Parts of a shell that give the strain at one of its places, with their weights.
 fn parts_at(fine: &RefinedModel, shell: ShellIx, place: ShellPlace) -> Option<Vec<(ShellIx, f64)>> {
     let parts = fine.children.get(shell.us())?;
     Some(match place {
@@ -54,8 +54,8 @@ fn parts_at(fine: &RefinedModel, shell: ShellIx, place: ShellPlace) -> Option<Ve
     })
 }
 
-/// By case, the strain on `fine` less that on `coarse`, on the shells of `coarse` and in their output frames, taken as [`on_refined`] takes
-/// it; bars change by nothing, solids are left out. Not a number where either mesh has no strain.
+/// Returns the strain on `fine` minus the strain on `coarse` by case, on the shells of `coarse` and in their output frames. It takes the strain as
+/// [`on_refined`] does. Bars do not change, and solids are left out. The value is not a number if either mesh has no strain.
 pub fn change_by_refining(
     coarse: &Model,
     fine: &RefinedModel,
@@ -124,7 +124,7 @@ fn strain_on_parts(
     Some(out)
 }
 
-/// No strain, where `field` has some.
+/// Returns a field of zero strain with the elements and stations of `field`.
 fn zero_beam_field(field: &BeamField) -> BeamField {
     let stations = field.stations.iter();
     BeamField {
@@ -137,9 +137,9 @@ fn zero_beam_field(field: &BeamField) -> BeamField {
     }
 }
 
-/// Coefficients of exx, eyy, gxy (engineering shear) in the output frame of `to` that take the same strain in the same direction as
-/// `coefficient` does in that of `from`; the shells are taken as level with each other. With t the angle of the old x axis from the new
-/// one: exx = c^2 Exx + s^2 Eyy + s c Gxy and so on.
+/// Returns coefficients of exx, eyy, gxy (engineering shear) in the output frame of `to`. They take the same strain in the same direction as
+/// `coefficient` takes in the output frame of `from`. The shells are assumed to be level with each other. Let t be the angle of the old x axis from
+/// the new one: exx = c^2 Exx + s^2 Eyy + s c Gxy and so on.
 pub(super) fn transfer_coefficients(
     from_model: &Model,
     from: (ShellIx, ShellPlace),
@@ -155,7 +155,7 @@ pub(super) fn transfer_coefficients(
         return None;
     }
     let (c, mut s) = (old_x.x / length, old_x.y / length);
-    // Seen from the other side angles turn the other way, and so does shear.
+    // Seen from the other side, angles and shear have the opposite sign.
     let facing = new.row(2).dot(&old.row(2));
     let [a, b, mut g] = coefficient;
     if facing < 0.0 {

@@ -12,8 +12,8 @@ pub enum Bridge {
     HalfBending,
     /// Four grids: `2 eps(here) - 2 eps(pair)`.
     FullBending,
-    /// Two grids at +45 and -45 degrees from the axis in adjacent arms: `eps(+45) - eps(-45)`, the engineering shear strain in the frame of the
-    /// axis; with a pair, the sum of both places (four grids).
+    /// Two grids at +45 and -45 degrees from the axis in adjacent arms. They read `eps(+45) - eps(-45)`, the engineering shear strain in the frame of
+    /// the axis. With a pair, the reading is the sum of both places (four grids).
     Shear,
 }
 
@@ -26,7 +26,7 @@ impl Bridge {
         Self::Shear,
     ];
 
-    /// The word of files and reports.
+    /// Returns the name in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Quarter => "quarter",
@@ -36,7 +36,7 @@ impl Bridge {
         }
     }
 
-    /// From that word.
+    /// Returns the bridge of a name in files and reports.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|b| b.name() == name)
     }
@@ -91,9 +91,9 @@ pub enum GaugePlace {
     Shell(ShellIx),
     /// Point of the shells' skins nearest to this one, basic frame.
     Nearest(Vec3),
-    /// At recovery point 0 to 3 (C D E F) of a bar or beam, at a share of its length from end A; reads along the axis.
+    /// At recovery point 0 to 3 (C D E F) of a bar or beam, at a share of its length from end A. The gauge reads along the axis.
     Beam {
-        /// Which.
+        /// Bar or beam.
         beam: BeamIx,
         /// 0 to 3.
         point: usize,
@@ -117,8 +117,8 @@ pub struct Pair {
     pub shell: ShellIx,
     /// Side.
     pub surface: Surface,
-    /// Rotation from the axes of the gauge's coordinate system at the first pair to those at this one, basic frame: the identity but in
-    /// cylindrical and spherical systems. It turns the axis of the first pair into that of this one.
+    /// Rotation from the axes of the gauge's coordinate system at the first pair to its axes at this pair, basic frame. It is the identity except in
+    /// cylindrical and spherical systems. It turns the axis of the first pair into the axis of this pair.
     pub turn: Mat3,
 }
 

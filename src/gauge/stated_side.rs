@@ -22,16 +22,16 @@ pub struct BetweenSkins {
     pub bulge: f64,
 }
 
-/// Share of the thickness by which a point has to be nearer to one skin than to the other: less is rounding of a drawing.
+/// Least share of the thickness by which a point must be nearer to one skin than to the other. A smaller share is rounding of a drawing.
 const UNDECIDED: f64 = 0.1;
-/// Share of the thickness by which a point is nearer to the other skin where it contradicts a stated side. A point in the half of the plate
-/// that is around the middle surface contradicts neither side.
+/// Share of the thickness by which a point is nearer to the other skin if it contradicts a stated side. A point in the half of the plate around the
+/// middle surface contradicts neither side.
 const OTHER_SIDE: f64 = 0.5;
 /// Share of the thickness within which a point is on a skin, or on the surface through the grids.
 const ON_SKIN: f64 = 0.25;
 
 impl BetweenSkins {
-    /// Returns the side whose skin is nearer, the top where both are equally far.
+    /// Returns the side whose skin is nearer, the top if both are equally far.
     pub fn nearer_side(&self) -> Surface {
         match self.distance[0] < self.distance[1] {
             true => Surface::Bottom,
@@ -39,28 +39,28 @@ impl BetweenSkins {
         }
     }
 
-    /// Whether the side of the point is ambiguous: it is equally far from both skins, or on different sides of the flat shell and of the curved
-    /// surface.
+    /// Returns whether the side of the point is ambiguous. It is if the point is equally far from both skins. It also is if the point is on different
+    /// sides of the flat shell and of the curved surface.
     pub fn is_undecided(&self) -> bool {
         let [bottom, top] = self.distance;
         (bottom - top).abs() < UNDECIDED * self.thickness || self.is_within_bulge()
     }
 
-    /// Whether the point is on one side of the flat shell and, within the tolerance of a drawing, on the other side of the curved surface.
+    /// Returns whether the point is on different sides of the flat shell and of the curved surface, within the tolerance of a drawing.
     pub fn is_within_bulge(&self) -> bool {
         let open = 0.5 * UNDECIDED * self.thickness;
         let over = self.height - self.bulge;
         self.bulge.abs() > open && (over * self.height <= 0.0 || over.abs() < open)
     }
 
-    /// Whether the point is nearer to the other skin than to that of side `stated`, beyond what a drawing leaves open.
+    /// Returns whether the point is nearer to the other skin than to the skin of side `stated`, beyond the tolerance of a drawing.
     pub fn contradicts(&self, stated: Surface) -> bool {
         let [here, other] = self.skin_distances(stated);
         here - other > OTHER_SIDE * self.thickness && !self.is_within_bulge()
     }
 
-    /// Whether the point is on the skin that is not that of side `stated`, and not on the surface through the grids: tables of elements state
-    /// their middles there.
+    /// Returns whether the point is on the skin opposite to side `stated`, and not on the surface through the grids. Tables of elements state the
+    /// middles of elements on that surface.
     pub fn is_on_other_skin(&self, stated: Surface) -> bool {
         let near = ON_SKIN * self.thickness;
         self.contradicts(stated) && self.skin_distances(stated)[1] <= near && self.from_grids > near
@@ -90,11 +90,12 @@ pub fn between_skins(model: &Model, ix: ShellIx, x: Vec3) -> Option<BetweenSkins
     (thickness > 0.0).then_some(found)
 }
 
-/// Returns the height over a flat shell, at a point `x` on it, of the curved surface that it and its neighbours outline, along the normal.
+/// Returns the height of the curved surface over a flat shell at a point `x` on it, along the normal. The shell and its neighbours outline this
+/// surface.
 ///
-/// Grids of a mesh lie on the surface, and a flat shell cuts it off. With the surface `z = -x' K x / 2` about the centre of the shell the slope
-/// of its normal is `K x`. The curvature `K` (2 by 2, symmetric) is fitted to the normals at the centres of the neighbours that go on smoothly,
-/// by least squares. The shell passes through its corners `c`, so that the height is `(mean(c' K c) - x' K x) / 2`.
+/// Grids of a mesh are on the surface, and a flat shell cuts it off. With the surface `z = -x' K x / 2` about the centre of the shell, the slope of
+/// its normal is `K x`. The curvature `K` (2 by 2, symmetric) is a least-squares fit to the normals at the centres of the neighbours without a bend.
+/// The shell passes through its corners `c`, so that the height is `(mean(c' K c) - x' K x) / 2`.
 fn bulge(model: &Model, ix: ShellIx, x: Vec3) -> Option<f64> {
     let shell = model.shells.get(ix.us())?;
     let (axes, middle) = (

@@ -8,9 +8,9 @@ use super::surface::centre;
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::model::{Model, Vec3};
 
-/// Returns a gauge that reads the change of `gauge` per unit of length (of the deck) if all its arms move along `direction` (basic frame,
-/// projected onto each arm's shell). It is the gradient that fits the neighbours of the shell best. `None` for arms on bars, at corners of shells,
-/// and on shells without neighbours in that direction.
+/// Returns a gauge that reads the change of `gauge` per unit of length (of the deck) if all its arms move along `direction`. The direction is in the
+/// basic frame and is projected onto each arm's shell. The gradient is the best fit to the neighbours of the shell. `None` for arms on bars, at
+/// corners of shells, and on shells without neighbours in that direction.
 pub fn strain_gradient_gauge(gauge: &Gauge, model: &Model, direction: Vec3) -> Option<Gauge> {
     let mut arms = Vec::new();
     for arm in &gauge.arms {
@@ -32,7 +32,7 @@ pub fn strain_gradient_gauge(gauge: &Gauge, model: &Model, direction: Vec3) -> O
             return None;
         }
         for (ix, w) in weights {
-            // At its own shell the value itself is not part of the change.
+            // At the gauge's own shell, the value itself is not part of the change.
             let w = if ix == shell { w - 1.0 } else { w };
             arms.push(Arm {
                 spot: Spot::Shell {

@@ -37,8 +37,8 @@ pub fn centre(model: &Model, shell: &Shell) -> Option<Vec3> {
     Some(corners(model, shell)?.iter().take(n).sum::<Vec3>() / n as f64)
 }
 
-/// Returns the distance from the reference surface of a shell to the skin of a side along the normal, at its centre: the offset and half of the
-/// thickness there (of a laminate, the outer face of its last ply). Z1 and Z2 state where strain is taken, which may be elsewhere.
+/// Returns the distance from the reference surface of a shell to the skin of a side, along the normal at its centre. It is the offset and half of the
+/// thickness there (for a laminate, to the outer face of its last ply). Z1 and Z2 state the fibres of the strain, which may be elsewhere.
 pub fn to_side(model: &Model, shell: &Shell, side: Surface) -> f64 {
     let n = shell.shape.n_corners();
     let weights = std::array::from_fn(|i| if i < n { 1.0 / n as f64 } else { 0.0 });
@@ -67,7 +67,7 @@ fn to_side_at(model: &Model, shell: &Shell, side: Surface, weights: [f64; 4]) ->
     shell.zoffs + if z.is_finite() { z } else { 0.0 }
 }
 
-/// Returns the distances of a point from the bottom and the top skin of a shell; `None` where it has no area.
+/// Returns the distances of a point from the bottom and the top skin of a shell; `None` if it has no area.
 pub fn from_skins(model: &Model, ix: ShellIx, x: Vec3) -> Option<[f64; 2]> {
     let z = shell_normal(model, ix)?;
     let shell = model.shells.get(ix.us())?;
@@ -78,9 +78,9 @@ pub fn from_skins(model: &Model, ix: ShellIx, x: Vec3) -> Option<[f64; 2]> {
 
 /// Returns the shell and the side whose skin is nearest to `x`; `None` without shells.
 ///
-/// The skins are offset from the reference surface by ZOFFS and half the thickness, so that the reference surface alone determines neither
-/// the plate nor the side that a point is on. A point inside a plate belongs to that plate: its middle surface counts as a skin does. Of
-/// equally near skins that of side `stated` is taken, else the top.
+/// ZOFFS and half the thickness offset the skins from the reference surface. The reference surface alone therefore determines neither the plate nor
+/// the side of a point. A point inside a plate belongs to that plate, because its middle surface counts as a skin. If skins are equally near, the
+/// skin of side `stated` is taken, else the top.
 ///
 /// [`Foot::distance`] is the distance from the skin of [`Foot::side`].
 pub fn nearest_skin(model: &Model, x: Vec3, stated: Option<Surface>) -> Option<Foot> {
@@ -105,7 +105,7 @@ pub fn nearest_skin(model: &Model, x: Vec3, stated: Option<Surface>) -> Option<F
     best.map(|b| b.foot)
 }
 
-/// Share of the size of coordinates up to which two distances count as equal: what rounding leaves of them.
+/// Share of the size of coordinates up to which two distances count as equal, to allow for rounding.
 const SAME_PLACE: f64 = 1e-10;
 
 /// Distance of a point from a shell, with the place there.
@@ -136,7 +136,7 @@ fn nearness(model: &Model, ix: ShellIx, x: Vec3, stated: Option<Surface>) -> Opt
         .windows(2)
         .any(|t| t[0] != t[1])
     {
-        // The skins of a tapered shell are as far from the reference surface as the thickness at the place says.
+        // The skins of a tapered shell depend on the thickness at the place.
         let local = |s: Surface, h: f64| Some(to_side_at(model, shell, s, layer(h)?.weights));
         height = [local(sides[0], height[0])?, local(sides[1], height[1])?];
     }
@@ -275,7 +275,7 @@ fn on_quad(p: [Vec3; 4], x: Vec3) -> [f64; 4] {
             xi + (ss * dr - rs * ds) / det,
             eta + (rr * ds - rs * dr) / det,
         );
-        // On an edge the other coordinate has an optimum of its own.
+        // On an edge the other coordinate has a separate optimum.
         if !(-1.0..=1.0).contains(&next.0) {
             next.0 = next.0.clamp(-1.0, 1.0);
             next.1 = eta + (ds - rs * (next.0 - xi)) / ss;

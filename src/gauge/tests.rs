@@ -308,7 +308,7 @@ fn a_grid_averages_over_its_length() {
             "a linear field averages to its middle: {got}"
         );
     }
-    // A position off the centre, a grid across two elements: still linear, so still its middle.
+    // The position is off the centre and the grid is across two elements. The field is still linear, so that the mean is the value at the middle.
     let off = GaugeSpec {
         place: GaugePlace::Nearest(Vec3::new(48.0, 15.0, 1.0)),
         ..spec.clone()
@@ -320,7 +320,7 @@ fn a_grid_averages_over_its_length() {
         &field(&m, CornerRows::Present, linear),
     )[0];
     assert!((got - 48e-6).abs() < 1e-15, "{got}");
-    // A ridge at x = 45, |x - 45| at the corners: bilinear inside the element gives 0.5 everywhere along it.
+    // The field `(x - 45)^2` at the corners is 25 at both ends of the middle element, so that it is constant in this element.
     let long = GaugeSpec {
         grid_length: 30.0,
         ..spec
@@ -329,9 +329,8 @@ fn a_grid_averages_over_its_length() {
         [1e-8 * (x.x - 45.0).powi(2), 0.0, 0.0]
     });
     let mean = read(&m, &long, CornerRows::Present, &square)[0];
-    // Bilinear between corners at 5, 15 from the middle (25, 225): 25 up to 5, then
-    // 25 + 20 (d - 5). The rule is Gauss-Legendre with five
-    // points (Abramowitz and Stegun, table 25.4) over +-15; its middle point takes the shell's own centre row, 0 here.
+    // At 5 and 15 from the middle, the corner values are 25 and 225. The bilinear field is 25 up to 5, then 25 + 20 (d - 5). The rule is
+    // Gauss-Legendre with five points (Abramowitz and Stegun, table 25.4) over +-15. Its middle point takes the shell's own centre row, 0 here.
     let ridge = |d: f64| 25.0 + 20.0 * (d.abs() - 5.0).max(0.0);
     let rule = [
         (0.0, 0.568_888_888_9),
@@ -404,7 +403,7 @@ fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
                 (0.0, [1e-6, 2e-6, -1e-6, 0.0]),
                 (1.0, [3e-6, 2e-6, -3e-6, 0.0]),
             ]],
-            // Bending along C alone, 1e-7 of axial strain: D is blank, so that no mean of the four points is the axial strain.
+            // The axial strain differs from the mean of the four recovery points.
             axial: vec![vec![1e-7, 3e-7]],
             ..Default::default()
         },
@@ -430,10 +429,10 @@ fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
     assert!((at(0, 0.0, Bridge::Quarter) - 1e-6).abs() < 1e-18);
     assert!((at(0, 0.25, Bridge::Quarter) - 1.5e-6).abs() < 1e-18);
     assert!((at(2, 1.0, Bridge::Quarter) + 3e-6).abs() < 1e-18);
-    // Across the neutral axis the bending strain turns its sign: half bridge twice, full bridge four times the bending strain.
+    // The bending strain changes its sign across the neutral axis. A half bridge reads it twice, a full bridge four times.
     assert!((at(0, 0.0, Bridge::HalfBending) - 2.0 * 0.9e-6).abs() < 1e-18);
     assert!((at(0, 0.5, Bridge::FullBending) - 4.0 * (2e-6 - 2e-7)).abs() < 1e-18);
-    // Recovery points have the strain along the axis alone: what reads across it was read along it.
+    // Recovery points have only the strain along the axis. A gauge across the axis was formerly read along it.
     let along = GaugeSpec {
         place: GaugePlace::Beam {
             beam: BeamIx(0),
@@ -516,7 +515,7 @@ fn a_moved_gauge_reads_the_slope_of_a_linear_field_along_the_way_it_moves() {
     let m = plate(3, 3, 0);
     let slope = |x: Vec3, _: f64| E.map(|e| e * (0.03 * x.x - 0.02 * x.y));
     let case = field(&m, CornerRows::Absent, slope);
-    // The middle of nine: neighbours on all sides.
+    // The middle shell of nine has neighbours on all sides.
     let spec = GaugeSpec {
         direction: Some(Vec3::x()),
         ..GaugeSpec::place_on_shell("a", ShellIx(4))
@@ -532,7 +531,7 @@ fn a_moved_gauge_reads_the_slope_of_a_linear_field_along_the_way_it_moves() {
 #[test]
 fn a_gauge_at_a_free_edge_has_the_slope_of_a_linear_field_as_one_inside_has() {
     let m = plate(3, 3, 0);
-    // Microstrain per length along x and y of the strain along x, gauges along x.
+    // Strain along x, in microstrain, with slopes of 2 along x and -5 along y. The gauges read along x.
     let case = field(&m, CornerRows::Present, |x, _| {
         [2.0 * x.x - 5.0 * x.y, 0.0, 0.0]
     });
@@ -543,7 +542,7 @@ fn a_gauge_at_a_free_edge_has_the_slope_of_a_linear_field_as_one_inside_has() {
         [30.0, 15.0],
         [12.0, 0.0],
         [0.0, 30.0],
-        // Nearer to the edge than the step.
+        // This gauge is nearer to the edge than the step.
         [1.0, 29.0],
     ] {
         let spec = GaugeSpec {

@@ -1,4 +1,4 @@
-//! Bad input: what is wrong, where, and what to do about it.
+//! Faults of inputs: the problem, its place and the remedy.
 
 use crate::finding::{Finding, list_few, shorten_names};
 use serde::Serialize;
@@ -31,7 +31,7 @@ pub struct Fault {
     pub line: Option<u32>,
     /// Key, card field or column.
     pub field: String,
-    /// Text that states what was found and what was expected.
+    /// Text with the observed and the expected content.
     pub wrong: String,
     /// Remedy, as an imperative.
     pub remedy: String,
@@ -153,7 +153,7 @@ impl Faults {
     }
 }
 
-/// Returns the faults with one for all of a file and field whose sentences differ in quoted values alone, where they are many.
+/// Returns the faults, with similar faults folded. If many faults of a file and field differ in quoted values only, one fault replaces them.
 fn fold_alike(list: FaultList) -> FaultList {
     /// Faults up to which each is listed.
     const FEW: usize = 3;

@@ -3,7 +3,7 @@
 use crate::finding::{Finding, Severity};
 use std::path::PathBuf;
 
-/// A file that was read, with where it was found.
+/// A file that was read, with its location.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileRead {
     /// Path as given, by the user or by the job.

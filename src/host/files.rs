@@ -33,7 +33,7 @@ pub struct Inputs<'a> {
     unsure: BTreeMap<String, Severity>,
     /// Findings on tables, other than on their ends, each with its table.
     noted: Vec<(String, Finding)>,
-    /// Tables that were read, so that a question that comes back to one reads what it read before.
+    /// Tables that were read, so that a second question on a table reads the same bytes.
     kept: BTreeMap<PathBuf, FileBytes>,
 }
 
@@ -58,7 +58,7 @@ impl PendingDigest {
 }
 
 impl<'a> Inputs<'a> {
-    /// Nothing read so far, of these files.
+    /// Returns inputs of these files, none of them read so far.
     pub fn new(files: &'a dyn Files) -> Self {
         Self {
             files,
@@ -106,18 +106,18 @@ impl<'a> Inputs<'a> {
             .collect()
     }
 
-    /// Bytes of a file that is found by its path alone.
+    /// Reads the bytes of a file by its path alone.
     ///
     /// # Errors
-    /// Those of the system.
+    /// Errors of the system.
     pub fn load(&self, path: &Path) -> std::io::Result<FileBytes> {
         self.files.load(path)
     }
 
-    /// Bytes of the file `given`, which is relative to `base`.
+    /// Reads the bytes of the file `given`, which is relative to `base`.
     ///
     /// # Errors
-    /// A fault of the file itself where it can't be read.
+    /// A fault of the file itself if it cannot be read.
     pub fn read(&mut self, base: &Path, given: &str) -> Result<FileBytes, Fault> {
         let path = base.join(given);
         if let Some(bytes) = self.kept.get(&path) {
@@ -141,11 +141,11 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Text of the file `given`, which is relative to `base`; a byte order mark is dropped, a spreadsheet is turned into the CSV text
-    /// of its first sheet.
+    /// Reads the text of the file `given`, which is relative to `base`. It drops a byte order mark and converts the first sheet of a spreadsheet to
+    /// CSV text.
     ///
     /// # Errors
-    /// A fault where it can't be read or isn't UTF-8.
+    /// A fault if the file cannot be read or is not UTF-8.
     pub fn read_text(&mut self, base: &Path, given: &str) -> Result<String, Fault> {
         let bytes = self.table_bytes(base, given)?;
         match std::str::from_utf8(&bytes) {
@@ -169,7 +169,7 @@ impl<'a> Inputs<'a> {
         Ok(bytes)
     }
 
-    /// Notes a table whose last line may be cut.
+    /// Records a table whose last line may be cut.
     pub(crate) fn note_end(&mut self, given: &str, read: Option<&impl AsRef<[u8]>>) {
         if let Some(bytes) = read.filter(|_| is_table(given))
             && !is_format(bytes.as_ref())
@@ -193,7 +193,7 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Returns a finding for each table whose last line may be cut, and those that were noted.
+    /// Returns a finding for each table whose last line may be cut, and the recorded findings.
     pub fn findings(&self) -> Vec<Finding> {
         let unsure = self.unsure.iter();
         let noted = self.noted.iter().map(|n| n.1.clone());
@@ -241,7 +241,7 @@ impl<'a> Inputs<'a> {
     }
 }
 
-/// Returns the bytes of a table or a record; of a spreadsheet the CSV text of its first sheet.
+/// Returns the bytes of a table or a record. For a spreadsheet these are the CSV text of its first sheet.
 ///
 /// # Errors
 /// A file that is neither a table nor a record.
@@ -287,13 +287,13 @@ pub(crate) fn no_text(given: &str, bytes: &[u8]) -> Fault {
     Fault::with_line(given, line, "text", "not UTF-8", remedy)
 }
 
-/// Returns the findings that were noted on a table.
+/// Returns the findings recorded for a table.
 fn of_table(noted: &[(String, Finding)], given: &str) -> Vec<Finding> {
     let of = noted.iter().filter(|n| n.0 == given);
     of.map(|n| n.1.clone()).collect()
 }
 
-/// Whether a file is a table of text, by its name.
+/// Returns whether a file is a table of text, by its name.
 fn is_table(given: &str) -> bool {
     let name = given.to_ascii_lowercase();
     [".csv", ".tsv", ".txt"].iter().any(|e| name.ends_with(e))
@@ -316,7 +316,7 @@ pub(crate) fn may_be_cut(file: &str, severity: Severity) -> Finding {
 
 pub(crate) fn unreadable_file_fault(given: &str, e: &std::io::Error) -> Fault {
     let (mut wrong, mut remedy) = why_unreadable(e);
-    // A name in another encoding, such as the one of Windows, arrives with this sign in place of each byte that is not UTF-8.
+    // A name in another encoding, such as cp1252 of Windows, arrives with this sign in place of each byte that is not UTF-8.
     if e.kind() == std::io::ErrorKind::NotFound && given.contains('\u{fffd}') {
         "the name of the file or of its folder is not UTF-8".clone_into(&mut wrong);
         remedy =
@@ -325,7 +325,7 @@ pub(crate) fn unreadable_file_fault(given: &str, e: &std::io::Error) -> Fault {
     Fault::new(given, "file", wrong, remedy)
 }
 
-/// Why a file can't be read, and what to do.
+/// Returns the reason why a file cannot be read, and the remedy.
 pub(crate) fn why_unreadable(e: &std::io::Error) -> (String, &'static str) {
     match e.kind() {
         std::io::ErrorKind::NotFound => (
@@ -365,7 +365,7 @@ mod tests {
     use super::*;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
-    /// Counts how often it is asked.
+    /// Counts its calls.
     struct CountingFiles(AtomicUsize, Vec<u8>);
 
     impl Files for CountingFiles {

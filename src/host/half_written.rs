@@ -1,4 +1,4 @@
-//! Files under their temporary names: what an interrupted program removes before it ends.
+//! Files under their temporary names, which an interrupted program removes before it ends.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ fn files() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     FILES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Notes a file that is being written.
+/// Records a file in progress.
 pub fn note(part: &Path) {
     files().insert(part.to_owned());
 }
@@ -28,8 +28,8 @@ pub fn name_of_part(name: &str, n: u64) -> String {
     format!(".{name}.{}-{}-{n}.part", host(), std::process::id())
 }
 
-/// Returns the name of this machine and of the space of its process numbers, letters and digits; empty where the system states none.
-/// Containers of one name and one folder have process numbers of their own.
+/// Returns the name of this machine and of the space of its process numbers, letters and digits; empty if the system states none. Containers with one
+/// name and one folder have separate process numbers.
 fn host() -> String {
     let name = std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
     let space = std::fs::read_link("/proc/self/ns/pid").unwrap_or_default();
@@ -72,14 +72,14 @@ fn writer_of(name: &str, host: &str) -> Option<u32> {
     process.parse().ok().filter(|_| of == host)
 }
 
-/// Whether a process of this machine is known to have ended.
+/// Returns whether a process of this machine is known to have ended.
 fn has_ended(process: u32) -> bool {
     Path::new("/proc/self").exists() && !Path::new(&format!("/proc/{process}")).exists()
 }
 
-/// Removes the noted files and lets nothing more begin: the program ends by `end`.
+/// Removes the recorded files and prevents new ones. `end` ends the program.
 pub fn remove_all_and(end: impl FnOnce()) {
-    // Held to the end: nothing more is begun.
+    // The lock is held to the end, so that no new file begins.
     let files = files();
     for file in files.iter() {
         let _ = std::fs::remove_file(file);

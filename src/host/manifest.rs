@@ -1,8 +1,8 @@
-//! Which files of a folder which command wrote, so that its next run removes those that it no longer writes.
+//! Manifest of a folder: the files that each command wrote. The next run of a command removes files that it no longer writes.
 //!
-//! `.strainbridge` in the folder: a line a file: the command, a tab, the name and, of a file that a person may edit, a tab and the SHA-256 of
-//! its bytes. Files of other commands are left alone, for one command's tables are often another's input. No command writes over a file that is
-//! not listed, or that was changed since.
+//! The file `.strainbridge` in the folder has a line for each file: the command, a tab and the name. For a file that a person may edit, a tab and the
+//! SHA-256 of its bytes follow. Files of other commands are left alone, because one command's tables are often another's input. No command writes
+//! over a file that is not listed, or that has changed since.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
@@ -36,7 +36,7 @@ impl Manifest {
         out
     }
 
-    /// Returns the SHA-256 of a file as it was written; `None` where that is not known.
+    /// Returns the SHA-256 of a file as written by its command; `None` if it is not known.
     pub(crate) fn digest(&self, name: &str) -> Option<&str> {
         self.digests.get(name).map(String::as_str)
     }
@@ -52,7 +52,7 @@ impl Manifest {
         own.map(|e| e.1.clone()).collect()
     }
 
-    /// Whether a command wrote a file of this name.
+    /// Returns whether a command wrote a file of this name.
     pub(crate) fn holds(&self, name: &str) -> bool {
         self.entries.iter().any(|e| e.1 == name)
     }
@@ -63,7 +63,7 @@ impl Manifest {
         found.map(|e| e.0.as_str())
     }
 
-    /// The files of every other command. Files that a command writes before its answer have its name, a blank and a word as key.
+    /// Returns the files of every other command. Files that a command writes before its answer have the command, a blank and a word as key.
     pub(crate) fn of_others(&self, command: &str) -> BTreeMap<&str, Vec<&str>> {
         let of_other = |by: &str| by.split(' ').next() != Some(command);
         let mut out: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
@@ -73,7 +73,7 @@ impl Manifest {
         out
     }
 
-    /// Adds files to those of a command.
+    /// Adds files to the list of a command.
     pub(crate) fn add(&mut self, command: &str, names: &[String]) {
         self.entries.retain(|e| !names.contains(&e.1));
         self.digests.retain(|name, _| !names.contains(name));
@@ -81,13 +81,13 @@ impl Manifest {
         self.entries.extend(added);
     }
 
-    /// Puts what a command writes now in place of what it wrote before; files that it wrote and that nobody writes now.
+    /// Replaces the list of files of a command. Returns the files that it wrote before and that no command writes now.
     pub(crate) fn replace(&mut self, command: &str, names: &[String]) -> Vec<PathBuf> {
         let (before, others): (BTreeSet<_>, BTreeSet<_>) = std::mem::take(&mut self.entries)
             .into_iter()
             .partition(|e| e.0 == command);
         self.entries = others;
-        // A file that another command wrote before belongs to whoever wrote it last.
+        // A file that several commands wrote belongs to the last of them.
         self.add(command, names);
         let gone = before.into_iter().map(|e| e.1);
         gone.filter(|n| !self.holds(n)).map(PathBuf::from).collect()
@@ -103,7 +103,7 @@ impl Manifest {
     }
 }
 
-/// Whether a name leads to a file of the folder itself.
+/// Returns whether a name leads to a file of the folder itself.
 fn is_plain(name: &str) -> bool {
     let mut parts = Path::new(name).components();
     matches!(
@@ -138,7 +138,7 @@ mod tests {
         assert_eq!(m.of_others("recover")["place"], ["gauges.csv"]);
         m.add("place inputs", &names(&["place.toml"]));
         assert!(m.of_others("place").keys().all(|k| *k == "recover"));
-        // report.html is recover's now
+        // `report.html` belongs to `recover` now.
         assert!(m.replace("place", &names(&["gauges.csv"])).is_empty());
     }
 

@@ -20,8 +20,8 @@ pub trait Answer: Serialize {
     /// Name of the result, as the subject of a sentence: `The recovered loads`.
     const RESULT: &'static str;
 
-    /// Returns the result in one sentence: what it is and how certain it is, in numbers with units. `±` is the half width of a 95 % interval.
-    /// The sentence is right for an answer without findings; [`Outcome::summary`] adds what the findings mean.
+    /// Returns the result and its uncertainty in one sentence, in numbers with units. `±` is the half width of a 95 % interval. The sentence is right
+    /// for an answer without findings; [`Outcome::summary`] adds the meaning of the findings.
     fn verdict(&self) -> String;
 
     /// Returns the faults of the input that are part of the answer: only `check` has them.
@@ -65,7 +65,7 @@ pub struct Outcome<A> {
     pub units: StatedUnits,
     /// Every file that was read.
     pub inputs: Vec<Input>,
-    /// Paths of the inputs and of other files that the answer depends on. No output replaces one of them.
+    /// Paths of the inputs and of other files that the answer depends on. No output replaces any of these files.
     pub sources: Vec<PathBuf>,
     /// Findings on the answer, the worst first.
     pub findings: Findings,
@@ -120,7 +120,7 @@ impl<A: Answer> Outcome<A> {
     }
 }
 
-/// Returns the errors in the short words of their codes, each with what it is about: `gauge silent (P03)`.
+/// Returns the errors as the short texts of their codes, each with its subject: `gauge silent (P03)`.
 fn reasons(findings: &[Finding]) -> String {
     /// Codes that a sentence names; the findings below it name all.
     const MOST: usize = 2;

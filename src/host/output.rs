@@ -21,8 +21,7 @@ static PARTS: AtomicU64 = AtomicU64::new(0);
 /// A file that is written piece by piece.
 pub type OpenFile = BufWriter<File>;
 
-/// The output folder of one command. Files are written under temporary names and renamed by [`Output::commit`]; dropped
-/// without it, nothing is left behind.
+/// The output folder of one command. Files are written under temporary names and renamed by [`Output::commit`]. Without a commit, no file remains.
 pub struct Output {
     folder: PathBuf,
     pending: Vec<(PathBuf, PathBuf)>,
@@ -30,10 +29,10 @@ pub struct Output {
 }
 
 impl Output {
-    /// An output folder, created where missing.
+    /// Opens an output folder, which is created if it is missing.
     ///
     /// # Errors
-    /// A fault where it can't be created.
+    /// A fault if it cannot be created.
     pub fn begin(folder: &Path) -> Result<Self, Fault> {
         std::fs::create_dir_all(folder).map_err(|e| unwritable_file_fault(folder, &e))?;
         half_written::remove_stale(folder);
@@ -67,7 +66,7 @@ impl Output {
     /// Writes file `name` by `fill`, buffered.
     ///
     /// # Errors
-    /// A fault where it can't be written.
+    /// A fault if it cannot be written.
     pub fn write(
         &mut self,
         name: &str,
@@ -80,7 +79,7 @@ impl Output {
     /// Opens file `name` to be written piece by piece; flush it before [`Output::commit`].
     ///
     /// # Errors
-    /// A fault where it can't be created.
+    /// A fault if it cannot be created.
     pub fn open(&mut self, name: &str) -> Result<OpenFile, Fault> {
         let part = self.begin_file(name);
         File::create(part)
@@ -88,7 +87,7 @@ impl Output {
             .map_err(|e| unwritable_file_fault(&self.folder.join(name), &e))
     }
 
-    /// Whether file `name` was begun.
+    /// Returns whether file `name` was begun.
     pub fn holds(&self, name: &str) -> bool {
         let target = self.folder.join(name);
         self.pending.iter().any(|p| p.1 == target)
@@ -97,7 +96,7 @@ impl Output {
     /// Bytes of file `name` as written so far, which must be flushed. Drop them before [`Output::commit`].
     ///
     /// # Errors
-    /// A fault where it can't be read.
+    /// A fault if it cannot be read.
     pub fn read_back(&self, name: &str) -> Result<FileBytes, Fault> {
         let target = self.folder.join(name);
         let written = self.pending.iter().rev().find(|p| p.1 == target);
@@ -119,7 +118,7 @@ impl Output {
     /// Writes two files at the same time, each by its own `fill`.
     ///
     /// # Errors
-    /// A fault for the first that can't be written.
+    /// A fault for the first file that cannot be renamed.
     pub fn write_both(
         &mut self,
         (one, fill_one): (
@@ -155,7 +154,7 @@ impl Output {
     /// Writes file `name` from bytes.
     ///
     /// # Errors
-    /// A fault where it can't be written.
+    /// A fault if it cannot be written.
     pub fn write_bytes(&mut self, name: &str, bytes: &[u8]) -> Result<(), Fault> {
         self.write(name, |w| w.write_all(bytes))
     }
@@ -192,16 +191,16 @@ impl Output {
     pub fn check_free(folder: &Path, names: &[&str]) -> Result<(), Faults> {
         let targets = names.iter().map(|n| folder.join(n));
         let standing: Vec<PathBuf> = targets.filter(|t| t.exists()).collect();
-        // What another run writes meanwhile is listed before it stands.
+        // Another run lists a file before it writes it. The manifest is therefore read after the check for existing files.
         let ours = Manifest::read(folder);
         let foreign = standing.iter().filter_map(|t| not_ours(&ours, t));
         Faults::check(foreign.collect())
     }
 
-    /// Renames every file to its name, and removes what the command wrote into the folder before and doesn't write now; none of `sources`.
+    /// Renames every file to its name. Removes files that the command wrote into the folder before and does not write now, except `sources`.
     ///
     /// # Errors
-    /// Faults of [`Output::check_spared`]; one for the first file that can't be renamed.
+    /// Faults of [`Output::check_spared`]; a fault for the first file that cannot be renamed.
     pub fn commit(mut self, command: &str, sources: &[PathBuf]) -> Result<(), Faults> {
         let _held = hold(&self.folder);
         self.check_spared(sources)?;
@@ -210,7 +209,7 @@ impl Output {
         let before = written.clone();
         let gone = written.replace(command, &self.names());
         if self.holds(INDEX) {
-            // The page depends on the results of other commands: it is not part of the answer.
+            // The page depends on the results of other commands, so that it is not part of the answer.
             written.add(&format!("{command} index"), &[INDEX.to_owned()]);
         }
         for (other, kept) in self.keep_answers_of_others(command, &before)? {
@@ -220,7 +219,7 @@ impl Output {
         self.rename_all()?;
         for name in gone {
             let path = self.folder.join(name);
-            // One that is gone already is no loss; one that was changed is its user's.
+            // A file that is already gone is not missed. A file that was changed belongs to its user.
             if !is_changed(&before, &path)
                 && std::fs::canonicalize(&path).is_ok_and(|p| !sources.contains(&p))
             {
@@ -230,8 +229,8 @@ impl Output {
         Ok(())
     }
 
-    /// Copies the answer and the report of another command, which this one writes over, to names that begin with that command: the writer and
-    /// the name of each.
+    /// Copies the answer and the report of another command, which this one overwrites, to names that begin with that command. Returns the writer and
+    /// the name of each copy.
     fn keep_answers_of_others(
         &mut self,
         command: &str,
@@ -284,10 +283,10 @@ impl Output {
         Ok(())
     }
 
-    /// Renames every file to its name and leaves the folder as it is otherwise: for a file among those of a user.
+    /// Renames every file to its name and does not change the folder otherwise, for a file in a user's folder.
     ///
     /// # Errors
-    /// A fault for the first that can't be renamed.
+    /// A fault for the first file that cannot be renamed.
     pub fn rename_all(&mut self) -> Result<(), Fault> {
         while let Some((part, target)) = self.pending.first().cloned() {
             std::fs::rename(&part, &target).map_err(|e| unwritable_file_fault(&target, &e))?;
@@ -326,7 +325,7 @@ pub fn left_by_others(folder: &Path, command: &str) -> Option<String> {
     })
 }
 
-/// The fault of a file that no command wrote; `None` where one did.
+/// Returns the fault of a file that no command wrote; `None` if a command wrote it.
 fn not_ours(ours: &Manifest, target: &Path) -> Option<Fault> {
     let name = target.file_name()?.to_string_lossy();
     if is_changed(ours, target) {
@@ -350,7 +349,7 @@ fn not_ours(ours: &Manifest, target: &Path) -> Option<Fault> {
     })
 }
 
-/// Returns the SHA-256 of a file, where it goes to a name that a person may edit.
+/// Returns the SHA-256 of a file if its final name is one that a person may edit.
 fn digest_of(file: &Path, name: &Path) -> Option<String> {
     /// Extensions of tables and jobs.
     const EDITED: [&str; 5] = ["csv", "toml", "md", "bdf", "txt"];
@@ -364,30 +363,30 @@ fn digest_of(file: &Path, name: &Path) -> Option<String> {
     load(file).ok().map(|bytes| sha256_hex(&bytes))
 }
 
-/// Whether a file that a command wrote has other bytes now.
+/// Returns whether a file that a command wrote has other bytes now.
 fn is_changed(ours: &Manifest, target: &Path) -> bool {
     let name = target.file_name().map(|n| n.to_string_lossy());
     let written = name.and_then(|n| ours.digest(&n).map(str::to_owned));
     let now = written.as_ref().and_then(|_| digest_of(target, target));
-    // One that grew beyond what has a digest was changed too.
+    // A file that grew beyond the size limit of digests has changed too.
     written.is_some_and(|w| target.is_file() && now != Some(w))
 }
 
-/// Keeps other runs from the folder while its list is read and written: two that end at once would each lose what the other listed. A system
-/// that can't lock a folder goes without.
+/// Locks the folder while its list is read and written. Without a lock, two runs that end at once would each lose the list of the other. A system
+/// that cannot lock a folder works without a lock.
 fn hold(folder: &Path) -> Option<File> {
     let folder = File::open(folder).ok()?;
     folder.lock().ok()?;
     Some(folder)
 }
 
-/// Whether two files hold the same bytes.
+/// Returns whether two files hold the same bytes.
 fn is_same(a: &Path, b: &Path) -> bool {
     let size = |p: &Path| std::fs::metadata(p).map(|m| m.len()).ok();
     size(a) == size(b) && matches!((load(a), load(b)), (Ok(a), Ok(b)) if *a == *b)
 }
 
-/// The files as the system knows them, links followed; files in memory are left out.
+/// Returns the canonical paths of the files, with links followed. Files in memory are left out.
 fn canonicalize_paths(paths: &[PathBuf]) -> BTreeSet<PathBuf> {
     let known = paths.iter().map(std::fs::canonicalize);
     known.filter_map(Result::ok).collect()
@@ -473,7 +472,7 @@ mod tests {
         let early = Output::check_free(&folder, &["gauges.csv"]).unwrap_err();
         assert_eq!(early.iter().count(), 1);
         assert_eq!(std::fs::read_to_string(&table).unwrap(), "corrected");
-        // A run that no longer writes the table leaves it.
+        // A run that no longer writes the table does not remove it.
         let mut out = Output::begin(&folder).unwrap();
         out.write_bytes("other.csv", b"d").unwrap();
         out.commit("place", &[]).unwrap();

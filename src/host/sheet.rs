@@ -1,4 +1,4 @@
-//! Spreadsheets as tables: the first sheet of an XLSX file as CSV text, so that whoever reads a table reads it too.
+//! Spreadsheets as tables: the first sheet of an XLSX file becomes CSV text, so that every reader of tables accepts it.
 //!
 //! Cells come one after the other and are kept only as text. An address far to the right or below costs only its separators, and these are bounded.
 //! The unpacked size that the archive states is bounded before anything is unpacked.
@@ -14,16 +14,16 @@ const MOST_TEXT: usize = 256 << 20;
 #[cfg(feature = "xlsx")]
 const MOST_CELLS: (u32, u32) = (1 << 20, 1 << 14);
 
-/// Whether the bytes begin as an archive, which XLSX is.
+/// Returns whether the bytes begin as an archive, which XLSX is.
 pub(crate) fn is_sheet(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04")
 }
 
-/// The first sheet as CSV: a line a row, rows that hold nothing among them, as many fields in each as in the first, in quotes where they
-/// need them. A cell that holds an error such as `#N/A` is blank.
+/// Converts the first sheet to CSV, with a line for each row, empty rows included. Each row has as many fields as the first row, in quotes if
+/// necessary. A cell with an error such as `#N/A` is blank.
 ///
 /// # Errors
-/// Why it can't be had.
+/// Reason why the sheet cannot be read.
 #[cfg(feature = "xlsx")]
 pub(crate) fn csv_of_sheet(bytes: &[u8]) -> Result<String, String> {
     use calamine::{DataRef, Reader, Xlsx, XlsxError};
@@ -54,7 +54,7 @@ pub(crate) fn csv_of_sheet(bytes: &[u8]) -> Result<String, String> {
     Ok(lines.text)
 }
 
-/// Returns the names of the sheets of a spreadsheet; none of another file.
+/// Returns the names of the sheets of a spreadsheet; an empty list for another file.
 #[cfg(feature = "xlsx")]
 pub(crate) fn sheet_names(bytes: &[u8]) -> Vec<String> {
     use calamine::{Reader, Xlsx};
@@ -70,7 +70,7 @@ pub(crate) fn sheet_names(_: &[u8]) -> Vec<String> {
     Vec::new()
 }
 
-/// Returns a cell formatted as a date or a time as text: date and time of day, or the time of day alone where the cell contains less than two
+/// Returns a cell formatted as a date or a time as text: date and time of day. The text is the time of day alone if the cell contains less than two
 /// days. A number of days would be read as a number in the unit of its column.
 #[cfg(feature = "xlsx")]
 fn moment(cell: &calamine::ExcelDateTime) -> String {
@@ -97,7 +97,7 @@ fn moment(cell: &calamine::ExcelDateTime) -> String {
     format!("{year:04}-{month:02}-{day:02} {time}")
 }
 
-/// Returns the error that this build can't read a spreadsheet.
+/// Returns the error that this build cannot read a spreadsheet.
 #[cfg(not(feature = "xlsx"))]
 pub(crate) fn csv_of_sheet(_: &[u8]) -> Result<String, String> {
     Err("a spreadsheet, which this build cannot read (feature `xlsx`)".to_owned())

@@ -1,4 +1,4 @@
-//! Kinds of files by their content, for messages where another kind is expected.
+//! Kinds of files by their content, for messages if another kind is expected.
 
 use crate::host::sheet::is_sheet;
 use crate::series::record::format_of;
@@ -8,7 +8,7 @@ const HEAD: usize = 1024;
 /// First bytes in which a deck has BEGIN and a first card: case control is shorter in all but the longest decks.
 const DECK_HEAD: usize = 64 << 10;
 
-/// First bytes of files that no command reads, with the words for their kind.
+/// First bytes of files that no command reads, with the name of their kind.
 const SIGNATURES: [(&[u8], &str); 15] = [
     (b"%PDF", "a PDF document"),
     (b"\x89PNG", "a PNG image"),
@@ -27,7 +27,7 @@ const SIGNATURES: [(&[u8], &str); 15] = [
     (b"\xfe\xff", "text in UTF-16"),
 ];
 
-/// Whether a file is an OP2: its first record mark is 4 or 8 in either byte order.
+/// Returns whether a file is an OP2: its first record mark is 4 or 8 in either byte order.
 pub fn looks_like_op2(bytes: &[u8]) -> bool {
     matches!(bytes.get(..4), Some([4 | 8, 0, 0, 0] | [0, 0, 0, 4 | 8]))
 }
@@ -67,13 +67,13 @@ pub(crate) fn no_table(bytes: &[u8]) -> Option<&'static str> {
     if is_deck(bytes) {
         return Some("a Nastran deck");
     }
-    // Tables may be text of two bytes a character.
+    // A table may be text with two bytes for each character.
     let is_utf16 = bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff");
     let is_read = format_of(bytes).is_some() || is_sheet(bytes) || is_utf16;
     binary_kind(bytes).filter(|_| !is_read)
 }
 
-/// Whether a file is a Nastran deck, by words that every complete deck has.
+/// Returns whether a file is a Nastran deck, by words that every complete deck contains.
 pub(crate) fn is_deck(bytes: &[u8]) -> bool {
     let head = bytes.get(..bytes.len().min(DECK_HEAD)).unwrap_or_default();
     let has = |word: &[u8]| {

@@ -1,7 +1,7 @@
-//! A whole file into memory, or in parts, and what can go wrong on the way.
+//! Reading of a whole file into memory, or in parts, and the possible errors.
 //!
-//! Files are read, not mapped: a mapped file that another program shortens ends this one by a signal, and one that it rewrites
-//! gives half old and half new numbers. Reading costs a copy, a third of a second a gigabyte.
+//! Files are read, not mapped. If another program shortens a mapped file, a signal ends this program. If another program rewrites it, half of the
+//! numbers are old and half are new. Reading costs a copy, a third of a second for each gigabyte.
 
 use crate::series::record::{Parts, Source, is_read_in_parts};
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,7 @@ use std::time::UNIX_EPOCH;
 /// Bytes hashed at a time: they are still in the processor's nearer cache.
 const PART: usize = 1 << 17;
 
-/// Bytes of a file, in memory: what another program does to the file meanwhile changes nothing.
+/// Bytes of a file, in memory. Later changes of the file by another program do not affect them.
 #[derive(Clone)]
 pub struct FileBytes(Arc<Vec<u8>>);
 
@@ -39,10 +39,10 @@ impl std::ops::Deref for FileBytes {
     }
 }
 
-/// Bytes of a file.
+/// Reads the bytes of a file.
 ///
 /// # Errors
-/// Those of the system, and of kind
+/// Errors of the system, and errors of these kinds:
 /// - [`ErrorKind::IsADirectory`] for a folder, [`ErrorKind::InvalidInput`] for a device, pipe or socket, which may never end;
 /// - [`ErrorKind::OutOfMemory`] for a file larger than the free memory;
 /// - [`ErrorKind::ResourceBusy`] for one that changed meanwhile.
@@ -116,7 +116,7 @@ impl OpenedFile {
     }
 }
 
-/// A file that is read part by part, each part by whoever needs it: always the file that was opened, whatever its path becomes.
+/// A file that is read in parts, each part by the code that needs it. It is always the opened file, even if its path changes.
 pub struct InParts {
     file: File,
     before: Metadata,
@@ -158,12 +158,12 @@ fn fill_from_file(file: &File, mut from: u64, mut out: &mut [u8]) -> std::io::Re
     Ok(())
 }
 
-/// A file opened, in memory where its format is not [read in parts](is_read_in_parts).
+/// Opens a file. Its bytes are in memory unless its format is [read in parts](is_read_in_parts).
 ///
 /// # Errors
 /// As [`load`].
 pub fn open(path: &Path) -> std::io::Result<OpenedFile> {
-    // Before it is opened: opening a pipe waits for its writer.
+    // The check precedes the opening, because opening a pipe waits for its writer.
     check_kind(&std::fs::metadata(path)?)?;
     let mut file = File::open(path)?;
     let before = file.metadata()?;
@@ -194,7 +194,7 @@ pub fn hex(digest: &[u8]) -> String {
 
 /// Opens a file; returns it with its metadata, and room for its bytes.
 fn open_file(path: &Path) -> std::io::Result<(File, Metadata, Vec<u8>)> {
-    // Before it is opened: opening a pipe waits for its writer.
+    // The check precedes the opening, because opening a pipe waits for its writer.
     check_kind(&std::fs::metadata(path)?)?;
     let file = File::open(path)?;
     let before = file.metadata()?;
@@ -226,7 +226,7 @@ fn check_kind(meta: &Metadata) -> std::io::Result<()> {
 pub struct Stamp {
     /// Length of the file, bytes.
     pub size: u64,
-    /// When it was written to last, in nanoseconds since 1970; `None` where nobody keeps that.
+    /// Time of the last change, in nanoseconds since 1970; `None` if the system does not keep it.
     pub written_ns: Option<u64>,
 }
 
@@ -344,7 +344,7 @@ mod tests {
                 std::fs::write(&path, vec![1_u8; SIZE]).unwrap();
                 let (file, before, mut bytes) = open_file(&path).unwrap();
                 (&file).take(read as u64).read_to_end(&mut bytes).unwrap();
-                // longer than the clock of the file system ticks, so that every state has a time of its own
+                // This exceeds the clock tick of the file system, so that every state has a different time.
                 std::thread::sleep(std::time::Duration::from_millis(20));
                 change();
                 let loaded = rest_of((file, before, bytes)).map(|_| ());

@@ -21,8 +21,8 @@ pub fn finding_text(f: &Finding) -> String {
     line.replace('\n', " ")
 }
 
-/// Returns the measured number of a finding and its limit in words: `scaled condition number 116.4, limit 50`. `None` where the message has
-/// them already.
+/// Returns the measured number of a finding and its limit in words: `scaled condition number 116.4, limit 50`. `None` if the message already contains
+/// them.
 pub fn numbers_in_words(f: &Finding) -> Option<String> {
     let (measured, limit) = f.shown_numbers()?;
     let words = code(f.code)?.numbers;
@@ -37,7 +37,7 @@ pub fn numbers_in_words(f: &Finding) -> Option<String> {
     Some(of(&of(words, "m", measured), "l", limit?))
 }
 
-/// The place that a message begins with, as `file:line: `, and what follows; editors go there.
+/// Returns the place at the beginning of a message as `file:line: `, and the text after it. Editors jump to this place.
 fn split_place(message: &str) -> (String, &str) {
     let place = || {
         let (file, rest) = message.strip_prefix('`')?.split_once("` line ")?;
@@ -48,7 +48,7 @@ fn split_place(message: &str) -> (String, &str) {
     place().unwrap_or((String::new(), message))
 }
 
-/// Returns a number with what it counts, in the plural where it is not 1.
+/// Returns a number with its noun, in the plural unless the number is 1.
 pub fn count_of(n: usize, what: &str) -> String {
     match (n, what.strip_suffix('y')) {
         (1, _) => format!("1 {what}"),
@@ -57,7 +57,7 @@ pub fn count_of(n: usize, what: &str) -> String {
     }
 }
 
-/// A number with four significant digits, plain where that is readable.
+/// Returns a number with four significant digits, without an exponent if that is readable.
 pub fn format_number(x: f64) -> String {
     let a = x.abs();
     if x == 0.0 {
@@ -93,7 +93,7 @@ mod tests {
             "join it",
         );
         let line = "a b.bdf:12: note [grid-unattached] a b.bdf: GRID 7 belongs to no element. Remedy: Join it.";
-        // The message has these numbers.
+        // The message already contains these numbers.
         assert_eq!(finding_text(&f.with_numbers(2.0, 1.0)), line);
         let weak = Finding::new(
             Severity::Warning,

@@ -25,7 +25,7 @@ pub struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    /// A question that is asked of files alone.
+    /// Begins a command on the files of a context.
     pub fn new(cx: &Context<'a>) -> Self {
         Self {
             cx: cx.clone(),
@@ -53,10 +53,10 @@ impl<'a> Work<'a> {
         self.seconds.add(name, seconds);
     }
 
-    /// Goes on, or not.
+    /// Checks that the command was not cancelled.
     ///
     /// # Errors
-    /// One fault where whoever hears of progress stops the work.
+    /// One fault if the receiver of the progress cancelled the command.
     pub fn go_on(&self) -> Result<(), Faults> {
         if self.cx.progress.is_cancelled() {
             return Err(cancelled_fault().into());
@@ -68,7 +68,7 @@ impl<'a> Work<'a> {
     pub fn finish<A>(mut self, units: StatedUnits, answer: A) -> Outcome<A> {
         self.note_seconds("total", self.began.elapsed().as_secs_f64());
         self.findings.extend(self.inputs.findings());
-        // The worst first; the order of stages within a severity.
+        // The worst findings are first. Within a severity they keep the order of the stages.
         self.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
         Outcome {
             units,

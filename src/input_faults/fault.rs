@@ -1,4 +1,4 @@
-//! Faults of measured channels: what each one changes, and the finding that reports it.
+//! Faults of measured channels: the change of the readings by each fault, and the finding that reports it.
 
 use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix;
@@ -34,11 +34,11 @@ pub enum InputFault {
     OtherSide(Channels),
     /// Angles of the table are in radians.
     Radians(Channels),
-    /// A gauge contradicts the others, for none of these reasons.
+    /// A gauge contradicts the other gauges, and no other fault of this list explains it.
     Unlike(usize),
 }
 
-/// Readings by run and gauge (NaN where one is missing), and the rows of S that they are compared with.
+/// Readings by run and gauge (NaN if one is missing), and the rows of S that they are compared with.
 #[derive(Clone, Debug)]
 pub struct Inputs {
     /// Strain by run and gauge.
@@ -54,16 +54,16 @@ pub struct AlternativeRows {
     pub fault: fn(Channels) -> InputFault,
     /// S with every gauge so installed.
     pub rows: Matrix,
-    /// Whether this makes sense for a gauge.
+    /// Whether this is possible for a gauge.
     pub applies: Vec<bool>,
 }
 
-/// Remedy where all readings have the opposite sign.
+/// Remedy if all readings have the opposite sign.
 pub const SIGN_OF_ALL: &str =
     "check the sign of the channels; if so, write a [[correction]] with sign = -1 for each gauge";
 
 impl InputFault {
-    /// Returns the gauges that it is of; none where it is of all.
+    /// Returns the gauges of the fault; an empty list for a fault of all gauges.
     pub fn gauges(&self) -> Vec<usize> {
         match *self {
             Self::Sign(c) | Self::OtherSide(c) | Self::Radians(c) => match c {
@@ -81,7 +81,7 @@ impl InputFault {
         matches!(self, Self::OtherSide(_) | Self::Radians(_))
     }
 
-    /// Returns the inputs without the fault: corrected, or without the readings of a gauge that can't be corrected.
+    /// Returns the inputs without the fault: corrected, or without the readings of a gauge that cannot be corrected.
     pub fn correct_inputs(&self, inputs: &Inputs, alternatives: &[AlternativeRows]) -> Inputs {
         let mut out = inputs.clone();
         let of = self.gauges();
@@ -130,7 +130,7 @@ impl InputFault {
         }
     }
 
-    /// Returns what it is of: the names of its gauges, or `all`.
+    /// Returns the subject of the fault: the names of its gauges, or `all`.
     fn subject(&self, names: &[String]) -> String {
         let list: Vec<&str> = (self.gauges().iter())
             .filter_map(|g| Some(names.get(*g)?.as_str()))
@@ -188,7 +188,7 @@ impl InputFault {
         }
     }
 
-    /// Returns what corrects it: the line of the job where there is one.
+    /// Returns the remedy: the line of the job, if one corrects the fault.
     fn remedy(&self, names: &[String]) -> String {
         let line = |g: usize, value: String| {
             let name = names.get(g).map_or("", String::as_str);
@@ -246,13 +246,13 @@ pub struct DetectedFault {
     pub share: f64,
     /// Limit of `share`, or of `sigmas`.
     pub limit: f64,
-    /// Sigmas by which the gauge contradicts the others, root mean square over the runs, where errors come from scatter.
+    /// Sigmas by which the gauge contradicts the other gauges, root mean square over the runs, if errors come from scatter.
     pub sigmas: Option<f64>,
-    /// Size of its readings and of those that the others predict, strain.
+    /// Size of the gauge's readings, and size of their prediction from the other gauges, strain.
     pub sizes: [f64; 2],
-    /// Largest shift of a load over the half width of its interval; `None` where loads are known.
+    /// Largest shift of a load over the half width of its interval; `None` if loads are known.
     pub moves: Option<f64>,
-    /// Whether it shows only with the other faults undone as well.
+    /// Whether the fault is found only with the other faults undone as well.
     pub together: bool,
     /// Faults that explain the readings as well.
     pub alternatives: Vec<InputFault>,
@@ -261,15 +261,15 @@ pub struct DetectedFault {
 /// Treatment of the gauges of a fault by the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaultTreatment {
-    /// The result is that of the readings as they are.
+    /// The result uses the readings as they are.
     AsMeasured,
     /// The readings of these gauges are left out.
     LeftOut,
 }
 
 impl DetectedFault {
-    /// Returns the finding on a fault of gauges with these names: an error where the result holds it and moves by more than its interval, or
-    /// where that is not known.
+    /// Returns the finding on a fault of gauges with these names. It is an error if the result includes the fault and changes by more than its
+    /// interval, or by an unknown amount.
     pub fn finding(&self, names: &[String], handling: FaultTreatment) -> Finding {
         let left_out = handling == FaultTreatment::LeftOut && !self.fault.gauges().is_empty();
         let severity = match self.moves {

@@ -3,11 +3,11 @@
 use crate::finding::{Finding, Severity, list_few};
 use std::collections::HashMap;
 
-/// Different readings of two equal columns at least: fewer are the same by chance where numbers are rounded.
+/// Least number of different readings in two equal columns. Fewer may be equal by chance if numbers are rounded.
 const DIFFERENT_READINGS: usize = 3;
 
-/// Pairs of columns that have the same numbers in all rows, each with the first of its kind; columns with fewer different values than asked for are
-/// left out.
+/// Returns pairs of columns that have the same numbers in all rows, each with the first of its kind. Columns with fewer than `different_at_least`
+/// different values are left out.
 pub fn identical_pairs(columns: &[Vec<f64>], different_at_least: usize) -> Vec<[usize; 2]> {
     let mut first: HashMap<Vec<u64>, usize> = HashMap::new();
     let mut out = Vec::new();
@@ -21,7 +21,7 @@ pub fn identical_pairs(columns: &[Vec<f64>], different_at_least: usize) -> Vec<[
         if different.len() < different_at_least {
             continue;
         }
-        // All gaps are alike.
+        // All missing values count as equal.
         let bits = column
             .iter()
             .map(|v| if v.is_finite() { v.to_bits() } else { u64::MAX });

@@ -1,9 +1,9 @@
-//! Wrong inputs: readings, recorded loads and vehicle records with another sign, in another unit, or under each other's name; gauges that are dead
-//! or installed otherwise than stated. They are searched for before any effect of a model is.
+//! Wrong inputs. Readings, recorded loads and vehicle records may have another sign, another unit or exchanged names. Gauges may be dead, or
+//! installed otherwise than stated. These faults are searched for before any effect of a model.
 //!
-//! [`search_faults`] undoes each [`InputFault`] in turn and asks a [`Misfit`] how well the rest agrees; whoever has readings and a measure of their
-//! errors implements one. [`faults_of_recorded_loads`] compares recorded loads with the readings, [`fault_of_motion`] tests the channels of a
-//! vehicle.
+//! [`search_faults`] undoes each [`InputFault`] in turn and asks a [`Misfit`] how well the other readings agree. A type with readings and a measure
+//! of their errors implements `Misfit`. [`faults_of_recorded_loads`] compares recorded loads with the readings, [`fault_of_motion`] tests the
+//! channels of a vehicle.
 
 mod fault;
 pub mod identical_columns;

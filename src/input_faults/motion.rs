@@ -1,7 +1,7 @@
-//! Channels of a vehicle record with the opposite sign, in another unit, or under each other's name.
+//! Channels of a vehicle record with the opposite sign, in another unit, or with exchanged names.
 //!
-//! Three kinds of evidence are used in this order: gravity in the means of accelerometers, motion that the equations of the vehicle explain only with
-//! a corrected channel, and the masses from the equations.
+//! Three kinds of evidence are used in this order. The first is gravity in the means of accelerometers. The second is motion that the equations of
+//! the vehicle explain only with a corrected channel. The third is the masses from the equations.
 
 use crate::estimate::median;
 use crate::finding::{Finding, Severity, list_few};
@@ -26,7 +26,8 @@ struct MotionRules {
     left: f64,
     /// Ratio of unexplained shares up to which two corrections fit equally well: floors of noise differ by as much.
     alike: f64,
-    /// Ratio of a channel's rms to the median of the others of its kind up to which a unit is possible: hubs move ten times as much as the body.
+    /// Largest ratio of a channel's rms to the median of the other channels of its kind at which a unit is possible. Hubs move ten times as much as
+    /// the body.
     apart: f64,
     /// Smallest and largest mass that one wheel of a vehicle carries, kg: from a light trailer to a mining truck.
     mass_kg: [f64; 2],
@@ -59,10 +60,10 @@ impl ChannelKind {
         }
     }
 
-    /// Returns the size of a unit in SI; `None` where it is no unit of this kind.
+    /// Returns the size of a unit in SI; `None` if it is not a unit of this kind.
     pub fn unit_si(self, name: &str) -> Option<f64> {
         match (self, name) {
-            // As a unit of mass, g is a gram.
+            // `g` is standard gravity here. As a unit of mass it is a gram.
             (Self::Acceleration, "g" | "G" | "g0" | "gn") => Some(STANDARD_GRAVITY_M_S2),
             (Self::Acceleration, _) => find_unit(Quantity::Acceleration, name).map(|u| u.si),
             (Self::Force, _) => find_unit(Quantity::Force, name).map(|u| u.si),
@@ -86,7 +87,7 @@ pub struct MotionChannel<'a> {
     pub kind: ChannelKind,
     /// Whether the file states its unit.
     pub is_unit_stated: bool,
-    /// The unit that it is read in: stated, or that of the job.
+    /// Unit that the channel is read in: the stated unit, or the unit of the job.
     pub unit: String,
     /// Mean of its samples.
     pub mean: f64,
@@ -109,8 +110,8 @@ pub struct MotionRecord<'a> {
     pub channels: Vec<MotionChannel<'a>>,
     /// Acceleration of gravity in the unit of the samples.
     pub gravity: f64,
-    /// Returns the share of the motion that the vehicle does not explain (0 to 1), with a source for each channel; parameters keep their
-    /// natural signs. `None` where there is nothing to compare.
+    /// Returns the share of the motion that the vehicle does not explain (0 to 1), with a source for each channel. Parameters keep their natural
+    /// signs. `None` if there is nothing to compare.
     pub unexplained: Box<dyn Fn(&[ChannelSource]) -> Option<f64> + Sync + 'a>,
 }
 
@@ -201,7 +202,7 @@ impl MotionFault {
         }
     }
 
-    /// Returns what to do about it.
+    /// Returns the remedy.
     fn remedy(&self, channels: &[MotionChannel]) -> String {
         let own = names(self.channels(), channels);
         let first = own.first().copied().unwrap_or_default();
@@ -234,7 +235,7 @@ fn names<'a>(list: &[usize], channels: &[MotionChannel<'a>]) -> Vec<&'a str> {
         .collect()
 }
 
-/// Returns the kind all of whose channels are listed, where there are several.
+/// Returns the kind of channel if `list` contains all channels of this kind and there are several.
 fn kind_of_all(list: &[usize], channels: &[MotionChannel]) -> Option<ChannelKind> {
     let kind = channels.get(*list.first()?)?.kind;
     let all = of_kind(channels, kind);
@@ -256,8 +257,8 @@ fn other_units(c: &MotionChannel) -> Vec<(&'static str, f64)> {
         .collect()
 }
 
-/// Returns the fault that explains the motion, with the faults that fit as well; `None` where the vehicle explains the motion as recorded, or
-/// no single fault explains it. Faults that gravity shows are corrected first.
+/// Returns the fault that explains the motion, with the faults that fit as well. `None` if the vehicle explains the motion as recorded, or if no
+/// single fault explains it. Faults that gravity shows are corrected first.
 pub fn fault_of_motion(record: &MotionRecord) -> Option<ExplainedFault> {
     let channels = &record.channels;
     let mut recorded: Vec<ChannelSource> = (0..channels.len())

@@ -51,11 +51,11 @@ const UNITS: [(f64, &str); 9] = [
 pub struct RecordedRuns<'a> {
     /// Names of the recorded loads.
     pub loads: Vec<&'a str>,
-    /// Readings by run and gauge; NaN where one is missing.
+    /// Readings by run and gauge; NaN if one is missing.
     pub readings: Vec<Vec<f64>>,
     /// Strain of the model: of `gauge` in `run` under the load of the third number, its size taken from the record of the fourth.
     pub strain_of: Box<dyn Fn(usize, usize, usize, usize) -> f64 + Sync + 'a>,
-    /// Quantity of each load: records of one quantity may be exchanged. `None`: its record can't be another load's.
+    /// Quantity of each load: records of one quantity may be exchanged. `None`: its record cannot be another load's.
     pub quantities: Vec<Option<Quantity>>,
     /// Whether the record of a load in a run is accurate enough to compare.
     pub known: Vec<bool>,
@@ -127,13 +127,13 @@ impl RecordedRuns<'_> {
     }
 }
 
-/// Returns the faults of the records that explain most of the difference between readings and model; an empty list where the records are
-/// right, or where something else is wrong.
+/// Returns the faults of the records that explain most of the difference between readings and model. The list is empty if the records are right, or
+/// if something else is wrong.
 ///
-/// By gauge `y_r = sum_l c_l e_l(r)` is solved for the factors `c_l` by least squares, `e_l` the strain of load `l` by the model; one common
-/// factor where the runs do not separate the loads. The factor of a load is the median over gauges, weighted by its strain there. Exchanged
-/// records are searched for pair by pair. A fault counts only if undoing it leaves at most a quarter of the sum of squares, of exchanged records a
-/// fiftieth.
+/// For each gauge, `y_r = sum_l c_l e_l(r)` is solved for the factors `c_l` by least squares, with `e_l` the strain of load `l` by the model. All
+/// loads have one factor if the runs do not separate them. The factor of a load is the median over gauges, weighted by its strain there. Exchanged
+/// records are searched for pair by pair. A fault counts only if undoing it leaves at most a quarter of the sum of squares. For exchanged records the
+/// limit is a fiftieth.
 pub fn faults_of_recorded_loads(runs: &RecordedRuns) -> Vec<RecordFault> {
     let k = runs.loads.len();
     let as_recorded = runs.differences(&vec![1.0; k]);
@@ -238,7 +238,7 @@ fn factors_at(runs: &RecordedRuns, g: usize, groups: &[Vec<usize>]) -> Vec<(usiz
         .collect();
     let norm = |c: usize| rows.iter().map(|r| r.0[c] * r.0[c]).sum::<f64>().sqrt();
     let norms: Vec<f64> = (0..groups.len()).map(norm).collect();
-    // A load that this gauge does not answer to by the model can't be scaled.
+    // A load without strain at this gauge in the model cannot be scaled.
     let kept: Vec<usize> = (0..groups.len()).filter(|c| norms[*c] > 0.0).collect();
     let k = kept.len();
     if k == 0 {
@@ -307,7 +307,7 @@ fn exchanges(runs: &RecordedRuns, as_recorded: &[(usize, usize, f64)]) -> (Vec<[
         apart.map(|q| vec![*p, *q])
     });
     match least(two.collect()) {
-        // A second pair has to explain most of what the first one leaves.
+        // A second pair must explain most of the residual of the first pair.
         Some(two) if two.1 < UNDONE * one.1 => two,
         _ => one,
     }
@@ -391,11 +391,11 @@ fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
     }
 }
 
-/// Returns the finding on recorded payloads whose weight both the wheel forces and the strain contradict by one factor. `payload` is their place
-/// among the loads, `weights` and `sums` are recorded weight and sum of the wheel forces by run in one unit, `sum_sd` is the noise of a sum.
+/// Returns the finding on recorded payloads if the wheel forces and the strain both contradict their weight by one factor. `payload` is their place
+/// among the loads. `weights` and `sums` are recorded weight and sum of the wheel forces by run in one unit, `sum_sd` is the noise of a sum.
 ///
-/// The factor is the slope of the sums over the weights: the weight of the empty structure in the sums does not matter. One of the two alone is
-/// no evidence, as wheels may be without a sensor.
+/// The factor is the slope of the sums over the weights, so that the weight of the empty structure in the sums does not matter. Wheel forces or
+/// strain alone are no evidence, as wheels may be without a sensor.
 pub fn recorded_mass_contradicted(
     runs: &RecordedRuns,
     payload: usize,

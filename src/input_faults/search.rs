@@ -1,4 +1,4 @@
-//! The search for faults of measured channels: each is undone in turn, and the one named that makes the rest agree.
+//! Search for faults of measured channels. Each fault is undone in turn, and the fault that makes the other readings agree is reported.
 
 use super::fault::{AlternativeRows, Channels, DetectedFault, InputFault, Inputs};
 use crate::estimate::{chi_square_tail, median};
@@ -27,12 +27,12 @@ pub struct InputFit {
     pub dof: usize,
     /// Predicted strain by run and gauge.
     pub predicted: Vec<Vec<f64>>,
-    /// Value and half width of the interval of each load asked for, by run; empty where the loads are known.
+    /// Value and half width of the interval of each load asked for, by run; empty if the loads are known.
     pub loads: Vec<Vec<[f64; 2]>>,
 }
 
 impl InputFit {
-    /// Returns the sum of squares over its degrees of freedom; infinite where there are none.
+    /// Returns the sum of squares over its degrees of freedom; infinite if there are none.
     pub fn reduced_chi2(&self) -> f64 {
         match self.dof {
             0 => f64::INFINITY,
@@ -40,7 +40,7 @@ impl InputFit {
         }
     }
 
-    /// Returns the largest shift of a load over the half width of its interval; `None` where the loads are known.
+    /// Returns the largest shift of a load over the half width of its interval; `None` if the loads are known.
     fn moved_by(&self, other: &Self) -> Option<f64> {
         let runs = self.loads.iter().zip(&other.loads);
         let each = runs.flat_map(|(a, b)| a.iter().zip(b));
@@ -56,19 +56,20 @@ pub struct Rules {
     pub explained: [f64; 2],
     /// Share of the reduced sum of squares that a fault leaves at most, once it is undone.
     pub remains: f64,
-    /// Sigmas, root mean square over the runs, by which a gauge contradicts the others where it is named, times what the others have too much:
-    /// where errors come from scatter. All runs may have the same error, so that they count as one. `None`: [`Self::remains`] decides.
+    /// Sigmas above which a gauge contradicts the others, root mean square over the runs, if errors come from scatter. The limit grows if the
+    /// residuals of the other gauges exceed their errors. All runs may have the same error, so that they count as one. `None`: [`Self::remains`]
+    /// decides.
     pub sigmas: Option<f64>,
-    /// Sigmas from which a gauge is named whatever is known of the scatter. A few repeats know their own scatter to a factor of two at best, and
-    /// healthy gauges near a wheel reach five: calibrations of two runs a lane on two measured bridges.
+    /// Sigmas above which a gauge is reported whatever its limit from the scatter is. A few repeats determine their own scatter to a factor of two at
+    /// best. Healthy gauges near a wheel reach five in calibrations of two runs a lane on two measured bridges.
     pub named: f64,
-    /// Share of what a gauge without its readings explains that a cause may leave.
+    /// Share of the reduction by leaving a gauge out that a cause may leave.
     pub cause_leaves: f64,
     /// Sum of squares, over the reduced one, by which two explanations differ if the readings distinguish them: three sigmas.
     pub apart: f64,
     /// Share of the expected strain under which a gauge reads nothing.
     pub nothing: f64,
-    /// Noise sd that a dead gauge reads at most, and that the others expect at least.
+    /// Largest reading of a dead gauge, and smallest prediction from the other gauges, in noise sd.
     pub dead: [f64; 2],
     /// How close a factor comes to a power of ten to be a unit.
     pub near: f64,
@@ -79,7 +80,7 @@ pub struct Rules {
 }
 
 impl Rules {
-    /// Limits where noise and model error are stated.
+    /// Limits if noise and model error are stated.
     pub const STATED: Self = Self {
         explained: [2.0, 1e-3],
         remains: 0.2,
@@ -94,7 +95,7 @@ impl Rules {
         most: 3,
     };
 
-    /// Returns the limits where errors come from scatter, a sound gauge of all beyond `sigmas` by a small chance.
+    /// Returns the limits if errors come from scatter. By a small chance, one sound gauge of all exceeds `sigmas`.
     pub fn of_scatter(sigmas: f64) -> Self {
         Self {
             sigmas: Some(sigmas),
@@ -102,7 +103,7 @@ impl Rules {
         }
     }
 
-    /// Returns the sigmas from which a gauge is named where the others leave `excess` times their errors.
+    /// Returns the sigmas above which a gauge is reported if the squared residuals of the other gauges are `excess` times their expected value.
     fn limit(&self, sigmas: f64, excess: f64) -> f64 {
         self.named.min(sigmas * excess.max(1.0).sqrt())
     }
@@ -113,12 +114,12 @@ impl Rules {
                 let by_chance = chi_square_tail(fit.chi2, fit.dof as f64) > self.explained[1];
                 fit.dof == 0 || by_chance || fit.reduced_chi2() < self.explained[0]
             }
-            // No gauge takes more than all.
+            // A single gauge does not exceed the sum of all.
             Some(sigmas) => fit.chi2 / runs.max(1) as f64 <= self.limit(sigmas, 1.0).powi(2),
         }
     }
 
-    /// Returns whether the fault of `step` is one, of what `base` leaves.
+    /// Returns whether undoing the fault of `step` reduces the residuals of `base` enough to accept the fault.
     fn accepts(&self, base: &InputFit, step: &Step) -> bool {
         match step.found.sigmas {
             Some(sigmas) => sigmas > step.found.limit,
@@ -127,11 +128,12 @@ impl Rules {
     }
 }
 
-/// Returns the faults of the channels, the first that explains most; none where errors explain the readings, or nothing else does.
+/// Returns the faults of the channels, with the fault that explains most first. The list is empty if errors explain the readings, or if no fault
+/// does.
 ///
-/// Gauges are left out one by one; of those without which the rest agrees best, each cause is tried, and their exchanges, and a fault of all
-/// gauges. A fault counts if the readings agree with it undone ([`Rules`]), or with up to three undone together. `alternatives` is asked only
-/// where readings are not explained.
+/// Gauges are left out one by one. For the gauges without which the others agree best, each cause and each exchange is tried, and a fault of all
+/// gauges. A fault counts if the readings agree with it undone ([`Rules`]), or with up to three undone together. `alternatives` is called only if the
+/// readings are not explained.
 pub fn search_faults(
     misfit: &dyn Misfit,
     alternatives: &mut dyn FnMut() -> Vec<AlternativeRows>,
@@ -156,7 +158,7 @@ pub fn search_faults(
             break;
         };
         let accepted = rules.accepts(&base, &step);
-        // Two faults hide each other: neither makes the rest agree by itself.
+        // Two faults can hide each other, so that neither alone makes the other readings agree.
         if !accepted && (rules.sigmas.is_some() || step.found.share > PROGRESS) {
             break;
         }
@@ -211,7 +213,7 @@ impl Search<'_> {
         CandidateFault { fault, fit, rank }
     }
 
-    /// Returns the fault that explains most of what `now` leaves.
+    /// Returns the fault that explains most of the residuals of `now`.
     fn step(&self, inputs: &Inputs, now: &InputFit) -> Option<Step> {
         let n = inputs.rows.nrows();
         let reads = |g: &usize| inputs.strain.iter().any(|r| r[*g].is_finite());
@@ -280,7 +282,7 @@ impl Search<'_> {
         })
     }
 
-    /// Returns the causes that explain as much as leaving the gauge out; that it contradicts the others where there are none.
+    /// Returns the causes that explain as much as leaving the gauge out, followed by [`InputFault::Unlike`].
     fn causes(
         &self,
         inputs: &Inputs,
@@ -389,14 +391,15 @@ impl Search<'_> {
     }
 }
 
-/// Returns reading and prediction of a gauge by run, where both are known.
+/// Returns reading and prediction of a gauge by run, if both are known.
 fn pairs_of(inputs: &Inputs, fit: &InputFit, g: usize) -> Vec<[f64; 2]> {
     let runs = inputs.strain.iter().zip(&fit.predicted);
     let pairs = runs.map(|(y, p)| [y[g], p[g]]);
     pairs.filter(|p| p.iter().all(|v| v.is_finite())).collect()
 }
 
-/// Returns the median size of a gauge's readings and of the predictions, in the last half of the runs, which shows gauges that failed in between.
+/// Returns the median size of a gauge's readings and of the predictions over the last half of the runs. This half shows gauges that failed during the
+/// test.
 fn sizes_of(inputs: &Inputs, fit: &InputFit, g: usize) -> [f64; 2] {
     let pairs = pairs_of(inputs, fit, g);
     let last = &pairs[pairs.len() / 2..];

@@ -130,7 +130,7 @@ fn exchanged_records_are_named_as_pairs() {
 
 #[test]
 fn an_effect_that_no_record_explains_is_left_to_others() {
-    // Half of the gauges read another structure.
+    // Half of the gauges have the readings of another structure.
     for seed in 0..50 {
         let (mut planted, other) = (SyntheticRuns::new(seed), SyntheticRuns::new(seed + 1000));
         for (run, strange) in planted.readings.iter_mut().zip(&other.readings) {

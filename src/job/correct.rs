@@ -61,7 +61,7 @@ pub fn column_of<'a>(corrections: &'a [StrainCorrection], gauge: &'a str) -> &'a
         .unwrap_or(gauge)
 }
 
-/// The columns that the readings of gauges are taken from: those of ignored ones are not asked for.
+/// Returns the columns that contain the readings of gauges. Columns of ignored gauges are not needed.
 pub fn columns_wanted<'a>(
     corrections: &[StrainCorrection],
     gauges: impl IntoIterator<Item = &'a String>,
@@ -79,7 +79,7 @@ pub fn turned_by(corrections: &[StrainCorrection], gauge: &str) -> f64 {
     own.filter_map(|c| c.angle_deg).sum()
 }
 
-/// Adds to the corrections of rosettes those of their legs, which are the channels that have readings. The angle turns the rosette as a whole
+/// Adds corrections of the legs to the corrections of rosettes, because the legs are the channels with readings. The angle rotates the whole rosette
 /// and is not repeated.
 pub(super) fn correct_legs(job: &mut Job, faults: &mut FaultList) {
     let legs_of = |name: &str| {
@@ -90,7 +90,7 @@ pub(super) fn correct_legs(job: &mut Job, faults: &mut FaultList) {
     for c in &job.corrections {
         let other = c.exchanged_with.as_deref();
         let (own, others) = (legs_of(&c.gauge), other.map(legs_of));
-        // A given S may have one row for a rosette: one channel then.
+        // A given S may have one row for a rosette, which is then one channel.
         if others.is_some_and(|o| o.is_some() != own.is_some()) && job.sensitivity.is_none() {
             faults.push(Fault::with_line(
                 &*job.file,

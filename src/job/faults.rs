@@ -84,7 +84,7 @@ impl<'a> Collector<'a> {
         }
     }
 
-    /// The choice that a word names; `default` where the key is absent or the word unknown (a fault then).
+    /// Returns the choice with the name `word`. Returns `default` if the key is absent or the name is unknown; an unknown name is a fault.
     pub(super) fn choose<T: Copy>(
         &mut self,
         word: &S<String>,
@@ -96,7 +96,7 @@ impl<'a> Collector<'a> {
         self.choose_at(word, key, choices).unwrap_or(default)
     }
 
-    /// The choice that a word names.
+    /// Returns the choice with the name `word`; adds a fault if the name is unknown.
     pub(super) fn choose_at<T: Copy>(
         &mut self,
         word: &SpannedValue<String>,
@@ -121,7 +121,7 @@ impl<'a> Collector<'a> {
         found
     }
 
-    /// A number that must be finite, no larger than [`LARGEST`] and pass `ok`, which `expected` puts in words.
+    /// Returns a number if it is finite, no larger than [`LARGEST`] and passes `ok`, else adds a fault. `expected` describes `ok`.
     pub(super) fn number(
         &mut self,
         value: &S<f64>,

@@ -1,4 +1,4 @@
-//! Columns of a gauge table: what is read from each, in which unit, and which columns nothing reads.
+//! Columns of a gauge table: their contents, their units, and the columns that are not read.
 
 use super::same_name::is_same_name;
 use super::suggest;
@@ -12,7 +12,7 @@ use crate::units::{Quantity, find_unit, unit_names};
 /// Quantity of the numbers of a column.
 #[derive(Clone, Copy, PartialEq)]
 enum Measures {
-    /// Words, ids, or numbers without a unit.
+    /// Text, ids, or numbers without a unit.
     Nothing,
     /// A length in the job's unit.
     Length,
@@ -49,7 +49,7 @@ const COLUMNS: [(&str, &[&str], Measures); 27] = [
     ("cid", &[], Nothing),
     ("role", &[], Nothing),
     ("member", &[], Nothing),
-    // Read of the spots that `place` may choose from; a gauge has no cost.
+    // Only read for the spots that `place` may choose from; a gauge has no cost.
     ("cost", &["costs", "price"], Nothing),
     // A vector in one column can't be read.
     ("direction", &[], Nothing),
@@ -196,7 +196,7 @@ fn is_informative(header: &str) -> bool {
     header.is_empty() || is_range || INFORMATIVE.iter().any(|n| is_same_name(n, header))
 }
 
-/// Returns the place of the column with one of these names, else with one of them apart from case, separators and unit.
+/// Returns the index of the column with one of these names, else of the column whose name differs only in case, separators and unit.
 fn column_of(
     t: &Table,
     (name, others, measures): (&str, &[&str], Measures),
@@ -240,7 +240,7 @@ fn column_of(
     Some(first)
 }
 
-/// Words of a column `side` that are sides of a vehicle and not of a shell.
+/// Values of a column `side` that are sides of a vehicle and not of a shell.
 const OF_VEHICLE: [&str; 20] = [
     "left",
     "right",
@@ -264,7 +264,7 @@ const OF_VEHICLE: [&str; 20] = [
     "none",
 ];
 
-/// Whether a column called `side` contains sides of a shell; sides of a vehicle are something else. Any other word is one that its row refuses.
+/// Returns whether a column `side` contains sides of a shell and not sides of a vehicle. The row refuses any other value.
 fn holds_words(t: &Table, at: usize, name: &str) -> bool {
     let header = t.header[at].as_str();
     if !name.starts_with("surface") || !header.to_lowercase().starts_with("side") {
@@ -326,7 +326,7 @@ fn degrees_in(unit: &str) -> Option<f64> {
     }
 }
 
-/// Returns the job units (degrees for an angle) in one number of a column; a fault where its unit can't be that of the column.
+/// Returns the factor from a column's numbers to job units (degrees for an angle). Adds a fault if the unit does not fit the column.
 fn scale_of(
     t: &Table,
     at: usize,
@@ -357,7 +357,7 @@ fn scale_of(
                 format!("`{unit}` contradicts the unit in the name"),
                 "state one unit".to_owned(),
             ),
-            // What is in brackets may be a label: `surface (top or bottom)`.
+            // Text in brackets may be a label: `surface (top or bottom)`.
             (None, _) if measures == Nothing && !name_and_unit(header).header.is_unit() => 1.0,
             (None, _) => {
                 let remedy = match measures {

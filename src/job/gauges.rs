@@ -207,7 +207,7 @@ impl Row<'_> {
         None
     }
 
-    /// Parses the word in a column; `None` if it is blank or unknown. An unknown word is a fault.
+    /// Parses the choice in a column; `None` if it is blank or unknown. An unknown choice is a fault.
     fn word<T>(
         &mut self,
         name: &str,
@@ -284,7 +284,7 @@ fn location(row: &mut Row) -> Location {
     }
 }
 
-/// Where the gauge of a row sits; `laid` is one whose direction or surface the row states.
+/// Returns the place that a row states for its gauge; `laid` means that the row states direction or surface.
 fn place(row: &mut Row, location: &Location, laid: bool, cid: u32) -> StatedPlace {
     let element = row.id("element", "element", 1);
     let stated = row.number("station");
@@ -304,7 +304,7 @@ fn place(row: &mut Row, location: &Location, laid: bool, cid: u32) -> StatedPlac
             station,
         },
         (Some(e), None, _) => StatedPlace::Element(e),
-        // Metres beside a gauge of a given S only describe it.
+        // Coordinates in metres without direction or surface only describe the gauge.
         (None, _, Some(x)) if positioned => StatedPlace::Position(x, cid),
         _ => StatedPlace::Unstated,
     }

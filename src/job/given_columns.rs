@@ -19,7 +19,7 @@ pub fn columns_of_given(
         return own.map(|name| (name.clone(), name)).collect();
     }
     let is_load = |name: &str| job.loads.iter().any(|l| l.name == name);
-    // One load and one column have the same name apart from case and separators.
+    // A column belongs to a load if exactly one load and one column have this name apart from case and separators.
     let meant = |column: &String| {
         let like = |l: &&JobLoad| is_same_word(&l.name, column) && !header.contains(&l.name);
         let mut loads = job.loads.iter().filter(like);

@@ -12,14 +12,14 @@ use crate::series::record::csv::table_text;
 use std::path::Path;
 
 impl Inputs<'_> {
-    /// Returns the bytes of a file that a job names; of a spreadsheet the CSV text of its first sheet, of Parquet and Feather with a column `run`
-    /// the table as CSV text.
+    /// Returns the bytes of a file that a job names. A spreadsheet gives the CSV text of its first sheet. Parquet and Feather with a column `run`
+    /// give the table as CSV text.
     ///
     /// # Errors
     /// A fault at the line of the job that names it.
     pub fn read_named(&mut self, job: &Job, named: &NamedFile) -> Result<FileBytes, Fault> {
         let read = self.read(&job.folder, &named.given);
-        // Results and covariances have forms of their own.
+        // Results and covariances have their own formats.
         let is_table = !["model.", "load.result", "sensitivity.covariance"]
             .iter()
             .any(|key| named.key.starts_with(key));
@@ -31,7 +31,8 @@ impl Inputs<'_> {
         read.map_err(|f| at_job_line(job, named, f))
     }
 
-    /// Returns faults of a table that a job names; where its spreadsheet has several sheets, with the sheet that was read and the others.
+    /// Returns the faults of a table that a job names. If its spreadsheet has several sheets, the faults state which sheet was read and which were
+    /// not.
     pub(crate) fn with_sheet_read(&self, job: &Job, named: &NamedFile, faults: Faults) -> Faults {
         let bytes = self.load(&job.folder.join(&named.given));
         let names = bytes.map_or_else(|_| Vec::new(), |b| sheet_names(&b));

@@ -1,6 +1,5 @@
-//! job.toml: `parse` turns text into `raw_job` structs with the place of every value, `resolve` turns those into the plain
-//! structs of `types`; [`gauges`], [`given_columns`] and [`table`] read the tables a job names; [`schema`] describes
-//! a job to editors.
+//! job.toml and the tables that it names. `parse` turns text into `raw_job` structs with the place of every value. `resolve` turns these structs into
+//! the plain structs of `types`. [`gauges`], [`given_columns`] and [`table`] read the tables of a job. [`schema`] describes a job to editors.
 
 pub mod calibrated_range;
 mod candidate_lists;

@@ -1,4 +1,4 @@
-//! Text to raw job, with every fault rather than the first: an entry at fault is taken out and the rest is tried again.
+//! Parses text into a raw job and reports every fault, not only the first. An entry with a fault is removed and the remaining text is parsed again.
 
 use super::raw_job::RawJob;
 use super::suggest;
@@ -98,7 +98,7 @@ fn format_key_path(key: &[String]) -> String {
         })
 }
 
-/// The word and the known names of serde's message about an unknown field.
+/// Returns the unknown key and the known names in serde's message about an unknown field.
 fn unknown_key(message: &str) -> Option<(String, Vec<String>)> {
     let rest = message.strip_prefix("unknown field `")?;
     let mut quoted = rest.split('`').step_by(2).map(str::to_owned);
@@ -112,7 +112,7 @@ fn unknown_key(message: &str) -> Option<(String, Vec<String>)> {
     Some((word, names))
 }
 
-/// Rust's type names in words.
+/// Returns a plain description of a Rust type name.
 fn plain_type(expected: &str) -> String {
     match expected.trim() {
         "f64" => "a number".into(),

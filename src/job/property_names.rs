@@ -12,7 +12,7 @@ impl PropertyIds {
         self.ids.contains(id)
     }
 
-    /// Replaces names by the ids of `named`; what is wrong and what to do for each name that is unknown or that several properties have.
+    /// Replaces names by the ids of `named`. Returns problem and remedy for each name that is unknown or that several properties have.
     fn take_names(&mut self, named: &[(u32, String)]) -> Vec<(String, String)> {
         let mut wrong = Vec::new();
         for name in std::mem::take(&mut self.names) {

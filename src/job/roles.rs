@@ -6,7 +6,7 @@ use crate::host::fault::{Fault, Faults};
 use crate::placement::Role;
 
 impl Job {
-    /// Returns the names of the readings of all validation gauges: those of a rosette are its legs, or the rosette itself in a given S.
+    /// Returns the names of the readings of all validation gauges. The readings of a rosette are its legs, or the rosette itself in a given S.
     pub fn validation_readings(&self) -> Vec<String> {
         let validation = self.gauges.iter().filter(|g| g.role == Role::Validation);
         let mut names: Vec<String> = Vec::new();

@@ -1,10 +1,10 @@
-//! The JSON schema of a job: keys and types from `super::raw`, words and meanings from here.
+//! JSON schema of a job. Keys and types come from `super::raw_job`, allowed values and meanings from this module.
 
 use super::raw_job::RawJob;
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
-/// The keys: path, meaning, unit, default, words.
+/// Table of the keys: path, meaning, unit, default, allowed values.
 const KEYS: &str = include_str!("keys.txt");
 /// Placeholder in the table for the names of vehicle models.
 const MODELS: &str = "@models";
@@ -16,11 +16,11 @@ pub struct Key {
     pub path: &'static str,
     /// Meaning of the key.
     pub meaning: &'static str,
-    /// Unit of the key; `None` for words, counts and fractions.
+    /// Unit of the key; `None` for text, counts and fractions.
     pub unit: Option<&'static str>,
-    /// Default in words; `None` for sections, and for keys of which one of several is required.
+    /// Description of the default; `None` for sections, and for keys of which one of several is required.
     pub default: Option<&'static str>,
-    /// Allowed words, if only these are valid.
+    /// Allowed values, if only these are valid.
     pub words: Vec<&'static str>,
 }
 
@@ -98,11 +98,11 @@ pub fn job_schema() -> String {
             _ => None,
         };
     }
-    // A map of plain values always has a text form.
+    // A map of plain values can always be serialized.
     serde_json::to_string_pretty(&value).unwrap_or_default() + "\n"
 }
 
-/// Whether a key takes lists or numbers too, so that its words are not all it takes.
+/// Returns whether a key accepts lists or numbers in addition to its allowed values.
 fn takes_other_forms(key: &Map<String, Value>) -> bool {
     key.get("type").is_some_and(Value::is_array)
 }

@@ -1,4 +1,4 @@
-//! A value with its place in the text, as [`toml::Spanned`], that also has a JSON schema: that of the value.
+//! A value with its place in the text, like [`toml::Spanned`], and with the JSON schema of the value.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;

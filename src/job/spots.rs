@@ -1,4 +1,4 @@
-//! The table of `[candidates] file`: named spots with fixed directions, a row a spot, columns as those of the gauge file and `cost`.
+//! Table of `[candidates] file`: named spots with fixed directions, one spot per row. It has the columns of the gauge file and `cost`.
 
 use super::gauge_table::GaugeColumns;
 use super::gauges::read_gauges;

@@ -2,10 +2,10 @@
 
 use crate::finding::list_few;
 
-/// Characters of a word that may be misspelt; what is longer is no word.
+/// Largest number of characters of a word that may be misspelt; longer text is not a word.
 const WORD: usize = 200;
 
-/// The name closest to `word` by edit distance, where it is close enough to be meant (two letters, or a third of them).
+/// Returns the name closest to `word` by edit distance, if it is close enough (two letters, or a third of the letters).
 pub fn find_closest_name<'a>(
     word: &str,
     names: impl IntoIterator<Item = &'a str>,
@@ -13,7 +13,7 @@ pub fn find_closest_name<'a>(
     let word_lower = word.to_lowercase();
     let n = word.chars().count();
     let limit = (n / 3).max(if n > 3 { 2 } else { 1 });
-    // Each letter too many is one of the distance.
+    // The difference in length is a lower bound of the edit distance.
     let is_near = |name: &&str| n <= WORD && name.chars().count().abs_diff(n) <= limit;
     names
         .into_iter()
@@ -24,7 +24,7 @@ pub fn find_closest_name<'a>(
         .map(|(_, n)| n)
 }
 
-/// Returns the name that `word` misspells by a letter, or by two of eight; `None` for short words, which are near to anything.
+/// Returns the name that `word` misspells by one letter, or by two of eight; `None` for short words, which are close to any name.
 pub fn misspelt<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name = find_closest_name(word, names)?;
     let distance = edit_distance(&word.to_lowercase(), &name.to_lowercase());

@@ -314,7 +314,7 @@ fn a_station_without_a_point_is_refused_in_a_job_and_in_a_table() {
     assert!(faults.iter().any(at), "{faults:?}");
 }
 
-/// Read as they stand, 1.5 would be system 1 and a station beyond the end that of the end.
+/// Without these limits, 1.5 would mean system 1, and a station beyond the end would mean the end.
 #[test]
 fn a_gauge_table_is_held_to_the_limits_of_a_job() {
     for (header, good, bad) in [
@@ -337,7 +337,7 @@ fn a_gauge_table_is_held_to_the_limits_of_a_job() {
             let found = found(value);
             let named = |f: &Fault| (f.line, &*f.field) == (Some(2), header);
             assert!(found.iter().any(named), "{header} {value}: {found:?}");
-            // The same in a job.
+            // A job has the same limit.
             if header != "cid" {
                 let key = format!("gauge.{header}");
                 let job = format!(
@@ -382,7 +382,7 @@ fn columns_that_look_like_those_of_a_gauge_table_are_faults() {
         let named = |f: &Fault| f.field == header && f.remedy.contains(meant);
         assert!(found.iter().any(named), "{header}: {found:?}");
     }
-    // What others keep beside their gauges.
+    // Columns that users keep in addition to the columns that are read.
     let t = table::read_table(
         "g.csv",
         "name,element,angle_deg,x_m,y_m,z_m,member,place,row,leverage,role,angle_seen_deg\nA,1,45,0,0,0,rail,web,2,.3,estimate,45\n",
@@ -479,7 +479,7 @@ fn a_relative_error_above_1_asks_whether_percent_was_meant() {
             assert!(!of(size).is_empty(), "{key} {size}");
         }
     }
-    // A size in microstrain or degrees is no fraction.
+    // A size in microstrain or degrees is not a fraction.
     for kind in ["absolute-normal", "angle"] {
         let text = format!("{head}{}", study(kind).replace("SIZE", "15"));
         let found = read_text(&text).err().map(Faults::into_list);

@@ -143,7 +143,7 @@ impl Cholesky {
             Par::Seq,
             MemStack::new(memory),
         );
-        // The lower triangle is filled.
+        // Only one triangle is filled; copy it to the other.
         for j in 0..n {
             for i in j + 1..n {
                 out[i * n + j] = out[j * n + i];
@@ -190,7 +190,7 @@ fn factor_by_blocks(a: &mut [f64], n: usize, memory: &mut MemBuffer) -> Option<(
         parameters(),
     )
     .ok()?;
-    // What the blocks leave above the diagonal is no part of the factor.
+    // Values that the blocks leave above the diagonal are not part of the factor.
     for j in 1..n {
         a[j * n..j * n + j].fill(0.0);
     }

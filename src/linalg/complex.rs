@@ -57,7 +57,7 @@ mod tests {
     fn a_ridge_is_information_of_its_own_and_columns_alike_have_none() {
         let h = ComplexMatrix::from_element(3, 2, Complex::new(0.0, 1.0));
         assert!(least_squares_gain(&h, &[0.0, 0.0]).is_none());
-        // (3 + r) on the diagonal, 3 beside it: each load takes 3 / (6 + r) of a unit load of either.
+        // The matrix has 3 + r on the diagonal and 3 elsewhere. So each load takes 3 / (6 + r) of a unit load of either.
         let gain = least_squares_gain(&h, &[2.0, 2.0]).unwrap();
         let passed = gain * h;
         assert!(

@@ -46,7 +46,7 @@ pub fn svd(a: &Matrix) -> Option<Svd> {
             v: Matrix::zeros(a.ncols(), 0),
         });
     }
-    // Tall and wide alike: the right vectors must span the column space only, which the thin form gives.
+    // For tall and wide matrices, the right vectors must only span the row space, which the thin form gives.
     let d = bounded_svd(a.clone())?;
     let (u, vt) = (d.u?, d.v_t?);
     let mut order: Vec<usize> = (0..d.singular_values.len()).collect();
@@ -78,8 +78,8 @@ pub fn shortest_solution(a: &Matrix, b: &[f64], tolerance: f64) -> Option<Vec<f6
     Some(x)
 }
 
-/// Returns nalgebra's decomposition of finite numbers with a limit of sweeps: without a limit its iteration never gives up, and on some matrices
-/// never settles at the last bit.
+/// Returns nalgebra's decomposition of finite numbers with a limit of sweeps. Without a limit the iteration never stops on some matrices, because the
+/// last bit does not converge.
 pub(super) fn bounded_svd(a: Matrix) -> Option<nalgebra::SVD<f64, nalgebra::Dyn, nalgebra::Dyn>> {
     let sweeps = 200 * (a.nrows().min(a.ncols()) + 5);
     [5.0, 50.0, 5000.0]

@@ -22,7 +22,7 @@ pub struct Minimum {
     pub x: Vec<f64>,
     /// Half the sum of squared residuals.
     pub objective: f64,
-    /// Residual evaluations, those of derivatives not counted.
+    /// Number of residual evaluations, without the evaluations for derivatives.
     pub evaluations: usize,
     /// Why it ended.
     pub stop: Stop,
@@ -120,7 +120,7 @@ where
     let stop = match report.termination {
         TerminationReason::LostPatience => Stop::Patience,
         t if t.was_successful() => Stop::Converged,
-        // At the floor of rounding no further gain is possible, which is an end as good as any.
+        // At rounding level no further improvement is possible, which counts as converged.
         TerminationReason::NoImprovementPossible(_) => Stop::Converged,
         _ => Stop::Failed,
     };

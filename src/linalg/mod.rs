@@ -1,4 +1,4 @@
-//! Linear algebra: the only place that names outside linear-algebra crates.
+//! Linear algebra: the only module that uses external linear-algebra crates.
 //!
 //! - [`sparse`]: large symmetric positive definite systems
 //! - [`tall`]: least squares with many rows and few columns

@@ -52,7 +52,7 @@ impl Precision {
         let n = self.n();
         let mut out = vec![0.0; n];
         for &(j, v) in x {
-            // The inverse is symmetric: its row j is its column j.
+            // The inverse is symmetric, so that its row j is its column j.
             if let Some(row) = self.inverse().get(j * n..(j + 1) * n) {
                 for (o, a) in out.iter_mut().zip(row) {
                     *o += a * v;

@@ -69,7 +69,7 @@ pub fn lower_root(g: &[f64], k: usize) -> Vec<f64> {
     let mut w = vec![0.0; k * k];
     for p in (0..k).rev() {
         let pivot = rest[p * k + p];
-        // As in `cholesky`: what is left of a diagonal entry below this is rounding.
+        // As in `cholesky`, a pivot this far below its diagonal entry is rounding error.
         if !(pivot > ROOT_FLOOR * g[p * k + p]) {
             continue;
         }

@@ -165,14 +165,14 @@ fn holder(column: &Column, names: &Names) -> Result<Holds, ColumnUnitFault> {
             some => (name, some),
         }
     } else if let Some(gauge) = names.in_whole(header) {
-        // Its unit is stated elsewhere, or is one of strain in its brackets; else the brackets are a label.
+        // The unit is stated elsewhere, or is a strain unit in the header's brackets; else the brackets contain a label.
         let unit = match column.stated.as_str() {
             "" => microstrain_in(&header.bracket).or(Some(1.0)),
             stated => microstrain_in(stated),
         };
         (gauge.to_owned(), unit)
     } else if names.known.contains(header.name.as_str()) {
-        // What stands in brackets must be the unit, not what the unit below makes a label.
+        // The text in brackets must be the unit. If a row of units below makes the text a label, the column has no unit of strain.
         let is_split = column.name == header.name;
         let unit = microstrain_in(&column.unit).filter(|_| is_split);
         (header.name.clone(), unit)

@@ -97,7 +97,8 @@ pub fn read_strain_file(
     if is_long_record(&bytes) {
         return record(bytes);
     }
-    // A short record is a table too, unless it holds what only records may: words for no reading, dates, lines before its header.
+    // A short record is read as a table, unless it contains text that only records may contain. Such text is a word for a missing reading, a date, or
+    // a line before the header.
     match read_strain(inputs, job, named, wanted) {
         Err(_) if is_record(&bytes) => record(bytes),
         read => read.map(StrainFile::Table),

@@ -1,8 +1,9 @@
-//! Measured data: the one reader of readings, runs and records.
+//! Measured data: the only reader of readings, runs and records.
 //!
-//! `open` distinguishes runs and records and opens them: [`strain_file`] runs and short records as a table, `record` a record of any length a
-//! piece at a time. [`means`] sums over a file, [`gauge_columns`] assigns columns and units to gauges, `zero` subtracts the zero. `reference` is
-//! the strain of the reference state. [`runs_file`] reads further data recorded in each run, `recorded_loads` loads of another instrument.
+//! `open` distinguishes runs and records and opens them. [`strain_file`] reads runs and short records as a table; `record` reads a record of any
+//! length a piece at a time. [`means`] sums over a file, [`gauge_columns`] assigns columns and units to gauges, and `zero` subtracts the zero.
+//! `reference` computes the strain of the reference state. [`runs_file`] reads further data recorded in each run, and `recorded_loads` reads loads of
+//! another instrument.
 
 pub(crate) mod columns;
 pub(crate) mod common_zero;

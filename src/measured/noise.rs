@@ -23,7 +23,8 @@ pub(crate) fn prepare_with_noise(work: &mut Work, job: &Job) -> Result<JobSensit
     Ok(prepared)
 }
 
-/// Sets the noise of S to the noise of the zero record, if the job states no noise by gauge and the record contradicts equal and independent noise.
+/// Sets the noise of S to the noise of the zero record. It applies if the job states no noise by gauge and the record contradicts equal and
+/// independent noise.
 ///
 /// # Errors
 /// Faults of the zero file.

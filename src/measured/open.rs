@@ -78,7 +78,7 @@ fn open_first_sheet(
         Err(_) => has_bare_returns(&bytes),
     };
     if looks_like_record {
-        // Its layout is what keeps it from being a record.
+        // The layout is the reason why the file is not a record.
         let wrong = Layout::detect(&bytes).err();
         let wrong = wrong.map_or_else(|| no_runs(&named.given), |e| record_fault(&named.given, &e));
         return Err(wrong.into());

@@ -33,11 +33,10 @@ pub(crate) struct Record {
 }
 
 impl Record {
-    /// Opens the record in a strain file of a job, of which the columns `wanted` will be read; `time_unit_s` counts where the file states no unit
-    /// of time.
+    /// Opens the record in a strain file of a job, to read the columns `wanted`. `time_unit_s` is used if the file states no unit of time.
     ///
     /// # Errors
-    /// Faults of the file: its format, its times, units that are none of strain.
+    /// Faults of the file: its format, its times, units that are not units of strain.
     pub fn open(
         job: &Job,
         (file, time_unit_s): (&str, Option<f64>),
@@ -68,7 +67,7 @@ impl Record {
         Self { columns, ..self }
     }
 
-    /// Returns the record with all columns of strain read, but those of the job's reserved gauges.
+    /// Returns the record with all columns of strain read, except the columns of the job's reserved gauges.
     pub fn with_all_strain(self, job: &Job) -> Self {
         let is_read =
             |c: &usize| !self.micro[*c].is_nan() && !job.reserved.contains(&self.names[*c]);

@@ -56,7 +56,7 @@ impl LoadRecord {
 /// Reads the recorded loads of `[compare]`; `names` are the loads and combinations of the job.
 ///
 /// # Errors
-/// A file that can't be read, units that are none of the load or contradict the job, a file without any of these loads.
+/// A file that can't be read; units that don't fit the load or contradict the job; a file without these loads.
 pub(crate) fn read_recorded(
     inputs: &mut Inputs,
     job: &Job,
@@ -72,10 +72,10 @@ pub(crate) fn read_recorded(
     Ok(RecordedLoads::Record(Box::new(record)))
 }
 
-/// Reads a record of loads from the bytes of its file; `time_unit_s` counts where the file states no unit of time.
+/// Reads a record of loads from the bytes of its file; `time_unit_s` is used if the file states no unit of time.
 ///
 /// # Errors
-/// A file that is no record, units that are none of the load or contradict the job, a file without any of the loads `names`.
+/// A file that is not a record; units that don't fit the load or contradict the job; a file without the loads `names`.
 pub(crate) fn read_load_record(
     inputs: &mut Inputs,
     job: &Job,

@@ -61,8 +61,8 @@ pub(crate) fn reference_strain(
     }
 }
 
-/// Strain by gauge of the model standing on its wheels under its own weight: `S R`, `R` the reactions at the job's wheels on a flat floor.
-/// A free structure that gravity and its reactions hold in balance is strained by the reactions with their inertia relief alone.
+/// Computes the strain by gauge of the model on its wheels under its own weight: `S R`. `R` are the reactions at the job's wheels on a flat floor.
+/// Gravity and the reactions balance a free structure, so that the reactions with their inertia relief cause all of its strain.
 fn standing_strain(
     job: &Job,
     model: &Model,

@@ -1,4 +1,4 @@
-//! Names and units of a run table's columns, read as those of records are: `A [kN]`, `A (kN)`, or a row of units below the names.
+//! Names and units of a run table's columns, in the same forms as in records: `A [kN]`, `A (kN)`, or a row of units below the names.
 
 use crate::host::fault::{Fault, FaultList};
 use crate::host::files::Inputs;
@@ -30,8 +30,8 @@ pub fn take_units(t: &mut Table) -> Vec<Column> {
     columns
 }
 
-/// Returns name and unit of every column as [`take_units`] does. A column without a unit has the one that `result.json` of the same folder states
-/// for it: tables of `recover` have names alone in their headers.
+/// Returns name and unit of every column as [`take_units`] does. A column without a unit has the unit that `result.json` of the same folder states.
+/// Tables of `recover` have only names in their headers.
 pub fn take_units_of(
     inputs: &mut Inputs,
     job: &Job,
@@ -68,7 +68,7 @@ pub fn take_units_of(
 /// # Errors
 /// Several columns that are `name` and a unit, without a column that is `name` alone.
 pub fn place_of(t: &Table, columns: &[Column], name: &str) -> Result<Option<usize>, Fault> {
-    // Last what the row of units makes a label: what stands in brackets is not what that row says.
+    // Last, the name without its brackets: they contain a label if their text differs from the row of units.
     let readings: [fn(&Column) -> &str; 3] = [|c| &c.header.whole, |c| &c.name, |c| &c.header.name];
     for reading in readings {
         let found = sole_column(t, columns, name, |c| reading(c) == name)?;
@@ -103,8 +103,8 @@ fn sole_column(
     }
 }
 
-/// Returns the column of `name` of the job: [`place_of`], else the one column that has this name apart from case and separators and no other
-/// name of the job.
+/// Returns the column of `name` of the job: [`place_of`], else the only column with this name apart from case and separators. The name of that column
+/// must not be another name of the job.
 ///
 /// # Errors
 /// Several columns.
@@ -156,7 +156,7 @@ pub const PAYLOAD: [(&str, Quantity); 4] = [
 /// Column of the runs file that marks the runs to recover and compare, which are not calibrated with.
 pub const CHECK: &str = "check";
 
-/// Returns the names that a column of the runs file may have for any command, those of a given S apart.
+/// Returns the names that a column of the runs file may have for any command, except the names of a given S.
 pub fn names_in_runs(job: &Job) -> Vec<String> {
     let loads = job.loads.iter().map(|l| l.name.clone());
     let sums = job.combinations.iter().map(|c| c.name.clone());
@@ -178,7 +178,8 @@ pub fn names_in_runs(job: &Job) -> Vec<String> {
     out
 }
 
-/// Returns the names that columns of the runs file may have, and for each column whether it has one; `given` are the loads of a given S.
+/// Returns the names that columns of the runs file may have, and for each column whether it has one of these names. `given` are the loads of a given
+/// S.
 fn columns_claimed(
     job: &Job,
     (t, columns): (&Table, &[Column]),
@@ -196,7 +197,7 @@ fn columns_claimed(
     (names, read)
 }
 
-/// Returns the column that no name of the job claims and that may be the one of a load: `FZ_FL` for `FL.FZ`, else the closest by its letters.
+/// Returns a column that no name of the job claims and that may belong to a load: `FZ_FL` for `FL.FZ`, else the closest spelling.
 pub fn column_meant<'a>(
     job: &Job,
     (t, columns): (&Table, &'a [Column]),
@@ -232,7 +233,7 @@ pub fn note_unread_runs(
     note_unread(inputs, t, |c| read[c], &lacking);
 }
 
-/// Returns the column that the job asks for by `name`, at this line and key; adds a fault if no column or several have this name.
+/// Returns the column that the job requests by `name`, at this line and key. Adds a fault if no column or several columns have this name.
 pub fn asked_column(
     job: &Job,
     (line, key): (u32, &str),
@@ -270,16 +271,16 @@ pub fn run_column(job: &Job, t: &Table, columns: &[Column]) -> Result<usize, Fau
 pub struct KnownColumn {
     /// Number of the column in the table.
     pub at: usize,
-    /// The unit that the column states, else that of the job; `None` for amplitudes of load sets, which have none.
+    /// Unit that the column states, else the unit of the job; `None` for amplitudes of load sets, which have no unit.
     pub unit: Option<Unit>,
-    /// Whether the column states it.
+    /// Whether the column states its unit.
     pub is_stated: bool,
 }
 
-/// Returns the column of the runs file that contains `name`; `None` if the file has no such column and the job names none.
+/// Returns the column of the runs file that contains `name`; `None` if the file has no such column and the job requests none.
 ///
-/// The unit is the one that the column states. If the job's `[runs] units` states another unit for the quantity, one of them is wrong. Nothing shows
-/// which, so this is a fault.
+/// The column determines the unit. If the job's `[runs] units` states another unit for the quantity, one of the two units is wrong. Nothing shows
+/// which one, so this is a fault.
 pub fn known_column(
     job: &Job,
     runs: &Runs,
@@ -323,7 +324,7 @@ pub fn known_column(
     if matches!(stated.unit.as_str(), "" | "-") {
         return Some(here);
     }
-    // `Axle (front)` is a name where the job says that this is the column's.
+    // `Axle (front)` is a name if the job states that the column has this name.
     let is_name = header == wanted
         && stated.header.bracket == stated.unit
         && (given.is_some() || !header.ends_with(']'));

@@ -31,11 +31,10 @@ pub struct RunRow {
     pub line: u32,
 }
 
-/// The runs of `[runs]`, with the load names that the job (its loads, or the columns of a given S) knows.
+/// Reads the runs of `[runs]`, with the load names of the job: its loads, or the columns of a given S.
 ///
 /// # Errors
-/// Every fault: missing columns, units that are none or contradict the job, fields that are no numbers or none of their
-/// quantity, runs named twice.
+/// Every fault: missing columns, unknown or contradicting units, fields that are not numbers or do not fit their quantity, runs named twice.
 pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunRow>, Faults> {
     runs_of_first_sheet(inputs, job, runs)
         .map_err(|faults| inputs.with_sheet_read(job, &runs.file, faults))

@@ -71,7 +71,7 @@ pub fn without_column(inputs: &mut Inputs, job: &Job, columns: &[String]) -> Vec
 /// can't be read is reported by the caller that reads S.
 pub fn gauge_names(inputs: &mut Inputs, job: &Job) -> Vec<String> {
     let mut names: Vec<String> = job.gauges.iter().map(|g| g.name.clone()).collect();
-    // A rosette is called by its own name too where S comes from a table.
+    // A rosette has its own name as a channel too if S comes from a table.
     let own: HashSet<&str> = job.gauges.iter().map(|g| g.name.as_str()).collect();
     let legs = stated_readings(job).into_iter();
     names.extend(legs.filter(|r| !own.contains(r.as_str())));

@@ -13,11 +13,10 @@ use std::collections::HashSet;
 const PART: usize = 10_000;
 
 /// Reads the strain in a CSV text. Units are after the names or in a row below them; without a unit, numbers are microstrain. A column with the whole
-/// name of one of `gauges` belongs to that gauge. Without known gauges, every column may be one.
+/// name of one of `gauges` belongs to that gauge. Without known gauges, every column may be a gauge.
 ///
 /// # Errors
-/// Every fault: no `run` or `time` column, units of gauges that are not units of strain, fields that are not numbers, runs named twice, times that
-/// don't ascend.
+/// Every fault: no `run` or `time` column, gauge units other than strain, fields without a number, repeated run names, times that don't ascend.
 pub fn strain_from_text(file: &str, text: &str, gauges: &[String]) -> Result<StrainTable, Faults> {
     let mut reading: Option<Result<Reading, Faults>> = None;
     each_part(file, text, PART, &mut |mut part| {
@@ -79,7 +78,7 @@ impl Reading {
         let run = headers.iter().position(|c| c.name == "run");
         let mut times = headers.iter().enumerate();
         let time = times.find(|(i, c)| c.is_time(*i == 0)).map(|t| t.0);
-        // In a record, a channel `Run` is no name of runs.
+        // In a record, a channel `Run` does not contain names of runs.
         let any_case = || headers.iter().position(Column::is_run);
         let run = run.or_else(|| if time.is_none() { any_case() } else { None });
         let Some(key) = run.or(time) else {
@@ -128,7 +127,7 @@ impl Reading {
                 faults.push(no_strain(&t.file, column));
             }
             gauges.push(found.name);
-            // What is no gauge's is kept as written.
+            // Values of a column that is not a gauge are kept as written.
             columns.push((c, found.microstrain.unwrap_or(1.0)));
         }
         Faults::check(faults)?;

@@ -135,12 +135,12 @@ fn units_of_a_runs_file_stand_in_its_header_or_below_and_contradict_nothing() {
     assert_eq!(plain, [2e3, 3.0]);
     let below = si("run,LF.FZ,LF.MX\n-,N,kN m\nR1,2000,0.003\n", "");
     let beside = si("run,LF.FZ [N],LF.MX (N*m)\nR1,2000,3\n", "");
-    // 0.003 times a thousand: the last digit.
+    // 0.003 times a thousand is rounded in its last digit.
     assert!(below[0] == 2e3 && (below[1] - 3.0).abs() < 1e-12);
     assert_eq!(beside, plain);
     let named = "columns = { \"LF.FZ\" = \"axle (front)\" }\n";
     assert_eq!(si("run,axle (front),LF.MX\nR1,2,3\n", named), plain);
-    // What the job states as well must be the same.
+    // A unit that the job also states must be the same.
     let stated = "units = { force = \"kN\" }\n";
     assert_eq!(si("run,LF.FZ [kN],LF.MX\nR1,2,3\n", stated), plain);
     let fault = |table: &str, more: &str| runs_of(table, more).unwrap_err().into_list().remove(0);
@@ -171,7 +171,7 @@ fn labels_rows_of_units_and_noise_of_a_runs_file_are_not_mistaken() {
     let square = "columns = { \"LF.FZ\" = \"axle [front]\" }\n";
     assert_eq!(si("run,axle [front],LF.MX\nR1,2,3\n", square), plain);
     assert_eq!(si("run,LF.FZ,LF.MX\nunit,N,N m\nR1,2000,3\n", ""), plain);
-    // A run without loads is no row of units.
+    // A run without loads is not a row of units.
     let bare = "LF.FZ,LF.MX,run\n,,R0\n2,3,R1\n";
     assert_eq!(si(bare, ""), plain);
     assert_eq!(runs_of(bare, "").unwrap().len(), 2);
@@ -225,7 +225,7 @@ fn labels_and_units_of_gauges_are_told_apart() {
             assert_eq!(t.microstrain, [microstrain], "{text}");
         }
     }
-    // Another column beside the gauge's own.
+    // Another column in addition to the gauge's own.
     let raw = read("run,P01,P01 (raw)\nR1,0.5,7\n", &["P01"]).unwrap();
     assert_eq!(raw.gauges, ["P01", "P01 (raw)"]);
     let two = [
@@ -234,7 +234,7 @@ fn labels_and_units_of_gauges_are_told_apart() {
     ];
     let found = find_gauge_columns("r.mf4", &two, &["P01".to_owned()]).unwrap();
     assert_eq!(of_gauges(&found), [("P01", Some(1.0)), ("P01 [raw]", None)]);
-    // No strain, whether gauges are known or not.
+    // These units are not units of strain, whether gauges are known or not.
     for gauges in [&["G1"][..], &[]] {
         for text in [
             "run,G1\n-,mV/V\nR1,1\n",
@@ -250,7 +250,7 @@ fn labels_and_units_of_gauges_are_told_apart() {
     }
     let both = read("run,G1 [mV/V]\n-,um/m\nR1,1\n", &["G1"]);
     assert!(both.unwrap_err()[0].wrong.contains("`mV/V`"));
-    // A run without a reading is no row of units.
+    // A run without a reading is not a row of units.
     let bare = read("G1,run\n,R1\n3,R2\n", &["G1"]).unwrap();
     assert_eq!(
         bare.rows,
@@ -285,7 +285,7 @@ fn a_table_and_a_record_give_one_verdict_on_a_header() {
             &["P01"],
             Some([("P01", 1.0), ("P02", 1e3)]),
         ),
-        // The gauge's name holds a bracket, written with a blank or without.
+        // The gauge's name contains a bracket, written with or without a blank.
         (
             "SG1(left),SG1(right)",
             &["SG1(left)", "SG1(right)"],
@@ -326,7 +326,7 @@ fn where_no_gauges_are_known_a_unit_of_anything_else_is_no_strain() {
     for header in ["torque (N m)", "torque (kNm)", "G1 [mV/V]", "way (mm)"] {
         let said = columns_of_text(header, &[]).unwrap_err()[0].to_string();
         assert!(said.contains("is not a unit of strain"), "{said}");
-        // A record holds other channels too: they are left out.
+        // A record contains other channels too, which are left out.
         let column = [name_and_unit(header)];
         let found = find_gauge_columns("r.parquet", &column, &[]).unwrap();
         assert_eq!(found[0].microstrain, None, "{header}");

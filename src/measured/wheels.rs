@@ -50,7 +50,7 @@ pub fn wheels_of(job: &Job, model: &Model) -> Result<Wheels, Faults> {
         grids: Vec::new(),
     };
     let mut faults = FaultList::new();
-    // A point between the wheels with moments beside its force is the payload's even where [payload] does not say so.
+    // A point between the wheels with moments in addition to its force belongs to the payload, even if [payload] does not state this.
     let has_moment = |id: u32| {
         job.loads.iter().any(|l| {
             matches!(l.acts, LoadActs::AtGrid { grid, component, .. } if grid == id && component.dof() > 2)
@@ -90,15 +90,14 @@ pub fn wheels_of(job: &Job, model: &Model) -> Result<Wheels, Faults> {
     Ok(out)
 }
 
-/// Returns the basic degree of freedom (0 to 5) along which component `dof` acts at a grid in a coordinate system; `None` where it points
-/// elsewhere.
+/// Returns the basic degree of freedom (0 to 5) along which component `dof` acts at a grid in a coordinate system. `None` if it acts along no basic
+/// axis.
 pub fn basic_dof(model: &Model, grid: u32, dof: usize, cid: u32) -> Option<usize> {
     let axis = basic_axis(model, grid, dof % 3, cid)?;
     Some(axis + dof - dof % 3)
 }
 
-/// Returns the basic axis whose positive direction is that of a force along axis `dof` of a coordinate system at a grid; `None` where it
-/// points elsewhere.
+/// Returns the basic axis in whose positive direction axis `dof` of a coordinate system points at a grid. `None` if it points along no basic axis.
 fn basic_axis(model: &Model, grid: u32, dof: usize, cid: u32) -> Option<usize> {
     /// Cosine from which two directions are the same: a thousandth of a degree.
     const ALIGNED: f64 = 1.0 - 1e-10;

@@ -1,8 +1,8 @@
-//! Measured strain less its zero: one answer for every command that reads runs.
+//! Measured strain minus its zero, the same for every command that reads runs.
 //!
-//! The zero is a file's mean (`[measured] zero`), or what the runs of `zero_runs` read, at which no load acts: between two of them a
-//! gauge's zero is taken as straight over the rows of the file, before the first and after the last as constant. How far it wanders from
-//! row to row is seen between them, and the readings count with that much more noise.
+//! The zero is a file's mean (`[measured] zero`), or the readings of the runs of `zero_runs`, at which no load acts. Between two of these runs, a
+//! gauge's zero is linear over the rows of the file. It is constant before the first and after the last. The change of the zero from row to row is
+//! estimated between these runs, and increases the noise of the readings.
 
 use super::columns::{columns_of, gauges_without_strain, strain_without_gauge};
 use super::common_zero::common_zero;
@@ -23,7 +23,7 @@ use crate::units::MICROSTRAIN;
 pub(crate) struct ZeroedTable {
     /// A reading without a zero is not a number.
     pub table: StrainTable,
-    /// Noise variance of each row's readings, in units of that of a single one.
+    /// Noise variance of each row's readings, relative to the noise variance of a single reading.
     pub noise_factor: Vec<f64>,
 }
 
@@ -101,8 +101,7 @@ pub(crate) fn read_zeroed(
     })
 }
 
-/// Adds a warning of gauges without a column in a strain file, and a warning of columns that belong to no gauge; `wanted` are the columns that were
-/// asked for.
+/// Adds a warning of gauges without a column in a strain file, and a warning of columns that belong to no gauge. `wanted` are the requested columns.
 pub(crate) fn note_columns(
     work: &mut Work,
     job: &Job,
@@ -222,7 +221,7 @@ pub(crate) fn zero_of(
 pub(crate) struct RowZeros {
     /// Microstrain by row and column of the table.
     pub zero: Vec<Vec<f64>>,
-    /// Noise variance of each row's readings less zero, in units of that of a single one.
+    /// Noise variance of each row's readings minus zero, relative to the noise variance of a single reading.
     pub noise_factor: Vec<f64>,
 }
 
@@ -247,12 +246,12 @@ fn held_out_runs(job: &Job, measured: &Measured, table: &StrainTable) -> Result<
     Faults::check(unknown)
 }
 
-/// Zeros from the runs of `zero_runs`; `None` where the job names none.
+/// Computes the zeros from the runs of `zero_runs`; `None` if the job has no `zero_runs`.
 ///
-/// A run of `zero_runs` itself gets its zero from the others, so that its loads show how well the zero was followed.
+/// A run of `zero_runs` itself gets its zero from the other runs of `zero_runs`, so that its loads show how well the zero was followed.
 ///
 /// # Errors
-/// Runs that the table lacks, those of `hold_out` among them; rows that are samples.
+/// Runs that the table lacks, including runs of `hold_out`; rows that are samples.
 pub(crate) fn zeros_by_row(
     work: &mut Work,
     job: &Job,
@@ -307,11 +306,11 @@ pub(crate) fn zeros_by_row(
     Ok(Some(RowZeros { zero, noise_factor }))
 }
 
-/// Returns the rows of the runs of `zero_runs`. If runs are held out in a separate file, that file needs its own zeros: the drift of a zero between
-/// two files is unknown, so each file needs at least one of these runs.
+/// Returns the rows of the runs of `zero_runs`. If runs are held out in a separate file, each file needs at least one of these runs. The drift of a
+/// zero between two files is unknown.
 ///
 /// # Errors
-/// Runs that no file has, a file without any.
+/// Runs that no file contains; a file without any of these runs.
 fn zero_rows(
     work: &mut Work,
     job: &Job,
@@ -375,7 +374,7 @@ pub(crate) fn no_zero_runs(job: &Job, measured: &Measured, file: &str) -> Result
     .into())
 }
 
-/// Rows whose readings make a zero, with their weights, and the variance of a walk there in units of that of one step.
+/// Rows whose readings give a zero, with their weights, and the variance of a random walk there relative to the variance of one step.
 struct ZeroWeights {
     weights: Vec<(usize, f64)>,
     wander: f64,
@@ -427,7 +426,7 @@ impl Drift {
         let noise = noise * noise;
         let (mut walk, mut free) = (0.0, 0.0);
         let mut slopes = Vec::new();
-        // One difference alone.
+        // Sum and count for gauges with a single difference.
         let (mut alone, mut count) = (0.0, 0.0);
         for g in 0..table.gauges.len() {
             let read = |a: &usize| Some((*a as f64, table.row(*a).get(g).copied()?));

@@ -169,7 +169,7 @@ impl Builder<'_> {
     }
 }
 
-/// Axes of a line element by rows: x from A to B, z = x cross v, y = z cross x; `None` where v is parallel to the line.
+/// Returns the axes of a line element by rows: x from A to B, z = x cross v, y = z cross x. `None` if v is parallel to the line.
 pub(super) fn line_axes(a: Vec3, b: Vec3, v: Vec3) -> Option<Mat3> {
     let x = unit(b - a)?;
     let v = unit(v)?;

@@ -86,7 +86,7 @@ impl Builder<'_> {
     fn pbar(&mut self, p: &PlacedCard<Pbar>) -> Option<BeamProperty> {
         let name = format!("PBAR {}", p.id);
         let material = self.material(p.mid, &name, "MID", p.at)?;
-        // A bar without area carries bending and torsion alone.
+        // The area may be zero: such a bar carries bending and torsion only.
         self.not_negative("area", p.area, &name, "A", p.at);
         self.not_negative("torsion constant", p.j, &name, "J", p.at);
         if [p.area, p.i1, p.i2, p.j] == [0.0; 4] {
@@ -124,7 +124,7 @@ impl Builder<'_> {
         let name = format!("PBARL {}", p.id);
         let material = self.material(p.mid, &name, "MID", p.at)?;
         let shape = self.section(&p.section, &p.dims, &name, p.at)?;
-        // A bar has its neutral axis on the element axis, whatever the section: points count from the centroid.
+        // The neutral axis of a bar is the element axis for every section, so the recovery points are relative to the centroid.
         let [y, z] = shape.section.neutral;
         let s = Section {
             nsm: p.nsm,
@@ -191,7 +191,7 @@ impl Builder<'_> {
         for (cw, field) in p.cw.iter().zip(["CW(A)", "CW(B)"]) {
             self.not_negative("warping constant", cw.unwrap_or(0.0), &name, field, p.at);
         }
-        // Blank K1 and K2 of a PBEAM are 1, stated zeros mean rigid in shear.
+        // Blank K1 and K2 of a PBEAM are 1. Stated zeros mean rigid in shear.
         let k = p.k.map(|k| k.unwrap_or(1.0));
         Some(BeamProperty {
             id: p.id,

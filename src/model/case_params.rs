@@ -1,4 +1,4 @@
-//! Parameters in case control: those above the subcases, and those of subcases where all of them agree.
+//! Parameters in case control. A parameter above the subcases counts; one inside subcases counts if all subcases agree.
 
 use super::types::UnsupportedCard;
 use nastran::bdf::Deck;

@@ -102,7 +102,7 @@ impl Builder<'_> {
             .collect();
     }
 
-    /// The dofs that a constraint means: those of a scalar point are written as none.
+    /// Returns the dofs that a constraint holds. A constraint on a scalar point states no dof and holds its only one.
     fn dofs_of_point(&self, g: GridIx, dofs: Dofs) -> Dofs {
         match self.is_scalar(g) {
             true => Dofs::from_digits(1).unwrap_or(dofs),
@@ -139,7 +139,7 @@ impl Builder<'_> {
                 self.fault(format!("{card} {}", sum.sid), "S", sum.at, kind);
             }
         }
-        // Sets of primitive constraints, each once, so that sums of sums stay small.
+        // Each set of single constraints is listed once, so that sums of sums stay small.
         let mut parts: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         let mut left = MOST_TERMS;
         for sum_sid in ready {

@@ -22,7 +22,7 @@ impl<K: Hash + Eq, T: PartialEq> SeenCards<K, T> {
         Self(HashMap::new())
     }
 
-    /// Adds a card. One of another content is a fault, one of the same content is noted.
+    /// Adds a card. A repeated card with different content is an error; one with equal content is reported as a note.
     fn add(&mut self, b: &mut Builder<'_>, key: K, (content, at): (T, Place), words: &Words<'_>) {
         let Some((before, first)) = self.0.get(&key) else {
             self.0.insert(key, (content, at));
@@ -48,7 +48,7 @@ impl Builder<'_> {
         let cards = self.cards;
         let mut sums: HashMap<u32, Place> = HashMap::new();
         for l in &cards.loads {
-            // Nastran allows one LOAD of an id; its terms on several cards are no sum.
+            // Nastran allows one LOAD card for each id. It does not add up several LOAD cards with one id.
             if let Some(first) = sums.insert(l.sid, l.at) {
                 let what = "id of the LOAD combination";
                 let kind = FaultKind::Duplicate { what, first };
@@ -56,7 +56,7 @@ impl Builder<'_> {
             }
         }
         for (card, sums) in [("SPCADD", &cards.spcadds), ("MPCADD", &cards.mpcadds)] {
-            // One card defines a set: which of two a solver takes, or whether it adds them, is not documented.
+            // One card defines a set. It is not documented whether a solver takes the first card, takes the second, or adds both.
             let mut seen = SeenCards::new();
             for sum in sums {
                 let words = Words {

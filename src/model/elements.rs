@@ -1,4 +1,4 @@
-//! Elements with stiffness as one list: what all of them have, whatever their kind. Where kinds differ, a `match` names every one of them.
+//! Elements with stiffness of all kinds as one list, with their common data. If the kinds differ, a `match` lists every kind.
 
 use super::{Beam, GridIx, Joint, Model, Shell, Solid};
 

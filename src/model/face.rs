@@ -32,9 +32,9 @@ pub(crate) fn faces(shape: SolidShape) -> &'static [&'static [usize]] {
     }
 }
 
-/// Corners of the face that PLOAD4 names by `corner`: G1 on the face and, opposite on it, G3; for a tetrahedron the corner that
-/// is not on it; G1 alone for a triangular face of a wedge. The right-hand normal of their order points into the element, as
-/// positive pressure does. The first is G1, so that corner pressures follow.
+/// Returns the corners of the face that PLOAD4 identifies by `corner`. In general these are G1 on the face and G3 opposite on the face. A tetrahedron
+/// has G1 and the corner that is not on the face. A triangular face of a wedge has G1 alone. The right-hand normal of the corner order points into
+/// the element, in the direction of positive pressure. The first corner is G1, so that the corner pressures are in the same order.
 pub(super) fn solid_face(s: &Solid, corner: [Option<GridIx>; 2]) -> Option<[Option<GridIx>; 4]> {
     let place = |g: Option<GridIx>| {
         let g = g?;
@@ -56,7 +56,7 @@ pub(super) fn solid_face(s: &Solid, corner: [Option<GridIx>; 2]) -> Option<[Opti
             (SolidShape::Tetra, _, Some(off)) => !f.contains(&off),
             (_, 3, None) => true,
             (_, 4, Some(opposite)) => f.get((i + 2) % 4) == Some(&opposite),
-            // A pyramid's triangular face: G1 and G3 both on it.
+            // Triangular face of a pyramid: G1 and G3 are both on it.
             (SolidShape::Pyram, 3, Some(other)) => f.contains(&other),
             _ => false,
         }

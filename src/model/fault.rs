@@ -97,9 +97,9 @@ pub enum FaultKind {
     Unsupported { what: String, remedy: &'static str },
     /// A grid that no element uses.
     Unattached,
-    /// A point of a connector that no shell of its patch lies under.
+    /// A point of a connector whose projection is on no shell of its patch.
     OffPatch { what: &'static str, side: char },
-    /// A word that isn't one of the card's.
+    /// A word that the card does not allow.
     Word {
         found: String,
         expected: &'static str,
@@ -113,9 +113,9 @@ impl ModelFault {
             FaultKind::Unattached | FaultKind::SharedId { .. } | FaultKind::Repeated { .. } => {
                 FaultWeight::Note
             }
-            // Solvers pass over a set of SPCADD or MPCADD that has no cards.
+            // Solvers ignore a set of SPCADD or MPCADD that has no cards.
             FaultKind::Missing { what: "set", .. } => FaultWeight::Note,
-            // Shells need a thickness, and places need grids and coordinate systems; other elements are left out and results may be given.
+            // Shells need a thickness, and locations need grids and coordinate systems. Without another kind of element, results are still possible.
             FaultKind::NotCarried { what, .. } => match what {
                 "grid" | "coordinate system" | "shell property" => FaultWeight::NotCarried,
                 _ => FaultWeight::Note,

@@ -20,11 +20,11 @@ impl Fibres {
 }
 
 impl ShellProperty {
-    /// Returns Z1 and Z2 where the shell has this thickness: as stated, else half the local thickness below and above.
+    /// Returns Z1 and Z2 at a point with this thickness: the stated values, or else half the local thickness below and above.
     ///
     /// # Reference
-    /// MSC Nastran Quick Reference Guide, PSHELL, remark on Z1 and Z2: `T` of their defaults is the local thickness, from the connection entry
-    /// where that states thicknesses at the grids.
+    /// MSC Nastran Quick Reference Guide, PSHELL, remark on Z1 and Z2. `T` in the defaults is the local thickness. It comes from the connection entry
+    /// if that entry states thicknesses at the grids.
     pub fn fibres(&self, thickness: f64) -> [f64; 2] {
         let [z1, z2] = self.z;
         [

@@ -17,12 +17,13 @@ impl Frame {
         }
     }
 
-    /// Frame from origin A, a point B on z and a point C in the x-z plane, all basic; `None` where they lie on a line.
+    /// Returns the frame with the origin A, a point B on z and a point C in the x-z plane, all in basic coordinates. `None` if the three points are
+    /// collinear.
     pub fn from_points(id: u32, kind: CoordKind, a: Vec3, b: Vec3, c: Vec3) -> Option<Frame> {
         let z = unit(b - a)?;
         let to_c = c - a;
         let y = z.cross(&to_c);
-        // The sine of the angle between the two, against rounding of the points.
+        // Tests the sine of the angle between both directions against the rounding of the points.
         if !(y.norm() > 1e-9 * to_c.norm()) {
             return None;
         }
@@ -71,8 +72,8 @@ impl Frame {
         self.origin + self.axes.tr_mul(&local)
     }
 
-    /// Axes in which components are counted at the basic location `x`, by rows: those of the system, or radial, tangential, z
-    /// (cylindrical), or radial, theta, phi (spherical). On the axis the angle counts as 0.
+    /// Returns the axes of vector components at the basic location `x`, by rows. A rectangular system has its own axes. A cylindrical system has the
+    /// radial, tangential and z axes, a spherical system the radial, theta and phi axes. The angle of a point on the axis is 0.
     pub fn axes_at(&self, x: Vec3) -> Mat3 {
         if self.kind == CoordKind::Rectangular {
             return self.axes;

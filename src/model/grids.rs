@@ -49,7 +49,7 @@ impl<'a> Builder<'a> {
                     Vec3::from(g.x)
                 }
             };
-            // Sums of fourth powers of coordinates must stay numbers.
+            // Sums of fourth powers of coordinates must stay finite.
             if !x.iter().all(|v| v.abs() < 1e15) {
                 self.fault(
                     name(),
@@ -264,7 +264,7 @@ impl<'a> Builder<'a> {
             waiting.remove(&id);
         }
         for c in order.iter().filter(|c| waiting.contains_key(&c.id)) {
-            // What waits for a missing system has its fault already; the others wait for each other.
+            // A system that refers to a missing system is already reported. The remaining systems refer to each other in a circle.
             if circle(c.id, &card_of, grid_of, cp) {
                 self.fault(
                     format!("coordinate system {}", c.id),
@@ -274,7 +274,7 @@ impl<'a> Builder<'a> {
                 );
             }
         }
-        // By ascending id, so that the order does not depend on who refers to whom.
+        // Sorted by id, so that the order does not depend on the references between systems.
         done.sort_by_key(|f| f.id);
         self.model.frames.extend(done);
         self.frame_ix = self

@@ -1,4 +1,4 @@
-//! The material of a MAT1, whose blank fields follow from the others.
+//! Isotropic material of a MAT1. Blank fields of E, G and nu follow from the stated fields.
 
 use super::fault::FaultKind;
 use super::types::*;
@@ -51,7 +51,7 @@ pub(super) fn moduli_faults(m: &Mat1) -> Vec<(&'static str, FaultKind)> {
         let what = "Young's modulus";
         out.push(("E", FaultKind::NotPositive { what, value }));
     }
-    // With E, G and nu all stated, nu may have any value that the solver accepts.
+    // If E, G and nu are all stated, nu may have any value.
     if !(-1.0 < nu && nu <= 0.5) && m.g.is_none() {
         out.push(("NU", FaultKind::Poisson { nu }));
     }

@@ -262,9 +262,11 @@ impl<'a> Builder<'a> {
         self.model.bushes = out;
     }
 
-    /// The frame of a bush: CID where stated; else from the line and the orientation; else the line alone, which is enough for
-    /// stiffness along and about it only. Between coincident grids, or to ground, without CID: the basic frame, which is no matter for
-    /// stiffness that is the same in all directions, and noted in the bush otherwise; a vector there has no line to go with and is a fault.
+    /// Returns the bush with its frame. The frame is CID if stated. Otherwise it follows from the line and the orientation. Without an orientation it
+    /// follows from the line alone, which is sufficient for stiffness along and about the line only.
+    ///
+    /// Between coincident grids, or to ground, a bush without CID has the basic frame. The frame has no effect if the stiffness is equal in all
+    /// directions; otherwise the bush records that its frame is assumed. An orientation vector without a line is a fault.
     ///
     /// # Reference
     /// MSC Nastran Quick Reference Guide, CBUSH, remarks 3 to 7.

@@ -15,8 +15,8 @@ pub struct Weight {
 impl Weight {
     /// Returns mass and centre of gravity of a rigid-body mass matrix about `about`; `None` without mass.
     ///
-    /// Where the mass differs by direction (CONM1, scalar masses), it is the largest of the three along its principal directions, as
-    /// Nastran's grid point weight generator lists them in its mass axis system.
+    /// If the mass differs by direction (CONM1, scalar masses), the result is the largest of the three principal masses. Nastran's grid point weight
+    /// generator lists these masses in its mass axis system.
     pub(crate) fn from_mass_matrix(m: &Matrix6<f64>, about: Vec3) -> Option<Self> {
         let by_axis = [m[(0, 0)], m[(1, 1)], m[(2, 2)]];
         let translation = m.fixed_view::<3, 3>(0, 0).into_owned();

@@ -87,7 +87,7 @@ mod tests {
     use crate::model::Model;
     use nastran::bdf::{MemoryLoader, read_deck};
 
-    /// Names of what the solver refuses of a bar with `offset` at its first end.
+    /// Returns the names of the unsupported cards in a model of one bar with `offset` at its first end.
     fn list_unsupported_names(offset: &str, entries: &str) -> Vec<String> {
         let text = format!(
             "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCBAR,1,1,1,2,0.,0.,1.\n,,,0.,0.,{offset}\n\

@@ -8,9 +8,9 @@ use nastran::cards::{Cards, IdList, NonstructuralMass};
 use nastran::place::{Place, PlacedCard};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Adds the mass of the set that case control selects to the elements that it names, one by one or by their property. A total is spread over
-/// the area or length of all of them. Refused are types that are not carried, totals over elements with area and elements with length
-/// together, and sets that differ between subcases: the structure has one mass.
+/// Adds the nonstructural mass of the set that case control selects. The set identifies elements by id or by property. A total mass is distributed
+/// over the area or length of all its elements. The function refuses unsupported types, totals over elements with area and elements with length
+/// together, and sets that differ between subcases. The structure has one mass.
 pub(super) fn add_selected(
     model: &mut Model,
     deck: &Deck,
@@ -161,7 +161,7 @@ impl Carriers {
                 true => &["PBEAM", "PBEAML"],
                 false => &["PBAR", "PBARL"],
             };
-            // A deck may have a PBAR and a PBEAM of one id.
+            // A deck may contain a PBAR and a PBEAM with one id.
             if words.iter().any(|word| is(word, p.id)) {
                 note(words, p.id, Carrier::Beam(i));
             }

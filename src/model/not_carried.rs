@@ -46,7 +46,7 @@ pub(super) fn name_cards(
     let mut out = Vec::with_capacity(faults.len());
     for fault in faults {
         match card_of(&fault.kind, deck, &cards, generator) {
-            // The fault of the unknown name is enough.
+            // The fault that reports the unknown name is sufficient.
             Some((_, card)) if effect_of_card(&card.name).is_none() => {}
             Some((what, card)) => {
                 named.insert(card.at, card);
@@ -121,7 +121,7 @@ fn defined_by(name: &str) -> Option<ObjectKind> {
     };
     Some(match name {
         "GRIDB" | "GRIDF" | "EGRID" | "RINGAX" | "RINGFL" => ObjectKind::Grid,
-        // A misspelt name: the reference to its id is not another fault.
+        // Misspelt name: a reference to its id is not a second fault.
         n if n.starts_with("MAT") && effect_of_card(n).is_none() => ObjectKind::Material,
         n if n.starts_with("CORD") || n == "GMCORD" => ObjectKind::Frame,
         n if n.strip_prefix("MAT").is_some_and(is_material) => ObjectKind::Material,

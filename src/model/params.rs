@@ -1,4 +1,4 @@
-//! Parameters that change what the model means.
+//! Parameters that affect the model, its solution or its output.
 
 use super::build::Builder;
 use super::fault::FaultKind;

@@ -3,7 +3,7 @@
 use nastran::bdf::{Deck, NameOwner};
 use std::collections::BTreeMap;
 
-/// Returns the name of each property by ascending id: its own name first, else that of the component which uses it.
+/// Returns the name of each property by ascending id: the name of the property, or else the name of the component that uses it.
 ///
 /// A component that states no property has the id of its property.
 pub(super) fn property_names(deck: &Deck) -> Vec<(u32, String)> {

@@ -47,14 +47,16 @@ impl Model {
         self.refine_shells_at(&vec![true; self.shells.len()])
     }
 
-    /// Returns the model with the shells that `divided` marks, by index, divided in four at the middles of their sides. `None` if that would tear the
-    /// mesh or leave it as it is: no shell is marked, a marked shell has mid-side grids, or the ends of a side that another element shares are not in
-    /// one rectangular displacement frame.
+    /// Returns the model with each shell that `divided` marks, by index, divided into four at the middles of its sides.
     ///
-    /// Grids keep their index, so loads, masses and rigid elements stay where they are. New grids lie on the straight sides: a curved
-    /// surface keeps its facets. They are constrained where both ends of their side are, by PS as by SPC sets. Bars, rods, shear panels
-    /// and solids stay as they are, and so do shells that are not marked; where one of them goes along a side of a marked shell, the new grid
-    /// there moves as the mean of the ends does, linear as the edges of those elements and of the shell itself were.
+    /// Returns `None` if this would tear the mesh or change nothing. This is the case if no shell is marked or a marked shell has mid-side grids. It
+    /// is also the case if a side is shared with another element and its ends are not in one rectangular displacement frame.
+    ///
+    /// Grids keep their index, so loads, masses and rigid elements keep their locations. New grids are on the straight sides, so a curved surface
+    /// keeps its facets. A new grid is constrained if both ends of its side are, by PS as by SPC sets.
+    ///
+    /// Bars, rods, shear panels, solids and unmarked shells are not divided. If such an element has an edge along a side of a marked shell, the new
+    /// grid there moves as the mean of the ends. Its motion is then linear along the side, as on the edges of both elements before.
     pub fn refine_shells_at(&self, divided: &[bool]) -> Option<RefinedModel> {
         if !self.can_be_refined(divided) {
             return None;
@@ -143,7 +145,7 @@ impl Model {
     fn load_sets_at_grids(&self) -> Vec<LoadSet> {
         let stays = |load: &Load| match load {
             Load::Force(..) | Load::Moment(..) | Load::Gravity(_) | Load::Spin { .. } => true,
-            // New grids would get no acceleration.
+            // Acceleration is listed by grid, so new grids would get none.
             Load::Acceleration { .. } => false,
             Load::ShellPressure { .. }
             | Load::FacePressure { .. }
@@ -155,7 +157,7 @@ impl Model {
         self.load_sets.iter().filter(whole).cloned().collect()
     }
 
-    /// A temperature set on the divided mesh; `parents` are those of each new grid.
+    /// Returns a temperature set on the divided mesh; `parents` are the parent grids of each new grid.
     fn finer_temperatures(
         &self,
         set: &TemperatureSet,
@@ -206,7 +208,7 @@ impl Model {
         out
     }
 
-    /// The sets of equations with those of the tied grids, and the set that holds under unit loads.
+    /// Returns the equation sets, each with the equations of the tied grids added, and the id of the set that applies under unit loads.
     fn finer_equations(&self, made: &Builder) -> (Vec<MpcSet>, Option<u32>) {
         let mut sets = self.mpcs.clone();
         if made.tied.is_empty() {

@@ -122,8 +122,8 @@ impl Builder<'_> {
         })
     }
 
-    /// Whether the arms leave a rotation free that the reference grid is asked to follow: the weighted sum of their rigid-body
-    /// rows, scaled to lengths about 1, has no full rank.
+    /// Returns whether the arms do not determine a rotation that the reference grid has to follow. In this case the weighted sum of their rigid-body
+    /// rows, scaled to lengths of about 1, is rank-deficient.
     fn has_free_rotation(
         &self,
         arms: &[(f64, Dofs, GridIx)],
@@ -157,7 +157,7 @@ impl Builder<'_> {
         if !(largest > 0.0) {
             return true;
         }
-        // A direction without stiffness matters where the reference grid's own dofs move along it.
+        // A direction without stiffness matters only if dependent dofs of the reference grid move along it.
         let axes = self.cd_axes(reference);
         (0..6)
             .filter(|k| eigen.eigenvalues[*k] < 1e-10 * largest)

@@ -22,7 +22,7 @@ impl Builder<'_> {
             if !bush.rigid.contains(&true) {
                 continue;
             }
-            // B follows A, or A follows B where something else moves B; to ground, A stands still.
+            // B follows A, or A follows B if another element moves B. A bush to ground fixes A.
             let ends: Vec<GridIx> = bush.grids.1.into_iter().chain([bush.grids.0]).collect();
             let found: Vec<Vec<Terms>> = ends
                 .iter()
@@ -32,7 +32,8 @@ impl Builder<'_> {
                 let mut first = e.iter().filter_map(|terms| terms.first());
                 first.all(|t| !dofs.contains(&(t.0, t.1)))
             };
-            // A set that the load case does not select takes nothing: an end that rigid elements move is the worse choice.
+            // Prefer an end that is in no SPC or MPC set. An end in a set is still better than one that a rigid element moves, because a load case
+            // may not select the set.
             let free = |e: &&Vec<Terms>| outside(e, &taken) && outside(e, &in_sets);
             let of_rigids = |e: &&Vec<Terms>| outside(e, &taken);
             let best = found.iter().find(free);
@@ -82,9 +83,9 @@ impl Builder<'_> {
         [all, in_sets]
     }
 
-    /// Equations that hold the relative displacement of the rigid components at zero: rows axes (u_B - u_A) at the bush's location,
-    /// solved for as many dofs of the grid `dependent`: displacements for rows of displacements and rotations for those of rotations,
-    /// so that no unit of length comes in, the largest pivot first. `None` where a row has none.
+    /// Returns the equations that set the relative displacement of the rigid components to zero. The rows are axes (u_B - u_A) at the location of the
+    /// bush, solved for as many dofs of the grid `dependent`. Displacement rows are solved for displacements and rotation rows for rotations, so that
+    /// no unit of length enters. In each row the largest pivot is chosen. `None` if a row has no pivot.
     fn rigid_components(&self, bush: &Bush, dependent: GridIx) -> Option<Vec<Terms>> {
         let ends: Vec<(GridIx, f64)> = std::iter::once((bush.grids.0, -1.0))
             .chain(bush.grids.1.map(|g| (g, 1.0)))
@@ -129,7 +130,7 @@ impl Builder<'_> {
             }
             pivots.push(column);
         }
-        // Rounding of arms is counted beside the longest of them.
+        // The rounding error of the arms is relative to the longest arm.
         let reach = ends
             .iter()
             .map(|(g, _)| (bush.location - self.x(*g)).norm())

@@ -1,9 +1,9 @@
 //! Elements with mid-side grids: their shape functions, and areas of shells.
 //!
-//! The map from parameters to space is isoparametric serendipity, written as the linear map of the corners plus, for every edge with
-//! a mid-side grid, its edge function times the grid's distance from the middle of the edge,
-//! `x(p) = sum N_c(p) x_c + sum 4 N_edge(p) (x_m - (x_a + x_b) / 2)`. It is of second degree at most in every single parameter, so a
-//! central difference over a whole step is its exact derivative.
+//! The map from parameters to space is isoparametric (serendipity family). It is the linear map of the corners plus one term for every edge with a
+//! mid-side grid. The term is the edge function times the vector from the middle of the edge to the grid: `x(p) = sum N_c(p) x_c + sum 4 N_edge(p)
+//! (x_m - (x_a + x_b) / 2)`. In every single parameter its degree is at most two. A central difference over a whole step is therefore its exact
+//! derivative.
 //!
 //! # Reference
 //! O. C. Zienkiewicz, R. L. Taylor, The Finite Element Method, volume 1, chapter 8: serendipity families.
@@ -52,11 +52,11 @@ const CUBE: [(usize, usize); 12] = [
     (7, 4),
 ];
 
-/// An element as its map: corners, and for every edge the way from its middle to its mid-side grid.
+/// Map of an element: its corners, and for every edge the vector from its middle to its mid-side grid.
 struct Map {
     domain: Domain,
     corners: Vec<Vec3>,
-    /// Number of the edge among those of the domain.
+    /// Index of the edge in the domain, and the vector from its middle to the mid-side grid.
     edges: Vec<(usize, Vec3)>,
 }
 
@@ -92,8 +92,8 @@ pub(crate) fn solid_edges(shape: SolidShape) -> &'static [(usize, usize)] {
     }
 }
 
-/// Value and derivatives along the three parameters, each 0 to 1, of every linear corner function and every edge function (one in the
-/// middle of its edge) of a solid. A pyramid is a brick whose upper four corners are one.
+/// Returns the value and derivatives of every linear corner function and every edge function of a solid. The three parameters run from 0 to 1. An
+/// edge function is largest in the middle of its edge. A pyramid is a brick whose upper four corners coincide.
 pub(crate) fn solid_functions(shape: SolidShape, p: [f64; 3]) -> (Vec<[f64; 4]>, Vec<[f64; 4]>) {
     let domain = match shape {
         SolidShape::Tetra => Domain::Tetrahedron,
@@ -251,7 +251,7 @@ impl Domain {
             Domain::Cube => c % 4,
             _ => c,
         };
-        // A corner of the triangle or square seen at the middle height: shape functions of the bottom alone.
+        // Shape function of a corner of the triangle or square in the base plane, without the factor along the height.
         let flat = |c: usize| match self {
             Domain::Wedge => Domain::Triangle.shape(c, [r, s, 0.0]),
             Domain::Cube => Domain::Square.shape(c, [r, s, 0.0]),
@@ -263,7 +263,7 @@ impl Domain {
             return flat(i) * t * (1.0 - t);
         }
         let along = match self {
-            // Shape functions of two neighbours of a square share the factor across the edge, counted once.
+            // Shape functions of two adjacent corners of a square have the factor across the edge in common. It enters once.
             Domain::Square | Domain::Cube => match (i, j) {
                 (0, 1) => r * (1.0 - r) * (1.0 - s),
                 (1, 2) => s * (1.0 - s) * r,
@@ -302,8 +302,8 @@ const GAUSS_3: [(f64, f64); 3] = [
     (0.887_298_334_620_741_7, 0.277_777_777_777_777_8),
 ];
 
-/// Distance of a mid-side grid from the middle of its edge, over the edge's length, below which the edge is straight: decks hold
-/// coordinates to about seven digits.
+/// Largest distance of a mid-side grid from the middle of a straight edge, over the length of the edge. Decks contain coordinates to about seven
+/// digits.
 const STRAIGHT: f64 = 1e-7;
 
 #[cfg(test)]

@@ -52,7 +52,7 @@ impl Builder<'_> {
                 out.push(shell);
             }
         }
-        // Properties that cards lacked went to the end: back to ascending ids.
+        // Properties that the deck does not contain were appended. Sort by id again.
         let mut order: Vec<usize> = (0..properties.len()).collect();
         order.sort_by_key(|i| properties.get(*i).map(|p| p.id));
         let mut new_ix = vec![ShellPropertyIx(0); properties.len()];
@@ -114,7 +114,7 @@ impl Builder<'_> {
             None => 0.0,
         };
         let mut thickness = [t; 4];
-        // A laminate is as thick as its plies, whatever the element says.
+        // The thickness of a laminate is the sum of its plies. Thicknesses of the element have no effect.
         let layered = matches!(p.map(|p| &p.kind), Some(ShellKind::Laminate { .. }));
         let stated = if layered { &[] } else { &s.thickness[..] };
         for (ti, slot) in stated.iter().zip(&mut thickness).take(corners) {
@@ -214,7 +214,7 @@ impl Builder<'_> {
             .and_then(|m| u32::try_from(m).ok())
             .filter(|m| *m > 0);
         let bending = bending.and_then(|m| self.material(m, &name, "MID2", p.at));
-        // Transverse shear belongs to bending: without MID2 a MID3 has nothing to act on.
+        // Transverse shear needs bending, so MID3 has no effect without MID2.
         let shear = p
             .mid3
             .filter(|m| *m > 0)
@@ -283,7 +283,7 @@ impl Builder<'_> {
     }
 }
 
-/// Stands for a property that the deck lacks, so that the mesh is whole.
+/// Returns a property without stiffness in place of a property that the deck lacks, so that the mesh is complete.
 fn without_stiffness(id: u32, at: Place) -> ShellProperty {
     let kind = ShellKind::Homogeneous {
         t: 0.0,
@@ -312,7 +312,7 @@ pub(super) fn shell_normal(x: &[Vec3]) -> Option<Vec3> {
         _ => return None,
     };
     let n = u.cross(&v);
-    // Against the rounding of coordinates far from the origin.
+    // Tolerance for the rounding of coordinates far from the origin.
     if n.norm() > 1e-12 * u.norm() * v.norm() {
         unit(n)
     } else {
@@ -331,7 +331,7 @@ fn projected_angle(axes: &Mat3, x: &[Vec3], normal: Vec3) -> f64 {
         return 0.0;
     };
     let e2 = normal.cross(&e1);
-    // Under half a degree from the normal a projected direction means nothing.
+    // An axis within half a degree of the normal has no meaningful projection.
     const STANDS: f64 = 0.01;
     let first = flat(axes.row(0).transpose());
     let axis = if first.norm() > STANDS {

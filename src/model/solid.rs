@@ -6,7 +6,7 @@ use super::shell::shell_normal;
 use super::types::*;
 use std::collections::HashMap;
 
-/// Words of the fields 5 to 8 of a PSOLID.
+/// Words that fields 5 to 8 of a PSOLID allow.
 ///
 /// # Reference
 /// PSOLID in the quick reference guides of MSC Nastran, Simcenter Nastran and OptiStruct.
@@ -43,7 +43,7 @@ impl Builder<'_> {
             let options = p.options.clone();
             for (found, (field, known)) in options.iter().zip(OPTIONS) {
                 let expected = known.join(", ");
-                // The geometry of an OP2 has the first four letters of a word.
+                // The geometry tables of an OP2 file contain only the first four letters of a word.
                 let is = |w: &str, k: &str| k == w || w.len() == 4 && k.starts_with(w);
                 let unknown = |w: &String| !known.iter().any(|k| is(w, k));
                 if let Some(found) = found.clone().filter(unknown) {

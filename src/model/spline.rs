@@ -11,9 +11,12 @@ use nastran::place::PlacedCard;
 const MOST_BETWEEN: usize = 200;
 
 impl Builder<'_> {
-    /// A tube of diameter d = D/L times the length of all segments, thin, EI = GJ, EA = 8 EI / d^2, rigid in shear, is clamped at the
-    /// independent grids and free of load between; the dofs named there follow it. A segment is six springs at its middle,
-    /// 8 / (d^2 L), 12 / L^3 twice, 1 / L three times, with rigid arms to its ends, which need no orientation.
+    /// Returns the equations of an RSPLINE. The spline is a thin tube with the diameter d = D/L times the length of all segments. It has EI = GJ and
+    /// EA = 8 EI / d^2 and is rigid in shear. The tube is clamped at the independent grids and free of load between them. The stated dofs of the
+    /// other grids follow it.
+    ///
+    /// A segment is six springs at its middle with rigid arms to its ends. The stiffnesses are 8 / (d^2 L), 12 / L^3 twice and 1 / L three times. A
+    /// segment needs no orientation.
     ///
     /// # Reference
     /// NASTRAN Theoretical Manual (CRSPLINE); MSC Nastran Quick Reference Guide, RSPLINE.
@@ -76,8 +79,8 @@ impl Builder<'_> {
         })
     }
 
-    /// Equations between two independent grids: u_d = - K_dd^-1 K_di u_i, lengths in units of the piece so that the conditioning does
-    /// not depend on the unit of length.
+    /// Returns the equations between two independent grids, u_d = - K_dd^-1 K_di u_i. Lengths are in units of the piece, so that the conditioning
+    /// does not depend on the unit of length.
     fn piece_of_spline(
         &self,
         piece: &[(GridIx, Dofs)],
@@ -115,7 +118,7 @@ impl Builder<'_> {
         let ends = [piece.first()?.0, piece.last()?.0];
         let mut out = Vec::new();
         for (row, (g, dofs)) in piece.iter().skip(1).take(n - 2).enumerate() {
-            // Back to true lengths, and into displacement frames.
+            // Convert to true lengths and to displacement frames.
             let own = self.cd_axes(*g);
             let blocks = [0, 1].map(|e| {
                 let mut b: Matrix6<f64> = follows.fixed_view::<6, 6>(6 * row, 6 * e).into_owned();
@@ -164,7 +167,7 @@ fn segment(line: Vec3, diameter: f64) -> Option<(Matrix6<f64>, Matrix6<f64>, Mat
     springs
         .fixed_view_mut::<3, 3>(3, 3)
         .copy_from(&(Mat3::identity() / length));
-    // Motion of the middle by that of an end with a rigid arm.
+    // Motion of the middle due to the motion of an end with a rigid arm.
     let arm = |r: Vec3| {
         let mut m = Matrix6::identity();
         m.fixed_view_mut::<3, 3>(0, 3).copy_from(&-r.cross_matrix());

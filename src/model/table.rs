@@ -2,8 +2,8 @@
 
 use nastran::cards::{MaterialTable, MaterialTableForm};
 
-/// Returns the property at the temperature `x`; `z` is its value on the material card. `None` where the table needs that value and the card
-/// leaves it blank.
+/// Returns the property at the temperature `x`; `z` is its value on the material card. `None` if the table needs this value and the card leaves it
+/// blank.
 ///
 /// # Reference
 /// MSC Nastran Quick Reference Guide, TABLEM1 to TABLEM4: y(x), z y(x - x1), z y((x - x1) / x2), z sum of a_i ((x - x1) / x2)^i.

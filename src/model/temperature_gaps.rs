@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 /// # Reference
 /// MSC Nastran Quick Reference Guide, TEMP and TEMPD: TEMPD gives the temperature of the grids that no TEMP names.
 pub(super) fn missing_temperatures(model: &Model, deck: &Deck) -> Vec<ModelFault> {
-    // The set of TEMPERATURE(MATERIAL) is tested where materials take their temperature.
+    // The set of TEMPERATURE(MATERIAL) is tested when the materials at temperature are evaluated.
     let mut selected = BTreeSet::new();
     for s in deck.case_control.effective_subcases() {
         if !matches!(s.kind, SubcaseKind::Subcom | SubcaseKind::Symcom) {

@@ -11,7 +11,7 @@ fn model(bulk: &str) -> (Model, Vec<ModelFault>) {
     Model::from_deck(&deck)
 }
 
-/// The faults that stop a solution, in words.
+/// Returns the messages of the faults that prevent a solution.
 fn errors(bulk: &str) -> Vec<(u32, String)> {
     let (_, faults) = model(bulk);
     faults
@@ -29,7 +29,7 @@ const QUAD: &str = "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4
 
 #[test]
 fn chained_coordinate_systems_of_all_kinds_end_in_basic() {
-    // Cylindrical 2 stands in rectangular 1 (origin 10,0,0, x along basic y); spherical 3 is given by grids placed in 2.
+    // Cylindrical system 2 refers to rectangular system 1 (origin 10,0,0, x along basic y). Grids in system 2 define spherical system 3.
     let (m, faults) = model(
         "CORD2C,2,1,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\nCORD2R,1,,10.,0.,0.,10.,0.,1.\n,10.,1.,0.\n\
          GRID,1,2,2.,90.,5.\nGRID,2,2,2.,90.,6.\nGRID,3,2,3.,90.,5.\nCORD1S,3,1,2,3\nGRID,4,3,2.,90.,0.\nGRID,5,3,2.,0.,0.,2",
@@ -41,7 +41,7 @@ fn chained_coordinate_systems_of_all_kinds_end_in_basic() {
     let at = |id: u32| m.grids[m.grid_ix(id).unwrap().us()];
     // Theta 90 degrees of system 2 is along the y axis of system 1, which is minus basic x.
     assert!(is_near(at(1).x, [8.0, 0.0, 5.0]), "{}", at(1).x);
-    // System 3: origin grid 1, z up, x along grid 3 (minus basic x). Theta 90, phi 0: along its x.
+    // System 3 has its origin at grid 1, z up, and x towards grid 3 (minus basic x). Theta 90, phi 0 is along its x axis.
     assert!(is_near(at(4).x, [6.0, 0.0, 5.0]), "{}", at(4).x);
     assert!(is_near(at(5).x, [8.0, 0.0, 7.0]), "{}", at(5).x);
     // Grid 5 moves in system 2: radial at (8, 0) is minus basic x.
@@ -108,7 +108,7 @@ fn fibre_distances_of_a_tapered_shell_are_local_unless_stated() {
         let m = model(&deck).0;
         m.fibres(&m.shells[0])
     };
-    // a blank corner has T of the property, .01
+    // The thickness of a blank corner is T of the property, .01.
     let tapered = of(".02,.04,.06,", "");
     let halves = [0.01, 0.02, 0.03, 0.005];
     assert_eq!(tapered.corners, halves.map(|h| [-h, h]));
@@ -147,7 +147,7 @@ const BAR: &str =
 
 #[test]
 fn offsets_and_orientation_are_counted_in_the_displacement_frames() {
-    // Both grids at 45 degrees of a cylindrical system, one above the other; the offset is radial.
+    // Both grids are at 45 degrees in a cylindrical system, one above the other. The offset is radial.
     let (m, faults) = model(&format!(
         "{BAR}GRID,1,9,1.,45.,0.,9\nGRID,2,9,1.,45.,2.,9\nCBAR,1,1,1,2,1.,0.,0.,GGG\n,,,-1.,0.,0.,-1.,0.,0."
     ));
@@ -215,7 +215,7 @@ fn a_bush_takes_its_frame_from_cid_then_orientation_then_the_line() {
         faults.iter().any(|f| f.kind == FaultKind::Orientation),
         "{faults:?}"
     );
-    // Grounded, without a line or a CID: the basic frame, and it is said.
+    // A grounded bush has no line. Without CID it has the basic frame, and the model records the assumption.
     let (m, faults) = bush("CBUSH,1,1,1", "5.,3.");
     assert!(
         m.bushes[0].frame_assumed && is_near(m.bushes[0].axes.row(0).transpose(), [1.0, 0.0, 0.0]),
@@ -230,7 +230,7 @@ fn a_conm2_with_cid_minus_1_states_a_location_and_its_products_of_inertia_change
     assert!(is_near(c.offset, [0.0, 0.0, 1.0]));
     assert_eq!(c.matrix[(3, 4)], -1.0);
     assert_eq!(c.matrix[(3, 5)], -2.0);
-    // Parallel axes: two units of mass one above the grid.
+    // Parallel axis theorem: a mass of 2 at a distance of 1 above the grid.
     assert_eq!(
         (c.matrix[(3, 3)], c.matrix[(4, 4)], c.matrix[(5, 5)]),
         (12.0, 22.0, 30.0)
@@ -387,7 +387,7 @@ fn a_grid_without_element_is_a_note() {
 
 #[test]
 fn scalar_points_are_carried_by_springs_constraints_and_equations() {
-    // Grid 1 - spring 2 N/m - point 10 - spring 3 N/m - point 11 (named by the spring alone), which SPC1 holds.
+    // Grid 1 - spring 2 N/m - point 10 - spring 3 N/m - point 11. Only the spring defines point 11, and SPC1 holds it.
     let (m, faults) = model(
         "GRID,1,,0.,0.,0.\nSPOINT,10\nCELAS2,1,2.,1,3,10\nCELAS2,2,3.,10,,11\nSPC1,5,0,11\nMPC,6,10,0,1.,1,3,-2.",
     );
@@ -448,7 +448,7 @@ fn a_refined_mesh_weighs_the_same_and_divides_every_shell_at_the_middles_of_its_
         "{QUAD}GRID,5,,2.,0.,0.\nCQUAD4,1,1,1,2,3,4\nCTRIA3,2,1,2,5,3\nCONM2,9,2,,5."
     ));
     let fine = m.refine_shells().unwrap();
-    // A square and a triangle on one of its sides: five corners, seven sides, a middle of the square.
+    // A square and a triangle on one side of it have five corners, seven sides of which two coincide, and one centre of the square.
     assert_eq!(fine.model.grids.len(), 5 + 7 + 1 - 1);
     assert_eq!(fine.model.shells.len(), 8);
     let (before, after) = (m.weight(), fine.model.weight());
@@ -476,7 +476,7 @@ fn the_middle_of_a_side_with_a_bar_along_it_moves_as_the_mean_of_its_ends() {
         let middle = fine.grids[terms[0].0.us()].x;
         assert_eq!(middle, 0.5 * (m.grids[0].x + m.grids[1].x));
     }
-    // Across, it ties two corners that share no side.
+    // A diagonal bar connects two corners that share no side.
     let (m, _) = model(&format!(
         "{QUAD}CQUAD4,1,1,1,2,3,4\n{}",
         bar.replace("1,2", "1,3")
@@ -490,7 +490,7 @@ fn twenty_thousand_loads_that_name_each_other_are_written_out_at_once() {
     for sid in 2..=20_001 {
         text.push_str(&format!("LOAD,{sid},1.,1.,{}\n", sid - 1));
     }
-    // each of these doubles the one before: 2^40 loads if they were copied
+    // Each sum doubles the previous one. Copies would contain 2^40 loads.
     for sid in 30_001..=30_040 {
         let before = if sid == 30_001 { 20_001 } else { sid - 1 };
         text.push_str(&format!("LOAD,{sid},1.,1.,{before},1.,{before}\n"));
@@ -540,7 +540,7 @@ fn a_sum_of_sums_of_constraints_holds_every_set_once() {
 
 #[test]
 fn a_card_that_is_not_carried_is_named_by_its_own_line_and_not_called_missing() {
-    // Card that stands, card that refers to it, whether the reference stops every use of the model.
+    // Columns: unsupported card, card that refers to it, whether this reference prevents every use of the model.
     let table = [
         (
             "PBCOMP,9,1,.01,1.-5,1.-5",
@@ -599,7 +599,7 @@ fn a_card_that_is_not_carried_is_named_by_its_own_line_and_not_called_missing() 
             "the solver refuses {card}"
         );
     }
-    // What is in no card is missing still.
+    // A property that no card defines is still missing.
     let found = errors(&format!("{QUAD}CQUAD4,1,7,1,2,3,4\nPBCOMP,9,1,.01"));
     assert!(
         found[0].1.contains("shell property 7 is missing"),

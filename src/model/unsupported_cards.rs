@@ -6,8 +6,8 @@ use nastran::bdf::{CaseLine, Deck};
 use nastran::cards::{Cards, UnreadEntry};
 use nastran::place::{Place, PlacedCard};
 
-/// Solution sequences and rigid formats of linear statics, modes, buckling, flutter, and response to frequencies and time: what this
-/// program solves has the same stiffness, mass and static loads in them.
+/// Solution sequences and rigid formats of linear statics, modes, buckling, flutter, frequency response and transient response. All of them use the
+/// stiffness, mass and static loads that this program uses.
 const LINEAR: [u32; 39] = [
     1, 2, 3, 5, 7, 8, 9, 10, 11, 12, 24, 25, 26, 27, 28, 29, 30, 31, 61, 63, 65, 67, 68, 69, 70,
     71, 72, 101, 103, 105, 107, 108, 109, 110, 111, 112, 118, 145, 200,
@@ -116,7 +116,7 @@ fn statements(deck: &Deck) -> impl Iterator<Item = UnsupportedCard> {
     })
 }
 
-/// Returns the text behind the last `=`, or behind the word, in upper case.
+/// Returns the text after the last `=`, or after the word, in upper case.
 fn value_of(line: &CaseLine) -> String {
     let value = match line.text.rsplit_once('=') {
         Some((_, value)) => value,
@@ -127,7 +127,7 @@ fn value_of(line: &CaseLine) -> String {
 
 fn acts(deck: &Deck, word: CaseWord, value: &str) -> bool {
     if word.name == "ANALYSIS" {
-        // heat transfer, nonlinear statics and transients; static aeroelasticity acts by TRIM
+        // Heat transfer, nonlinear statics and transients. Static aeroelasticity is detected by TRIM.
         let kinds = ["HEAT", "HSTAT", "HTRAN", "NL", "RCNS", "RCTRN", "EXP"];
         return kinds.iter().any(|k| value.starts_with(k));
     }

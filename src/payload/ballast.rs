@@ -1,4 +1,5 @@
-//! Lumped masses that bring the reactions of a model to the measured ones: bounded least squares, and what the data leave open.
+//! Lumped masses with which the reactions of a model agree with the measured reactions. They are found by bounded least squares, with the range of
+//! every mass that the data permit.
 
 use crate::linalg::{Matrix, Vector};
 
@@ -15,7 +16,7 @@ pub struct BallastSpec {
     pub sigma: Vec<f64>,
 }
 
-/// A mass with the range that the data leave it, the others adjusted.
+/// A mass and the range that the data permit if the other masses are adjusted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallastMass {
     /// Weight.
@@ -70,7 +71,7 @@ pub fn size_ballast(
     let even = problem.even();
     let mut best = problem.search(even.clone(), None);
     for s in 0..STARTS {
-        // A low-discrepancy start (golden-ratio steps), the same every time.
+        // Deterministic low-discrepancy start (golden-ratio steps).
         let start: Vec<f64> = (0..even.len() as u64)
             .map(|k| ((s + 1) as f64 * GOLDEN[(k % 3) as usize] + k as f64 * 0.37).fract())
             .collect();
@@ -166,7 +167,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// Masses spread evenly along the region, each an equal share of what is missing.
+    /// Returns masses spread evenly along the region, each an equal share of the missing weight.
     fn even(&self) -> Vec<f64> {
         let n = self.spec.masses as f64;
         let missing: f64 = self
@@ -300,7 +301,7 @@ impl<'a> Problem<'a> {
         p
     }
 
-    /// Values of number `k` for which the others can keep chi2 under `limit`: bisection between the best and the bound.
+    /// Returns the range of number `k` in which the other numbers can keep chi2 under `limit`, by bisection between the best value and the bound.
     fn range(&self, best: &[f64], k: usize, limit: f64) -> [f64; 2] {
         let edge = |bound: f64| {
             let (mut inside, mut outside) = (best.to_vec(), bound);

@@ -64,7 +64,8 @@ pub(super) fn estimate_payload(
         strain: run.strain.iter().enumerate().map(reads).collect(),
         noise_factor: 1.0,
     };
-    // A run's gauges have one noise, or noise in the ratio of their own; where a zero or a gap makes it differ, the largest.
+    // The noise of the gauges in a run is equal or proportional to the noise in the model. If a zero or a gap changes this ratio, the largest ratio
+    // applies.
     let own = |g: usize| model.noise.as_ref().map_or(1.0, |n| n.variance(g).sqrt());
     let noise = run.sigma.iter().enumerate().map(|(g, v)| v / own(g));
     let noise = noise.filter(|v| v.is_finite());

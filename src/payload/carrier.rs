@@ -17,8 +17,8 @@ pub struct Carriers {
 }
 
 impl Carriers {
-    /// Grids of the shells (of the bars and beams where `model` has no such shell) whose property id `allowed` takes, less those that a
-    /// rigid element already moves. `axis` points up.
+    /// Returns the grids of the shells whose property id `allowed` accepts, or of the bars and beams if `model` has no such shell. Grids that a rigid
+    /// element moves are excluded. `axis` points up.
     pub fn from_model(model: &Model, axis: usize, allowed: impl Fn(u32) -> bool) -> Self {
         let dependent: BTreeSet<GridIx> = model
             .rigids
@@ -127,7 +127,7 @@ pub fn spread(
         .collect::<Option<_>>()?;
     let square = x.iter().map(|r| r.norm_squared()).sum::<f64>() / x.len().max(1) as f64;
     let length = if square > 0.0 { square.sqrt() } else { 1.0 };
-    // Rows of the rigid motion (t, theta length) at an arm.
+    // Rows of the rigid-body motion (t, theta length) at an arm.
     let row = |r: &Vec3, i: usize| {
         let mut e = Vec3::zeros();
         e[i] = 1.0;

@@ -1,13 +1,13 @@
-//! Inputs of weighing a payload: the response of gauges and wheels to it, and their readings.
+//! Inputs of payload weighing: the response of gauges and wheels to a payload, and their readings.
 
 use crate::linalg::Matrix;
 use crate::sensitivity::{GaugeNoise, Uncertainty};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-/// Response of gauges and wheels to a unit of weight (model units), and to weight times shift from the nominal place.
+/// Response of gauges and wheels to a unit of weight (model units), and to weight times shift from the nominal position.
 ///
-/// A payload of weight `F` at a shift `(dx, dy)` in plan gives, with `p = (F, F dx, F dy)` and wheel forces `R` (changes, up):
-/// `strain = wheels R + payload p`, and on a flat floor `R = floor p`; equilibrium: `sum R = F`, `sum R arm = F (dx, dy)`.
+/// Let `F` be the weight of a payload, `(dx, dy)` its shift in plan, `p = (F, F dx, F dy)`, and `R` the changes of the wheel forces, positive up.
+/// Then `strain = wheels R + payload p`, and on a flat floor `R = floor p`. Equilibrium is `sum R = F` and `sum R arm = F (dx, dy)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PayloadModel {
     /// Gauge names.
@@ -73,7 +73,7 @@ pub enum Refusal {
         /// Weight found.
         force: f64,
     },
-    /// It lies outside the region by so many standard deviations.
+    /// The payload is outside the region by this many standard deviations.
     OutsideRegion {
         /// How far over sigma.
         sigmas: f64,

@@ -1,7 +1,7 @@
-//! Weight and place of a payload from gauges of which some are wrong, and from wheel forces: expectation and maximisation.
+//! Weight and position of a payload from gauges, some of which may be faulty, and from wheel forces, by expectation maximisation.
 //!
-//! Unknowns of a run: wheel forces `R` (where they are measured), `p = (F, F dx, F dy)` (`F` alone where the place is known), and the
-//! error `c` of the model as a whole. Every gauge has one noise level in all runs: as stated, or up to 10^4 times that.
+//! The unknowns of a run are the wheel forces `R` if measured, the payload `p = (F, F dx, F dy)`, and the common error `c` of the model. If the
+//! position is known, `p` contains only `F`. Every gauge has one noise level in all runs: the stated noise, or up to 10^4 times the stated noise.
 
 use super::evidence::{PayloadModel, PayloadRun, Place, WeighSpec};
 use super::one_run::{Balance, PayloadFit, solve_run};

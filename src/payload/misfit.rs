@@ -19,7 +19,7 @@ struct WeighingMisfit<'a> {
     noise: f64,
 }
 
-/// Returns the faults of the gauges by the strain of a payload. Rows of `alternatives` are those of [`payload_rows`].
+/// Returns the faults of the gauges found from the strain of a payload. `alternatives` has the same rows as [`payload_rows`].
 pub fn faults_of_gauges(
     model: &PayloadModel,
     runs: &[PayloadRun],

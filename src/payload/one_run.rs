@@ -1,10 +1,10 @@
-//! One run solved: rows of its gauges, wheel forces, equilibrium and what is known beforehand, each over its standard deviation.
+//! Solution of one run by least squares. The rows are gauges, wheel forces, equilibrium and prior knowledge, each over its standard deviation.
 
 use super::evidence::{PayloadModel, PayloadRun, Place, WeighSpec};
 use crate::estimate::{LinearEstimate, LinearGaussian, ReadingErrors};
 use crate::linalg::Matrix;
 
-/// Equilibrium is exact: its standard deviation as a share of that of a wheel force.
+/// Standard deviation of equilibrium over the standard deviation of a wheel force. Equilibrium is practically exact.
 const EXACT: f64 = 1e-3;
 /// Standard deviation of the place where only the region is known, in half widths.
 const REGION_SD: f64 = 1.0;
@@ -91,7 +91,7 @@ pub(super) fn solve_run(
         .collect();
     let solved = match &model.noise {
         Some(noise) if noise.is_correlated() => {
-            // Beyond its own noise a gauge errs by the model, which is its own.
+            // Besides noise, every gauge has an independent model error. Only the noise is correlated between gauges.
             let n = rows.len();
             let mut covariance = vec![0.0; n * n];
             for (i, a) in rows.iter().enumerate() {
@@ -170,12 +170,14 @@ impl Unknowns {
         let n_wheels = run.reactions.len();
         let q = if spec.place == Place::Free { 3 } else { 1 };
         let (at_p, at_c) = (n_wheels, n_wheels + q);
-        // How a floor shares the payload is the model's word: patterns that balance among themselves stay open to its uncertainty.
+        // The model determines the wheel forces on the floor. Patterns of wheel forces in equilibrium with themselves have the uncertainty of the
+        // model.
         let patterns = match &model.arms {
             Some(arms) if n_wheels == 0 && spec.model_rel > 0.0 => balanced_patterns(arms),
             _ => Vec::new(),
         };
-        // What all gauges share: the model as a whole where the floor gives the wheel forces, else every wheel's and part's column of it.
+        // Errors that are common to all gauges. With wheel forces from the floor this is one error of the whole model. With measured wheel forces
+        // each column of the model (wheel or payload component) has a separate error.
         let n_common = if n_wheels > 0 { n_wheels + 3 } else { 1 };
         let at_z = at_c + n_common;
         Self {
@@ -332,7 +334,7 @@ fn equilibrium(
     let exact = wheel_variance * EXACT * EXACT;
     let mut equations: Vec<([f64; 3], Vec<f64>, f64)> =
         vec![([-1.0, 0.0, 0.0], vec![1.0; u.n_wheels], 1.0)];
-    // Known places check the moments instead of bending the forces to them.
+    // If the position is known, the moments serve as a check only. They do not change the forces.
     if let (Some(arms), Place::Free) = (&model.arms, spec.place) {
         for axis in 0..2 {
             let mut c = [0.0; 3];
@@ -361,7 +363,7 @@ fn equilibrium(
 /// Patterns of wheel forces as far as the model's uncertainty opens them.
 fn patterns_shut(u: &Unknowns, spec: &WeighSpec, old: &PayloadFit) -> Vec<Row> {
     let share = spec.model_rel * old.p[0].abs().max(f64::MIN_POSITIVE);
-    // Before the first answer there is no size to compare with: the patterns stay shut.
+    // Before the first answer the size of the payload is unknown, so the patterns are fixed at zero.
     let sd = if old.p[0] == 0.0 { SHUT } else { share };
     (u.at_z..u.width)
         .map(|unknown| u.single_unknown_row(unknown, 0.0, sd * sd))

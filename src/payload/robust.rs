@@ -82,9 +82,9 @@ pub(super) const SIGN_SIGMAS: f64 = 3.0;
 /// Model, gauge i, run j: `p_ij ~ N(F_j, (tau F_j)^2 + (m_i s_ij)^2)`. If the noise `s_ij` is stated, `m_i` is 1 for a good gauge and log-uniform
 /// above 1 for a bad one. If it is not, `m_i s_ij` is one unknown level for each gauge, log-uniform over six decades. The level belongs to the gauge,
 /// so a gauge that disagrees in one run loses its weight in all runs. `F_j` is uniform. The joint mode is found by coordinate ascent from every
-/// gauge's own estimates. The search ends at `largest` above, and at zero less the noise of an empty structure (`doubt`). Each run's interval is its
-/// posterior around that mode with the other runs at their modes. It is not cut at zero: `cut_at_zero` gives the interval of a payload of zero or
-/// more.
+/// gauge's own estimates. The search ends at `largest` above, and at zero less the noise of an empty structure (`doubt`). The interval of each run is
+/// from its posterior around this mode, with the other runs at their modes. It is not cut at zero: `cut_at_zero` gives the interval of a payload of
+/// zero or more.
 ///
 /// Units: the units of the estimates. Returns `None` if a run has no finite, possible estimate. Leave out runs whose gauges give a payload
 /// significantly below zero, or no payload: they would reduce the weight of every gauge.
@@ -143,7 +143,7 @@ pub(super) fn doubt(sigma: impl Iterator<Item = f64>) -> f64 {
     }
 }
 
-/// `doubt` of one run; zero where no noise is stated.
+/// Returns `doubt` of one run, or zero if no noise is stated.
 fn run_doubt(gauges: &[GaugeEstimates], j: usize) -> f64 {
     doubt(gauges.iter().filter_map(|g| {
         let read = g.estimates.get(j)?.is_finite();
@@ -151,13 +151,15 @@ fn run_doubt(gauges: &[GaugeEstimates], j: usize) -> f64 {
     }))
 }
 
-/// Value and 95 % interval of a load that can't be negative, from those of a free one: `max(0, v)` and
-/// `[max(0, low), max(0, v) + (high - v)]`.
+/// Returns the value and the 95 % interval of a load that can't be negative, from the value and interval without this constraint. They are `max(0,
+/// v)` and `[max(0, low), max(0, v) + (high - v)]`.
 ///
-/// A free interval `v -+ h` holds any truth `t >= 0` with 95 %. Cut at zero it still does, since the truth never lies in what was cut off; at
-/// its upper end it is never shorter than `h`, so that it can't end below zero, where a free one ends once in forty empty structures. The
-/// interval misses `t` where `v - h > t` (2.5 %), and where `max(0, v) + h < t`: 2.5 % for `t > h`, never for `t < h`. It holds 97.5 % of
-/// loads below its half width, 95 % of all others, and is the free one where `low` is above zero.
+/// An unconstrained interval `v -+ h` contains any true value `t >= 0` with 95 %. Cut at zero it still does, since the true value is never in the
+/// removed part. The upper end is never below `h`, so the interval can't end below zero. An unconstrained interval ends below zero for one empty
+/// structure in forty.
+///
+/// The interval misses `t` if `v - h > t` (2.5 %), and if `max(0, v) + h < t` (2.5 % for `t > h`, never for `t < h`). It contains 97.5 % of the loads
+/// below its half width and 95 % of all larger loads. If `low` is above zero, it equals the unconstrained interval.
 ///
 /// # Reference
 /// The mean of a Gaussian bounded by zero, its empty intervals and undercoverage: G. J. Feldman, R. D. Cousins, Phys. Rev. D 57 (1998) 3873,
@@ -200,7 +202,7 @@ fn run_terms(gauge: &GaugeEstimates, spec: &RobustSpec, j: usize, f: f64) -> [f6
             return 0.0;
         }
         let variance = level(gauge, spec, j, k).0.powi(2) + (spec.relative_scatter * f).powi(2);
-        // Without noise at zero load: terms stay finite, so that they can be taken away.
+        // A lower bound of the variance keeps the terms finite at zero load without noise, so that they can be subtracted.
         let variance = variance.max(1e-200);
         -0.5 * ((p - f).powi(2) / variance + (TAU * variance).ln())
     })
@@ -254,14 +256,14 @@ fn ascend_posterior(
     let mut step = 0.1;
     while step > 1e-4 {
         let mut moved = false;
-        // Anew for each round: what is added and taken away leaves rounding.
+        // Recompute the terms in each round: adding and subtracting accumulates rounding errors.
         let mut terms = all_terms(gauges, spec, &f);
         let mut best = log_posterior(&terms);
         for j in 0..f.len() {
             for share in [step, -step / (1.0 + step)] {
                 let size = f[j].abs() + slack[j] / SIGN_SIGMAS;
                 let there = (f[j] + share * size).clamp(-slack[j], spec.largest.max(0.0));
-                // One run moves: the others' terms stay.
+                // Only one run changes, so the terms of the other runs are kept.
                 let with = |(g, own): (&GaugeEstimates, &[f64; N_LEVELS])| {
                     let before = run_terms(g, spec, j, f[j]);
                     let after = run_terms(g, spec, j, there);
@@ -282,8 +284,9 @@ fn ascend_posterior(
     (log_posterior(&all_terms(gauges, spec, &f)), f)
 }
 
-/// Mean, sd and 95 % interval of one run around its mode, the other runs held at theirs. The grid is even in `t`, `F = s sinh t`, `s` the noise
-/// of an empty structure: even in F near zero, where F may be below it, and in log F far from it.
+/// Returns the mean, standard deviation and 95 % interval of one run around its mode, with the other runs at their modes. The grid is uniform in `t`
+/// with `F = s sinh t`, where `s` is the noise of an empty structure. It is nearly uniform in F near zero, where F may be negative, and uniform in
+/// log F far from zero.
 fn run_posterior(
     gauges: &[GaugeEstimates],
     spec: &RobustSpec,
@@ -294,7 +297,7 @@ fn run_posterior(
         .iter()
         .map(|g| gauge_terms(g, spec, mode, |k| k != j))
         .collect();
-    // Without stated noise there is no such size: any far below the mode makes the grid that of log F.
+    // Without stated noise, any size far below the mode gives a uniform grid in log F.
     let size = (slack / SIGN_SIGMAS)
         .max(1e-9 * mode[j].abs())
         .max(f64::MIN_POSITIVE);
@@ -309,7 +312,7 @@ fn run_posterior(
     };
     let grid = |from: f64, to: f64| -> (Vec<f64>, Vec<f64>) {
         let t = (0..N_GRID).map(|i| from + (to - from) * i as f64 / (N_GRID - 1) as f64);
-        // The prior is flat in F: a point counts for the stretch of F that it stands for, s cosh t.
+        // The prior is uniform in F, so the weight of a point is its spacing in F, s cosh t.
         t.map(|t| (t, size * t.sinh()))
             .take_while(|(_, x)| *x <= spec.largest)
             .map(|(t, x)| (x, log_density(x) + (size * t.cosh()).ln()))
@@ -318,7 +321,7 @@ fn run_posterior(
     let middle = (mode[j] / size).asinh();
     let reach = GRID_REACH.ln();
     let (points, wide) = grid(middle - reach, middle + reach);
-    // Once more over the points that count: a payload known to a thousandth lies between two of the first grid.
+    // A second, finer grid covers the points with significant weight: a payload known to a thousandth is between two points of the first grid.
     let top = wide.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let counts = |l: &f64| *l > top + NOTHING;
     let first = wide.iter().position(counts).unwrap_or(0);
@@ -339,7 +342,7 @@ fn run_posterior(
         .map(|(w, x)| w * (x - mean).powi(2))
         .sum::<f64>()
         / total;
-    // A point stands for what lies halfway to its neighbours.
+    // A point represents the interval up to the midpoints to its neighbours.
     let quantile = |share: f64| {
         let (mut sum, mut before) = (0.0, points.first().copied().unwrap_or(mean));
         for (i, (w, x)) in weights.iter().zip(&points).enumerate() {
@@ -370,7 +373,7 @@ fn verdict(gauge: &GaugeEstimates, spec: &RobustSpec, f: &[f64]) -> GaugeVerdict
         .take_while(|k| level(gauge, spec, 0, *k).0 <= limit * (1.0 + 1e-9))
         .count();
     let probability_good = (log_sum(&terms[..n_good]) - log_sum(&terms)).exp();
-    // With stated noise a sign is against a gauge only where noise can't have made it.
+    // With stated noise, a negative sign counts against a gauge only if noise can't have caused it.
     let slack: Vec<f64> = match &gauge.sigma {
         Some(s) => s.iter().map(|s| SIGN_SIGMAS * s).collect(),
         None => vec![0.0; gauge.estimates.len()],
@@ -378,8 +381,8 @@ fn verdict(gauge: &GaugeEstimates, spec: &RobustSpec, f: &[f64]) -> GaugeVerdict
     verdict_words(&gauge.name, &gauge.estimates, &slack, f, probability_good)
 }
 
-/// Whether a gauge is used, and the reason, from its estimates by run, the answers `f` and how probable it is that the gauge is good. An estimate
-/// below zero by more than its `slack` rejects the gauge.
+/// Returns whether a gauge is used, and the reason. Inputs are its estimates by run, the answers `f` and the probability that the gauge is good. An
+/// estimate below zero by more than its `slack` rejects the gauge.
 pub(super) fn verdict_words(
     name: &str,
     estimates: &[f64],
@@ -406,7 +409,7 @@ pub(super) fn verdict_words(
             .collect::<Vec<_>>()
             .join(", ")
     };
-    // Of an empty structure there is no share to differ by.
+    // A relative deviation is not defined for an empty structure.
     let apart = |p: &(usize, f64)| {
         let of = f.get(p.0).copied().unwrap_or(f64::NAN);
         (of > 0.0).then(|| (p.1 - of).abs() / of)

@@ -1,4 +1,4 @@
-//! A payload weighed by all there is: single gauges, all gauges together, wheel forces; checked by sign and equilibrium.
+//! Weight of a payload from single gauges, all gauges together and wheel forces, with checks of sign and equilibrium.
 
 use super::by_calibration;
 use super::evidence::{PayloadModel, PayloadRun, Place, Refusal, Support, WeighSpec, WeighedRun};
@@ -30,7 +30,7 @@ const GAUGE_FACTOR_REL: f64 = 0.01;
 const OUT_OF_BALANCE: (f64, f64) = (4.0, 0.05);
 /// A payload outside the region by more standard deviations is refused.
 const OUTSIDE: f64 = 3.0;
-/// A weight is below zero beyond doubt from this many standard deviations on: of empty structures one in 700.
+/// Number of standard deviations below zero from which a weight is significantly negative. Noise alone exceeds it for one empty structure in 700.
 const SURELY: f64 = 3.0;
 /// Standard deviation over the largest estimate under which a gauge counts as exact.
 const EXACT: f64 = 1e-9;
@@ -39,14 +39,15 @@ const WEAK_SHARE: f64 = 1.0 / 3.0;
 
 /// Weighs the payload of every run.
 ///
-/// With a known place and strain alone the posterior of [`robust_payload`]; else `locate`. Interval: 95 %, of a payload that can't be negative
-/// (value `max(0, v)`, ends `max(0, low)` and `max(0, v) + high - v`, see `cut_at_zero`). An answer that violates sign, region or equilibrium keeps
-/// its numbers and states why it is refused. Runs are tested separately: a run without an answer does not affect the answers of other runs.
+/// With a known position and strain alone, the result is the posterior of [`robust_payload`], otherwise the result of `locate`. The 95 % interval is
+/// the interval of a payload that can't be negative (value `max(0, v)`, ends `max(0, low)` and `max(0, v) + high - v`, see `cut_at_zero`). An answer
+/// that violates sign, region or equilibrium keeps its numbers and states why it is refused. Runs are tested separately: a run without an answer does
+/// not affect the answers of other runs.
 pub fn weigh(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Weighing {
     let n = model.gauges.len();
     let has_strain = runs.iter().any(|r| r.strain.iter().any(|v| v.is_finite()));
     let has_wheels = runs.iter().any(|r| !r.reactions.is_empty());
-    // Single gauges whose noise is correlated are no independent witnesses.
+    // Gauges with correlated noise are not independent, so their single estimates are not combined here.
     let is_correlated = model.noise.as_ref().is_some_and(GaugeNoise::is_correlated);
     if has_strain && !has_wheels && spec.place == Place::Known && !is_correlated {
         return apply_calibration(model, runs, spec, by_strain(model, runs, spec));
@@ -129,7 +130,7 @@ fn apply_calibration(
         };
         weighing.unlike.extend(found.unlike);
         let mut located = PayloadFit::zeros();
-        // As it was, for what has no column.
+        // Components without a column in the calibration keep their previous values.
         let force = w.force;
         for k in 1..3 {
             located.p[k] = force * w.shift[k - 1];
@@ -230,11 +231,11 @@ fn alone_on_floor(
 /// Known place, strain alone.
 fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Weighing {
     let n = model.gauges.len();
-    // Each run by itself first: one that says a payload below zero beyond doubt, or nothing, must not make the gauges doubtful that say so
-    // (their noise level is common to all runs).
+    // First each run is tested separately. A run with a significantly negative payload, or without a payload, must not reduce the weight of its
+    // gauges in other runs. The noise level of a gauge is common to all runs.
     let mut out: Vec<WeighedRun> = Vec::new();
     let mut judged: Vec<usize> = Vec::new();
-    // Sizes for the model's error: from the gauges' median first, then from the answer.
+    // The model error is proportional to the payload: first to the median of the gauges, then to the answer.
     let mut sizes: Vec<f64> = Vec::new();
     for (i, run) in runs.iter().enumerate() {
         let (estimates, estimate_sigma) = estimate_by_gauge(model, run, run.shift, &[], 0.0, spec);
@@ -296,7 +297,7 @@ fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
         };
     };
     for (i, a) in judged.iter().zip(&answer.runs) {
-        // The model's error as a whole widens what the gauges say between them.
+        // The common model error widens the joint interval of the gauges.
         let whole = spec.model_rel * a.value;
         let widen = |edge: f64| {
             let half = edge - a.value;
@@ -304,7 +305,7 @@ fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
         };
         let run = &mut out[*i];
         run.sigma = a.sigma.hypot(whole);
-        // With the sizes settled the gauges may say after all what a first look at them left open.
+        // With the final size of the model error, a run may have to be refused that passed the first test, or the reverse.
         run.refused = refused_by_itself(&run.estimates, &run.estimate_sigma, spec.largest);
         let free = (a.value, a.interval.map(widen));
         (run.force, run.interval) = match run.refused {
@@ -334,8 +335,8 @@ fn median_of(estimates: &[f64], sigma: &[f64], take: impl Fn(&f64) -> bool) -> O
     weighted_median(&mut weighted)
 }
 
-/// Returns why a run can't have an answer, whatever the other runs show: the weighted median of its gauges is significantly below zero, or no gauge
-/// gives a possible weight. Weights are the inverse standard deviations.
+/// Returns the reason if a run can't have an answer, independent of the other runs. Either the weighted median of its gauges is significantly below
+/// zero, or no gauge gives a possible weight. Weights are the inverse standard deviations.
 fn refused_by_itself(estimates: &[f64], sigma: &[f64], largest: f64) -> Option<Refusal> {
     let known = |(e, s): &(&f64, &f64)| e.is_finite() && s.is_finite();
     let pairs = || estimates.iter().zip(sigma).filter(known);
@@ -376,8 +377,8 @@ fn weigh_run(
             }
         }
     }
-    // By strain alone an error of the payload's column as a whole reads as a shift of its line of action: `model_rel` of how far the wheels
-    // spread. Measured wheel forces fix that line by statics.
+    // With strain alone, a common error of the payload column appears as a shift of the line of action. Its size is `model_rel` times the spread of
+    // the wheels. Measured wheel forces determine this line by statics.
     if let (true, true, Some(arms)) = (free, run.reactions.is_empty(), &model.arms) {
         for k in 0..2 {
             let n = arms.len().max(1) as f64;
@@ -454,7 +455,7 @@ fn verdicts(model: &PayloadModel, runs: &[WeighedRun], location: &Location) -> V
                 .map(|r| r.estimates.get(g).copied().unwrap_or(f64::NAN))
                 .collect();
             let good = location.good.get(g).copied().unwrap_or(0.0);
-            // A sign is against a gauge only where its noise can't have made it.
+            // A negative sign counts against a gauge only if noise can't have caused it.
             let slack: Vec<f64> = runs
                 .iter()
                 .map(|r| SIGN_SIGMAS * r.estimate_sigma.get(g).copied().unwrap_or(f64::NAN))

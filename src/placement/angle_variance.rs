@@ -81,7 +81,7 @@ pub fn largest_ratio(f: &Trig, v: &Trig, samples: &[[f64; 4]; SAMPLES]) -> (f64,
             }
         }
     }
-    // Certify: f - lambda v must be negative everywhere, else a point above lambda has been found.
+    // Certify the maximum: f - lambda v must be negative everywhere. A positive point is a better lambda.
     for _ in 0..8 {
         let g = subtract_scaled(f, v, best.0 * (1.0 + CERTIFIED_EXCESS) + f64::MIN_POSITIVE);
         match first_above(&g, 0.0, std::f64::consts::TAU, 0) {

@@ -1,9 +1,10 @@
-//! The best layout of a small problem, proved: branch and bound over the relaxation with variables fixed by its bound.
+//! Optimal layout of a small problem with proof, by branch and bound over the relaxation. The bound also fixes variables.
 //!
-//! A node has gauges that are in, rows that are free and the rest out. Its relaxation bounds every layout below it by
-//! `value + q ln((tr(G P) + T) / q)`, `P` the gauges that are in (and the prior), `T` the sum of the `s` largest slopes, one of a group.
-//! Forcing row `j` in replaces the smallest term of `T` by `d_j`, leaving it out replaces `d_j` by the next one: where that falls under
-//! the best layout known, `j` is fixed.
+//! A node has chosen gauges and free rows; all remaining rows are excluded. The relaxation bounds every layout below the node by `value + q ln((tr(G
+//! P) + T) / q)`. `P` is the information of the chosen gauges and the prior. `T` is the sum of the `s` largest slopes, at most one of each group.
+//!
+//! Choosing row `j` replaces the smallest term of `T` by `d_j`. Excluding it replaces `d_j` by the next slope. If the bound then falls below the best
+//! known layout, `j` is fixed to the other value.
 
 use super::exchange::RowSelection;
 use super::relax::relax;
@@ -92,7 +93,7 @@ pub fn prove(
     }];
     let (mut nodes, mut work) = (0, 0.0);
     while !open.is_empty() && work < p.work && !p.stop.is_asked() {
-        // Best bound last.
+        // Sort the node with the best bound last.
         open.sort_by(|a, b| a.bound.total_cmp(&b.bound).then(a.inside.cmp(&b.inside)));
         let batch = open.split_off(open.len().saturating_sub(BATCH));
         nodes += batch.len();
@@ -207,7 +208,7 @@ fn evaluate(p: &Problem, rules: &Rules, mut node: Node, known: f64) -> Step {
         };
         node.weights.clone_from(&relaxed.weights);
         node.bound = node.bound.min(relaxed.value() + degree * relaxed.gap);
-        // The heaviest rows as a layout.
+        // The rows with the largest weights form a trial layout.
         if let Some(found) = choose_heaviest_rows(p, rules, &node, s)
             && found.log_det > known + SAME
         {
@@ -223,7 +224,7 @@ fn evaluate(p: &Problem, rules: &Rules, mut node: Node, known: f64) -> Step {
         if p.s < node.inside.len() || !has_no_conflict(rules, &node.inside) {
             return step;
         }
-        // Another round where much was fixed: the relaxation of what is left is tighter.
+        // Repeat if many rows were fixed, because the relaxation of the remaining rows is tighter.
         if node.inside.len() > before.0 || node.free.len() * 8 < before.1 * 7 {
             continue;
         }
@@ -274,7 +275,7 @@ fn decide(
     for (n, &tolerance) in LADDER.iter().enumerate() {
         let mut found = relax(sub, s, prior, weights.clone(), tolerance, SWEEPS);
         if found.is_none() && n == 0 {
-            // Weights of another node may leave a load without information here: begin again from all rows alike.
+            // The weights of another node may give a load no information here. Restart with equal weights of all groups.
             let share = s as f64 / sub.n_groups as f64;
             let mut members = vec![0.0; sub.n_groups];
             sub.group.iter().for_each(|&g| members[g as usize] += 1.0);
@@ -317,7 +318,7 @@ fn refill(weights: &mut [f64], sub: &Active, s: f64) {
         weights.iter_mut().for_each(|w| *w *= s / sum);
         return;
     }
-    // First where there is weight already, then anywhere.
+    // Add weight first to groups that have weight, then to all groups.
     for all in [false, true] {
         let fits = |g: usize| all || by_group[g] > 0.0;
         let sum: f64 = by_group.iter().sum();
@@ -447,7 +448,7 @@ fn branch(rules: &Rules, node: Node, step: &mut Step) {
     else {
         return;
     };
-    // Of rows that read the same the first is taken: without it there are none of them.
+    // Of identical rows, branch on the first one. The branch without it excludes all of them.
     let class = rules.twins[node.free[at] as usize];
     if class != u32::MAX
         && let Some(first) = node

@@ -62,8 +62,8 @@ const FIRST_ROWS: usize = 256;
 /// Passes after which the gap reached is taken.
 const MAX_PASSES: usize = 60;
 
-/// Solves the relaxation for `s` gauges to a gap (per load) of `tolerance`, or to where it is when asked to stop: the bound holds all the
-/// same. `None` where no layout has a regular information matrix.
+/// Solves the relaxation for `s` gauges up to a gap (per load) of `tolerance`, or until it is cancelled. The bound is valid in both cases. `None` if
+/// no layout has a regular information matrix.
 pub fn solve(
     c: &Candidates,
     s: usize,
@@ -135,7 +135,7 @@ pub fn solve(
         let room = (6 * k + s).max(96);
         let mut added = 0;
         if matches!(groups, Groups::Cliques(_)) {
-            // The best of each set of places first: the best-priced rows crowd in few sets.
+            // The best row of each set of places comes first, because the rows with the largest variance are in few sets.
             let mut seen = HashSet::new();
             priced.sort_by_cached_key(|p| !seen.insert(groups.key(p.choice)));
         }
@@ -185,7 +185,7 @@ fn first_angles(angles: &Angles, place: u32) -> Vec<Choice> {
     }
 }
 
-/// Weights that fill every group alike.
+/// Returns the relaxation with equal weight in every group.
 fn start(set: &RowSet, s: usize, prior: &[f64]) -> Option<RelaxationSolution> {
     let groups = set.active.n_groups;
     if groups < s {

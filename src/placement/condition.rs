@@ -1,11 +1,11 @@
-//! Layouts of least condition number: how much an error of the readings grows, at worst, on its way to the loads.
+//! Layouts of least condition number. The condition number is the largest factor by which a relative error of the readings grows in the loads.
 //!
-//! `S` holds the strains of the gauges (not over their standard deviations) with columns times the expected sizes of the loads, and
-//! `M = S'S`. The search raises `-ln cond S + 0.05 ln(det M) / (2 k)`: of layouts alike in condition it takes the one that reads more
-//! (a hundredth of condition number for a fifth of the standard deviations of the loads).
+//! `S` contains the strains of the gauges, not over their standard deviations, with each column times the expected size of its load. `M` is `S'S`.
+//! The search maximises `-ln cond S + 0.05 ln(det M) / (2 k)`. Of layouts with nearly equal condition numbers it takes the one with more strain. It
+//! trades 1 % of condition number for a fifth of the standard deviations of the loads.
 //!
-//! Single rows are exchanged. In a slot all rows are ranked by `tr(M) tr(M^-1)`, the condition number in the Frobenius norm, which a row changes in
-//! closed form; the first of them are tested by eigenvalues.
+//! The search exchanges single rows. In each slot it ranks all rows by `tr(M) tr(M^-1)`, the condition number in the Frobenius norm, which is updated
+//! in closed form. It tests the best rows by eigenvalues.
 
 use super::candidates::{Angles, Candidates, Choice};
 use super::coordinate_exchange::LEAST_GAIN;
@@ -37,7 +37,7 @@ const MOST: [usize; 2] = [12_000, 1_500];
 const MANY: usize = 12;
 /// Number of rows of a slot tested by eigenvalues, with few loads and with many.
 const JUDGED: [usize; 2] = [24, 6];
-/// Share of the mean diagonal that keeps the rest of a layout regular without a gauge.
+/// Share of the mean diagonal that is added to keep a layout without one gauge regular.
 const RIDGE: f64 = 1e-10;
 
 /// The layout of least condition number found, from `layout` and from random ones; `base` is the `S'S` of gauges that stay, columns
@@ -113,7 +113,7 @@ fn taking_part(c: &Candidates, layout: &[Choice], most: usize) -> Vec<Choice> {
             .collect(),
     };
     let all = c.n_places() * angles.len();
-    // A stride without a common factor with the number of angles meets all of them.
+    // A stride without a common factor with the number of angles covers all angles.
     let mut stride = all.div_ceil(most.max(1)).max(1);
     while stride > 1 && greatest_common_divisor(stride, angles.len()) > 1 {
         stride += 1;
@@ -245,12 +245,13 @@ impl<E: Fn(usize, usize) -> bool> Search<'_, E> {
         })
     }
 
-    /// Returns the rows that give the least `tr(M) tr(M^-1)` together with the rest `m`, and fit.
+    /// Returns the compatible rows that give the least `tr(M) tr(M^-1)` together with the matrix `m` of the other gauges.
     fn rank_rows(&self, m: &[f64], rows: &[usize], slot: usize) -> Vec<usize> {
         let k = self.k;
         let trace: f64 = (0..k).map(|p| m[p * k + p]).sum();
         let mut m = m.to_vec();
-        // The rest of as many gauges as loads is singular; rows are short beside those of a load that all read.
+        // With as many gauges as loads, the matrix without one gauge is singular. The ridge is relative to the trace, because rows of weak loads are
+        // small compared with a load that all gauges measure.
         let ridge = RIDGE * trace.max(f64::MIN_POSITIVE) / k as f64;
         (0..k).for_each(|p| m[p * k + p] += ridge);
         let Some(l) = spd::cholesky(&m, k) else {

@@ -95,7 +95,7 @@ impl CoordinateExchange {
             mask: vec![0.0; n],
             swaps: 0,
         };
-        // Rows that fill up the last block are never chosen.
+        // Padding rows of the last block are never chosen.
         c.blocked[active.len()..].fill(2);
         c.mask[active.len()..].fill(f64::NEG_INFINITY);
         for slot in 0..c.rows.len() {
@@ -177,7 +177,7 @@ impl CoordinateExchange {
                 }
             }
         }
-        // Rows that nothing but the gauge that goes excludes.
+        // Rows that only the removed gauge excludes.
         for &i in list.partners(j) {
             let i = i as usize;
             if self.blocked[i] == 1 && i != j {

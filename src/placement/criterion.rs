@@ -6,9 +6,9 @@
 //! | Ds | `ln det M - ln det M_nn` | `M^-1` less the inverse of the nuisance block |
 //! | linear | `-k ln tr(L M^-1)` | `k M^-1 L M^-1 / tr(L M^-1)` |
 //!
-//! In all three a layout `S` with information `M_S = P + sum a a'` has `value(M_S) <= value(M) + q ln((tr(G P) + sum a' G a) / q)`, `q` the
-//! degree. For D and Ds that is the inequality of the arithmetic and the geometric mean; for the linear one, convexity of
-//! `tr(L M^-1)` along the ray through `M` gives `tr(L M_S^-1) >= tr(L M^-1)^2 / tr(M^-1 L M^-1 M_S)`.
+//! For all three criteria, a layout `S` with information `M_S = P + sum a a'` satisfies `value(M_S) <= value(M) + q ln((tr(G P) + sum a' G a) / q)`,
+//! where `q` is the degree. For D and Ds this is the inequality of the arithmetic and geometric means. For the linear criterion, convexity of `tr(L
+//! M^-1)` along the ray through `M` gives `tr(L M_S^-1) >= tr(L M^-1)^2 / tr(M^-1 L M^-1 M_S)`.
 
 use crate::linalg::spd;
 

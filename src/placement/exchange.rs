@@ -31,8 +31,8 @@ pub struct RowSelection {
     pub log_det: f64,
 }
 
-/// The best layout of `s` rows found, `excludes(i, j)` being true where rows `i` and `j` can't both be chosen (and for
-/// `i == j`); `None` where fewer than `s` compatible rows exist or all layouts tried are singular.
+/// Returns the best layout of `s` rows found. `excludes(i, j)` is true if rows `i` and `j` can't both be chosen, and for `i == j`. `None` if fewer
+/// than `s` compatible rows exist or all layouts tried are singular.
 pub fn search(
     active: &Active,
     s: usize,
@@ -81,7 +81,7 @@ pub fn search(
                 } else {
                     3 + rng.random_range(0..2)
                 };
-                // A layout a little worse may lead on; how much worse is drawn.
+                // Accept a slightly worse layout, which may lead to a better one. The accepted loss is random.
                 let worse = -LENIENT * rng.random_range(f64::MIN_POSITIVE..1.0).ln();
                 if now.perturb(&list, count, &mut rng)
                     && now.improve(&list, prior)
@@ -131,7 +131,7 @@ fn by_weight(weights: &[f64]) -> Vec<usize> {
     order
 }
 
-/// Rows drawn without replacement with chances proportional to their weight odds (exponential race).
+/// Returns rows sampled without replacement, with probabilities proportional to the odds of their weights (exponential race).
 fn by_lot(weights: &[f64], rng: &mut ChaCha8Rng) -> Vec<usize> {
     let mut keyed: Vec<(f64, usize)> = weights
         .iter()

@@ -25,11 +25,11 @@ struct SmoothNeighbour {
     flipped: bool,
 }
 
-/// By site, the form `H` with `c(t)' H c(t) = variance sum_l (|d eps_l / dx|^2 + |d eps_l / dy|^2)` for a gauge at the angle `t`: microstrain
-/// squared at the expected loads, `variance` in length squared, the mean square of the misplacement along each direction (and a twelfth of
-/// the square of the grid length, for the strain's spread over it).
+/// Returns the quadratic form `H` of each site for a gauge at the angle `t`: `c(t)' H c(t) = variance sum_l (|d eps_l / dx|^2 + |d eps_l / dy|^2)`.
+/// The unit is microstrain squared at the expected loads. `variance` is the mean square of the position error along each direction, in length
+/// squared. It includes a twelfth of the square of the grid length for the strain variation over the grid.
 ///
-/// Gradients are the planes through the centre that fit the neighbouring shells' centres best.
+/// The gradients are from the plane through the shell centre that fits the strain at the centres of the adjacent shells best.
 pub fn forms(
     model: &Model,
     sites: &[Site],

@@ -20,7 +20,7 @@ use std::fmt;
 pub struct Layout {
     /// The gauges, by place and angle.
     pub gauges: Vec<Choice>,
-    /// Value of the criterion: for D `log det` of the information matrix, for Ds less that of the nuisance block.
+    /// Value of the criterion. For D it is `log det` of the information matrix, for Ds this value less `log det` of the nuisance block.
     pub log_det: f64,
     /// No layout that keeps the rules has a larger criterion.
     pub upper_bound: f64,
@@ -119,7 +119,7 @@ impl std::error::Error for PlaceError {}
 /// # Ok::<(), strainbridge::placement::PlaceError>(())
 /// ```
 pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
-    // Loads asked for.
+    // Number of wanted loads.
     let k = spec.criterion.degree(c.n_loads());
     let spaced = spec.spacing > 0.0 && !c.positions().is_empty();
     let mut bound = LayoutBound::from_candidates(c, spec, spaced)?;
@@ -134,7 +134,7 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
         best = tighten(c, spec, &mut bound, quick, best);
     }
     let incumbent = best.ok_or_else(|| {
-        // Fewer gauges than loads are not to be told that they stand too close.
+        // Too few gauges for the loads are not an error of the spacing, so try without spacing.
         let anywhere = Spec {
             spacing: 0.0,
             ..spec.clone()
@@ -147,7 +147,7 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
             false => singular_error(c, spec),
         }
     })?;
-    // What can't be in a better layout may be in one that loses less.
+    // A candidate that can't be in a better layout may be in a layout with a smaller loss.
     let floor = match spec.loss {
         Loss::Judged => elimination(&bound.col, k, incumbent.1),
         Loss::Optimised => 0.0,
@@ -164,7 +164,7 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
     };
     let (mut gauges, log_det) = end.found;
     gauges.sort_by(|a, b| a.place.cmp(&b.place).then(a.angle.total_cmp(&b.angle)));
-    // A layout is a lower bound of the best; rounding may leave it above the certificate by as much as the arithmetic.
+    // The layout is a lower bound of the optimum. It can exceed the certificate only by rounding.
     let upper_bound = if end.proved {
         log_det
     } else {
@@ -241,8 +241,8 @@ fn solve_relaxed(c: &Candidates, spec: &Spec, groups: &Groups, warm: &[Choice]) 
     )
 }
 
-/// Lowers the bound by sets of places within a spacing of each other, of which a layout has one at most, chosen by their prices; the best
-/// layout met.
+/// Lowers the bound with sets of places within a spacing of each other, and returns the best layout found. A layout has at most one gauge in each
+/// set. The sets are built from the candidate variances.
 fn tighten(
     c: &Candidates,
     spec: &Spec,
@@ -284,8 +284,8 @@ fn tighten(
     best
 }
 
-/// The best layout by exchange: within the list, then with the rows whose variance in the layout is largest; its angles polished where they
-/// are continuous.
+/// Returns the best layout by exchange, first within the list, then with the rows whose variance in the layout is largest. Continuous angles are
+/// refined at the end.
 fn exchange(
     c: &Candidates,
     spec: &Spec,
@@ -295,7 +295,7 @@ fn exchange(
 ) -> ScoredLayout {
     let found = run(c, spec, list, &bound.col, spec.effort, Some(&incumbent));
     let mut best = better_of(Some(incumbent.clone()), found).unwrap_or(incumbent);
-    // A list that was cut may lack what this layout lacks.
+    // A truncated list may lack rows that would improve this layout.
     let rounds = if list.len() < LIST { 0 } else { ROUNDS };
     for _ in 0..rounds {
         if spec.stop.is_asked() {
@@ -319,7 +319,7 @@ fn exchange(
     best
 }
 
-/// A layout and what is known of those that could be better.
+/// Final layout with its proof and the number of candidates that could still be in a better layout.
 struct End {
     found: ScoredLayout,
     proved: bool,
@@ -393,8 +393,8 @@ const ROUNDS: usize = 5;
 /// Rounds of rebuilding the sets of places within a spacing from new prices.
 const CLIQUE_ROUNDS: usize = 4;
 
-/// Branch and bound on the candidates that could be in a layout better than `incumbent`; how many there are, and what came of it where
-/// it was tried.
+/// Runs branch and bound on the candidates that could be in a layout better than `incumbent`. Returns the number of these candidates if they are few
+/// enough, and the proof with its layout if it was attempted.
 fn prove(
     c: &Candidates,
     spec: &Spec,

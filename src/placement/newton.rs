@@ -1,7 +1,7 @@
 //! A Newton step of the relaxation for D.
 //!
-//! Near the optimum `ln det M(w)` has the slopes `d_i` and the second derivatives `-d_ij^2`. That model is solved within the bounds of the
-//! weights by moving weight between pairs of rows, which costs a row of the matrix each, and the step goes towards what it gives.
+//! Near the optimum `ln det M(w)` has the slopes `d_i` and the second derivatives `-d_ij^2`. This quadratic model is maximised within the bounds of
+//! the weights by moving weight between pairs of rows. Each move costs one row of the matrix. The Newton step goes towards the resulting weights.
 
 use super::criterion::Criterion;
 use super::relaxation_solution::{Active, FULL, RelaxationSolution, pulls};
@@ -135,8 +135,8 @@ impl Model {
         self.curve[i * f + i] + self.curve[j * f + j] - 2.0 * self.curve[i * f + j]
     }
 
-    /// The row of largest slope that can take weight, and the one whose weight moved to it raises the model most; or two of a group that is
-    /// full.
+    /// Returns the pair of rows whose transfer of weight raises the model most. The receiving row has the largest slope of all rows that can take
+    /// weight. Alternatively, both rows are in one full group.
     fn pair(
         &self,
         slope: &[f64],
@@ -162,7 +162,7 @@ impl Model {
         if let Some(i) = (0..f).filter(|&i| slack[group[i]] > FULL).max_by(dear) {
             judge(i, &|_| true);
         }
-        // Of groups that are full, the widest spread of slopes between a row and one with weight.
+        // In the full groups, find the largest difference of slopes between a row and a row with weight.
         let full = |i: &usize| slack[group[*i]] <= FULL && shared[group[*i]] > 1;
         if !(0..f).any(|i| full(&i)) {
             return best.1;

@@ -3,8 +3,8 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-/// A layout with `count` gauges moved to random rows of `rows`, where those go with the rest. All gauges move where `count` is that of the
-/// layout.
+/// Returns a layout with `count` gauges moved to random rows of `rows` if these are compatible with the other gauges. If `count` is the number of
+/// gauges of the layout, every gauge is tried once.
 pub fn move_gauges(
     from: &[usize],
     count: usize,
@@ -27,7 +27,7 @@ pub fn move_gauges(
     layout
 }
 
-/// Whether row `i` goes with all but the gauge in `slot`.
+/// Returns whether row `i` is compatible with all gauges except the gauge in `slot`.
 pub fn fits(
     layout: &[usize],
     slot: usize,

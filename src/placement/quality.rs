@@ -43,7 +43,7 @@ pub fn judge_rows(rows: &[Vec<f64>], prior: &[f64], k: usize) -> Option<Quality>
         .collect();
     let worst =
         (0..leverage.len()).max_by(|&a, &b| leverage[a].total_cmp(&leverage[b]).then(b.cmp(&a)))?;
-    // Leverages of exactly 1 come out of the arithmetic a rounding error away from it.
+    // Leverages of exactly 1 differ from 1 by rounding.
     let left = (1.0 - leverage[worst]).max(0.0);
     let worst_loss = if left < 1e-9 {
         0.0
@@ -59,11 +59,11 @@ pub fn judge_rows(rows: &[Vec<f64>], prior: &[f64], k: usize) -> Option<Quality>
     })
 }
 
-/// Gauges kept from estimating, ascending: the `n` that the others predict best, and for each the standard deviation of reading less
-/// prediction over that of the reading, `sqrt(1 + a' M_rest^-1 a)`.
+/// Returns the `n` gauges to exclude from the estimate, ascending. These are the gauges that the other gauges predict best. The second value is the
+/// standard deviation of reading less prediction over the standard deviation of the reading, `sqrt(1 + a' M_rest^-1 a)`.
 ///
-/// They are chosen so that `det M_rest` is largest (greedily, then by exchange), which is the same as the smallest joint variance of
-/// the predictions. `None` where the rest would be singular.
+/// The gauges are chosen so that `det M_rest` is largest, greedily and then by exchange. This is equivalent to the smallest joint variance of the
+/// predictions. `None` if `M_rest` would be singular.
 pub fn reserve(rows: &[Vec<f64>], prior: &[f64], k: usize, n: usize) -> Option<Vec<(usize, f64)>> {
     let rest_of = |out: &[usize]| {
         let mut m = prior.to_vec();
@@ -120,8 +120,8 @@ pub fn reserve(rows: &[Vec<f64>], prior: &[f64], k: usize, n: usize) -> Option<V
     )
 }
 
-/// By gauge, the largest change of a load (in shares of its column's scale) for an error of one standard deviation of that gauge's
-/// reading: `max_l |(M^-1 a)_l|`.
+/// Returns by gauge the largest change of a load for a reading error of one standard deviation. It is relative to the scale of the load column:
+/// `max_l |(M^-1 a)_l|`.
 pub fn influence(rows: &[Vec<f64>], prior: &[f64], k: usize) -> Option<Vec<f64>> {
     let mut m = prior.to_vec();
     rows.iter().for_each(|r| spd::add_outer(&mut m, r, 1.0));

@@ -19,11 +19,11 @@ pub fn borders(model: &Model) -> Vec<Segment> {
     split(model).0
 }
 
-/// Rims of holes: closed runs of free edges that turn into the material.
+/// Returns the rims of holes, which are closed chains of free edges that turn towards the material.
 ///
-/// Along a border of a plate the angles `theta` of the material at its grids add up to `sum (pi - theta) = 2 pi`, around a hole to
-/// `-2 pi`, at the open end of a tube to 0 (Gauss and Bonnet); a run below `-pi` is a rim. `theta` is that of the shells
-/// met from one free edge to the next across edges of two shells.
+/// Let `theta` be the angle of the material at a grid. By the theorem of Gauss and Bonnet, `sum (pi - theta)` is `2 pi` along the border of a plate
+/// and `-2 pi` around a hole. At the open end of a tube it is 0. A chain with a sum below `-pi` is a rim. `theta` adds up the shells from one free
+/// edge to the next across edges of two shells.
 pub fn hole_rims(model: &Model) -> Vec<Segment> {
     split(model).1
 }
@@ -38,7 +38,7 @@ fn split(model: &Model) -> (Vec<Segment>, Vec<Segment>) {
         })
         .collect();
     free.sort_unstable_by_key(|f| f.0);
-    // Runs: grids joined by free edges.
+    // Group the grids that free edges connect.
     let mut run: HashMap<u32, u32> = HashMap::new();
     for ([a, b], _) in &free {
         let (a, b) = (root(&mut run, *a), root(&mut run, *b));
@@ -49,7 +49,7 @@ fn split(model: &Model) -> (Vec<Segment>, Vec<Segment>) {
     let mut turn: HashMap<u32, f64> = HashMap::new();
     for (edge, shell) in &free {
         for grid in edge {
-            // Each grid of a run is met from both its free edges.
+            // Each grid of a chain is visited from both of its free edges.
             let theta = material(model, &edges, *edge, *shell, *grid);
             *turn.entry(root(&mut run, *grid)).or_insert(0.0) +=
                 0.5 * (std::f64::consts::PI - theta);

@@ -1,10 +1,12 @@
-//! The relaxation: weights in place of gauges, `max criterion(P + sum w_i a_i a_i')` with `sum w = s`, `w >= 0` and at most 1 in each group.
+//! Relaxation of the layout problem with weights in place of gauges: `max criterion(P + sum w_i a_i a_i')` with `sum w = s`, `w >= 0` and at most 1
+//! in each group.
 //!
-//! For D, Newton steps (`super::newton`); where one does not close the gap, and for the other criteria,
-//! weight moves between pairs of rows by exact line search (vertex exchange, visited in the order of the randomised exchange of
-//! Harman, Filova and Richtarik, J. Am. Stat. Assoc. 115 (2020), without the chance). Rows of a group share a weight of at most 1: one
-//! row for each distinct gauge, or all the angles of a place, or all the places within a spacing. Every exchange direction of that set is
-//! a pair, so the search cannot stop short of the optimum.
+//! The D criterion uses Newton steps (`super::newton`). If they do not close the gap, and for the other criteria, weight moves between pairs of rows
+//! by exact line search (vertex exchange). The order is the order of the randomised exchange of Harman, Filova and Richtarik, J. Am. Stat. Assoc. 115
+//! (2020), without randomness.
+//!
+//! The rows of a group share a weight of at most 1. A group is one distinct gauge, all angles of a place, or all places within a spacing. Every
+//! exchange direction of this set is a pair of rows, so the search can only end at the optimum.
 
 use super::criterion::Criterion;
 use super::newton;

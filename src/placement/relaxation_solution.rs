@@ -61,8 +61,8 @@ impl RelaxationSolution {
     }
 }
 
-/// By row, how much larger its slope is than the least slope of a row whose weight it can take: any other's where its group has room,
-/// that of a row of its group where it has not.
+/// Returns by row the difference between its slope and the least slope of a row whose weight it can take. A row can take the weight of any row if its
+/// group is not full, otherwise only of rows in its group.
 pub(super) fn pulls(active: &Active, weights: &[f64], d: &[f64]) -> Vec<f64> {
     let mut slack = vec![1.0; active.n_groups];
     let mut least = vec![f64::INFINITY; active.n_groups];

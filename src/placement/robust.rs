@@ -49,7 +49,7 @@ pub fn search(
             effort.perturbations.min(MOST_PERTURBATIONS),
         )
     };
-    // Each start is a search of its own, then perturbations of what it found.
+    // Each start is a separate search, followed by perturbations of its result.
     let found: Vec<Option<(Vec<usize>, f64)>> = (0..starts)
         .into_par_iter()
         .map(|n| {

@@ -69,7 +69,7 @@ pub(super) fn list_of(
         }
     }
     if let Groups::Cliques(of) = groups {
-        // The best-priced rows crowd in few places; the best of each further set of places keeps a choice within the spacing.
+        // The rows with the largest variance are in few places. The best row of each further set of places keeps enough choice within the spacing.
         let mut sets = HashSet::new();
         let mut wide = price(
             c,
@@ -230,7 +230,8 @@ pub(super) fn polish(
                     spd::add_outer(&mut m, &c.row(g), 1.0);
                 }
             }
-            // With as many gauges as loads the rest alone is singular: a trace of identity keeps it regular without moving the optimum.
+            // With as many gauges as loads, the matrix without one gauge is singular. A small multiple of the identity makes it regular and does not
+            // change the optimum.
             let scale = (0..k).map(|p| m[p * k + p]).sum::<f64>() / k as f64 * 1e-9;
             for p in 0..k {
                 m[p * k + p] += scale;

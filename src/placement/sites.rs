@@ -12,10 +12,10 @@ use crate::units::MICROSTRAIN;
 /// A place where a gauge can go.
 pub type Site = (ShellIx, Surface);
 
-/// Candidates of single grids at these sites, columns times `scales` (the loads' expected sizes), strain in microstrain so that the scatter
-/// is too.
+/// Returns candidates of single grids at these sites. Columns are times `scales`, the expected sizes of the loads. Strain is in microstrain, and so
+/// is the scatter.
 ///
-/// Positions are those of the surfaces. Sites without strain in some case must not be among them.
+/// Positions are on the surfaces. Every site must have strain in all cases.
 pub fn candidates(
     model: &Model,
     sites: &[Site],
@@ -104,7 +104,7 @@ pub fn bridge_strain(
     })
 }
 
-/// The angle of a bridge's axis from the element x axis, given that of its first grid.
+/// Returns the angle of the axis of a bridge from the element x axis, given the angle of its first grid.
 pub fn axis_of(bridge: Bridge, angle: f64) -> f64 {
     match bridge {
         Bridge::Shear => angle - std::f64::consts::FRAC_PI_4,

@@ -16,10 +16,10 @@ pub fn too_close(a: [f64; 3], b: [f64; 3], spacing: f64) -> bool {
     distance(a, b) < spacing * (1.0 - ROUNDING)
 }
 
-/// A partition of the places into sets whose members are all too close to each other, so that each can hold one gauge at most.
+/// Returns a partition of the places into sets whose members are all too close to each other. Each set can contain at most one gauge.
 ///
-/// Built greedily from the best-priced place downwards, so that the weight of the relaxation falls into few sets; places that are not priced are
-/// separate groups. Any such partition gives a valid bound.
+/// The sets are built greedily from the place with the largest variance downwards, so that few sets contain the weight of the relaxation. A place
+/// that is not in `priced` is a separate set. Any such partition gives a valid bound.
 pub fn cliques(
     n_places: usize,
     priced: &[CandidateVariance],

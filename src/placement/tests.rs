@@ -244,7 +244,7 @@ fn a_search_cut_short_keeps_its_certificate() {
             ..Spec::new(7, 4)
         };
         let cut = place(&c, &spec).unwrap();
-        // Seven different rows, their determinant from the rows, held against the best there is.
+        // The layout has seven different rows. Its determinant is recomputed from the rows and compared with the optimum.
         let mut chosen: Vec<u32> = cut.gauges.iter().map(|g| g.place).collect();
         chosen.sort_unstable();
         chosen.dedup();
@@ -255,7 +255,7 @@ fn a_search_cut_short_keeps_its_certificate() {
         assert!(cut.upper_bound >= whole.log_det - 1e-9);
         let efficiency = ((own - whole.log_det) / 4.0).exp();
         assert!(cut.efficiency_bound <= efficiency + 1e-9);
-        // One pass is what a bound takes.
+        // A bound needs one pass.
         assert_eq!(cut.passes, 1);
         left_out += whole.nodes + whole.passes - cut.passes;
     }
@@ -408,7 +408,7 @@ fn layouts_for_small_variances_are_proved_the_best_of_all_subsets() {
         let c = rows_of(&random_rows(&mut rng, n, k));
         let mut l = vec![0.0; k * k];
         if trial % 2 == 0 {
-            // A: a weight a load, the first one not asked for in a third of the trials.
+            // A criterion: one weight for each load. In a third of the trials the first load is not wanted.
             (0..k).for_each(|i| {
                 l[i * k + i] = if trial % 3 == 0 && i == 0 {
                     0.0
@@ -417,7 +417,7 @@ fn layouts_for_small_variances_are_proved_the_best_of_all_subsets() {
                 }
             });
         } else {
-            // I: prediction along some rows.
+            // I criterion: variance of the prediction along some rows.
             for b in random_rows(&mut rng, 3, k) {
                 spd::add_outer(&mut l, &b, 1.0);
             }
@@ -429,7 +429,7 @@ fn layouts_for_small_variances_are_proved_the_best_of_all_subsets() {
         if trial % 5 == 0 {
             (0..k).for_each(|i| spec.prior[i * k + i] = 0.5);
         }
-        // Cramer's rule apart from the code under test: tr(L M^-1) by solving M x = column of L.
+        // Independent of the code under test: tr(L M^-1) by solving M x = column of L.
         let spread = |places: &[usize]| -> f64 {
             let mut m = spec.prior.clone();
             for &p in places {

@@ -202,7 +202,7 @@ impl Table {
                 *v += drop * b * b - add * a * a;
             }
             for (c, column) in cross.chunks_exact_mut(n).enumerate() {
-                // The new gauge's products are those with it, brought up to date as well.
+                // The products with the new gauge replace the products with the old gauge, and are updated as well.
                 let q = if c == slot { i } else { chosen[c] };
                 let (p, r) = (add * x[q], drop * y[q]);
                 if c == slot {

@@ -1,8 +1,9 @@
 //! Causes measured in every run (a settlement, a temperature) whose strain no model gives. The runs determine which of them drive the readings, and
 //! which are indistinguishable.
 //!
-//! For every channel y_r = m + sum over causes of b x_r + noise, with x scaled to a range of 1, the mean m unknown and each slope b of the
-//! size of all change that was seen. The evidence of a set of causes is the Gaussian density of the readings with m and b integrated out.
+//! For every channel, y_r = m + sum over causes of b x_r + noise, with x scaled to a range of 1. The mean m is unknown. The prior standard deviation
+//! of each slope b is the range of the readings of the channel. The evidence of a set of causes is the Gaussian density of the readings with m and b
+//! integrated out.
 
 use super::observation::Observations;
 use super::outcome::Verdict;
@@ -26,8 +27,8 @@ pub struct CauseSet {
     pub names: Vec<String>,
     /// Log evidence over the fit runs.
     pub log_evidence: f64,
-    /// RMS(reading - prediction) / RMS(reading) over the proof runs, channels each over its own scale; readings and predictions count from
-    /// the mean of the fit runs.
+    /// RMS(reading - prediction) / RMS(reading) over the proof runs, with each channel divided by its own scale. The mean of the fit runs is
+    /// subtracted from readings and predictions.
     pub gap: f64,
     /// By cause, then channel: change of the reading per unit of the cause, and its standard deviation.
     pub slopes: Vec<Vec<(f64, f64)>>,
@@ -36,7 +37,7 @@ pub struct CauseSet {
 /// Result of comparing all sets of causes over the runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CauseOutcome {
-    /// `named` if one set leads all others, `unknown` if several sets explain the runs alike, `none` if no cause raises the evidence enough.
+    /// `named` if one set leads all others, `unknown` if several sets explain the runs equally well, `none` if no cause raises the evidence enough.
     pub verdict: Verdict,
     /// Every set, best first.
     pub sets: Vec<CauseSet>,
@@ -68,7 +69,7 @@ pub fn weigh_causes(observations: &Observations, noise: &[f64], causes: &[Cause]
             )
         })
         .collect();
-    // Each cause costs what any effect costs that is to be named: fewer explain as well.
+    // Each cause costs as much log evidence as the naming of any effect. Of equally good sets, the one with fewer causes is therefore first.
     let penalised = |s: &CauseSet| s.log_evidence - DECISIVE * s.names.len() as f64;
     sets.sort_by(|a, b| penalised(b).total_cmp(&penalised(a)));
     let Some(best) = sets.first().cloned() else {
@@ -165,7 +166,7 @@ fn channel(observations: &Observations, c: usize) -> Option<Channel> {
     })
 }
 
-/// Values of a cause from their middle, over their range.
+/// Returns the values of a cause minus their middle, divided by their range, and the range.
 fn scale_values(cause: &Cause) -> (Vec<f64>, f64) {
     let finite = || cause.values.iter().copied().filter(|v| v.is_finite());
     let most = finite().fold(f64::NEG_INFINITY, f64::max);
@@ -196,7 +197,7 @@ fn weigh(observations: &Observations, noise: &[f64], causes: &[&Cause]) -> Cause
         let sigma = noise.get(c).copied().unwrap_or(1.0).max(f64::MIN_POSITIVE);
         let n = ch.runs.len();
         let slope_variance = ch.range * ch.range;
-        // The mean is unknown: a variance far above all change.
+        // The mean is unknown, so its prior variance is far above the change of the readings.
         let mean_variance = 100.0 * slope_variance;
         let shared = |r: usize, s: usize| {
             let slopes: f64 = (0..x.len()).map(|k| at(k, r) * at(k, s)).sum();

@@ -1,4 +1,4 @@
-//! Checks that a set of effects must pass before it is named, of strain and of motion alike.
+//! Checks that a set of effects must pass before it is named, for strain and for motion.
 
 use super::outcome::Verdict;
 
@@ -30,8 +30,8 @@ pub(super) fn reasons(checks: &[Check]) -> Vec<String> {
 
 /// Returns the verdict on the best set of effects.
 ///
-/// A set that is not empty and fails no check is named. Otherwise `agrees`, whether the analyst's model leaves no more than its expected residual,
-/// separates `unknown` from `none`, and a set that failed, or a `hint`, makes the latter `below-detectability`.
+/// A set that is not empty and fails no check is named. Otherwise the verdict is `unknown` if the residual of the analyst's model exceeds its
+/// expected residual (`agrees` is false). Otherwise it is `below-detectability` for a set that failed or with a `hint`, and `none` without either.
 pub(super) fn verdict(is_empty: bool, checks: &[Check], agrees: bool, hint: bool) -> Verdict {
     let passes = checks.iter().all(|c| c.against.is_none());
     match (is_empty, passes, agrees) {
@@ -53,10 +53,10 @@ pub(super) struct Fall {
 }
 
 impl Fall {
-    /// Returns the fall from the residuals `without` an effect to those `with` it.
+    /// Returns the fall from the residuals `without` an effect to the residuals `with` it.
     ///
-    /// A right model leaves at each reading what its floor is, whatever the effect takes there: the error of the sum of squares is
-    /// `2 sqrt(sum floor^2 (without - with)^2)`.
+    /// With a right model, the residual of each reading has its expected size `floor`, independent of the contribution of the effect. The standard
+    /// error of the fall is therefore `2 sqrt(sum floor^2 (without - with)^2)`.
     pub fn from_residuals(without: &[f64], with: &[f64], floor: &[f64]) -> Self {
         let (mut by, mut variance) = (0.0, 0.0);
         for ((a, b), f) in without.iter().zip(with).zip(floor) {
@@ -69,14 +69,15 @@ impl Fall {
         }
     }
 
-    /// Whether the fall exceeds its standard error.
+    /// Returns whether the fall exceeds its standard error.
     pub fn is_seen(self) -> bool {
         self.by > self.error
     }
 }
 
-/// Returns the reason against a set of `n` effects and log evidence `level` where an alternative is ahead by more than `limit`, and by `decisive` for
-/// each effect that it has more: explanations with their log evidence.
+/// Returns the reason against a set of `n` effects with log evidence `level`; `None` if no alternative explains the data decisively better. The log
+/// evidence of such an alternative exceeds `level` by more than `limit`, plus `decisive` for each effect that it has in excess of `n`. `alternatives`
+/// are the explanations with their log evidence.
 pub(super) fn describe_better_alternative<'a>(
     (n, level): (usize, f64),
     [limit, decisive]: [f64; 2],
@@ -120,7 +121,8 @@ mod tests {
         assert_eq!(reasons(&failed), ["too small"]);
     }
 
-    /// One reading off by 3 at a floor of 1, taken whole: falls by 9, error 2 * 3. Off by 1: falls by 1, error 2.
+    /// Tests one reading at an expected residual of 1 that the effect fully explains. If it is off by 3, the fall is 9 with the error 2 * 3. If it is
+    /// off by 1, the fall is 1 with the error 2.
     #[test]
     fn a_fall_counts_only_beyond_its_standard_error() {
         let large = Fall::from_residuals(&[3.0, 1.0], &[0.0, 1.0], &[1.0, 1.0]);
@@ -138,7 +140,7 @@ mod tests {
         };
         assert_eq!(one(1, 12.9), None);
         assert!(one(1, 13.1).is_some_and(|w| w.contains('a')));
-        // One effect more than the set has none of.
+        // The alternative has one effect, and the set has no effect.
         assert_eq!(one(0, 17.9), None);
         assert!(one(0, 18.1).is_some());
     }

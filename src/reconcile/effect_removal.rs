@@ -23,14 +23,15 @@ pub(super) struct ReducedEffectSet<F> {
     pub fit: ScoredSet<F>,
 }
 
-/// Returns `set` without names by which the gap does not fall, and these names, in the order in which they go. A single name stays, and the
+/// Returns `set` without the effects that do not reduce the gap, and these effects in the order of their removal. A single effect stays, and the
 /// checks of the set compare it with no effect at all.
 ///
-/// As long as the gap does not fall by one of them, the name goes by which it rises most beyond its sampling error. If it rises by none, the name
-/// goes that costs least log evidence among all by which it does not fall beyond that error: of two effects that look alike, the fitted data choose.
+/// While at least one effect does not reduce the gap, one effect is removed. If effects increase the gap by more than its sampling error, the effect
+/// with the largest increase is removed. Otherwise it is the effect whose removal costs least log evidence, among all effects that do not reduce the
+/// gap by more than that error. Of two indistinguishable effects, the fitted data therefore choose.
 ///
-/// `names` are those of a set. `compared` gives the gap of a set and, for each of these names, the set without it (`None` where it has no
-/// fit). It gives `None` where nothing can be compared, or work is to stop.
+/// `names` returns the effects of a set. `compared` returns the gap of a set and, for each of these effects, the set without it (`None` if that set
+/// has no fit). It returns `None` if no comparison is possible, or if a stop is requested.
 pub(super) fn without_useless<F>(
     mut set: ScoredSet<F>,
     names: impl Fn(&ScoredSet<F>) -> Vec<usize>,
@@ -53,7 +54,7 @@ pub(super) fn without_useless<F>(
         if unseen.iter().all(|(_, f)| f.fall.by > 0.0) {
             break;
         }
-        // A name by which the gap rises beyond that error goes before all others, the worst first.
+        // An effect that increases the gap by more than this error is removed before all others, the largest increase first.
         let rise = |f: &ReducedEffectSet<F>| (f.fall.by < -f.fall.error).then_some(-f.fall.by);
         unseen.sort_by(|(_, a), (_, b)| {
             let [x, y] = [a, b].map(|f| rise(f).unwrap_or(0.0));
@@ -77,8 +78,8 @@ pub(super) fn without_useless<F>(
 mod tests {
     use super::{Fall, ReducedEffectSet, ScoredSet, without_useless};
 
-    /// Squared gaps and log evidence of sets: of three names the gap does not fall by 2, and beyond its error of 1 not by 0 either. The fitted data
-    /// need 2 more than 0, so 0 goes; then each of the two that are left lowers the gap.
+    /// Squared gaps and log evidence of sets of three effects. Effect 2 does not reduce the gap, and effect 0 does not reduce it by more than its
+    /// error of 1. The fitted data need effect 2 more than effect 0, so effect 0 is removed. Each of the two remaining effects then reduces the gap.
     #[test]
     fn the_name_that_costs_least_evidence_goes_and_only_as_long_as_one_proves_nothing() {
         let squared = |set: &[usize]| match set {

@@ -1,7 +1,9 @@
-//! Find where simulation and measurement disagree, name the missing effect, judge, add it, show the gap shrink.
+//! Reconciliation of simulation and measurement. It finds where they differ and identifies the missing effect. It then tests the effect, adds it to
+//! the model and shows how much the gap falls.
 //!
-//! One frame for strain and acceleration: observations by run and channel, a prediction that can be evaluated again with any effect
-//! on, a covariance of what noise and stated model uncertainty leave, a library of effects, evidence, a verdict.
+//! Strain and acceleration share one method. Observations are given by run and channel. The prediction can be evaluated with any set of active
+//! effects. The covariance of the residual is from noise and stated model uncertainty. A library contains the effects. Their evidence leads to a
+//! verdict.
 
 mod cause;
 mod checks;

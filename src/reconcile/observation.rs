@@ -1,6 +1,6 @@
 //! Measured readings by run and channel, and the runs held out for the proof.
 
-/// Readings of channels (gauges, accelerometers) in runs (static states, records), by rows of runs; NaN where one is missing.
+/// Readings of channels (gauges, accelerometers) in runs (static states, records), by rows of runs; NaN for a missing reading.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Observations {
     /// Channel names.
@@ -14,7 +14,7 @@ pub struct Observations {
 }
 
 impl Observations {
-    /// Number of channels.
+    /// Returns the number of channels.
     pub fn n_channels(&self) -> usize {
         self.channels.len()
     }
@@ -48,7 +48,7 @@ impl Observations {
             .collect()
     }
 
-    /// The (run, channel) pairs of `runs` that have a reading, run by run.
+    /// Returns the (run, channel) pairs of `runs` that have a reading, run by run.
     pub fn entries(&self, runs: &[usize]) -> Vec<(usize, usize)> {
         let mut out = Vec::with_capacity(runs.len() * self.channels.len());
         for &r in runs {

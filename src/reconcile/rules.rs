@@ -14,7 +14,8 @@ pub struct StrainRules {
     pub decisive: f64,
     /// Alternative explanations within this log evidence are indistinguishable: odds below twenty to one.
     pub indistinguishable: f64,
-    /// Factor for the uncertainty of a stated noise. It comes from some twenty repeats or a data sheet: its uncertainty is 15 % (1 / sqrt(2 * 20)).
+    /// Factor for the uncertainty of a stated noise. The stated noise is from some twenty repeats or a data sheet, so its uncertainty is 15 % (1 /
+    /// sqrt(2 * 20)).
     pub noise_known: f64,
     /// Largest deviate of a chi-square over all readings. One case in a thousand exceeds it by chance.
     pub deviate: f64,

@@ -1,4 +1,4 @@
-//! Which set of effects explains most for what it costs: forward, backward, exchanged. Knows nothing of strain or acceleration.
+//! Search for the set of effects with the best evidence: it adds, removes and exchanges effects. It does not depend on strain or acceleration.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ pub struct ScoredSet<F> {
     pub set: Vec<usize>,
     /// Log evidence, prior weights included.
     pub log_evidence: f64,
-    /// Parameters and whatever else the fit found.
+    /// Parameters and further results of the fit.
     pub fit: F,
 }
 
@@ -65,7 +65,7 @@ pub struct Breadth {
     pub decisive: f64,
 }
 
-/// Every set that was scored, best first; the empty set is always among them.
+/// Searches the sets of effects and returns every scored set, best first. The empty set is always included.
 pub fn search<S: Scorer>(scorer: &mut S, breadth: Breadth) -> Vec<ScoredSet<S::Fit>> {
     let mut seen: ScoreCache<S::Fit> = BTreeMap::new();
     let Some(null) = scorer.score(&[], None) else {
@@ -81,7 +81,7 @@ pub fn search<S: Scorer>(scorer: &mut S, breadth: Breadth) -> Vec<ScoredSet<S::F
         next.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
         next.dedup_by(|a, b| a.set == b.set);
         next.truncate(breadth.beam);
-        // No addition pays: larger sets won't either.
+        // If no addition raises the log evidence decisively, the search ends, since larger sets are not expected to raise it either.
         let best_before = level
             .iter()
             .map(|s| s.log_evidence)
@@ -129,7 +129,7 @@ fn best_first<F>(seen: ScoreCache<F>) -> Vec<ScoredSet<F>> {
     all
 }
 
-/// The best set each member of which is decisive: dropping any costs at least `decisive`.
+/// Returns the set with the largest log evidence after a cost of `decisive` for each member.
 pub fn settle<F: Clone>(all: &[ScoredSet<F>], decisive: f64) -> Option<ScoredSet<F>> {
     let penalised = |s: &ScoredSet<F>| s.log_evidence - decisive * s.set.len() as f64;
     all.iter()
@@ -156,7 +156,7 @@ fn extend<S: Scorer>(
     let mut kin_count: BTreeMap<usize, usize> = BTreeMap::new();
     for addition in scorer.screen(base) {
         let candidate = addition.candidate;
-        // Two are always tried, for rivals and hints; more only where they may pay.
+        // Two candidates are always tried, as alternative explanations and hints. More are tried only if their gain may justify them.
         let enough = if addition.gain < HOPELESS {
             2
         } else {
@@ -190,9 +190,10 @@ fn extend<S: Scorer>(
     out
 }
 
-/// Replaces each member of the best set by what explains its absence best, and by its other forms, until nothing improves.
+/// Replaces each member of the best set by the candidates that best explain its absence, and by its other forms. Ends if no replacement improves the
+/// set.
 fn exchange<S: Scorer>(scorer: &mut S, breadth: Breadth, seen: &mut ScoreCache<S::Fit>) {
-    /// Rounds: each strictly improves; two are seen in practice.
+    /// Largest number of rounds. Each round strictly improves the set, and two are usual.
     const ROUNDS: usize = 4;
     for _ in 0..ROUNDS {
         let all: Vec<_> = seen.values().flatten().cloned().collect();

@@ -20,12 +20,12 @@ pub(super) fn recover(
     errors: ErrorModel,
     (known, (handling, alternatives)): (&Uncertainty, (FaultTreatment, &mut Alternatives)),
 ) -> (Vec<RunEstimate>, Vec<Finding>) {
-    // A model with a stated error, of its mesh too, is recovered from as measured.
+    // If the error of S is only stated, as for a mesh, the readings are used as measured.
     let handling = match known.dof.is_finite() {
         true => handling,
         false => FaultTreatment::AsMeasured,
     };
-    // Without an estimated scatter there is no limit for the deviation of a gauge.
+    // Without an estimated scatter the deviation of a gauge has no limit to be tested against.
     let (mut findings, readings) = match known.is_tested {
         true => misfit::faults_by_calibration(s, readings, errors, known, (handling, alternatives)),
         false => (vec![report_untested_intervals()], readings.to_vec()),

@@ -4,12 +4,13 @@ use crate::finding::{Finding, Severity};
 use crate::series::record::{Clock, EVEN, Evenness, TimeUnit, USUAL_RATES_HZ, is_usual};
 use crate::units::number;
 
-/// Step, s, from which a record is slower than any logger of loads that move: 2 Hz. Half a millisecond is that of a logger of 2 kHz.
+/// Step, s, above which a record is slower than any logger of varying loads (2 Hz). If the step is really in milliseconds, half a millisecond is a
+/// logger of 2 kHz.
 const SLOW: f64 = 0.5;
-/// Samples under which a few readings noted by hand look alike.
+/// Least number of samples of a record. Fewer samples may be readings recorded by hand.
 const ENOUGH: usize = 200;
-/// Mean square of steps over variance (2 for samples that have nothing to do with each other): below it the logger was far faster than
-/// what it logged, and nobody logs a second apart what does not change within many.
+/// Mean square of the change between samples, over the variance, below which the signal is much slower than the logger. Independent samples give 2. A
+/// slow signal is not usually logged with a step of seconds.
 ///
 /// # Reference
 /// J. von Neumann, Ann. Math. Stat. 12 (1941) 367.
@@ -101,8 +102,9 @@ pub fn check_rate(rate_hz: f64) -> Option<Finding> {
     )
 }
 
-/// Returns an error for times that are in milliseconds and not in seconds: the rate is one that records do not have, or samples `step_s` apart
-/// follow each other as those of a fast logger do. `readings` are those of one piece, `n` gauges a sample.
+/// Returns an error for times that are in milliseconds and not in seconds. This is the case if records do not have such a rate. It is also the case
+/// if consecutive readings `step_s` apart are as close as the readings of a fast logger. `readings` are from one piece of the record, with `n` gauges
+/// for each sample.
 pub fn check(step_s: f64, readings: &[f64], n: usize) -> Option<Finding> {
     if let Some(found) = check_rate(1.0 / step_s) {
         return Some(found);
@@ -165,7 +167,7 @@ mod tests {
     #[test]
     fn a_fast_record_and_a_few_static_rows_are_let_be() {
         assert_eq!(check(0.002, &wave(100.0), 1), None);
-        // Rows that have nothing to do with each other.
+        // Independent rows.
         assert_eq!(check(2.0, &wave(2.3), 1), None);
         assert_eq!(check(1.0, &wave(100.0)[..50], 1), None);
     }

@@ -66,10 +66,10 @@ pub fn check(
     runs.iter().filter_map(dead).collect()
 }
 
-/// Parts of a record, first and last of the examined samples, in which no gauge changes by a digit while elsewhere they do: the structure is at
-/// standstill there, or its logger gave nothing and repeats itself. `samples` as in [`check`].
+/// Returns parts of a record, by first and last examined sample, in which no gauge changes by a digit although the gauges change elsewhere. In such a
+/// part the structure is at standstill, or the logger repeats one sample. `samples` as in [`check`].
 pub fn still_parts(samples: &[(usize, &[f64])]) -> Vec<[usize; 2]> {
-    /// Gauges that keep still to the last digit, all of them, by chance in no part.
+    /// Least number of gauges. So many gauges do not stay constant to the last digit by chance.
     const MANY: usize = 3;
     let reads = |row: &[f64]| row.iter().filter(|v| v.is_finite()).count() >= MANY;
     let alike = |a: &[f64], b: &[f64]| {
@@ -84,8 +84,8 @@ pub fn still_parts(samples: &[(usize, &[f64])]) -> Vec<[usize; 2]> {
     parts
 }
 
-/// From where to where (the latter left out) a gauge gives nothing, or one value, `least` samples or more: of one value those that have a number
-/// count.
+/// Returns the ranges, without their ends, in which a gauge has no reading or a constant reading for at least `least` samples. For a constant reading
+/// only samples with a number count.
 fn runs_of(samples: &[(usize, &[f64])], gauge: usize, least: usize) -> Vec<(Gives, [usize; 2])> {
     let value = |j: usize| samples[j].1.get(gauge).copied().unwrap_or(f64::NAN);
     let (known, blank): (Vec<usize>, Vec<usize>) =
@@ -120,7 +120,7 @@ fn is_dead(
     if used.is_empty() || rows.len() < least.min(part.len()) / 2 {
         return false;
     }
-    // One whose zero is off stands still too while the vehicle stands: that its value is another says nothing of a part.
+    // A valid gauge with a wrong zero is also constant at standstill. So only a change of strain shows that the gauge is dead, not the value.
     let changes = || match GaugePrediction::new(s, &used, g, errors, noise_factor) {
         Some(others) => others.change(&rows),
         None => any_changes(&used, &rows, errors.noise_variance(noise_factor)),
@@ -128,9 +128,10 @@ fn is_dead(
     gives == Gives::Nothing || changes()
 }
 
-/// Whether the readings of the gauges `used` (strain by gauge of S, a row a sample) show that gauge `g`, which gives one value in all rows, is dead.
-/// It is dead if its strain predicted from the used gauges changes by more than noise and model error, or differs from that value, in the mean, by
-/// more. If they don't predict its strain, it is dead if any of them changes by more than noise.
+/// Returns whether the gauges `used` show that gauge `g`, which has one value in all rows, is dead. Each row is a sample of strain by gauge of S. The
+/// gauge is dead if its strain predicted from the used gauges changes by more than noise and model error. It is also dead if the mean of the
+/// predicted strain differs from the value by more. If the used gauges don't predict its strain, it is dead if any used gauge changes by more than
+/// noise.
 pub fn is_told_dead(
     s: &Sensitivity,
     used: &[usize],

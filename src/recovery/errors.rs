@@ -39,8 +39,8 @@ impl ErrorModel {
         Some(noise.covariance() * self.noise_variance(noise_factor))
     }
 
-    /// Covariance of what the model's error puts into one gauge at loads `f` and at loads `g`; `row` is the gauge's row of S:
-    /// `model_rel^2 sum_l S_l^2 f_l g_l`.
+    /// Returns the covariance of the model error of one gauge between loads `f` and loads `g`. `row` is the row of the gauge in S: `model_rel^2 sum_l
+    /// S_l^2 f_l g_l`.
     pub fn model_error_covariance(
         &self,
         row: impl Iterator<Item = f64>,

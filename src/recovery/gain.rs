@@ -8,9 +8,9 @@ use crate::sensitivity::{LoadForms, Sensitivity, Uncertainty};
 
 /// Linear estimate of loads, `f = gain y`, for readings `y` of the gauges [`Self::used`]. The model's error is weighted at typical loads.
 ///
-/// The covariance of the errors is `gain (N + M(f)) gain' + (gain S - 1) P (gain S - 1)' + C(f)`. `N` is the noise. `M(f)` are the errors
-/// of single coefficients and `C(f)` the errors of whole columns, both at loads `f`. `P` are the stated sizes of nuisance loads. It is the
-/// covariance of the posterior if the weights are those of `f` itself.
+/// The covariance of the errors is `gain (N + M(f)) gain' + (gain S - 1) P (gain S - 1)' + C(f)`. `N` is the noise. `M(f)` are the errors of single
+/// coefficients and `C(f)` the errors of whole columns, both at loads `f`. `P` are the stated sizes of nuisance loads. If the model error is weighted
+/// at `f` itself, it is the covariance of the posterior.
 ///
 /// # Example
 /// The gain inverts S: `gain S = 1`, and readings `S f` give `f` without the third gauge too.
@@ -61,8 +61,8 @@ pub struct Gain {
 }
 
 impl Gain {
-    /// The estimate from the gauges `used`; `noise_factor` multiplies the noise variance, `typical` loads weigh the model's error.
-    /// `None` where numbers are not finite.
+    /// Returns the estimate from the gauges `used`. `noise_factor` multiplies the noise variance. `typical` are the loads at which the model error is
+    /// weighted. `None` if numbers are not finite.
     pub fn new(
         s: &Sensitivity,
         used: &[usize],
@@ -125,7 +125,7 @@ impl Gain {
                 }
             }
         }
-        // What runs left out say of sigma they say of all of it.
+        // The factor on sigma from runs left out of the calibration applies to every part of sigma.
         if let Some(u) = &known {
             base *= u.scale * u.scale;
         }
@@ -279,8 +279,8 @@ impl Gain {
             .collect()
     }
 
-    /// Standard deviation of a change of load `l` between two samples, `change` that of all loads. Noise enters twice; errors of the
-    /// model, which both samples share, with what changes; nuisance loads as if they changed as well.
+    /// Returns the standard deviation of a change of load `l` between two samples, at the change `change` of all loads. Noise enters twice. Both
+    /// samples share the model error, which enters with the change only. Nuisance loads enter as if they changed as well.
     pub fn sigma_of_change(&self, l: usize, change: &[f64], widening: &Widening) -> f64 {
         let shifts: f64 = self
             .shifts_of(change, widening, |kind| kind == ShiftKind::Gain)

@@ -16,7 +16,8 @@ use std::sync::{Arc, PoisonError, RwLock};
 /// Number of sets of silent gauges whose estimate is cached. The estimate of any further set is computed again for every sample that needs it.
 const KEPT: usize = 4096;
 
-/// `f = gain (eps - zero)`, and what a sample's interval takes. Where gauges give nothing, the estimate from the others.
+/// Estimate of the loads of samples, `f = gain (eps - zero)`, with the data for their intervals. If gauges have no reading, the estimate is from the
+/// other gauges.
 #[derive(Debug)]
 pub struct Filter {
     /// From all gauges.
@@ -115,7 +116,7 @@ impl Filter {
         sums.missing.merge(&missing);
     }
 
-    /// Loads of samples, as [`Filter::apply`], with a count of what is missing in them and without sums: half the arithmetic.
+    /// Computes the loads of samples like [`Filter::apply`], with a count of missing readings but without sums. This takes half of the arithmetic.
     pub fn loads_of(
         &self,
         samples: &[f64],
@@ -163,7 +164,7 @@ impl Filter {
         missing
     }
 
-    /// Loads of a sample in which some gauge gave nothing, from the others; the estimate taken.
+    /// Computes the loads of a sample in which some gauge has no reading from the other gauges, and returns the estimate used.
     fn with_gap(
         &self,
         readings: &[f64],
@@ -250,8 +251,8 @@ impl Filter {
         new
     }
 
-    /// Stretches of a record in which some of its gauges are dead (`dead`: gauge and samples), in order, each with the estimate from the others;
-    /// none where no other reads.
+    /// Returns the stretches of a record in which some gauges are dead, in order, each with the estimate from the other gauges. `dead` contains
+    /// gauges and samples. A stretch without another gauge is not returned.
     pub fn stretches(&self, dead: &[(usize, Range<usize>)]) -> Vec<(Range<usize>, Arc<Gain>)> {
         let ends = dead.iter().flat_map(|(_, part)| [part.start, part.end]);
         let mut ends: Vec<usize> = ends.collect();
@@ -283,7 +284,7 @@ impl Filter {
     }
 
     fn sigma_of(&self, (gain, sample): (&Gain, Option<usize>), f: &[f64]) -> Vec<f64> {
-        // A load that is not known has no error either: its coefficients weigh nothing here.
+        // An unknown load has no value and is set to zero, so that its coefficients add no error.
         let known: Vec<f64> = f
             .iter()
             .map(|v| if v.is_finite() { *v } else { 0.0 })
@@ -306,9 +307,9 @@ impl Filter {
         self.widening.coverage_factor
     }
 
-    /// Standard deviation of a change of load `l` between two samples, numbers `ends`, `change` that of all loads (NaN where one is not known), by
-    /// the estimate that was taken; of all gauges where it is `None`. What motion leaves swings as the load does: at turning points it is as large
-    /// as it gets, root 2 of its mean, once to either side.
+    /// Returns the standard deviation of a change of load `l` between the samples with the numbers `ends`. `change` is the change of all loads, NaN
+    /// for an unknown load. `gain` is the estimate used, or `None` for the estimate from all gauges. The motion error oscillates with the load. At
+    /// turning points it is largest, root 2 of its rms value, with opposite signs at both ends.
     pub fn sigma_of_change(
         &self,
         gain: Option<&Gain>,

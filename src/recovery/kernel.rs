@@ -187,7 +187,7 @@ fn squares<S: Simd>(all: &mut Sums, s: &[f64], simd: S, y: &[f64], f: &[f64]) {
                 }
             }
         }
-        // An odd last gauge stands in both places and counts once.
+        // An odd last gauge is in both places of the pair and counts once.
         for p in 0..if pair[1] > g { 2 } else { 1 } {
             all.reading[pair[p]] += simd.reduce_sum_f64s(reading[p]);
             all.residual[pair[p]] += simd.reduce_sum_f64s(residual[p]);

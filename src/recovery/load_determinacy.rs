@@ -83,7 +83,8 @@ fn far_below_expected(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> 
     )
 }
 
-/// Returns the finding on wanted loads that the gauges do not determine: in every run, the half width of the interval exceeds half the largest load.
+/// Returns the finding on wanted loads that the gauges do not determine. For these loads the half width of the interval exceeds half of the largest
+/// load in every run.
 fn report_undetermined_loads(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> {
     let mut out: Vec<(&str, f64)> = Vec::new();
     for (l, load) in s.loads.iter().enumerate().filter(|(_, l)| l.wanted) {

@@ -1,4 +1,4 @@
-//! How well readings fit loads, as the search for wrong inputs asks it: by stated errors, or by those of a calibrated S.
+//! Misfit of readings and loads for the search for wrong inputs, by stated errors or by the errors of a calibrated S.
 
 use super::calibrated_loads::estimate;
 use super::errors::ErrorModel;
@@ -127,7 +127,7 @@ pub(super) fn faults_by_stated_errors(
         .collect()
 }
 
-/// Returns the findings on faults of the gauges by a calibrated S, and the readings, those of these gauges left out where it is `handling`.
+/// Returns the findings on gauge faults by a calibrated S, and the readings. With [`FaultTreatment::LeftOut`] the readings exclude the faulty gauges.
 pub(super) fn faults_by_calibration(
     s: &Sensitivity,
     readings: &[Readings],
@@ -136,13 +136,13 @@ pub(super) fn faults_by_calibration(
     (handling, alternatives): (FaultTreatment, &mut dyn FnMut() -> Vec<AlternativeRows>),
 ) -> (Vec<Finding>, Vec<Readings>) {
     let mut readings = readings.to_vec();
-    // Where S does not tell the loads apart, strain of what it knows nothing of is no gauge's fault.
+    // If S does not separate the loads, strain of an effect outside S is not evidence of a gauge fault.
     let apart = |r: &Readings| estimate(s, r, errors, known).rank == s.loads.len();
     if !readings.iter().any(apart) {
         return (Vec::new(), readings);
     }
     let misfit = RecoveryInput::new(s, &readings, errors, Some(known));
-    // Student's t with the degrees of freedom of the scatter, one gauge of all (Bonferroni).
+    // Student's t with the degrees of freedom of the scatter, for the largest of all gauges (Bonferroni).
     let share = 0.5 * FALSE_ALARM / s.gauges.len().max(1) as f64;
     let sigmas = match known.dof.is_finite() {
         true => student(1.0 - share, known.dof),

@@ -3,9 +3,10 @@
 //! `eps = S f + e`, with `e` the noise of the readings and the model's own error. One estimate ([`gain`]) serves static states (`runs`) and records
 //! of any length ([`history`], tested on `samples`), so that both have the same intervals. [`residuals`] combines over the runs the part of the
 //! readings that no load can cause, and [`verdict`] tests it. `outlier` and the search for wrong inputs (`misfit`) report suspect gauges.
-//! `determined` and [`reading_plausibility`] test the plausibility of loads and readings, [`dead_gauges`] finds dead gauges. `noise` estimates the
-//! noise by gauge from the residuals. [`calibrated_loads`] is the estimate for a calibrated S, [`uncalibrated_strain`] and `taught` are its tests.
-//! [`dynamic`] converts readings of a structure that vibrates into quasi-static readings.
+//! `load_determinacy` tests whether the gauges determine the loads, [`reading_plausibility`] tests the readings, [`dead_gauges`] finds dead gauges.
+//! `noise` estimates the noise by gauge from the residuals. [`calibrated_loads`] is the estimate for a calibrated S. [`uncalibrated_strain`],
+//! [`outside_calibration`] and `simultaneous_loads` are its tests. [`dynamic`] converts readings of a structure that vibrates into quasi-static
+//! readings.
 
 pub mod by_calibration;
 pub mod calibrated_loads;

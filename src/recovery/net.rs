@@ -59,7 +59,7 @@ impl Series {
         let n = self.n as f64;
         let mean = self.sum / n;
         let var = (self.squares - n * mean * mean).max(0.0);
-        // Sums of all but the last and of all but the first, which is zero.
+        // Sum without the last reading plus sum without the first reading, which is zero relative to itself.
         let ends = 2.0 * self.sum - (self.last - self.first);
         let lag = self.products - mean * ends + (n - 1.0) * mean * mean;
         effective_count(n, var, lag)
@@ -126,7 +126,7 @@ fn net_of(n: f64, value: f64, var: f64, noise: f64, effective: impl Fn() -> f64)
             sigma: noise / n.sqrt(),
         };
     }
-    // A record that happens to stand still is no better than its gauge over the same number of samples.
+    // If a record is constant by chance, its mean is still not better than the noise of the gauge over the number of samples.
     Net {
         value,
         sigma: (var / effective()).max(noise * noise / n).sqrt(),

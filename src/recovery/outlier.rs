@@ -1,4 +1,4 @@
-//! A gauge with an error larger than the errors of the others, and its effect on the loads.
+//! Gauge whose error is larger than the errors of the other gauges, and its effect on the loads.
 
 use super::dynamic::AddedCovariance;
 use super::errors::ErrorModel;
@@ -13,8 +13,7 @@ use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// Probability, over all gauges of a job, below which the largest of their errors counts as real: half of the 1 % of right jobs that may be
-/// stopped.
+/// Probability, over all gauges of a job, below which the largest error counts as real. It is half of the 1 % of correct jobs that may be stopped.
 pub const ALARM: f64 = 0.005;
 /// Probability, over all gauges of a job, below which a finding reports the error and the intervals widen: it affects one right job in twenty.
 const NOTE: f64 = 0.05;
@@ -71,7 +70,7 @@ pub(super) fn check(
     };
     let (ratio, load) = worst_shift(s, (solved, beyond), &shift);
     let name = s.gauges.get(test.gauge).map_or("", String::as_str);
-    // Stated errors, or what is left without this gauge where that is more.
+    // The half width uses the stated errors, or the residual without this gauge if it is larger.
     let wider = suspect.half_width();
     let by_others = match test.kind {
         ShiftKind::Gain => by_others(s, readings, solved, errors, test.gauge),
@@ -81,7 +80,7 @@ pub(super) fn check(
         Some([size, sigma]) => [size, wider * sigma / judged.projection.share().sqrt()],
         None => [test.size, wider * (test.size / test.t).abs()],
     };
-    // An interval that contains zero refutes no gauge, however rare its residuals are.
+    // An interval that contains zero is no evidence against a gauge, however rare its residuals are.
     let is_off = size.abs() > half;
     let size = match test.kind {
         ShiftKind::Gain => format!(
@@ -130,11 +129,10 @@ const OF_NOISE: f64 = 0.5;
 
 /// Returns the gain error of a gauge predicted from the other gauges, and its standard deviation; `None` if the other gauges do not determine it.
 ///
-/// With the others' estimate `f` of the loads, its part `p = s f` at the gauge and the reading `y` of the gauge, run by run, the gain is
-/// `1 + g = sum y p / (sum p^2 - n v)`: `v`, the variance that the others' noise gives to p, would make p^2 too large (errors in variables). With
-/// a the shares of the others' readings in p, and `q_l = sum f_l p / sum p^2`, its variance is
-/// `(N + (1 + g)^2 v) / sum p^2` by noise and `(1 + g)^2 rel^2 sum_l q_l^2 (S_l^2 + sum_h a_h^2 S_hl^2)` by the errors of the coefficients, the
-/// same in all runs.
+/// Let `f` be the loads estimated from the other gauges in a run, `p = s f` the predicted strain of the gauge and `y` its reading. The gain is `1 + g
+/// = sum y p / (sum p^2 - n v)`. `v` is the variance of `p` due to noise of the other gauges, without which p^2 would be too large (errors in
+/// variables). Let `a` be the coefficients of the other readings in `p`, and `q_l = sum f_l p / sum p^2`. The variance of the gain is `(N + (1 + g)^2
+/// v) / sum p^2` by noise and `(1 + g)^2 rel^2 sum_l q_l^2 (S_l^2 + sum_h a_h^2 S_hl^2)` by the errors of the coefficients, which all runs share.
 ///
 /// # Reference
 /// W.A. Fuller, Measurement Error Models (1987), eq. 1.2.3.
@@ -194,7 +192,7 @@ fn by_others(
         return None;
     }
     let factor = (with - runs * common) / expected;
-    // Runs in which another set of gauges reads may be all that name it.
+    // The gauge may be suspect only because of runs with another set of gauges. The factor is then not finite.
     if !factor.is_finite() {
         return None;
     }
@@ -246,8 +244,8 @@ impl Suspect {
     }
 }
 
-/// The gauge with the largest error relative to its uncertainty. An error shifts the loads, and their covariance with them, which hides a part of it:
-/// the largest ones are weighed with the loads that the corrected reading gives.
+/// Returns the gauge with the largest error relative to its uncertainty. An error shifts the loads and their covariance, which hides a part of the
+/// error. The largest errors are therefore tested with the loads from the corrected reading.
 fn suspect(judged: &PatternTest) -> Option<Suspect> {
     let joint = &judged.joint;
     let mut order: Vec<&GaugeTest> = joint.gauges.iter().collect();

@@ -11,8 +11,8 @@ pub const CODE: &str = "loads-outside-calibration";
 /// Limits of the test of loads against the range of their calibration.
 #[derive(Clone, Copy, Debug)]
 pub struct RangeRules {
-    /// Size of a load over the largest of the calibration from which the finding is an error: gauges that are 5 % non-linear at full load
-    /// err there by as much as their intervals are wide (measured: 16 of 600 intervals contained the load at 1.3 to 2.5 times).
+    /// Size of a load over the largest calibration load from which the finding is an error. For gauges with 5 % non-linearity at full load, the error
+    /// there is as large as the interval. In a test, 16 of 600 intervals contained the load at 1.3 to 2.5 times the calibration load.
     pub error_from: f64,
     /// Share of the largest load by which a load may exceed the range: loads that are applied again are not repeated to better than this.
     pub margin: f64,
@@ -75,8 +75,8 @@ impl CalibratedLoad<'_> {
     }
 }
 
-/// The finding on a load that is beyond the range of the calibration in some of `runs`; `values` is the number of values, of all loads, that are
-/// tested. A load that is beyond it by no more than noise makes of so many values is within.
+/// Returns the finding on a load that exceeds the range of the calibration in some of `runs`. `values` is the number of tested values of all loads. A
+/// load that exceeds the range only by as much as noise can cause in so many values is within the range.
 pub fn check_load(
     load: &CalibratedLoad,
     runs: &[RunLoad],
@@ -130,8 +130,8 @@ pub fn check_load(
     )
 }
 
-/// The finding on readings far beyond those of the calibration; `readings` holds name, range of the calibration and largest reading of each
-/// gauge, strain.
+/// Returns the finding on readings far beyond the calibration readings. `readings` contains the name, the range in the calibration and the largest
+/// reading of each gauge, in strain.
 pub fn check_strain<'a>(
     readings: impl Iterator<Item = (&'a str, [f64; 2], f64)>,
     rules: &RangeRules,
@@ -184,7 +184,7 @@ mod tests {
 
     #[test]
     fn loads_beyond_the_range_are_a_warning_and_an_error_from_half_as_much_again_on() {
-        // Zero is in the range, though no run had it: the gauges read zero there.
+        // Zero is in the range although no run has zero load, because the gauges read zero there.
         assert!(check([4e3, 12e3], &[(1e3, 10.0), (12.1e3, 10.0)]).is_none());
         let (severity, ratio, message) = check([4e3, 12e3], &[(11e3, 10.0), (15e3, 10.0)]).unwrap();
         assert_eq!((severity, ratio), (Severity::Warning, 1.25));
@@ -196,7 +196,7 @@ mod tests {
             check([4e3, 12e3], &[(18e3, 10.0)]).unwrap().0,
             Severity::Error
         );
-        // The other way: a warning as far as the load went the one way.
+        // A load of opposite sign is a warning up to the size of the largest calibration load.
         assert_eq!(
             check([0.0, 12e3], &[(-6e3, 10.0)]).unwrap().0,
             Severity::Warning
@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn noise_at_the_end_of_the_range_is_no_load_beyond_it() {
-        // 0.02 of 12 kN apart, 0.5 kN are 1.96 sd: of one value beyond 3.1 sd is reported, of ten thousand beyond 5.2.
+        // The margin is 0.02 of 12 kN, and 0.5 kN is 1.96 sd. One value is reported beyond 3.1 sd, ten thousand values beyond 5.2 sd.
         assert!(check([0.0, 12e3], &[(12.9e3, 500.0)]).is_none());
         assert!(check([0.0, 12e3], &[(13.1e3, 500.0)]).is_some());
         let run = [RunLoad {

@@ -8,24 +8,24 @@ use crate::units::{MICROSTRAIN, number};
 
 /// Strain that no reading exceeds: gauges for large elongation end at a fifth of it, and metals break before.
 pub const LARGEST_STRAIN: f64 = 1.0;
-/// Strain that no gauge on a structure follows: foil gauges end at 3 to 5 %, gauges for tests beyond yield at 10 to 20 %. S is valid for small strain
-/// only. Larger readings are kept with a finding: either one channel is overloaded, or a part yields.
+/// Strain beyond the range of gauges on a structure. Foil gauges measure up to 3 to 5 %, gauges for tests beyond yield up to 10 to 20 %. S is valid
+/// for small strain only. Larger readings are kept with a finding: either one channel is overloaded, or a part yields.
 ///
 /// # Reference
 /// Micro-Measurements, Tech Note TN-505, Strain Gage Selection, strain range by gauge series (EA 3 to 5 %, EP 10 to 20 %).
 pub const GAUGES_END: f64 = 0.05;
-/// Strain that no metal of a structure reaches whole: S355 breaks at 22 %, EN AW-6082-T6 at 8 to 10 %, and the gauges for largest elongation end
-/// there too. Readings beyond it are no strain of the structure.
+/// Strain at which every metal of a structure is broken: S355 breaks at 22 %, EN AW-6082-T6 at 8 to 10 %. Gauges for the largest elongation do not
+/// measure more either. Readings beyond it are not strain of the structure.
 ///
 /// # Reference
 /// EN 10025-2 (2019), table 7; EN 755-2 (2016).
 const METAL_ENDS: f64 = 0.2;
 /// Strain that half of the readings exceed only if their unit is wrong. Metals yield at 0.1 to 0.5 %, and the linear S is not valid beyond yield.
 const MOST_BELOW: f64 = 0.01;
-/// Root mean square of all readings, in noise sd, below which they can't be readings of a gauge with that noise: of `n` readings of
-/// noise alone it is 1 +- 0.7 / sqrt(n).
+/// Root mean square of all readings, in noise sd, below which they can't be from gauges with the stated noise. For `n` readings of noise alone it is
+/// 1 +- 0.7 / sqrt(n).
 const TOO_QUIET: f64 = 0.3;
-/// Strain that no amplifier resolves: readings that are all smaller are not in the unit they are taken for.
+/// Strain below the resolution of amplifiers. If all readings are smaller, their unit is wrong.
 const UNRESOLVED: f64 = 1e-3 * MICROSTRAIN;
 /// Smallest number of readings for the test against `TOO_QUIET`: eight readings of noise alone are so quiet once in 1,900 jobs (chi-square below
 /// 0.72).

@@ -219,7 +219,8 @@ impl Projection {
         out
     }
 
-    /// Sum of squares of one run's residual `z` over its own covariance at loads `f`; `beyond` is that of its readings beyond noise.
+    /// Returns the sum of squares of the residual `z` of one run over its covariance at loads `f`. `beyond` is the covariance of its readings beyond
+    /// noise.
     pub fn chi2_of_run(
         &self,
         pattern: &Pattern,

@@ -19,7 +19,7 @@ pub(super) struct RunEstimates {
     pub runs: Vec<RunEstimate>,
     /// Runs by the gauges that read in them, the most frequent first, and their estimate; `None` where S is not finite.
     pub patterns: Vec<(Pattern, Option<Gain>)>,
-    /// Loads whose model error weighs the readings.
+    /// Loads at which the model error is weighted.
     pub typical: Vec<f64>,
 }
 

@@ -81,7 +81,7 @@ pub(super) fn recover_beyond(
     (handling, alternatives): (FaultTreatment, &mut Alternatives),
 ) -> Recovery {
     let (readings, mut findings) = reading_plausibility::check(&s.gauges, readings, errors);
-    // Errors beyond noise are correlated too.
+    // Noise is estimated only without errors beyond noise, because these are correlated too.
     let shown = match beyond.is_empty() {
         true => shown_noise(s, &readings, errors),
         false => ShownNoise::default(),
@@ -105,13 +105,13 @@ pub(super) fn recover_beyond(
         _ => 1.0,
     };
     let verdict = verdict::check(s, &readings, &solved, errors, (beyond, share));
-    // Faults are named by how well they explain what noise doesn't: with errors beyond it that names none.
+    // Faults are identified by how well they explain residuals beyond noise. This is not possible with other errors beyond noise.
     let named = match verdict.misfit && beyond.is_empty() {
         true => misfit::faults_by_stated_errors(s, &readings, errors, alternatives),
         false => Vec::new(),
     };
     findings.extend(merge_gauge_findings(verdict.findings, named));
-    // A misfit is stated already, and has its own remedy.
+    // A misfit is already reported, with its own remedy.
     let is_stated = verdict.misfit && shown.noise.is_none();
     findings.extend(shown.finding.filter(|_| !is_stated));
     let RunEstimates {

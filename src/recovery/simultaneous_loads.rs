@@ -1,8 +1,8 @@
 //! Runs with several loads at once, if each calibration run had one load alone.
 //!
-//! A single load whose strain differs from the calibration (a truck between two lanes, another direction or speed) is recovered as a combination of
-//! several loads. Each has the narrow interval that the scatter of the calibration runs gives. The strain is the same, so the residual does not show
-//! the difference.
+//! A single load may differ in strain from the calibration, for example a truck between two lanes or with another direction or speed. It is then
+//! recovered as a combination of several loads. Each has the narrow interval that the scatter of the calibration runs gives. The strain is the same,
+//! so the residual does not show the difference.
 
 use super::types::RunEstimate;
 use super::uncalibrated_strain::chance_estimated;
@@ -14,11 +14,12 @@ use crate::sensitivity::Uncertainty;
 /// Code of runs with several loads that act together in no calibration run.
 pub const CODE: &str = "loads-unlike-known-runs";
 
-/// So many runs with several loads, when most have them, are how the loads are used: of runs with one load one in a hundred looks so.
+/// Number of runs with several loads that shows normal use, if most runs have several loads. Of runs with a single load, one in a hundred appears to
+/// have several loads.
 const USUAL: usize = 3;
 
-/// Squared distance of a run's loads `f` from the nearest load alone, in units of their covariance `C`: with `G = C^-1`, load `l` alone is at
-/// `f' G f - (G f)_l^2 / G_ll`. `None` where the covariance is not positive definite.
+/// Returns the squared distance of the loads `f` of a run from the nearest single load, relative to their covariance `C`. With `G = C^-1` the
+/// distance from load `l` alone is `f' G f - (G f)_l^2 / G_ll`. `None` if the covariance is not positive definite.
 fn distance(run: &RunEstimate) -> Option<f64> {
     let f = &run.estimate.values;
     let k = f.len();

@@ -32,7 +32,7 @@ impl Readings {
     /// Returns the readings of a sample of a record at `time_s`.
     pub fn of_sample(time_s: f64, strain: Vec<f64>, noise_factor: f64) -> Self {
         Self {
-            // To the nanosecond: what start plus number over rate leaves behind it is no time.
+            // Round to the nanosecond, which removes the rounding error of start plus number over rate.
             run: format!("t = {}", (time_s * 1e9).round() / 1e9),
             strain,
             noise_factor,

@@ -89,15 +89,15 @@ const MOST: f64 = 1e30;
 const HALVINGS: usize = 20;
 
 /// Returns the estimate with as much additional error as explains the residual. Of two forms of the error, the more likely one is used. The first
-/// scales the whole covariance, as if the run scatters like the calibration runs, but more. The second adds a separate error to every reading, an
-/// unknown pattern over the gauges, larger where noise, scatter and the uncertainty of S are larger. It occurs if a truck is at a place that no run
-/// has covered. Each form has one size, found from the run. If only a stated error of S is known, the second form is used.
+/// scales the whole covariance, as if the run scatters like the calibration runs, but more. The second adds a separate error to every reading, which
+/// is an unknown pattern over the gauges. It is larger for gauges with larger noise, scatter and uncertainty of S. It occurs if a truck is at a place
+/// that no run has covered. Each form has one size, which is determined from the run. If only a stated error of S is known, the second form is used.
 ///
 /// The added error is not constant over the gauges: with a constant error the gauges near a wheel would dominate, which scatter most.
 ///
 /// # Reference
-/// R. T. Birge, Phys. Rev. 40 (1932) 207: excess scatter as a factor; R. DerSimonian and N. Laird, Control. Clin. Trials 7 (1986) 177: as a
-/// variance added.
+/// Excess scatter as a factor: R. T. Birge, Phys. Rev. 40 (1932) 207. Excess scatter as an added variance: R. DerSimonian and N. Laird, Control.
+/// Clin. Trials 7 (1986) 177.
 pub fn estimate_loosely(
     s: &Sensitivity,
     readings: &Readings,
@@ -115,7 +115,7 @@ pub fn estimate_loosely(
     if !(likelihood > likelihood_apart) {
         return apart;
     }
-    // A factor that this run tells is known no better than by what it has to spare.
+    // The factor is estimated from this run, so it has at most the degrees of freedom of its residual.
     together.estimate.coverage_factor = student_95(known.dof.min(together.dof as f64));
     together
 }

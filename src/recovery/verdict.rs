@@ -89,7 +89,7 @@ pub(super) fn check(
     let joints: Vec<&Joint> = judged.iter().map(|j| &j.joint).collect();
     let mut evidence = weigh(s, runs, &joints);
     if !beyond.is_empty() {
-        // Errors that all samples share are taken for larger than they are: residuals can't be too small.
+        // Errors that all samples share are overestimated, so small residuals are not evidence.
         evidence.low = 1.0;
     }
     verdict.misfit = evidence.high < SIGNIFICANT;
@@ -162,8 +162,8 @@ fn report_undetermined_loads(s: &Sensitivity, solved: &RunEstimates) -> Vec<Find
     out
 }
 
-/// Returns the most frequent patterns of silent gauges, each with a joint test of its runs. The residual excludes all loads, those of a stated size
-/// too: whether a nuisance load is the same in all runs is not known.
+/// Returns the most frequent patterns of gauges without readings, each with a joint test of its runs. The residual excludes all loads, including
+/// nuisance loads of a stated size. It is not known whether a nuisance load is equal in all runs.
 fn test_patterns<'a>(
     s: &Sensitivity,
     readings: &'a [Readings],
@@ -174,7 +174,7 @@ fn test_patterns<'a>(
     most.filter_map(|(pattern, gain)| {
         let gain = gain.as_ref()?;
         let projection = Projection::new(s, pattern, errors, &solved.typical, RemovedLoads::All)?;
-        // A whole number of independent runs, so that squares and their degrees of freedom count the same.
+        // Round to a whole number of independent runs, so that squares and degrees of freedom are consistent.
         let runs = pattern.runs.len() as f64;
         let mut projection = projection.with_share((share * runs).round().max(1.0) / runs);
         if let Some(of_readings) = bound_shared_covariance(pattern, beyond) {
@@ -222,7 +222,7 @@ fn weigh(s: &Sensitivity, runs: &[RunEstimate], joints: &[&Joint]) -> Evidence {
         .iter()
         .map(|j| (chance(j.chi2, j.dof), ratio(j.chi2, j.dof)))
         .collect();
-    // Nuisance loads beyond their stated sizes show in the runs one by one.
+    // Nuisance loads beyond their stated sizes appear only in the tests of single runs.
     if joints.is_empty() || s.priors().iter().any(Option::is_some) {
         let worst = runs
             .iter()
@@ -316,7 +316,7 @@ fn share(pairs: &[(&Readings, &RunEstimate)]) -> f64 {
     }
 }
 
-/// Whether the residuals are larger or smaller than stated errors make them, in words.
+/// Returns the finding that the residuals are larger or smaller than expected from the stated errors.
 fn size_finding(evidence: &Evidence, sizes: &Sizes, errors: ErrorModel) -> Option<Finding> {
     let noise = errors.noise / MICROSTRAIN;
     let stated = match errors.model_rel {
@@ -401,7 +401,7 @@ fn patterns(n: usize, runs: &[RunEstimate]) -> usize {
         let v = r.residual[g] / r.sd[g];
         if v.is_finite() { v } else { 0.0 }
     };
-    // Gauges by runs or runs by gauges, whichever is tall: the singular values are the same, and there may be thousands of runs.
+    // Use gauges by runs or runs by gauges, whichever has more rows. The singular values are equal, and there may be thousands of runs.
     let a = Matrix::from_fn(n.max(m), n.min(m), |row, column| {
         if n >= m {
             std(row, &runs[column])

@@ -86,9 +86,10 @@ const SHAPES: [ShellShape; 6] = [
     ShellShape::Tria6,
 ];
 
-/// Every block of a solution in the order of the file: displacements of all cases (displacement frames of the grids), then shell
-/// strain at both fibres (with corners where they are known; not CTRIA3 and CTRIAR), of the plies of laminates, of solids, then of bars
-/// and beams.
+/// Returns every block of a solution in the order of the file.
+///
+/// Displacements of all cases come first, in the displacement frames of the grids. Then follow the strains of shells at both fibres, of the plies of
+/// laminates, of solids, and of bars and beams. Shell strains include the corners where they are known, but not for CTRIA3 and CTRIAR.
 pub fn planned_blocks(model: &Model, solution: &Solution) -> Vec<PlannedBlock> {
     let mut all = Vec::new();
     let mut plan = |content: &dyn Fn(&CaseResult) -> Option<Content>| {

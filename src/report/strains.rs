@@ -71,7 +71,7 @@ pub fn write_strains(
 }
 
 fn line(text: &mut String, subcase: u32, row: &StrainRow) {
-    // Writing to a String can't fail.
+    // Writing to a `String` can't fail.
     let _ = write!(text, "{subcase},{},{},", row.element, row.card);
     let _ = match row.location {
         Location::Centre => write!(text, "centre"),

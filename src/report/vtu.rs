@@ -40,12 +40,16 @@ pub(super) fn floats(values: impl Iterator<Item = f64>) -> Vec<u8> {
     values.flat_map(|v| (v as f32).to_le_bytes()).collect()
 }
 
-/// Writes the mesh of shells, bars, rods, solids and shear panels with each case's displacement; per shell, at bottom and top, strain in
-/// the element frame (exx, eyy, gxy, engineering shear) and the largest principal strain by magnitude; per solid the strain at its
-/// centre (xx yy zz xy yz zx, engineering shear). Values are 32-bit reals.
+/// Writes the mesh of shells, bars, rods, solids and shear panels with each case's displacement.
+///
+/// - Each shell has, at bottom and top, the strain in the element frame (exx, eyy, gxy, engineering shear). It also has the largest principal strain
+///   by magnitude.
+/// - Each solid has the strain at its centre (xx yy zz xy yz zx, engineering shear).
+///
+/// Values are 32-bit reals.
 ///
 /// # Errors
-/// What `out` gives.
+/// Errors of `out`.
 pub fn write_vtu(model: &Model, cases: &[CaseResult], out: &mut dyn Write) -> Result<()> {
     let (mut a, cells) = mesh(model);
     for case in cases
@@ -107,7 +111,7 @@ pub fn write_vtu(model: &Model, cases: &[CaseResult], out: &mut dyn Write) -> Re
 /// Writes the mesh with numbers by shell (indexed as in the model) and by bar or beam; rods have none. Values are 32-bit reals.
 ///
 /// # Errors
-/// What `out` gives.
+/// Errors of `out`.
 pub fn write_cells_vtu(
     model: &Model,
     arrays: &[(String, Vec<f64>, Vec<f64>)],
@@ -130,8 +134,8 @@ pub fn write_cells_vtu(
 /// Cells of the mesh: VTK type, element id, grids.
 type Cells = Vec<(u8, u32, Vec<GridIx>)>;
 
-/// The cells of a model as VTK has them, type, element id and corner grids: shells, bars and beams, rods, solids, shear panels, each in the
-/// order of the model.
+/// Returns the VTK cells of a model: cell type, element id and corner grids. Shells come first, then bars and beams, rods, solids and shear panels,
+/// each in the order of the model.
 pub fn vtk_cells(model: &Model) -> Vec<(u8, u32, Vec<GridIx>)> {
     let mut cells: Cells = Vec::new();
     for s in &model.shells {

@@ -38,7 +38,7 @@ pub enum Numbers<'a> {
 /// Writes mesh and numbers with all their digits. Shapes are the caller's to check.
 ///
 /// # Errors
-/// What `out` gives.
+/// Errors of `out`.
 pub fn write_arrays_vtu(
     mesh: MeshArrays,
     on_points: &[NamedArray],

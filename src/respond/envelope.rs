@@ -26,7 +26,7 @@ pub enum Spread {
 }
 
 impl Spread {
-    /// Standard deviation of `g . loads`.
+    /// Returns the standard deviation of `g . loads`.
     pub(super) fn sd_of_combination(&self, g: &[f64]) -> f64 {
         let k = g.len();
         match self {
@@ -67,12 +67,12 @@ fn stress(row: &ResponseRow, loads: &[f64]) -> [f64; 3] {
     s
 }
 
-/// `svm^2 = sxx^2 - sxx syy + syy^2 + 3 sxy^2` (plane stress).
+/// Returns `svm^2 = sxx^2 - sxx syy + syy^2 + 3 sxy^2` (plane stress).
 fn square([x, y, s]: [f64; 3]) -> f64 {
     x * x - x * y + y * y + 3.0 * s * s
 }
 
-/// von Mises stress and its standard deviation in one state; to first order, `d svm = (ds' Q s) / svm`.
+/// Returns the von Mises stress and its standard deviation in one state, to first order: `d svm = (ds' Q s) / svm`.
 fn with_sigma(row: &ResponseRow, state: &LoadState) -> (f64, f64) {
     let s = stress(row, &state.values);
     let value = square(s).max(0.0).sqrt();
@@ -92,7 +92,7 @@ fn with_sigma(row: &ResponseRow, state: &LoadState) -> (f64, f64) {
     (value, state.spread.sd_of_combination(&g))
 }
 
-/// The peak of every row over all states; states with loads that are not numbers are passed over. Rows in parallel.
+/// Returns the peak of every row over all states. States with loads that are not numbers are skipped. Rows are computed in parallel.
 pub fn envelope(rows: &[ResponseRow], states: &[LoadState]) -> Vec<Peak> {
     rows.par_iter()
         .map(|row| {
@@ -126,7 +126,7 @@ pub fn von_mises_history(row: &ResponseRow, states: &[LoadState]) -> Vec<([f64; 
         .collect()
 }
 
-/// Rows that are hotter than every other row on an element that shares a grid with theirs, hottest first.
+/// Returns the rows with a higher peak than every other row on neighbouring elements (which share a grid), highest first.
 pub fn hot_spots(model: &Model, rows: &[ResponseRow], peaks: &[Peak]) -> Vec<usize> {
     let grids = |row: &ResponseRow| -> Vec<GridIx> {
         match row.place {

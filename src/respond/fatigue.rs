@@ -5,7 +5,7 @@ use super::rows::ResponseRow;
 use crate::series::rainflow::{Cycle, Damage, Point, Rainflow};
 use rayon::prelude::*;
 
-/// Planes that are tried, evenly over half a turn: of uniaxial stress the nearest one has at least `cos^2 2.5 deg`, .998, of it.
+/// Number of planes, evenly over half a turn. The stress on the nearest plane is at least `cos^2 2.5 deg` = .998 of a uniaxial stress.
 const PLANES: usize = 36;
 
 /// Pseudo-damage of a place, unit of the stress to the power of the slope.
@@ -21,9 +21,10 @@ pub struct PlaceDamage {
     pub angle_deg: f64,
 }
 
-/// Returns the pseudo-damage of the normal stress on the plane where it is largest, row by row: `sum of n R^m` over rainflow cycles of
-/// `s(a) = sxx cos^2 a + syy sin^2 a + 2 sxy sin a cos a`, times `unit` each. The interval moves all ranges by their own 95 % interval,
-/// the errors at both ends of a range taken as independent.
+/// Returns, by row, the pseudo-damage of the normal stress on the plane where it is largest.
+///
+/// The damage is `sum of n R^m` over rainflow cycles of the stress `s(a) = sxx cos^2 a + syy sin^2 a + 2 sxy sin a cos a`, times `unit`. The interval
+/// changes every range by its own 95 % interval, from the added standard deviations of both ends.
 pub fn fatigue(
     rows: &[&ResponseRow],
     states: &[LoadState],
@@ -58,7 +59,7 @@ pub fn fatigue(
     rows.par_iter().map(worst).collect()
 }
 
-/// Counts `g . loads` over the states. The errors of both ends of a cycle add up, as errors of S do in a reversed one.
+/// Counts the cycles of `g . loads` over the states. The errors of both ends of a cycle add up, as errors of S do in a reversed cycle.
 fn damage_along(g: &[f64], states: &[LoadState], slope: f64) -> Damage {
     let mut damage = Damage::new(slope, 0.0);
     let sigma = |p: Point| {
@@ -83,8 +84,8 @@ mod tests {
     use crate::model::ShellIx;
     use crate::respond::{Place, Spread};
 
-    /// Ten cycles of a load between -3 and 3, stress 2 along one direction: `10 (2 * 6)^m`; sigma .1 of the load at both ends moves the range by
-    /// `1.96 * 2 * .1 root 2`.
+    /// Ten cycles of a load between -3 and 3, stress 2 along one direction: `10 (2 * 6)^m`. A standard deviation of .1 of the load at both ends
+    /// changes the range by `1.96 * 2 * (.1 + .1)`.
     #[test]
     fn damage_is_that_of_the_plane_across_the_stress() {
         let states: Vec<LoadState> = (0..21)

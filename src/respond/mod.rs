@@ -1,8 +1,8 @@
-//! From recovered loads to strain and stress anywhere: superposition of the unit fields, no new solution.
+//! Strain and stress anywhere from recovered loads, by superposition of the unit fields without a new solution.
 //!
-//! `rows` is the load-to-response matrix (stress at surfaces of shells and recovery points of bars per unit load), [`envelope`] the
-//! largest von Mises stress over all states with its standard deviation, [`hot_spots`] where it peaks, [`fatigue`] the damage of
-//! its history.
+//! `rows` computes the load-to-response matrix: stress per unit load at surfaces of shells and recovery points of bars. [`envelope`] computes the
+//! largest von Mises stress over all states, with its standard deviation. [`hot_spots`] finds its peaks, and [`fatigue`] computes the damage from the
+//! history of the states.
 
 mod envelope;
 mod fatigue;

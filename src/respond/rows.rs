@@ -27,8 +27,8 @@ pub enum Place {
     },
 }
 
-/// A row of the load-to-response matrix: `sxx, syy, sxy` in the element's output frame per unit of each load (a bar has `sxx` alone),
-/// model stress over job unit of load; and the strain `exx, eyy, gxy` behind it.
+/// A row of the load-to-response matrix. It contains `sxx, syy, sxy` in the element's output frame per unit of each load, in model stress over job
+/// unit of load. A bar has only `sxx`. The row also contains the strain `exx, eyy, gxy` from which the stress is computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseRow {
     /// Where.
@@ -42,7 +42,7 @@ pub struct ResponseRow {
 }
 
 impl ResponseRow {
-    /// The side of a shell, the recovery point of a bar.
+    /// Returns the side of a shell, or the recovery point of a bar.
     pub fn surface_word(&self) -> String {
         match self.place {
             Place::Shell { surface, .. } => surface.word().to_owned(),
@@ -53,9 +53,9 @@ impl ResponseRow {
     }
 }
 
-/// Rows of every shell and bar that has strain in all cases and an isotropic material; others are counted in a finding.
+/// Returns the rows of every shell and bar with strain in all cases and an isotropic material. A finding states the number of other elements.
 ///
-/// Plane stress: `sxx = E/(1-nu^2) (exx + nu eyy)`, `sxy = G gxy`. A bar's stress is `E exx`: shear and torsion are not in it.
+/// Plane stress: `sxx = E/(1-nu^2) (exx + nu eyy)`, `sxy = G gxy`. The stress of a bar is `E exx`, without shear and torsion.
 pub fn response_rows(
     model: &Model,
     loads: &[LoadCaseOf],
@@ -104,7 +104,7 @@ impl ResponseRows {
     }
 }
 
-/// Rows of both sides of a shell.
+/// Returns the rows of both sides of a shell.
 fn shell_rows(
     model: &Model,
     loads: &[LoadCaseOf],
@@ -145,7 +145,7 @@ fn shell_rows(
     Ok([Surface::Bottom, Surface::Top].map(side).into())
 }
 
-/// Rows of the recovery points of a bar or beam at each of its stations.
+/// Returns the rows of the recovery points of a bar or beam at each of its stations.
 fn beam_rows(
     model: &Model,
     loads: &[LoadCaseOf],
@@ -187,7 +187,8 @@ fn beam_rows(
     Ok(rows)
 }
 
-/// Stations of a bar or beam: those of the first load's case, and inner ones where loads act between its ends in some case.
+/// Returns the stations of a bar or beam. These are the stations in the case of the first load, and inner stations if loads act between its ends in
+/// any case.
 fn stations(fields: &[&BeamField], beam: BeamIx) -> Vec<f64> {
     let own = fields.first().and_then(|f| {
         let row = f.elements.binary_search(&beam).ok()?;
@@ -246,7 +247,7 @@ fn shell_material(model: &Model, ix: ShellIx) -> Option<MaterialIx> {
     }
 }
 
-/// E, G, nu.
+/// Returns E, G and nu of an isotropic material.
 fn isotropic_constants(model: &Model, material: MaterialIx) -> Option<(f64, f64, f64)> {
     match model.materials.get(material.us())?.kind {
         MaterialKind::Isotropic { e, g, nu, .. } => Some((e, g, nu)),

@@ -9,7 +9,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
 
-/// E = 200000, nu = 0.3, one square shell.
+/// Returns a model of one square shell with E = 200000 and nu = 0.3.
 fn model() -> Model {
     let text = "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nCQUAD4,7,1,1,2,3,4\n\
                 PSHELL,1,1,0.1,1\nMAT1,1,200000.,,0.3\nENDDATA\n";

@@ -1,8 +1,8 @@
 //! Recovery points of a CBAR with a PBARL section in results of another program.
 //!
-//! A CBAR has its neutral axis and its shear centre on one line. Nastran measures the points C to F of a PBARL from the shear centre of the
-//! section, so that bending alone strains a section with one axis of symmetry (T, CHAN, HAT, L) as if its centroid were there. The built-in
-//! solver measures them from the centroid.
+//! A CBAR has its neutral axis and its shear centre on one line. Nastran measures the points C to F of a PBARL from the shear centre of the section.
+//! For a section with one axis of symmetry (T, CHAN, HAT, L), bending then causes strain as if the centroid were at the shear centre. The built-in
+//! solver measures the points from the centroid.
 
 use super::LoadCaseOf;
 use crate::finding::{Finding, Severity};
@@ -13,13 +13,13 @@ use crate::units::MICROSTRAIN;
 
 /// Centroids nearer to the shear centre than this share of the farthest point are rounding.
 const APART: f64 = 1e-6;
-/// Share of their sum below which second moments of the points are rounding: the points are on a line.
+/// Share of the sum of the second moments of the points below which a second moment is rounding. The points are then on a line.
 const SINGULAR: f64 = 1e-12;
 /// Differences of strain below this share of the strain of the points are rounding of single precision.
 const DIFFERENT: f64 = 1e-4;
 
-/// Returns a warning for each gauge on a point whose strain in the results is measured from the shear centre, with both values under the load
-/// where they differ most.
+/// Returns a warning for each gauge on a point whose strain in the results is measured from the shear centre. It states both values under the load
+/// with the largest difference.
 pub fn bar_points(model: &Model, gauges: &[Gauge], loads: &[LoadCaseOf]) -> Vec<Finding> {
     gauges
         .iter()
@@ -72,7 +72,7 @@ fn warning(
     )
 }
 
-/// The property of a CBAR whose section has its centroid off the shear centre.
+/// Returns the property of a CBAR if the centroid of its section is off the shear centre.
 fn property_of(model: &Model, beam: BeamIx) -> Option<&BeamProperty> {
     let property = model
         .beam_properties
@@ -87,8 +87,8 @@ fn property_of(model: &Model, beam: BeamIx) -> Option<&BeamProperty> {
     (off > APART * size).then_some(property)
 }
 
-/// Strain at a point as the results state it and as measured from the centroid; `None` where the results measure from the centroid, or
-/// both are equal.
+/// Returns the strain at a point as stated in the results, and as measured from the centroid. `None` if the results measure from the centroid, or if
+/// both values are equal.
 fn stated_and_centroid_strain(
     property: &BeamProperty,
     load: &LoadCaseOf,
@@ -101,7 +101,7 @@ fn stated_and_centroid_strain(
     let from_shear_centre = from_centroid.map(|[y, z]| [y + yc, z + zc]);
     let largest = bending.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
     let (curvature, missed) = fit(&from_shear_centre, &bending)?;
-    // Rows that this program wrote measure from the centroid.
+    // Results of this program measure from the centroid.
     if let Some((_, other)) = fit(&from_centroid, &bending)
         && other < missed
         && missed > DIFFERENT * largest

@@ -1,4 +1,4 @@
-//! S from the strain fields of unit loads, and the shells that every one of them has.
+//! S from the strain fields of unit loads, and the shells that are in every field.
 
 use super::{Load, Sensitivity};
 use crate::fe::CaseResult;
@@ -40,12 +40,12 @@ pub struct NoStrain {
 pub enum NoStrainCause {
     /// The case has no strain of the element.
     Absent,
-    /// The station is between those of the result, and the strain between them is not linear.
+    /// The station is between stations of the result, and the strain between them is not linear.
     BetweenStations,
 }
 
 impl NoStrain {
-    /// Returns what is wrong.
+    /// Returns the cause as a message.
     pub fn describe_cause(&self) -> String {
         let Self {
             element,
@@ -97,7 +97,7 @@ fn cause(gauge: &Gauge, case: &CaseResult) -> NoStrainCause {
 /// Returns every gauge that has no strain in some case.
 ///
 /// # Example
-/// A gauge at the free end of a cantilever reads nothing, and a gauge at mid-length reads half the strain of the root:
+/// A gauge at the free end of a cantilever reads zero, and a gauge at mid-length reads half the strain of the root:
 /// ```
 /// use nastran::bdf::{MemoryLoader, read_deck};
 /// use strainbridge::fe::{LoadCase, solve_cases};
@@ -156,7 +156,7 @@ pub fn from_cases(gauges: &[Gauge], loads: &[LoadCaseOf]) -> Result<Sensitivity,
     })
 }
 
-/// Shells with strain in every load's case, ascending, and a finding that counts the others.
+/// Returns the shells with strain in every load's case, ascending, and a finding with the number of other shells.
 pub fn common_shells(loads: &[LoadCaseOf]) -> (Vec<ShellIx>, Vec<Finding>) {
     let Some((first, rest)) = loads.split_first() else {
         return (Vec::new(), Vec::new());

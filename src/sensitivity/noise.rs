@@ -31,7 +31,7 @@ impl GaugeNoise {
         Self::of_covariance(Matrix::from_fn(n, n, entry))
     }
 
-    /// Covariance, `n x n`.
+    /// Returns the covariance, `n x n`.
     pub fn covariance(&self) -> &Matrix {
         &self.covariance
     }
@@ -57,7 +57,7 @@ impl GaugeNoise {
         self.covariance_between(g, h) / (self.variance(g) * self.variance(h)).sqrt()
     }
 
-    /// Whether any two gauges are correlated.
+    /// Returns whether any two gauges are correlated.
     pub fn is_correlated(&self) -> bool {
         let n = self.covariance.nrows();
         (0..n).any(|g| (0..g).any(|h| self.covariance[(g, h)] != 0.0))

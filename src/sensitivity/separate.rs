@@ -4,10 +4,10 @@ use super::Sensitivity;
 use crate::finding::{Finding, Severity};
 use crate::linalg::dense::{self, RANK_TOLERANCE};
 
-/// Condition number (scaled) up to which small errors stay small: the usual rule of thumb calls 10 stable and 50 the most that is acceptable.
+/// Condition number (scaled) up to which small errors stay small. By the usual rule of thumb, 10 is stable and 50 is the largest acceptable value.
 pub const CONDITION_LIMIT: f64 = 50.0;
 
-/// Share of the largest coefficient under which a load is left out of a combination's words.
+/// Share of the largest coefficient below which the description of a combination omits a load.
 const NAMED_SHARE: f64 = 0.1;
 
 /// Returns findings on loads without strain, and on loads and combinations that these gauges can't separate (`error`) or only weakly (`warning`).
@@ -67,7 +67,7 @@ pub fn check_separability(s: &Sensitivity) -> Vec<Finding> {
             .with_numbers(n as f64, k as f64),
         );
     }
-    // Zero rows below make the right vectors span all loads where gauges are few.
+    // If there are fewer gauges than loads, appended zero rows make the right singular vectors span all loads.
     let mut square = unit.clone();
     if n < k {
         square = square.resize_vertically(k, 0.0);
@@ -131,7 +131,7 @@ pub fn check_separability(s: &Sensitivity) -> Vec<Finding> {
     findings
 }
 
-/// Names of the loads in a combination, and the combination as a sum, its largest term first with coefficient 1.
+/// Returns the names of the loads in a combination, and the combination as a sum. The largest term is first, with the coefficient 1.
 fn combination(s: &Sensitivity, shares: &[f64], coefficients: &[f64]) -> (Vec<String>, String) {
     let top = shares.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
     let mut order: Vec<usize> = (0..shares.len())
@@ -165,7 +165,7 @@ fn combination(s: &Sensitivity, shares: &[f64], coefficients: &[f64]) -> (Vec<St
     )
 }
 
-/// Three significant digits.
+/// Formats a number with three significant digits.
 fn digits(x: f64) -> String {
     if !(1e-3..1e5).contains(&x) {
         return format!("{x:.2e}");

@@ -67,7 +67,7 @@ fn units_change_the_raw_condition_number_and_not_the_scaled_one() {
     assert!(millimetre.condition_number() > 100.0 * newton.condition_number());
 }
 
-/// An uncertainty of two gauges and two loads with a center and a part at any load, by numbers without a pattern.
+/// Returns an uncertainty of two gauges and two loads, with a center and an additive part, from arbitrary numbers.
 fn build_uncertainty() -> (Uncertainty, Matrix) {
     let root = Matrix::from_fn(4, 4, |i, j| 0.3 + (1.7 * (i * 4 + j) as f64).sin());
     let covariance = &root * root.transpose();
@@ -86,7 +86,7 @@ fn build_uncertainty() -> (Uncertainty, Matrix) {
     (known, covariance)
 }
 
-/// `Cov(eps | f) = q^2 C + A + sum h_j h_k Cov(S_.j, S_.k)`, `h = f - center`, written out; a filter passes it on.
+/// `Cov(eps | f) = q^2 C + A + sum h_j h_k Cov(S_.j, S_.k)`, `h = f - center`, written out, and the covariance of recovered loads from it.
 #[test]
 fn the_covariance_of_strain_counts_errors_of_s_from_its_center() {
     let (known, covariance) = build_uncertainty();
@@ -108,7 +108,7 @@ fn the_covariance_of_strain_counts_errors_of_s_from_its_center() {
     let passed = (&gain * strain * gain.transpose())[(0, 0)] * 1.5 * 1.5;
     let forms = known.load_forms(&gain);
     assert!((forms.variance(0, &f) - passed).abs() < 1e-12);
-    // From one state to another, what does not depend on the loads is the same: as if the change were counted from its center.
+    // Between two states, terms that do not depend on the loads cancel. The change is then computed as if the loads counted from the center.
     let plain = Uncertainty {
         additive: Vec::new(),
         center: Vec::new(),
@@ -118,7 +118,7 @@ fn the_covariance_of_strain_counts_errors_of_s_from_its_center() {
     assert!((forms.variance_of_change(0, &f) - change).abs() < 1e-12);
 }
 
-/// `relative^2 s s'` on top: the standard deviation of strain along S itself grows by it alone.
+/// The added covariance is `relative^2 s s'`. Only the standard deviation of strain along S itself grows by it.
 #[test]
 fn a_common_scale_adds_its_share_of_the_strain() {
     let s = Matrix::from_row_slice(2, 2, &[1.0, 2.0, 3.0, -1.0]);
@@ -134,8 +134,8 @@ fn a_common_scale_adds_its_share_of_the_strain() {
     }
 }
 
-/// Loads in other units, and a load that is a sum of them, have the same covariance of strain on either side of the center. It is no smaller where
-/// loads with a center are left out, or where the sum is not along the center.
+/// Loads in other units, and a load that is a sum of them, have the same covariance of strain on either side of the center. It is no smaller if loads
+/// with a center are left out, or if the sum is not along the center.
 #[test]
 fn other_units_and_sums_of_loads_are_no_less_uncertain() {
     let (known, _) = build_uncertainty();

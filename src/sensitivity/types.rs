@@ -14,7 +14,7 @@ pub struct Load {
     pub expected: Option<f64>,
     /// Asked for, or present but not asked for.
     pub wanted: bool,
-    /// Force or moment, where that is known: sizes of loads are compared within a kind.
+    /// Force or moment, if known. Sizes of loads are compared within a kind.
     pub quantity: Option<Quantity>,
 }
 
@@ -71,8 +71,8 @@ pub struct Sensitivity {
 }
 
 impl Sensitivity {
-    /// How far the strain under loads of expected size may be off, 1 sd, as a share of it: roots of mean squares over the gauges; 0 where S is
-    /// taken as exact.
+    /// Returns the error of the strain under loads of expected size, 1 sd, as a share of this strain. Both are root mean squares over the gauges.
+    /// Returns 0 if S has no uncertainty.
     pub fn relative_sd(&self) -> f64 {
         let Some(u) = &self.uncertainty else {
             return 0.0;
@@ -89,7 +89,7 @@ impl Sensitivity {
         }
     }
 
-    /// Half widths of the 95 % intervals of the entries, `n x k`; zeros where S is taken as exact.
+    /// Returns the half widths of the 95 % intervals of the entries, `n x k`; zeros if S has no uncertainty.
     pub fn half_widths(&self) -> Matrix {
         let (n, k) = self.values.shape();
         let Some(u) = &self.uncertainty else {
@@ -100,7 +100,7 @@ impl Sensitivity {
         Matrix::from_fn(n, k, |g, l| factor * variance(g * k + l).max(0.0).sqrt())
     }
 
-    /// Column scales: `expected` where every load states it, else 1 over the column's norm (1 for a zero column).
+    /// Returns the column scales: `expected` if every load states it, else 1 over the norm of the column (1 for a zero column).
     pub fn scales(&self) -> Vec<f64> {
         let stated: Option<Vec<f64>> = self
             .loads
@@ -143,12 +143,12 @@ impl Sensitivity {
         }
     }
 
-    /// [`Load::prior`] of every load.
+    /// Returns [`Load::prior`] of every load.
     pub fn priors(&self) -> Vec<Option<f64>> {
         self.loads.iter().map(Load::prior).collect()
     }
 
-    /// S with its columns times [`Self::scales`].
+    /// Returns S with its columns times [`Self::scales`].
     pub fn scale_columns(&self) -> Matrix {
         let mut m = self.values.clone();
         for (mut c, s) in m.column_iter_mut().zip(self.scales()) {
@@ -157,7 +157,7 @@ impl Sensitivity {
         m
     }
 
-    /// Condition number of S in microstrain per job unit; infinite where loads can't be separated.
+    /// Returns the condition number of S in microstrain per job unit; infinite if the loads cannot be separated.
     pub fn condition_number(&self) -> f64 {
         dense::condition(&self.values)
     }

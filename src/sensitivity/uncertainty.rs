@@ -1,8 +1,8 @@
-//! How far a calibrated S may be off, and how much strain scatters between repeats of one loading.
+//! Uncertainty of a calibrated S, and scatter of strain between repeats of one loading.
 
 use crate::linalg::Matrix;
 
-/// Covariance of strain under loads, besides noise: `Cov(eps | f) = q(f)^2 C + sum_jk h_j h_k Cov(S_.j, S_.k) + A`, `h = f - center`.
+/// Covariance of strain under loads, in addition to noise: `Cov(eps | f) = q(f)^2 C + sum_jk h_j h_k Cov(S_.j, S_.k) + A`, `h = f - center`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
     /// Covariance of the entries of S, `(n k) x (n k)` by rows, entry `g k + l` for gauge `g` and load `l`; strain^2 per load^2.
@@ -21,9 +21,9 @@ pub struct Uncertainty {
     pub dof_outside: f64,
     /// Whether S was calibrated only with runs of one load each, without a model.
     pub one_by_one: bool,
-    /// `A`, `n x n` by rows: covariance of the readings at any load, from a common zero or the misfit of a straight line; empty: zero.
+    /// `A`, `n x n` by rows: covariance of the readings at any load, from a common zero or the misfit of a straight line. Empty if it is zero.
     pub additive: Vec<f64>,
-    /// Loads at which the errors of S do not count, because the runs determine the strain there; empty: no load.
+    /// Loads at which the errors of S do not count, because the runs determine the strain at these loads. Empty if there are no such loads.
     pub center: Vec<f64>,
     /// Whether runs that were left out tested the intervals; `false` if each run was needed to determine S.
     pub is_tested: bool,
@@ -64,8 +64,8 @@ impl Uncertainty {
         }
     }
 
-    /// Adds the error of a scale that all known loads of S share, relative, 1 sd: `Cov(S_gl, S_hm) += sd^2 S_gl S_hm`. The factor from runs that were
-    /// left out does not apply to it: they were weighed on the same scale.
+    /// Adds the relative error (1 sd) of a scale that all known loads of S share: `Cov(S_gl, S_hm) += sd^2 S_gl S_hm`. The factor from runs that were
+    /// left out does not apply to it, since their loads were measured with the same scale.
     pub fn add_common_scale(&mut self, s: &Matrix, sd: f64) {
         if sd == 0.0 {
             return;
@@ -80,7 +80,7 @@ impl Uncertainty {
         }
     }
 
-    /// Covariance of the strain that loads `f` cause, `n x n` by rows, noise and `scale` left out.
+    /// Returns the covariance of the strain from the loads `f`, `n x n` by rows, without noise and `scale`.
     pub fn strain_covariance(&self, n: usize, f: &[f64]) -> Vec<f64> {
         let mut out = match self.center.is_empty() {
             true => self.change_covariance(n, (f, f)),
@@ -92,13 +92,13 @@ impl Uncertainty {
         out
     }
 
-    /// `f - center`.
+    /// Returns `f - center`.
     pub fn off_center(&self, f: &[f64]) -> Vec<f64> {
         let center = self.center.iter().copied().chain(std::iter::repeat(0.0));
         f.iter().zip(center).map(|(f, c)| f - c).collect()
     }
 
-    /// `q(f)^2 C + sum_jk h_j h_k Cov(S_.j, S_.k)`, `h` the loads `from` the center.
+    /// Returns `q(f)^2 C + sum_jk h_j h_k Cov(S_.j, S_.k)`, `h` the loads `from` the center.
     fn change_covariance(&self, n: usize, (f, from): (&[f64], &[f64])) -> Vec<f64> {
         let k = f.len();
         let q2 = self.mean_square_of(f);
@@ -118,8 +118,8 @@ impl Uncertainty {
         out
     }
 
-    /// Returns the uncertainty of loads with the center `kept`, where the part `rest` of the center stays as it is at all loads. The errors of S at
-    /// both parts together are no larger than twice those at each: `(a + b)' C (a + b) <= 2 a' C a + 2 b' C b`.
+    /// Returns the uncertainty of loads with the center `kept`, with the part `rest` of the center constant at all loads. The variance of the errors
+    /// of S at both parts together is at most twice the sum of the variances at each part: `(a + b)' C (a + b) <= 2 a' C a + 2 b' C b`.
     fn with_center(&self, kept: Vec<f64>, rest: &[f64]) -> Self {
         let is_exact = rest.iter().all(|v| *v == 0.0);
         let times = if is_exact { 1.0 } else { 2.0 };
@@ -140,8 +140,8 @@ impl Uncertainty {
         }
     }
 
-    /// Mean of the covariance of the strain over loads of standard deviations `scales` that are independent, `n x n` by rows, noise left out, `scale`
-    /// in.
+    /// Returns the mean covariance of the strain over independent loads with the standard deviations `scales`, `n x n` by rows. It contains `scale`
+    /// but not the noise.
     pub fn expected_covariance(&self, n: usize, scales: &[f64]) -> Vec<f64> {
         let none = vec![0.0; scales.len()];
         let mut out = match self.additive.is_empty() && self.center.is_empty() {
@@ -158,7 +158,7 @@ impl Uncertainty {
         out
     }
 
-    /// Variance of what a filter `G eps` gives, for each of its rows, a load or a sum of loads; `gain` has a column a gauge.
+    /// Returns the variance of each row of the filter output `G eps`, which is a load or a sum of loads. `gain` has one column for each gauge.
     pub fn load_forms(&self, gain: &Matrix) -> LoadForms {
         let (rows, n) = gain.shape();
         let k = (self.mean_square.len() as f64).sqrt().round() as usize;
@@ -263,7 +263,7 @@ impl Uncertainty {
     /// Returns the uncertainty of the combined column `S f` for the load combination `f`.
     pub fn combine_loads(&self, f: &[f64]) -> Self {
         if !self.center.is_empty() {
-            // The part of the center along `f`, and the rest.
+            // Component of the center along `f`, and the remaining vector.
             let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
             let part = dot(&self.center, f) / dot(f, f).max(f64::MIN_POSITIVE);
             let rest: Vec<f64> = (self.center.iter().zip(f))
@@ -296,14 +296,14 @@ impl Uncertainty {
         }
     }
 
-    /// Sum of the variances of the entries of gauge `g` of S with `k` loads.
+    /// Returns the sum of the variances of the entries of gauge `g` of S with `k` loads.
     pub fn power(&self, g: usize, k: usize) -> f64 {
         let n = (self.scatter.len() as f64).sqrt().round() as usize;
         let variance = |e: usize| self.covariance.get(e * (n * k + 1)).copied().unwrap_or(0.0);
         self.scale * self.scale * (g * k..(g + 1) * k).map(variance).sum::<f64>()
     }
 
-    /// `q(f)^2`, strain^2.
+    /// Returns `q(f)^2`, strain^2.
     pub fn mean_square_of(&self, f: &[f64]) -> f64 {
         let rows = self.mean_square.chunks_exact(f.len().max(1)).zip(f);
         rows.map(|(row, fj)| fj * row.iter().zip(f).map(|(a, fk)| a * fk).sum::<f64>())
@@ -325,7 +325,7 @@ pub struct LoadForms {
 }
 
 impl LoadForms {
-    /// Variance of row `l` at loads `f`.
+    /// Returns the variance of row `l` at loads `f`.
     pub fn variance(&self, l: usize, f: &[f64]) -> f64 {
         let constant = self.constant.get(l).copied().unwrap_or(0.0);
         let own = constant + form(&self.loads, l, f);
@@ -336,13 +336,13 @@ impl LoadForms {
         own + form(&self.from_center, l, &off)
     }
 
-    /// Variance of the change of row `l` when the loads change by `f`: what does not depend on the loads is the same before and after.
+    /// Returns the variance of the change of row `l` when the loads change by `f`. Terms that do not depend on the loads cancel.
     pub fn variance_of_change(&self, l: usize, f: &[f64]) -> f64 {
         form(&self.loads, l, f) + form(&self.from_center, l, f)
     }
 }
 
-/// `f' B f` with matrix number `l` of a list.
+/// Returns `f' B f` with matrix number `l` of a list.
 fn form(all: &[f64], l: usize, f: &[f64]) -> f64 {
     let k = f.len();
     let one = all.get(l * k * k..(l + 1) * k * k).unwrap_or(&[]);
@@ -351,7 +351,7 @@ fn form(all: &[f64], l: usize, f: &[f64]) -> f64 {
         .sum()
 }
 
-/// Some rows and columns of a square matrix of `order`, each times its factor.
+/// Returns some rows and columns of a square matrix of size `order`, each times its factor.
 fn select_entries(matrix: &[f64], order: usize, rows: &[(usize, f64)]) -> Vec<f64> {
     let pairs = rows.iter().flat_map(|a| rows.iter().map(move |b| (a, b)));
     let value = |((i, p), (j, q)): (&(usize, f64), &(usize, f64))| {
@@ -360,7 +360,7 @@ fn select_entries(matrix: &[f64], order: usize, rows: &[(usize, f64)]) -> Vec<f6
     pairs.map(value).collect()
 }
 
-/// `S' S / n`, `k x k` by rows.
+/// Returns `S' S / n`, `k x k` by rows.
 pub fn mean_square(s: &Matrix) -> Vec<f64> {
     let gram = s.transpose() * s / s.nrows().max(1) as f64;
     gram.iter().copied().collect()

@@ -4,14 +4,14 @@ use super::spectrum::Fourier;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// x as it would read without a lateness that changes with time: out(t) = x(t + late(t)), `late` in s by sample, interpolated by a sinc under a
-/// Lanczos window; beyond the ends the end samples are repeated.
+/// Returns x without a delay that changes with time: out(t) = x(t + late(t)), `late` in s by sample. Values between samples are interpolated by a
+/// sinc under a Lanczos window. Beyond the ends, the end samples are repeated.
 pub fn remove_lateness(x: &[f64], rate_hz: f64, late: impl Fn(usize) -> f64) -> Vec<f64> {
     /// Samples to either side: signals up to three quarters of half the rate pass to better than a per mille.
     const SIDE: isize = 12;
     let last = x.len() as isize - 1;
-    // sin(pi (share - k)) is sin(pi share) with alternating sign, which cancels with the weights but for the sign; that of the window follows
-    // from one sine and one cosine of pi share / SIDE.
+    // sin(pi (share - k)) is sin(pi share) with alternating sign. The factor sin(pi share) cancels when the weights are normalized, the sign stays.
+    // The sine of the window follows from one sine and one cosine of pi share / SIDE.
     let turns: Vec<(f64, f64, f64)> = (1 - SIDE..=SIDE)
         .map(|k| {
             let sign = if k % 2 == 0 { 1.0 } else { -1.0 };

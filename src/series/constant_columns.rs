@@ -89,7 +89,7 @@ impl ColumnContents {
 /// without a number neither begins nor ends a part of one value.
 ///
 /// # Errors
-/// What can't be decoded.
+/// Data that can't be decoded.
 pub fn extent(
     record: &Record,
     column: Option<usize>,
@@ -135,7 +135,7 @@ pub fn extent(
     Ok(from.unwrap_or(first)..to)
 }
 
-/// Takes readings out of rows of `n` columns, the first row being sample `first`: those of columns in their spans.
+/// Replaces readings of columns in their spans by NaN. `values` has rows of `n` columns, and the first row is sample `first`.
 pub fn blank_readings(values: &mut [f64], n: usize, first: usize, spans: &[(usize, Range<usize>)]) {
     let rows = values.len() / n.max(1);
     for (column, span) in spans {

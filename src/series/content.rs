@@ -2,18 +2,18 @@
 
 use super::welch::cross_spectra;
 
-/// Share of the power above the noise that lies below the frequency given.
+/// Share of the power above the noise that is below the returned frequency.
 const SHARE: f64 = 0.99;
 /// A bin counts when its density is this many times the noise: averaged spectra of noise alone stay below.
 const ABOVE_NOISE: f64 = 3.0;
 /// Samples a segment.
 const SEGMENT: usize = 4096;
 
-/// The frequency below which 99 % of a signal's power lies, its mean left out and noise left out; `None` where nothing rises above
-/// the noise or the signal is shorter than a segment of 16 samples.
+/// Returns the frequency below which 99 % of a signal's power is, without its mean and without noise. The result is `None` if nothing exceeds the
+/// noise, or if the signal is shorter than a segment of 16 samples.
 ///
-/// `pieces` are stretches of one signal. The noise density is the larger of `noise_density` (one-sided, unit^2/Hz) and the lower
-/// quartile of the spectrum: what a quarter of all frequencies does not exceed is taken for noise.
+/// `pieces` are stretches of one signal. The noise density is the larger of `noise_density` (one-sided, unit^2/Hz) and the lower quartile of the
+/// spectrum. A quarter of all frequencies is thus assumed to contain only noise.
 pub fn content_hz(pieces: &[Vec<f64>], rate_hz: f64, noise_density: f64) -> Option<f64> {
     let longest = pieces.iter().map(Vec::len).max()?;
     let segment = SEGMENT.min(longest);

@@ -1,9 +1,9 @@
-//! Sampled signals: what a data logger wrote, checked and made comparable.
+//! Sampled signals: records of data loggers, checked and made comparable.
 //!
 //! - [`channels`]: a record of equally long, equally sampled channels with units
 //! - [`record`]: records of any length and origin, read a piece at a time on one clock
 //! - [`binary`]: the long record of strainbridge, read a piece at a time
-//! - [`cell`]: names that a spreadsheet would take for formulas
+//! - [`cell`]: names that a spreadsheet would read as formulas
 //! - [`csv`]: bytes of a CSV file to a record in memory
 //! - [`rpc`]: RPC III files, read and written
 //! - `foreign`: Parquet and MDF4 in memory
@@ -11,14 +11,14 @@
 //! - [`quality`]: dead, clipped, spiky, drifting channels as findings
 //! - [`detrend`]: mean, line and zero-run removal
 //! - [`plans`]: plans of transforms, kept between calls
-//! - [`constant_columns`]: columns that give nothing, or one and the same value
+//! - [`constant_columns`]: columns without readings, or with one constant value
 //! - [`spectrum`]: zero-padded transforms, band limiting and integration in one pass
 //! - [`integrate`]: velocity and displacement from acceleration
 //! - [`window`]: tapered transforms with independent bins
 //! - [`welch`]: power and cross spectra
-//! - [`content`]: up to which frequency a signal has content
-//! - [`align`]: shifting by a part of a sample
-//! - [`resample`]: samples between samples
+//! - [`content`]: highest frequency at which a signal has content
+//! - [`align`]: shift by a part of a sample
+//! - [`resample`]: values between samples
 //! - [`shift`]: the time shift between two recordings of the same signals
 //! - [`rainflow`]: cycles and pseudo-damage
 

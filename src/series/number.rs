@@ -34,8 +34,8 @@ const EXACT: [f64; 23] = [
     1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
-/// Returns the number at the beginning of `text` and its length in bytes; `None` if the exact method does not apply.
-/// It applies to digits that are a whole number below 2^53 times a power of ten up to 22: the product is the nearest number (Clinger 1990).
+/// Returns the number at the beginning of `text` and its length in bytes; `None` if the exact method does not apply. The method applies if the digits
+/// are a whole number below 2^53 and the power of ten is at most 22. The product is then the nearest number (Clinger 1990).
 #[inline]
 pub fn short_number(text: &[u8], mark: DecimalMark) -> Option<(f64, usize)> {
     let mut at = 0;
@@ -117,7 +117,7 @@ fn is_not_measured(field: &[u8]) -> bool {
         .strip_prefix(b"-")
         .or_else(|| field.strip_prefix(b"+"))
         .unwrap_or(field);
-    // What kind of none it is.
+    // Find the kind of missing value.
     let begins = bare.iter().position(|b| *b == b'(');
     let before = begins.and_then(|at| bare.strip_suffix(b")")?.get(..at));
     let zeros = bare.iter().rev().take_while(|b| **b == b'0').count();
@@ -142,7 +142,7 @@ pub fn number(field: &[u8], mark: DecimalMark) -> Option<f64> {
     }
     let text = std::str::from_utf8(field).ok()?;
     let begins = field.trim_ascii_start().first()?;
-    // `inf` and `infinity` are words to the standard parser and no readings.
+    // The standard parser accepts `inf` and `infinity`, which are not readings.
     if !(begins.is_ascii_digit() || b"+-.,".contains(begins)) || text.contains(['i', 'I']) {
         return None;
     }
@@ -155,10 +155,10 @@ pub fn number(field: &[u8], mark: DecimalMark) -> Option<f64> {
     text.parse().ok()
 }
 
-/// Appends `value` with seven digits, as `1.234567e3`; a number that is not finite as nothing.
+/// Appends `value` with seven digits, as `1.234567e3`. A number that is not finite appends nothing.
 ///
-/// The digits come from a product in double precision: the last may differ from the exact rounding by one where the eighth and
-/// the following are 4999999 or 5000000.
+/// The digits come from a product in double precision. The last digit may differ from the exact rounding by one if the eighth and the following
+/// digits are 4999999 or 5000000.
 pub fn push_seven_digits(out: &mut Vec<u8>, value: f64) {
     if !value.is_finite() {
         return;
@@ -300,7 +300,7 @@ mod tests {
                 );
             }
         }
-        // Beyond what can be written is no gap.
+        // Infinity and incomplete markers are not missing values.
         for text in [
             "1.#INF",
             "-1.#INF00",

@@ -23,11 +23,11 @@ fn parquet_write_error(e: ParquetError) -> SeriesError {
     }
 }
 
-/// A file with a column `time` (s, 64 bits) and one a name (32 bits, NaN where nothing was measured), `notes` as its key-value metadata.
-/// `read` appends samples `from .. to`, `names.len()` numbers each.
+/// Returns a Parquet file with a column `time` (s, 64 bits) and a column for each name (32 bits, NaN for missing readings). `notes` become its
+/// key-value metadata. `read` appends samples `from .. to`, `names.len()` numbers each.
 ///
 /// # Errors
-/// What the writer refuses.
+/// Errors of the writer.
 pub fn parquet_bytes(
     names: &[String],
     notes: &[(String, String)],

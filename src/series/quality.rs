@@ -22,11 +22,12 @@ const MISSING_LIMIT: f64 = 0.05;
 const STUCK_RUN: usize = 25;
 /// A channel below this share of its peers' median variation is dead.
 const DEAD_SHARE: f64 = 0.01;
-/// A run of this many samples at the extreme is a clipped peak; at 500 Hz a 10 Hz peak stays within 0.1 % for one.
+/// Number of consecutive samples at the extreme that make a clipped peak. An unclipped 10 Hz peak sampled at 500 Hz has one sample within 0.1 % of
+/// its top.
 const CLIP_RUN: usize = 4;
 /// Clipped peaks needed: the single largest peak may be flat by chance.
 const CLIP_PEAKS: usize = 3;
-/// Between the 2 of a round peak and the 1 of a flat one.
+/// Limit of the ratio between a round peak (2) and a flat peak (1).
 const ROUND_RATIO: f64 = 1.6;
 /// Robust standard deviations of the second difference beyond which a sample is a spike.
 const SPIKE_SIGMA: f64 = 20.0;
@@ -123,7 +124,7 @@ fn check_dead(c: &Channel, kind: Kind, own: f64, peers: &[f64]) -> Option<Findin
         run = if w[0] == w[1] && !lifted { run + 1 } else { 1 };
         longest = longest.max(run);
     }
-    // Values at an extreme that repeat are clipping, reported as such.
+    // Repeated values at an extreme are clipping and are reported as clipping.
     if longest >= STUCK_RUN && check_clipped(c, kind).is_none() {
         let message = format!(
             "The value is constant over {longest} samples: the sensor or logger did not update."
@@ -149,7 +150,7 @@ fn unrest(x: &[f64]) -> f64 {
         .map(|w| (w[1] - 0.5 * (w[0] + w[2])).abs())
         .filter(|v| v.is_finite())
         .collect();
-    // Of white noise the bend has 1.22 times the standard deviation.
+    // For white noise, the bend has 1.22 times the standard deviation of the noise.
     1.4826 * median(bends).unwrap_or(0.0) / 1.22
 }
 
@@ -161,7 +162,7 @@ fn check_clipped(c: &Channel, kind: Kind) -> Option<Finding> {
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| {
             (l.min(v), h.max(v))
         });
-    // Noise that is added after the limit spreads the flat part.
+    // Noise added after the clipping widens the flat part.
     let near = (8.0 * unrest(&x)).clamp(5e-4 * (hi - lo), 0.01 * (hi - lo));
     if near <= 0.0 || !near.is_finite() {
         return None;
@@ -187,7 +188,7 @@ fn check_clipped(c: &Channel, kind: Kind) -> Option<Finding> {
     } else {
         (lo, bottom_total)
     };
-    // Of a round peak twice as many samples lie within four times the depth; of a flat one hardly more.
+    // Within four times the depth, a round peak has twice as many samples. A flat peak has hardly more.
     let deeper = x
         .iter()
         .filter(|v| (**v - level).abs() < 4.0 * near)
@@ -292,7 +293,7 @@ fn check_gravity(c: &Channel, gravity: f64) -> Option<Finding> {
             Finding::new(Severity::Info, "offset", &c.name, message, "Zero the sensor on level ground.").with_numbers(off, limit)
         });
     }
-    // Near zero is an AC-coupled sensor, which is fine; anything else is not explained by gravity.
+    // A mean near zero indicates an AC-coupled sensor, which is no fault. Gravity does not explain any other mean.
     let limit = 0.3 * gravity;
     (m.abs() > limit).then(|| {
         let message =

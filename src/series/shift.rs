@@ -1,12 +1,12 @@
-//! The time shift between two recordings of the same signals.
+//! Time shift between two recordings of the same signals.
 //!
-//! A coarse shift from the cross-correlation of all signals together, then the shift at which the residual is orthogonal to the slope of the
-//! signal, which is free of the grid of the samples.
+//! The cross-correlation of all signals together gives a coarse shift. The fine shift makes the residual orthogonal to the slope of the signal. It is
+//! not tied to the grid of the samples.
 
 use super::spectrum::Fourier;
 use crate::estimate::student_95;
 
-/// Signals sampled at one clock, each as long as the others; samples that are missing are not a number.
+/// Signals of equal length, sampled by one clock. Missing samples are NaN.
 #[derive(Clone, Copy, Debug)]
 pub struct SampledSignals<'a> {
     /// Time of the first sample, s.
@@ -28,7 +28,7 @@ pub struct InterpolatedValue {
     pub noise: f64,
 }
 
-/// A shift, added to the times of the moving signals to get those of the fixed ones.
+/// Time shift from the clock of the moving signals to the clock of the fixed signals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shift {
     /// The shift, s.
@@ -46,7 +46,7 @@ pub enum NoShift {
     Constant,
     /// The largest correlation coefficient at any shift is too small.
     Unlike(f64),
-    /// Two shifts, s, fit alike.
+    /// Two shifts, s, fit equally well.
     Ambiguous([f64; 2]),
 }
 
@@ -59,7 +59,7 @@ pub struct ShiftRules {
     pub overlap: f64,
     /// Least correlation coefficient: below it more than three quarters of the variance differ at any shift.
     pub correlation: f64,
-    /// Share of the largest coefficient from which another shift fits alike: periodic signals repeat themselves.
+    /// Share of the largest coefficient from which another shift is ambiguous. Periodic signals repeat themselves.
     pub alike: f64,
     /// Samples of the fine search at most, spread evenly: more change the shift by less than its interval.
     pub most_samples: usize,
@@ -290,7 +290,7 @@ fn correlation(x: &[f64], y: &[f64], lags: &[isize]) -> Option<Vec<f64>> {
         let ex = at(&of_x, to + lag) - at(&of_x, from + lag);
         let ey = at(&of_y, to) - at(&of_y, from);
         let place = lag.rem_euclid(products.len() as isize) as usize;
-        // Where next to nothing of a signal is left, its correlation is that of rounding.
+        // If the overlap contains hardly any energy, the correlation is rounding error.
         let enough = ex > 1e-9 * all_x && ey > 1e-9 * all_y;
         match enough {
             true => products[place] / (ex * ey).sqrt(),
@@ -336,7 +336,7 @@ impl<'a> FineSearch<'a> {
             moving,
             side,
             stride: n.div_ceil(rules.most_samples).max(1),
-            // A block needs some samples for its sum to be more than one of them.
+            // A block needs several samples, so that its sum averages over them.
             blocks: (n / 8).clamp(2, rules.blocks),
         }
     }
@@ -353,7 +353,7 @@ impl<'a> FineSearch<'a> {
                 let n = n.max(1.0);
                 means[s] = sum / n;
                 let variance = squares / n - means[s] * means[s];
-                // Signals that agree to the last digit get no more weight than their variance allows.
+                // Signals that agree to the last digit get a limited weight, given by 1e-6 of their variance.
                 let least = 1e-6 / first[s].max(f64::MIN_POSITIVE);
                 weights[s] = match weights[s] > 0.0 {
                     true => 1.0 / variance.max(least),
@@ -361,7 +361,7 @@ impl<'a> FineSearch<'a> {
                 };
             }
             if step == 0 {
-                // Means and weights belong to the residuals of the next step.
+                // The first step only gives means and weights for the residuals of the next step.
                 continue;
             }
             if !(sums.slopes > 0.0) {

@@ -185,7 +185,7 @@ impl Fourier {
         let mut bins = vec![Complex64::default(); n / 2 + 1];
         bins[..s.bins.len()].copy_from_slice(&s.bins);
         if factor > 1 {
-            // The bin at the old half rate stands for both its signs.
+            // The bin at the old half rate represents both signs of the frequency.
             bins[s.bins.len() - 1] *= 0.5;
         }
         bins[0].im = 0.0;

@@ -71,7 +71,7 @@ fn without_line(x: &[f64]) -> Vec<f64> {
     x.iter().enumerate().map(flat).collect()
 }
 
-/// Coherence |Sxy|^2 / (Sxx Syy), 0 to 1: it judges all three spectra at once.
+/// Coherence |Sxy|^2 / (Sxx Syy), 0 to 1. It tests all three spectra at once.
 fn coherence(s: &CrossSpectra) -> Vec<f64> {
     (0..s.xy.len())
         .map(|k| s.xy[k].norm_sqr() / (s.xx[k] * s.yy[k]))
@@ -95,7 +95,7 @@ fn integration_in_the_frequency_domain_returns_a_sine_and_ignores_an_offset() {
         2,
     );
     for i in 4000..6000 {
-        // The high-pass takes (0.3/4)^4 = 3e-5 of it.
+        // The high-pass passes (0.3/4)^4 = 3e-5 of it.
         assert!((d[i] - (w * i as f64 / RATE).sin()).abs() < 2e-3);
     }
 }
@@ -142,7 +142,7 @@ fn a_shift_by_part_of_a_sample_moves_a_sine_by_its_phase() {
     let x: Vec<f64> = (0..8000).map(|i| sine(i, 0.0)).collect();
     for seconds in [0.0004, -0.005, 0.1234] {
         let y = delay(&x, RATE, seconds);
-        // The ends carry the record's start and stop.
+        // The ends of the record are left out: its start and stop disturb them.
         for k in 2000..6000 {
             assert!((y[k] - sine(k, seconds)).abs() < 1e-2, "{seconds} {k}");
         }
@@ -153,8 +153,8 @@ fn a_shift_by_part_of_a_sample_moves_a_sine_by_its_phase() {
 fn white_noise_has_a_flat_density_and_no_coherence_with_another() {
     let (x, y) = (noise(64_000, 3), noise(64_000, 4));
     let s = cross_spectra(&x, &y, RATE, 512);
-    // 125 segments without overlap and 190 lines tell a level to .65 %, or 1 % since a window ties neighbours: three of these. The coherence of as
-    // many segments that have nothing in common is 1/125 on average.
+    // 125 segments without overlap and 190 lines give a level to .65 %, or 1 % because a window correlates neighbours. The limit is three times 1 %.
+    // For 125 segments of unrelated signals, the mean coherence is 1/125.
     let level = s.xx[10..200].iter().sum::<f64>() / 190.0;
     assert!((level * RATE / 2.0 - 1.0).abs() < 0.03, "{level}");
     assert!(coherence(&s)[10..200].iter().sum::<f64>() / 190.0 < 0.02);

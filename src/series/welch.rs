@@ -14,21 +14,21 @@ pub struct CrossSpectra {
     pub xx: Vec<f64>,
     /// One-sided density of y, unit^2/Hz.
     pub yy: Vec<f64>,
-    /// One-sided cross density conj(X) Y: its phase is that of y against x.
+    /// One-sided cross density conj(X) Y. Its phase is the phase of y relative to x.
     pub xy: Vec<Complex64>,
     /// How many segments were averaged.
     pub n_segments: usize,
 }
 
-/// Returns the densities of x and y: Hann segments of `n_segment` samples, half overlapped, mean of each segment removed.
+/// Returns the densities of x and y from Hann segments of `n_segment` samples with 50 % overlap. The mean of each segment is removed.
 ///
-/// The conventions are those of `scipy.signal.csd`.
+/// The conventions are as in `scipy.signal.csd`.
 ///
 /// # Reference
 /// Welch, IEEE Trans. Audio Electroacoust. 15 (1967) 70.
 ///
 /// # Example
-/// A sine and its delayed copy: the density sums to the variance 1/2, and the phase is that of the delay.
+/// For a sine and its delayed copy, the density sums to the variance 1/2, and the phase equals the phase of the delay.
 /// ```
 /// use std::f64::consts::{FRAC_PI_4, TAU};
 /// use strainbridge::series::welch::cross_spectra;

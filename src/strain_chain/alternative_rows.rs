@@ -1,4 +1,4 @@
-//! S of the gauges of a job as they may be installed instead: on the other surface, or with angles that are in radians.
+//! S for alternative installations of the gauges of a job: on the other surface, or with angles in radians.
 
 use super::{Fields, has_covariance, lay_gauges};
 use crate::fe::strain_tensor::Surface;
@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 /// Names of gauges, and their rows.
 type NamedRows = (Vec<String>, Matrix);
 
-/// Returns the alternatives for gauges of these names; none where S does not come from a model.
+/// Returns the alternatives for gauges with these names; empty if S is not from a model.
 pub fn alternative_rows(
     work: &mut Work,
     job: &Job,
@@ -29,7 +29,7 @@ pub fn alternative_rows(
     })
 }
 
-/// Returns the alternatives for gauges of these names where `rows_of` makes the rows of a changed job; none where S is calibrated.
+/// Returns the alternatives for gauges with these names. `rows_of` computes the rows of a changed job. Empty if S is calibrated.
 pub fn alternatives_of(
     work: &mut Work,
     job: &Job,
@@ -62,7 +62,7 @@ fn radians(g: &mut JobGauge) -> bool {
     may_be
 }
 
-/// Returns S with every gauge changed where that makes sense; `None` where it does for none.
+/// Returns S with every gauge changed to which `change` applies; `None` if it applies to no gauge.
 fn change_gauges(
     work: &mut Work,
     job: &Job,
@@ -82,14 +82,14 @@ fn change_gauges(
     if meant.is_empty() {
         return None;
     }
-    // Findings on gauges that are only tried are no findings.
+    // Findings on gauges that are changed only as a trial are dropped.
     let n = work.findings.len();
     let found = rows_of(work, &job);
     work.findings.truncate(n);
     let (all, values) = found?;
     let row = |name: &String| all.iter().position(|g| g == name);
     let rows: Option<Vec<usize>> = names.iter().map(row).collect();
-    // A rosette has its name before those of its legs.
+    // The names of the legs of a rosette begin with the name of the rosette.
     let is_meant = |name: &String| {
         let of = |m: &String| name == m || name.starts_with(&format!("{m}."));
         meant.iter().any(of)

@@ -1,5 +1,4 @@
-//! The built-in solver as every command uses it: solutions are kept in the store of the context and taken from there while
-//! their inputs are the same.
+//! Access of all commands to the built-in solver. Solutions are kept in the store of the context, and are reused while their inputs are unchanged.
 
 use crate::fe::{
     Corners, DisplacementSolution, FeError, LoadCase, Relief, Solution, SolveOptions, SolveReport,
@@ -18,17 +17,17 @@ use nastran::bdf::{Subcase, SubcaseKind};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// Number of elastic modes computed together with the strain if nothing else is asked for.
+/// Number of elastic modes computed together with the strain by default.
 pub const MODES: usize = 10;
 
-/// Grids of the largest deck that is solved a second time without a request: below a second on two processors, and about 5 s and 1 GB on a mesh
-/// of half the width.
+/// Number of grids of the largest deck that is solved a second time without a request. Such a solution takes less than a second on two processors. On
+/// a mesh of half the width it takes about 5 s and 1 GB.
 pub(super) const MOST_GRIDS_TWICE: usize = 15_000;
 
 /// Returns the support of the structure of a job under its unit loads.
 ///
 /// # Errors
-/// An SPC set that the deck lacks; several that its subcases select; one that moves grids.
+/// An SPC set that the deck lacks; subcases that select several SPC sets; an SPC set that moves grids.
 pub fn support_of_job(job: &Job, model: &Model) -> Result<Support, Faults> {
     let (wanted, line) = job
         .model
@@ -52,7 +51,7 @@ pub fn support_of_job(job: &Job, model: &Model) -> Result<Support, Faults> {
     }
 }
 
-/// The first displacement other than zero that a support enforces: SPC set, grid, size.
+/// Returns the first displacement other than zero that a support enforces: SPC set, grid, size.
 fn moved_by(model: &Model, support: Support) -> Option<(u32, u32, f64)> {
     let set = model.spcs.iter().find(|s| Some(s.sid) == support.spc)?;
     let (grid, _, by) = set.terms.iter().find(|t| t.2 != 0.0)?;
@@ -69,12 +68,12 @@ pub fn relief_of_job(job: &Job, model: &Model) -> Result<Option<Finding>, Faults
         .as_ref()
         .map_or(SupportChoice::Deck, |m| m.support);
     let support = support_of_job(job, model)?;
-    // A job without PARAM,INREL in its deck is free by the contract of its keys.
+    // A job whose deck has no PARAM,INREL has a free structure, as the reference of its keys states.
     let limited = |f: &Finding| f.code == "tied-to-ground" || support.by_springs > 0;
     Ok(relief_finding(model, support, wanted).filter(limited))
 }
 
-/// Which support it is, for `check` and `init`.
+/// Returns a finding on the support, for `check` and `init`.
 pub fn support_finding(deck: &str, support: Support) -> Finding {
     Finding::new(
         Severity::Info,
@@ -85,10 +84,10 @@ pub fn support_finding(deck: &str, support: Support) -> Finding {
     )
 }
 
-/// Refuses what only a structure on its wheels can answer, where supports hold it.
+/// Refuses a command that needs a structure on its wheels, if supports hold the structure.
 ///
 /// # Errors
-/// A structure that an SPC set or springs to ground hold.
+/// A structure that is held by an SPC set or by springs to ground.
 pub fn stands_on_wheels(job: &Job, model: &Model, what: &str) -> Result<(), Faults> {
     let support = support_of_job(job, model)?;
     if !support.is_held() {
@@ -110,7 +109,7 @@ pub fn stands_on_wheels(job: &Job, model: &Model, what: &str) -> Result<(), Faul
     )))
 }
 
-/// The unit loads of a job as load cases, subcases numbered in job order.
+/// Returns the unit loads of a job as load cases. Subcases are numbered in job order.
 ///
 /// # Errors
 /// Grids and coordinate systems that the deck lacks.
@@ -135,7 +134,7 @@ pub fn cases_of_job(job: &Job, read: &DeckModel) -> Result<Vec<LoadCase>, Faults
         .collect())
 }
 
-/// Refuses a deck whose subcases select different MPC sets: the structure under unit loads has one.
+/// Refuses a deck whose subcases select different MPC sets, since the structure under unit loads has one MPC set.
 ///
 /// # Errors
 /// One fault with the sets.
@@ -163,7 +162,7 @@ pub fn label_of(s: &Subcase) -> String {
     s.label.clone().or(s.subtitle.clone()).unwrap_or_default()
 }
 
-/// Whether a subcase is a combination of others.
+/// Returns whether a subcase is a combination of other subcases.
 pub fn is_combination(s: &Subcase) -> bool {
     matches!(
         s.kind,
@@ -174,7 +173,7 @@ pub fn is_combination(s: &Subcase) -> bool {
 /// Returns a static subcase of a deck as a load case.
 ///
 /// # Errors
-/// Why the subcase is not one: a combination of others, an ANALYSIS that is not statics, no load.
+/// The reason why the subcase is not a load case. It is a combination of other subcases, has an ANALYSIS that is not statics, or has no load.
 pub fn static_case(model: &Model, subcase: &Subcase) -> Result<LoadCase, String> {
     if is_combination(subcase) {
         return Err("it combines other subcases".to_owned());
@@ -193,7 +192,7 @@ pub fn static_case(model: &Model, subcase: &Subcase) -> Result<LoadCase, String>
     Ok(case)
 }
 
-/// Whether an SPC set moves a grid.
+/// Returns whether an SPC set moves a grid.
 fn has_enforced(model: &Model, spc: Option<u32>) -> bool {
     model
         .spcs
@@ -201,7 +200,7 @@ fn has_enforced(model: &Model, spc: Option<u32>) -> bool {
         .any(|s| Some(s.sid) == spc && s.terms.iter().any(|t| t.2 != 0.0))
 }
 
-/// Solves load cases on the model of a deck, with its elastic modes, or takes the kept solution.
+/// Solves load cases on the model of a deck, with its elastic modes, or reads the kept solution.
 ///
 /// # Errors
 /// Faults of the solver, with file and line.
@@ -265,7 +264,7 @@ pub struct ElasticModes {
     pub strain: Solution,
 }
 
-/// The lowest `count` elastic modes on an SPC set, with their strain, solved or taken from those kept; fewer where the structure has fewer.
+/// Returns the lowest `count` elastic modes on an SPC set with their strain, solved or from the store; fewer if the structure has fewer.
 ///
 /// # Errors
 /// Faults of the solver, with file and line.
@@ -293,7 +292,7 @@ pub fn modes_kept(
         let solved = solve_modes(model, spc, model.mpc, count, &options)?;
         let mut displacements: Vec<Vec<[f64; 6]>> =
             solved.modes.iter().map(|m| m.shape.clone()).collect();
-        // As many fields as were asked for; those beyond the modes hold nothing.
+        // The result has as many fields as requested. Fields beyond the number of modes are zero.
         displacements.resize(count, vec![[0.0; 6]; model.grids.len()]);
         Ok(DisplacementSolution {
             displacements,
@@ -431,7 +430,7 @@ fn identity(work: &mut Work, read: &DeckModel, cases: &[LoadCase], made: &str) -
     text
 }
 
-/// The solver's faults with file and line; that the work was stopped is no fault of the deck.
+/// Returns the solver's faults with file and line. A stopped computation is not a fault of the deck.
 pub fn faults_of(error: &FeError, read: &DeckModel) -> Faults {
     if *error == FeError::Stopped {
         return cancelled_fault().into();

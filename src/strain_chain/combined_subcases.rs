@@ -24,8 +24,8 @@ impl CombinedSubcase {
     }
 }
 
-/// Reads the combination that the subcase `s` states of the subcases `above`; `solved` has the index of the solved case of each, `at` is the
-/// index of the combination among all results.
+/// Reads the combination of the subcases `above` that the subcase `s` states. `solved` contains the index of the solved case of each subcase, and
+/// `at` is the index of the combination among all results.
 ///
 /// SUBSEQ gives its last factor to the SUBCASE directly above, and so on upwards. SYMSEQ gives its factors to SYM subcases in the same way;
 /// without SYMSEQ every factor is 1. REPCASE repeats the subcase above.
@@ -149,7 +149,7 @@ pub(crate) fn add_combinations(
     Ok(())
 }
 
-/// The fault of a combination whose subcases have results of bars at different stations.
+/// Returns the fault of a combination whose subcases have results of bars at different stations.
 pub(crate) fn other_stations(read: &DeckModel, combination: &Subcase) -> Fault {
     Fault::with_line(
         read.deck.path(combination.at),

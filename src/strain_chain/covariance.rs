@@ -1,8 +1,13 @@
 //! `calibration.bin`: uncertainty of a calibrated S, from which its intervals are computed.
 //!
-//! Eight bytes `SBCALIB1`, the length of a JSON header (u32), and the header: names of gauges and loads, scale, degrees of freedom, whether each
-//! calibration run had one load alone. Then little-endian f64: covariance of S by rows, entry `g k + l`, (strain per job unit)^2; scatter over gauges
-//! by rows; mean squares of S; if the header states `additive`, the covariance of readings at any load by rows.
+//! The file begins with the eight bytes `SBCALIB1`, the length of a JSON header (u32), and the header. The header contains the names of gauges and
+//! loads, the scale, the degrees of freedom, and whether each calibration run had one load alone.
+//!
+//! Little-endian f64 numbers follow:
+//! - covariance of S by rows, entry `g k + l`, (strain per job unit)^2
+//! - scatter over gauges by rows
+//! - mean squares of S
+//! - if the header states `additive`, the covariance of readings at any load by rows
 
 use crate::finding::list_few;
 use crate::host::fault::{Fault, Faults};
@@ -16,13 +21,14 @@ struct Header {
     gauges: Vec<String>,
     loads: Vec<String>,
     scale: f64,
-    /// `None`: nothing was estimated.
+    /// Degrees of freedom; `None` if nothing was estimated.
     dof: Option<f64>,
     #[serde(default)]
     dof_outside: Option<f64>,
     #[serde(default)]
     one_by_one: bool,
-    /// Loads at which errors of S do not count; with it, or where strain errs at any load, a further `n x n` block of numbers ends the file.
+    /// Loads at which errors of S do not count. If the strain has an error at any load (`additive`), a further `n x n` block of numbers ends the
+    /// file.
     #[serde(default)]
     center: Vec<f64>,
     #[serde(default)]
@@ -35,7 +41,7 @@ fn default_true() -> bool {
     true
 }
 
-/// The file of a calibrated S; `None` where it has no uncertainty.
+/// Returns the file of a calibrated S; `None` if S has no uncertainty.
 pub fn covariance_bytes(s: &Sensitivity) -> Option<Vec<u8>> {
     let u = s.uncertainty.as_ref()?;
     let header = Header {

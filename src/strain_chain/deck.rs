@@ -1,4 +1,4 @@
-//! Decks and models: INCLUDE from the file system, the model of a deck or of an OP2 that holds the mesh.
+//! Decks and models: INCLUDE from the file system, the model of a deck or of an OP2 that contains the mesh.
 
 use crate::fe::mass_moved;
 use crate::finding::{Finding, Severity, list_few};
@@ -36,7 +36,7 @@ pub struct DeckModel {
 /// Reads the deck `given` (relative to `base`) with its INCLUDEs, or the mesh of an OP2, and builds the model.
 ///
 /// # Errors
-/// A fault where the file can't be read at all. What is wrong inside is in [`DeckModel::faults`].
+/// A fault if the file cannot be read at all. Faults in its content are in [`DeckModel::faults`].
 pub fn read_model(inputs: &mut Inputs, base: &Path, given: &str) -> Result<DeckModel, Fault> {
     let bytes = inputs.read(base, given)?;
     if let Some(fault) = no_deck(given, &bytes) {
@@ -68,7 +68,7 @@ pub(crate) fn no_deck(given: &str, bytes: &[u8]) -> Option<Fault> {
     ))
 }
 
-/// The deck, and the files it was read from.
+/// Reads the deck, and returns it with the files that it was read from.
 fn deck_and_files(
     inputs: &mut Inputs,
     base: &Path,
@@ -85,7 +85,7 @@ fn deck_and_files(
     (deck, loader.files)
 }
 
-/// The deck in `bytes` and its model.
+/// Reads the deck in `bytes` and builds its model.
 pub fn model_of_deck(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]) -> DeckModel {
     let (deck, files) = deck_and_files(inputs, base, given, bytes);
     let (model, model_faults) = Model::from_deck(&deck);
@@ -106,14 +106,14 @@ pub fn model_of_deck(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]
     }
 }
 
-/// The fault of a model whose mass, centre of gravity or moments of inertia exceed the range of numbers.
+/// Returns the fault of a model whose mass, centre of gravity or moments of inertia exceed the range of numbers.
 fn mass_beyond(model: &Model, given: &str) -> Option<Fault> {
     let about_origin = model.rigid_body_mass(Vec3::zeros());
     let centre =
         Weight::from_mass_matrix(&about_origin, Vec3::zeros()).map_or_else(Vec3::zeros, |w| w.cg);
     let about_centre = mass_moved(&about_origin, -centre);
     let mut numbers = about_origin.iter().chain(about_centre.iter());
-    // Inertia relief and its checks multiply two of them.
+    // Inertia relief and its checks multiply two of these numbers.
     (!numbers.all(|v| (v * v).is_finite())).then(|| {
         Fault::new(
             given,
@@ -124,10 +124,10 @@ fn mass_beyond(model: &Model, given: &str) -> Option<Fault> {
     })
 }
 
-/// The model in the geometry blocks of an OP2.
+/// Returns the model in the geometry blocks of an OP2.
 ///
 /// # Errors
-/// A fault where the file is no OP2 or holds no geometry.
+/// A fault if the file is not an OP2 or contains no geometry.
 pub fn model_of_op2(given: &str, bytes: &[u8]) -> Result<DeckModel, Fault> {
     let op2 = Op2::read(bytes)
         .map_err(|e| Fault::new(given, "OP2", e.to_string(), "write the file again"))?;
@@ -173,7 +173,7 @@ pub fn model_of_op2(given: &str, bytes: &[u8]) -> Result<DeckModel, Fault> {
     })
 }
 
-/// Returns the notes of the reader, one finding a deck: superelements that are kept and not read, a missing ENDDATA, an INCLUDE of two meanings.
+/// Returns the notes of the reader, one finding for each deck: superelements that are kept but not read, a missing ENDDATA, an ambiguous INCLUDE.
 fn notes_of(deck: &Deck, given: &str) -> Vec<Finding> {
     if deck.notes.is_empty() {
         return Vec::new();
@@ -189,7 +189,7 @@ fn notes_of(deck: &Deck, given: &str) -> Vec<Finding> {
     vec![finding.with_numbers(deck.notes.len() as f64, 0.0)]
 }
 
-/// The faults of a deck's cards.
+/// Returns the faults of a deck's cards.
 pub fn deck_faults(deck: &Deck) -> FaultList {
     deck.faults.iter().map(|f| fault_of(deck, f)).collect()
 }
@@ -247,7 +247,7 @@ impl DeckModel {
     }
 }
 
-/// Errors become faults; notes become findings, one a kind. Returns the faults that come of cards that are not carried.
+/// Converts errors to faults, and notes to findings, one for each kind. Returns the faults that come from unsupported cards.
 fn sort_out(
     model_faults: &[ModelFault],
     file_of: &dyn Fn(&ModelFault) -> String,
@@ -310,7 +310,7 @@ fn sort_out(
     not_carried
 }
 
-/// Young's modulus by material id, and density times WTMASS, for the plausibility of units.
+/// Returns Young's modulus by material id, and density times WTMASS, for the plausibility of units.
 pub fn moduli_and_densities(model: &Model) -> (Vec<(u32, f64)>, Vec<(u32, f64)>) {
     let modulus = |m: &Material| match m.kind {
         MaterialKind::Isotropic { e, .. } => Some((m.id, e)),
@@ -370,7 +370,7 @@ impl Loader for FileLoader<'_, '_> {
     }
 }
 
-/// The path with `.` and `folder/..` taken out, so that one file has one name.
+/// Returns the path without `.` and `folder/..`, so that one file has one name.
 pub(crate) fn without_dots(path: &Path) -> PathBuf {
     let mut out = PathBuf::new();
     for part in path.components() {

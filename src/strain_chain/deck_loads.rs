@@ -26,7 +26,7 @@ struct Resultant {
 ///
 /// For a load at a grid, force and moment about the grid are compared, so that a couple may represent a moment. Pressures, accelerations,
 /// temperatures and enforced displacements in its subcase are refused. A load set is compared with the LOAD of the subcase. A combination is the sum
-/// of its subcases. A subcase whose label differs in the results is not compared: the results are of another deck.
+/// of its subcases. A subcase whose label differs in the results is not compared, since the results are from another deck.
 ///
 /// # Errors
 /// Every such load.
@@ -138,7 +138,7 @@ impl DeckLoadCheck<'_> {
             all.extend(moved_supports(deck, s));
             all
         });
-        // `load_set` states what LOAD selects, and nothing more.
+        // `load_set` can state only the set that LOAD selects.
         let set = match (beyond_load.is_empty(), self.sids().as_slice()) {
             (true, &[sid]) => Some(sid),
             _ => None,
@@ -214,7 +214,7 @@ impl DeckLoadCheck<'_> {
         Some(sum)
     }
 
-    /// Loads of the load sets with their factors.
+    /// Returns the loads of the load sets with their factors.
     fn loads(&self) -> impl Iterator<Item = (f64, &Load)> {
         let sets = &self.deck.model.load_sets;
         self.terms.iter().flat_map(move |(factor, s)| {
@@ -231,7 +231,7 @@ impl DeckLoadCheck<'_> {
             return None;
         }
         let stated = self.deck.model.load_sets.iter().find(|s| s.sid == set);
-        // Results of a deck with another load set of that number, or with none, are not compared.
+        // If the deck lacks the load set, the results are from another deck and are not compared.
         let stated = stated?.loads.iter().map(|(f, load)| (*f, load));
         let acts = |l: &(f64, &Load)| l.0 != 0.0;
         if stated.filter(acts).eq(self.loads().filter(acts)) {
@@ -264,14 +264,14 @@ impl DeckLoadCheck<'_> {
         ))
     }
 
-    /// Load sets that the subcase selects.
+    /// Returns the load sets that the subcase selects.
     fn sids(&self) -> Vec<u32> {
         let sids = self.terms.iter().filter_map(|(_, s)| s.load);
-        // LOAD = NONE is the set 0.
+        // `LOAD = NONE` is read as set 0.
         sids.filter(|sid| *sid != 0).collect()
     }
 
-    /// `subcase 2 (LOAD = 77)`.
+    /// Returns the subcase as text, such as `subcase 2 (LOAD = 77)`.
     fn subcase_in_words(&self) -> String {
         let terms = self.terms.iter();
         let sets: Vec<String> = terms
@@ -315,7 +315,8 @@ impl DeckLoadCheck<'_> {
     }
 }
 
-/// Whether results with this label may be those of a subcase with that one; programs write a label of their own where the deck has none.
+/// Returns whether results with the label `results` may be from a subcase with the label `deck`. If the deck has no label, other programs write their
+/// own.
 fn may_be_of(deck: &str, results: &str) -> bool {
     let (deck, results) = (deck.trim(), results.trim());
     let own = results.is_empty() || results.to_ascii_uppercase().starts_with("SUBCASE");
@@ -347,7 +348,7 @@ mod tests {
     use crate::strain_chain::unit_loads;
     use std::path::Path;
 
-    /// A force of 1000 along y at the tip of a bar of 2 m, a moment of 50 as a couple of the ends, and a subcase with gravity.
+    /// Deck of a bar of 2 m. Its loads are a force of 1000 along y at the tip, a moment of 50 as a couple of the ends, and gravity.
     const DECK: &str = "SOL 101\nCEND\nSUBCASE 1\nLABEL = tip\nLOAD = 1\nSUBCASE 2\nLABEL = couple\nLOAD = 2\nSUBCASE 3\nLOAD = 3\n\
         SUBCASE 4\nLOAD = 1\nTEMPERATURE(LOAD) = 7\nSUBCASE 5\nLOAD = 1\nTEMPERATURE(LOAD) = 8\n\
         SUBCASE 6\nLOAD = 1\nSPC = 61\nSUBCOM 7\nSUBSEQ = 1., 0., 0., 0., 0., 0.\nSUBCOM 8\nSUBSEQ = 2., 1., 0., 0., 0., 0.\n\
@@ -357,7 +358,7 @@ mod tests {
         SPC,6,1,3,.01\nSPCADD,60,6\nSPCADD,61,60\nLOAD,11,1.,1.,1,1.,3\nLOAD,12,1.,1.,1,1.,22\nRFORCE,22,,,10.,0.,1.,0.\nLOAD,13,1.,1.,1,0.,3\nGRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\n\
         FORCE,1,2,,1000.,0.,1.,0.\nFORCE,2,2,,25.,0.,1.,0.\nFORCE,2,1,,-25.,0.,1.,0.\nGRAV,3,,9.81,0.,0.,-1.\nENDDATA\n";
 
-    /// The faults of a load with these keys, its strain taken from the case of a subcase with a label.
+    /// Returns the faults of a load with these keys, with the strain of a subcase with a label.
     fn faults(keys: &str, subcase: u32, label: &str) -> Vec<String> {
         let text = format!(
             "units = \"m-kg-s\"\n[model]\ndeck = \"bar.bdf\"\nresults = [\"bar.op2\"]\n[[load]]\nname = \"F\"\n{keys}\nsubcase = {subcase}\n"
@@ -409,10 +410,10 @@ mod tests {
     #[test]
     fn results_of_other_decks_are_not_compared() {
         let wrong = "grid = 1\ncomponent = \"FX\"\napplied = 3.0";
-        // No such subcase, a label that the deck does not have.
+        // The deck does not have the subcase, or the label.
         assert!(faults(wrong, 99, "").is_empty());
         assert!(faults(wrong, 1, "front left").is_empty());
-        // A program's own label says nothing of the deck.
+        // A label that another program wrote does not identify the deck.
         assert_eq!(faults(wrong, 1, "SUBCASE 1").len(), 1);
         assert_eq!(faults(wrong, 1, "").len(), 1);
     }

@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Returns a warning if the subcases of the loads have different supports, or another support than the job states.
 ///
-/// Compared are the degrees of freedom that the SPC sets hold. A subcase whose label differs in the results is not compared.
+/// The comparison uses the degrees of freedom that the SPC sets hold. A subcase whose label differs in the results is not compared.
 pub(super) fn check_deck_supports<'a>(
     job: &Job,
     deck: &DeckModel,
@@ -24,10 +24,10 @@ pub(super) fn check_deck_supports<'a>(
         let Some(s) = subcase_of(&subcases, case).and_then(|i| subcases.get(i)) else {
             continue;
         };
-        // A subcase without loads is not the run of these results.
+        // A subcase without loads is not the source of these results.
         let is_run = s.load.is_some() || s.temperature_load.is_some();
         if is_run && !is_combination(s) {
-            // SPC = NONE is the set 0.
+            // `SPC = NONE` is read as set 0.
             let set = s.spc.filter(|sid| *sid != 0);
             by_set.entry(set).or_insert(s.id);
         }
@@ -42,7 +42,7 @@ pub(super) fn check_deck_supports<'a>(
             let first = held.next()?;
             held.any(|h| h != first)
         }
-        // PARAM,INREL balances the loads along what an SPC set leaves free.
+        // PARAM,INREL balances the loads along the degrees of freedom that an SPC set leaves free.
         SupportChoice::Free if model.params.inrel < 0 => false,
         SupportChoice::Free => by_set.keys().any(|sid| !held_dofs(model, *sid).is_empty()),
         SupportChoice::Set(set) => {
@@ -73,7 +73,7 @@ pub(super) fn check_deck_supports<'a>(
     })
 }
 
-/// Grids and degrees of freedom that an SPC set holds.
+/// Returns the grids and degrees of freedom that an SPC set holds.
 fn held_dofs(model: &Model, sid: Option<u32>) -> BTreeSet<(u32, usize)> {
     let sets = model.spcs.iter().filter(|s| Some(s.sid) == sid);
     let terms = sets.flat_map(|s| &s.terms);

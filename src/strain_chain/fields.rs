@@ -38,13 +38,13 @@ pub struct Fields {
     solved_here: bool,
     /// By load: solution, case.
     of_load: Vec<(usize, usize)>,
-    /// The mesh error that was taken out of `solutions`, by load of the job. `None` where that was not computed.
+    /// Mesh error that was subtracted from `solutions`, by load of the job. `None` if it was not computed.
     pub mesh_error: Option<MeshError>,
     /// First elastic frequency of the structure with the supports of the job, cycles per unit of time. `None` if another program solved it, or if
     /// additional loads were solved with it.
     pub first_mode: Option<f64>,
-    /// Subcase of the deck that is the reference state of the readings, solved here; `None` where another program solved it, or the job has no
-    /// such state.
+    /// Subcase of the deck that is the reference state of the readings, solved by the built-in solver. `None` if another program solved it, or if the
+    /// job has no such state.
     reference: Option<CaseResult>,
     /// Solution of the additional loads; `None` if another program solved the loads of the job.
     pub beside: Option<Solution>,
@@ -54,29 +54,29 @@ pub struct Fields {
 pub type AdditionalUnitLoads<'a> = &'a dyn Fn(&Model) -> Result<Vec<UnitLoad>, Faults>;
 
 impl Fields {
-    /// The model.
+    /// Returns the model.
     pub fn model(&self) -> &Model {
         &self.deck.model
     }
 
-    /// Every load with the case in which it acts, job order.
+    /// Returns every load with the case in which it acts, in job order.
     pub fn load_cases<'a>(&'a self, job: &Job) -> Vec<LoadCaseOf<'a>> {
         let cases = self.of_load.iter();
         of_loads(job, cases.map(|&(s, c)| &self.solutions[s].cases[c]))
     }
 
-    /// Every load with the mesh error in its case, job order; empty where that was not computed.
+    /// Returns every load with the mesh error in its case, in job order; empty if the mesh error was not computed.
     pub fn mesh_cases<'a>(&'a self, job: &Job) -> Vec<LoadCaseOf<'a>> {
         of_loads(job, self.mesh_error.iter().flat_map(|e| &e.cases))
     }
 
-    /// Share of the mesh error that may be left; 0 where it was not computed.
+    /// Returns the share of the mesh error that may remain; 0 if the mesh error was not computed.
     pub fn mesh_left(&self) -> f64 {
         self.mesh_error.as_ref().map_or(0.0, |e| e.left)
     }
 
-    /// Returns the reference state, a subcase of the deck, from its results or as it was solved here. Cases that were solved for the job's loads
-    /// have numbers of the job, which name no subcase.
+    /// Returns the reference state, a subcase of the deck, from its results or from the built-in solver. Cases that were solved for the job's loads
+    /// have numbers of the job, which are not subcase numbers.
     pub fn subcase(&self, id: u32) -> Option<&CaseResult> {
         if self.is_solved_here() {
             return self.reference.as_ref().filter(|c| c.subcase == id);
@@ -85,12 +85,12 @@ impl Fields {
         cases.find(|c| c.subcase == id)
     }
 
-    /// Whether the built-in solver solved the loads.
+    /// Returns whether the built-in solver solved the loads.
     pub fn is_solved_here(&self) -> bool {
         self.solved_here
     }
 
-    /// Whether every load's case has strain at corners.
+    /// Returns whether every load's case has strain at corners.
     pub fn corner_rows(&self, job: &Job) -> CornerRows {
         let all = self
             .load_cases(job)
@@ -130,8 +130,8 @@ pub fn read_fields(work: &mut Work, job: &Job, at: WantedAt) -> Result<Fields, F
     read_fields_beside(work, job, at, None)
 }
 
-/// Reads the model like [`read_fields`], and solves for the loads `beside` with the same factor. Elastic modes are then left out, since no caller
-/// needs them.
+/// Reads the model like [`read_fields`], and solves for the additional loads `beside` with the same matrix factor. Elastic modes are then left out,
+/// since no caller needs them.
 ///
 /// # Errors
 /// Every error of [`read_fields`] and of `beside`.
@@ -242,7 +242,7 @@ fn solve_fields(
 /// Reads the strain of the unit loads from the results that the job names.
 ///
 /// # Errors
-/// Files that cannot be read; loads without one subcase of their own.
+/// Files that cannot be read; loads that do not have exactly one subcase.
 fn read_results(
     work: &mut Work,
     job: &Job,
@@ -314,7 +314,7 @@ fn read_results(
     })
 }
 
-/// The reference state of the readings as static subcases of the deck with their factors: one, or those that a combination adds up.
+/// Reference state of the readings as static subcases of the deck with their factors: one subcase, or the subcases of a combination.
 struct ReferenceState {
     subcase: Subcase,
     terms: Vec<(f64, LoadCase)>,
@@ -333,11 +333,11 @@ impl ReferenceState {
     }
 }
 
-/// Returns the subcase of the deck that the job names as its reference state; `None` where the job names none, or the deck has no such static
+/// Returns the subcase of the deck that the job names as its reference state. `None` if the job names no subcase, or if the deck has no such static
 /// subcase with a load.
 ///
 /// # Errors
-/// A combination that states no sum of static subcases.
+/// A combination that is not a sum of static subcases.
 fn reference_state(job: &Job, deck: &DeckModel) -> Result<Option<ReferenceState>, Faults> {
     let Some(Reference::Subcase(id)) = job.measured.as_ref().map(|m| m.reference) else {
         return Ok(None);
@@ -368,7 +368,7 @@ fn reference_state(job: &Job, deck: &DeckModel) -> Result<Option<ReferenceState>
     }))
 }
 
-/// Bars and beams with PLOAD1 in the load set of a subcase; in any load set where the deck has no such subcase.
+/// Returns the bars and beams with PLOAD1 in the load set of a subcase; in any load set if the deck has no such subcase.
 fn loaded_bars(deck: &DeckModel, subcase: u32) -> Vec<BeamIx> {
     let subcases = deck.deck.case_control.effective_subcases();
     let selected = subcases.iter().find(|s| s.id == subcase);

@@ -9,7 +9,7 @@ use crate::host::work::Work;
 use crate::job::{Job, JobGauge};
 use crate::sensitivity::{NoStrain, NoStrainCause, bar_points};
 
-/// Channels of the job's gauges, in job order; findings go to the work.
+/// Returns the channels of the job's gauges, in job order. Findings are added to `work`.
 ///
 /// # Errors
 /// Elements and coordinate systems that the deck lacks, directions normal to their surface.
@@ -32,7 +32,7 @@ pub fn lay_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<Vec<Gau
     Faults::check(faults)?;
     let stated = point_findings(fields.model(), job);
     for finding in stated.into_iter().chain(off_skin(fields.model(), &gauges)) {
-        // A command that lays the gauges twice reports a finding once.
+        // A command that places the gauges twice reports each finding once.
         if !work.findings.contains(&finding) {
             work.findings.push(finding);
         }
@@ -51,13 +51,13 @@ pub fn lay_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<Vec<Gau
     Ok(gauges)
 }
 
-/// A gauge that can't be laid, as a fault at the line that states it.
+/// Returns the fault of a gauge that cannot be placed, at the line that states the gauge.
 pub fn not_laid(g: &JobGauge, e: &GaugeError) -> Fault {
     let (wrong, remedy) = e.parts();
     Fault::with_line(&*g.file, g.line, "gauge", wrong, remedy)
 }
 
-/// Faults of gauges without strain, at the line that states them.
+/// Returns the faults of gauges without strain, at the lines that state them.
 pub fn without_strain(job: &Job, missing: &[NoStrain]) -> Faults {
     let mut out: FaultList = Vec::new();
     for m in missing {

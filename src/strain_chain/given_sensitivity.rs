@@ -16,10 +16,10 @@ use crate::sensitivity::{Load, Sensitivity};
 use crate::units::{MICROSTRAIN, factor};
 use std::collections::HashMap;
 
-/// The table of `[sensitivity]` as S in strain per job unit, rows in the order of the job's gauges where it has some.
+/// Reads the table of `[sensitivity]` as S in strain per job unit. Rows are in the order of the job's gauges if it has gauges.
 ///
 /// # Errors
-/// Missing columns, rows for gauges that the job names and the table lacks, fields that are no numbers.
+/// Missing columns, missing rows for gauges of the job, fields that are not numbers.
 pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
     let Some(given) = &job.sensitivity else {
         return Err(Fault::new(
@@ -140,7 +140,7 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
     })
 }
 
-/// Refuses a table that lacks the column of a wanted load: the other loads would take its strain.
+/// Refuses a table that lacks the column of a wanted load, since the strain of this load would be assigned to other loads.
 fn check_wanted(job: &Job, line: u32, table: &Table, loads: &[Load], faults: &mut FaultList) {
     let wanted = job.loads.iter().filter(|l| l.role == LoadRole::Wanted);
     for load in wanted.filter(|l| loads.iter().all(|own| own.name != l.name)) {
@@ -158,7 +158,8 @@ fn check_wanted(job: &Job, line: u32, table: &Table, loads: &[Load], faults: &mu
     }
 }
 
-/// Readings of the job's gauges with their rows in the table of S, whose rows bear these names; all rows for a job that states no gauges.
+/// Returns the readings of the job's gauges with their rows in the table of S. `names` are the names of the rows. A job that states no gauges has all
+/// rows.
 fn rows_of(
     job: &Job,
     file: &str,
@@ -171,7 +172,7 @@ fn rows_of(
     let places: HashMap<&String, usize> = names.iter().rev().zip((0..names.len()).rev()).collect();
     let mut out = Vec::new();
     for g in &job.gauges {
-        // A table may have a row for a rosette as one channel.
+        // A table may contain one row for a whole rosette.
         let readings = match places.contains_key(&g.name) {
             true => vec![g.name.clone()],
             false => readings_of(g),
@@ -179,7 +180,7 @@ fn rows_of(
         for reading in readings {
             match places.get(&reading).copied() {
                 Some(row) => out.push((reading, row)),
-                // A calibration does not learn the rows of validation gauges.
+                // A calibration does not determine the rows of validation gauges.
                 None if g.role == Role::Validation => {}
                 None => faults.push(Fault::with_line(
                     &*g.file,

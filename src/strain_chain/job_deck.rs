@@ -1,4 +1,4 @@
-//! The deck of a job, held against the units that the job states: one place for every command that reads one.
+//! Reads the deck of a job for all commands, and compares it with the units that the job states.
 
 use crate::fe::suport_without_inrel;
 use crate::finding::Finding;
@@ -10,7 +10,7 @@ use crate::strain_chain::deck::{DeckModel, moduli_and_densities, read_model};
 use crate::strain_chain::not_solved::NOT_SOLVED;
 use crate::units::{UnitSystem, check_units};
 
-/// The deck of a job; what is worth knowing of it, and what contradicts the job's units, goes to the work.
+/// Reads the deck of a job. Findings on the deck, and contradictions to the units of the job, are added to the findings of `work`.
 ///
 /// # Errors
 /// Every fault of the deck.
@@ -21,7 +21,7 @@ pub(crate) fn read_deck(
 ) -> Result<DeckModel, Faults> {
     let read = read_model(&mut work.inputs, &job.folder, &files.deck.given)?;
     let solves = files.results.is_empty();
-    // The solver itself refuses what acts on its answer.
+    // The solver refuses unsupported cards that affect its answer, so the finding is needed only for given results.
     let of_results = |f: &&Finding| f.code != NOT_SOLVED || !solves;
     let findings = read.findings.iter().filter(of_results);
     work.findings.extend(findings.cloned());
@@ -37,7 +37,7 @@ pub(crate) fn read_deck(
 /// Returns the materials that contradict the system of units that they suggest as a whole.
 pub(crate) fn against_suggested_units(system: UnitSystem, model: &Model) -> Vec<Finding> {
     let mut findings = against_units(system, model);
-    // No job states units that PARAM,UNITSYS could contradict.
+    // There is no job whose units PARAM,UNITSYS could contradict.
     findings.retain(|f| f.code != "units-contradict-unitsys");
     findings
 }

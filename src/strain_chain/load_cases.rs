@@ -27,11 +27,13 @@ impl Taker<'_> {
     }
 }
 
-/// Returns solution and case of every load, job order; a solution and what is there twice with other values for each result file. A subcase
-/// whose elements are spread over several files becomes one case.
+/// Returns solution and case of every load, in job order. A subcase whose elements are spread over several files becomes one case.
+///
+/// `solutions` contains the solution of each result file. `repeated_in` contains, by file, the subcases that it states more than once with different
+/// values.
 ///
 /// # Errors
-/// Loads without a case; subcases that are there more than once with different values.
+/// Loads without a case; subcases that are present more than once with different values.
 pub(super) fn find_cases(
     work: &mut Work,
     job: &Job,
@@ -63,7 +65,7 @@ pub(super) fn find_cases(
     cases_of_loads(job, solutions, &names)
 }
 
-/// The loads of a job, and its reference where that is a subcase.
+/// Returns the loads of a job, and its reference if that is a subcase.
 fn takers(job: &Job) -> Vec<Taker<'_>> {
     let loads = job.loads.iter().map(|load| Taker {
         line: load.line,
@@ -85,7 +87,7 @@ fn takers(job: &Job) -> Vec<Taker<'_>> {
     loads.chain(reference).collect()
 }
 
-/// Number of each solution that has a subcase with strain, and of its case.
+/// Returns the index of each solution that contains the subcase with strain, and the index of its case.
 fn holders(solutions: &[Solution], subcase: u32) -> Vec<(usize, usize)> {
     let case = |s: &Solution| {
         let mut cases = s.cases.iter();
@@ -95,7 +97,7 @@ fn holders(solutions: &[Solution], subcase: u32) -> Vec<(usize, usize)> {
     all.filter_map(|(i, s)| Some((i, case(s)?))).collect()
 }
 
-/// Refuses subcases whose values differ between files. The files are read once more, as all of them are compared at a time.
+/// Refuses subcases whose values differ between files. The files are read again, since all of them are compared at the same time.
 fn check_shared(
     work: &mut Work,
     job: &Job,
@@ -157,7 +159,7 @@ fn cases_of_loads(
         let file = load.result.as_ref().map(|r| r.given.as_str());
         let holders = holders(solutions, load.subcase()).into_iter();
         let mut hits = holders.filter(|(i, _)| file.is_none_or(|f| names.get(*i) == Some(&f)));
-        // A file a load case is common: a file named for the load with a single case needs no subcase.
+        // One file for each load case is common. If the file named for the load has a single case, the subcase is not needed.
         let hit = hits.next().or_else(|| {
             let i = names.iter().position(|n| Some(*n) == file)?;
             let only = solutions[i].cases.len() == 1 && load.subcase.is_none();
@@ -188,9 +190,9 @@ fn without_case(job: &Job, load: &JobLoad, solutions: &[Solution]) -> Fault {
     Fault::with_line(&*job.file, load.line, "load.subcase", wrong, remedy)
 }
 
-/// Refuses loads that took their subcase by their number in the job, if labels of the results name another one.
+/// Refuses loads whose subcase follows from their number in the job, if labels of the results name another subcase.
 ///
-/// `labels` has LABEL or SUBTITLE by subcase of each result file. Labels that are no load names are free text.
+/// `labels` has LABEL or SUBTITLE by subcase of each result file. Labels that are not load names are free text.
 ///
 /// # Errors
 /// Every load whose subcase has the name of another load of the job, or whose name another subcase has.
@@ -211,7 +213,7 @@ pub(super) fn check_labels(
         if same(own, &load.name) {
             continue;
         }
-        // A label that several subcases have names none of them.
+        // A label of several subcases does not identify a subcase.
         let mut with_own = in_file.values().filter(|l| l.as_str() == own);
         let is_single = with_own.next().is_some() && with_own.next().is_none();
         let mut others = job.loads.iter().filter(|l| l.name != load.name);
@@ -228,7 +230,7 @@ pub(super) fn check_labels(
     Faults::check(faults)
 }
 
-/// Returns the label without what a program writes after it, far to the right.
+/// Returns the label without text that a program appends far to the right.
 fn label_alone(label: &str) -> &str {
     label.trim().split("   ").next().unwrap_or_default()
 }

@@ -1,8 +1,8 @@
 //! Mesh error of the strain, from its change on a mesh half as wide.
 //!
-//! Strain `e(h)` on a mesh of width `h` changes by `e(h/2) - e(h)` if the width is halved. If errors fall with the square of the width
-//! the error at `h` is 4/3 of this change; at folds, edges and corners they fall otherwise. The error is taken as [`WHOLE`] times the change.
-//! It is subtracted from the strain of the built-in solver. The error that may remain is a part of the covariance of S.
+//! Strain `e(h)` on a mesh of width `h` changes by `e(h/2) - e(h)` if the width is halved. If errors fall with the square of the width, the error at
+//! `h` is 4/3 of this change. At folds, edges and corners, errors fall at another rate. The error is taken as [`WHOLE`] times the change. It is
+//! subtracted from the strain of the built-in solver. The error that may remain is a part of the covariance of S.
 //!
 //! # Reference
 //! L. F. Richardson, Phil. Trans. R. Soc. A 210 (1911) 307.
@@ -21,7 +21,7 @@ use crate::strain_chain::deck::DeckModel;
 use serde::Serialize;
 use std::collections::BTreeSet;
 
-/// Number of shells beyond which only shells round the gauges are divided: four times as many would take too long.
+/// Number of shells beyond which only shells around the gauges are divided. A model with four times as many shells would take too long.
 const MOST_SHELLS: usize = 40_000;
 /// Rows of elements round a gauge's element that are divided with it, the first that [`MOST_SHELLS`] allows. They do not show the mesh error from
 /// farther away (a rail that twists too little). It is a third of the whole in open rails with ten rows (docs/reference/verification.md).
@@ -33,14 +33,15 @@ const WHOLE: f64 = 1.1;
 /// Share of the error that may remain after subtraction, 1 sd. It applies to each entry of S separately and to the pattern of each load as a
 /// whole. If errors fall with the width itself two thirds remain, which is 1.96 of these.
 const LEFT: f64 = 1.0 / 3.0;
-/// Further error as a share of the strain itself, 1 sd, each entry separately. Gauges that `place` finds are where halving the width
-/// changes almost nothing, partly by chance. The error that remains there does not depend on the change (the same frames).
+/// Further error as a share of the strain itself, 1 sd, each entry separately. Halving the width changes almost nothing at gauges that `place` finds,
+/// partly by chance. The remaining error at these gauges does not depend on this change (the same frames).
 const SLIGHT: f64 = 0.003;
-/// Share of the error that may remain, 1 sd, if only the mesh round the gauges was divided. The unseen error adds half of the seen one.
+/// Share of the error that may remain, 1 sd, if only the mesh around the gauges was divided. The error from other parts of the mesh adds half of the
+/// computed error.
 const LEFT_IN_PART: f64 = 0.5;
 /// Mesh error above which it exceeds the errors of angle, place and gauge factor of a carefully installed gauge together.
 const LARGE: f64 = 0.05;
-/// Number of entries of S beyond which their covariance would take more than 128 MB: the remaining error is then not weighted.
+/// Number of entries of S beyond which their covariance would exceed 128 MB. The remaining error is then not weighted.
 const MOST_ENTRIES: usize = 4_000;
 
 /// The mesh error of a gauge.
@@ -60,7 +61,7 @@ pub struct GaugeMeshError {
 pub struct LoadMeshError {
     /// Load.
     pub name: String,
-    /// Reading on the deck's mesh less the limit, over the limit; `None` where the load does not strain the gauge.
+    /// Reading on the deck's mesh minus the limit, over the limit; `None` if the load does not strain the gauge.
     pub mesh_error_rel: Option<f64>,
 }
 
@@ -68,24 +69,24 @@ pub struct LoadMeshError {
 pub struct MeshError {
     /// By load: strain on the deck's mesh less the limit.
     pub cases: Vec<CaseResult>,
-    /// Share of it that may remain after the correction, 1 sd, separately for each entry of S and for the pattern of each load.
+    /// Share of the mesh error that may remain after the correction, 1 sd, separately for each entry of S and for the pattern of each load.
     pub left: f64,
 }
 
 /// Places at which the strain is corrected for the error of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WantedAt {
-    /// At the job's gauges: a large mesh is divided round them alone.
+    /// At the job's gauges. A large mesh is divided only around them.
     Gauges,
-    /// Wherever a gauge might be laid.
+    /// At all possible gauge positions.
     Anywhere,
 }
 
-/// The model on a mesh half as wide: everywhere up to `MOST_SHELLS`, beyond it in `ROWS` of elements round `gauges`, where these are
-/// known.
+/// Returns the model on a mesh half as wide. A model of up to `MOST_SHELLS` shells is refined everywhere, and a larger model only in `ROWS` of
+/// elements around known `gauges`.
 ///
 /// # Errors
-/// Why none was made, in words.
+/// The reason why no finer mesh was made, as a message.
 pub fn refined_mesh(model: &Model, gauges: Option<&[Gauge]>) -> Result<RefinedModel, String> {
     let n = model.shells.len();
     let count = |divided: &Vec<bool>| divided.iter().filter(|d| **d).count();
@@ -111,7 +112,7 @@ pub fn refined_mesh(model: &Model, gauges: Option<&[Gauge]>) -> Result<RefinedMo
     })
 }
 
-/// Shells that gauges read.
+/// Returns the shells whose strain gauges read.
 fn shells_under(gauges: &[Gauge]) -> Vec<ShellIx> {
     let arms = gauges.iter().flat_map(|g| &g.arms);
     let shells = arms.filter_map(|arm| match arm.spot {
@@ -121,7 +122,7 @@ fn shells_under(gauges: &[Gauge]) -> Vec<ShellIx> {
     shells.collect()
 }
 
-/// Returns the gauges of the job that can be laid; gauges that can't be laid are reported where gauges are read.
+/// Returns the gauges of the job that can be placed on the model. Other gauges are reported when the gauges are read.
 fn gauges_of(job: &Job, model: &Model) -> Vec<Gauge> {
     let laid = job.gauges.iter().filter_map(|g| {
         let spec = corrected_spec_of(model, job, g).ok()?;
@@ -130,11 +131,11 @@ fn gauges_of(job: &Job, model: &Model) -> Vec<Gauge> {
     laid.flatten().collect()
 }
 
-/// Subtracts the mesh error from the strain of a job's unit loads and of its `reference` state. Returns it by load: strain on the deck's mesh less
-/// the limit.
+/// Subtracts the mesh error from the strain of a job's unit loads and of its `reference` state. Returns the mesh error by load: strain on the deck's
+/// mesh minus the limit.
 ///
-/// `None` if the job declines it, or if no finer mesh could be solved, which a finding reports. A job without this key gets it on decks
-/// of shells with up to [`MOST_GRIDS_TWICE`] grids; a note states why a larger deck or another mesh has none.
+/// `None` if the job declines it, or if no finer mesh could be solved, which a finding reports. If the job does not state the key, the mesh error is
+/// subtracted on decks of shells with up to [`MOST_GRIDS_TWICE`] grids. For a larger deck or another mesh, a note states the reason why it is not.
 pub(super) fn take_out(
     work: &mut Work,
     job: &Job,
@@ -146,7 +147,7 @@ pub(super) fn take_out(
     let grids = deck.model.grids.len();
     match asked {
         Some(true) => {}
-        // Bars and springs alone have no error of the mesh.
+        // A model of bars and springs alone has no mesh error.
         None if deck.model.shells.is_empty() => return None,
         None if grids <= MOST_GRIDS_TWICE => {
             let loads = cases.iter().flat_map(|c| &c.loads);
@@ -215,8 +216,8 @@ fn point_load<'a>(model: &Model, mut loads: impl Iterator<Item = &'a UnitLoad>) 
     model.grids.get(grid.us()).map(|g| g.id)
 }
 
-/// Subtracts the mesh error from the strain of further unit loads on the model of a job, if it was subtracted from the strain of the job's loads. A
-/// note states that loads directly on a shell keep the strain of the deck's mesh.
+/// Subtracts the mesh error from the strain of further unit loads, if it was subtracted from the strain of the job's loads. A note states that loads
+/// directly on a shell keep the strain of the deck's mesh.
 ///
 /// # Errors
 /// Loads that cannot be solved on the finer mesh.
@@ -260,10 +261,11 @@ pub(super) fn not_checked(why: &str) -> Finding {
     )
 }
 
-/// Returns the mesh error of load cases by case, strain on the deck's mesh (`solved`) less the limit, and the share of it that may be left.
+/// Returns the mesh error by load case, and the share of it that may remain. The mesh error is the strain on the deck's mesh (`solved`) minus the
+/// limit.
 ///
 /// # Errors
-/// Why no finer mesh was solved, in words.
+/// The reason why no finer mesh was solved, as a message.
 fn compute_mesh_error(
     work: &mut Work,
     job: &Job,
@@ -295,7 +297,7 @@ fn compute_mesh_error(
     if cases.iter().any(|c| c.mpc != deck.model.mpc) {
         return Err("the subcases select different MPC sets".to_owned());
     }
-    // New grids beside elements that are not divided follow the grids of their side: the finer model has these equations too.
+    // New grids on a side of an undivided element depend on the grids of that side. The finer model contains these equations as well.
     let mpc = refined.model.mpc;
     let cases: Vec<LoadCase> = cases
         .iter()
@@ -319,7 +321,7 @@ fn compute_mesh_error(
     Ok((errors, left))
 }
 
-/// A strain field times a number.
+/// Returns a strain field times a number.
 fn times(mut case: CaseResult, factor: f64) -> CaseResult {
     let shells = &mut case.shells;
     let corners = shells.corners.iter_mut().flatten();
@@ -360,12 +362,13 @@ pub fn left_in_reading(
     (of_error * squares(errors) + of_strain * squares(loads)).sqrt()
 }
 
-/// Shares that may be left once it is taken out, squared: of the error, its own part and that of the load's pattern; of the strain.
+/// Returns the squared shares that may remain after the mesh error is subtracted: a share of the mesh error, and a share of the strain. The share of
+/// the mesh error adds an independent part of each entry and a part of the load's pattern.
 pub fn left_squared() -> [f64; 2] {
     [2.0 * LEFT * LEFT, SLIGHT * SLIGHT]
 }
 
-/// The mesh error of every gauge of S; empty where none was computed.
+/// Returns the mesh error of every gauge of S; empty if no mesh error was computed.
 pub fn mesh_errors(
     gauges: &[Gauge],
     s: &Sensitivity,
@@ -433,8 +436,8 @@ pub fn coarse_at_gauges(gauges: &[Gauge], errors: &[GaugeMeshError], left: f64) 
     )
 }
 
-/// Returns the uncertainty of S from the model error and the rest of the mesh error. `None` if no mesh error was computed, or if S is too large,
-/// which a finding reports.
+/// Returns the uncertainty of S from the model error and the remaining mesh error. `None` if no mesh error was computed, or if S is too large, which
+/// a finding reports.
 pub(super) fn uncertainty(
     work: &mut Work,
     measured: Option<&Measured>,

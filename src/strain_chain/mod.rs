@@ -60,7 +60,7 @@ pub struct JobSensitivity {
     pub fields: Option<Fields>,
     /// Gauges on the model; empty where S is given.
     pub gauges: Vec<Gauge>,
-    /// By gauge, what the deck's mesh made; empty where that was not computed. S is without it.
+    /// Mesh error by gauge; empty if it was not computed. S does not contain the mesh error.
     pub mesh_error: Vec<GaugeMeshError>,
 }
 
@@ -85,7 +85,7 @@ pub fn prepare(work: &mut Work, job: &Job) -> Result<JobSensitivity, Faults> {
     prepare_beside(work, job, None)
 }
 
-/// Returns S like [`prepare`], and solves the model for the loads `beside` if the built-in solver computes S ([`Fields::beside`]).
+/// Returns S like [`prepare`], and solves the model for the additional loads `beside` if the built-in solver computes S ([`Fields::beside`]).
 ///
 /// # Errors
 /// Every error of [`prepare`] and of `beside`.
@@ -97,7 +97,7 @@ pub fn prepare_beside(
     work.findings.extend(report_corrections(job));
     let mut prepared = if job.sensitivity.is_some() {
         let sensitivity = given_as_asked(work, job)?;
-        // A calibrated S stands beside its model, whose fields are wanted for responses and pictures.
+        // With a calibrated S, the fields of the model are still needed for responses and pictures.
         let (fields, gauges) = match &job.model {
             Some(_) if has_covariance(job) => {
                 let fields = read_fields_beside(work, job, WantedAt::Gauges, beside)?;
@@ -144,10 +144,10 @@ pub fn prepare_beside(
     Ok(prepared)
 }
 
-/// S from the table of `[sensitivity]`, where nothing of it is to be turned.
+/// Reads S from the table of `[sensitivity]`, and refuses corrections that rotate a gauge.
 ///
 /// # Errors
-/// As [`read_given`]; gauges that the job turns.
+/// The errors of [`read_given`]; gauges that the job rotates.
 pub fn given_as_asked(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
     if let Some(c) = job.corrections.iter().find(|c| c.angle_deg.is_some()) {
         return Err(Faults::from(Fault::with_line(
@@ -179,7 +179,7 @@ pub fn stated_errors(measured: &Measured, s: &Sensitivity, fields: Option<&Field
     }
 }
 
-/// Whether the job's S is calibrated.
+/// Returns whether the job's S is calibrated.
 pub fn has_covariance(job: &Job) -> bool {
     let given = job.sensitivity.as_ref();
     given.is_some_and(|s| s.covariance.is_some())

@@ -12,15 +12,15 @@ use nastran::results::{ResultsError, ResultsFile};
 pub enum MissingResults {
     /// The job is wrong.
     Refused,
-    /// The run that writes them is still to come.
+    /// The run that writes the results is not done yet.
     ToCome,
 }
 
-/// Refuses results that the job names and that are cut or damaged, for questions that have no use for them: the job is wrong all the same.
-/// They don't count as read.
+/// Refuses results that the job names and that are cut or damaged, even if the command does not use them. The list of files that were read does not
+/// contain them.
 ///
 /// # Errors
-/// A fault for each; also for those that are not there, where they have to be.
+/// A fault for each such file, and for each missing file if `absent` requires it.
 pub fn check_named(work: &Work, job: &Job, absent: MissingResults) -> Result<(), Faults> {
     let mut faults = FaultList::new();
     for named in job.model.iter().flat_map(|m| &m.results) {
@@ -44,7 +44,7 @@ pub fn check_named(work: &Work, job: &Job, absent: MissingResults) -> Result<(),
 /// Remedy for results that can't be read.
 pub const RESULTS_REMEDY: &str = "give an OP2, punch or HDF5 file of a static run";
 
-/// The fault of results that can't be read.
+/// Returns the fault of results that can't be read.
 pub fn results_fault(job: &Job, named: &NamedFile, e: &ResultsError) -> Fault {
     Fault::with_line(
         &*job.file,
@@ -66,9 +66,8 @@ pub fn other_deck(job: &Job, named: &NamedFile, finding: &Finding) -> Fault {
     )
 }
 
-/// Refuses tables that the job names and that are not there: runs, zero, held-out runs, covariance, signatures and
-/// described effects, whether or not the command
-/// reads them. The list of files that were read does not contain them.
+/// Refuses missing tables that the job names, whether or not the command reads them. These are runs, zero, held-out runs, covariance, signatures and
+/// described effects. The list of files that were read does not contain them.
 ///
 /// # Errors
 /// A fault for each such table.

@@ -1,4 +1,4 @@
-//! Finding about cards and statements of a deck that the built-in solver does not carry.
+//! Finding about cards and statements of a deck that the built-in solver does not support.
 
 use crate::fe::{LoadCase, UnitLoad, unsupported_cards};
 use crate::finding::{Finding, Severity, list_few};

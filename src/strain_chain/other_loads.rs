@@ -36,7 +36,7 @@ pub(super) fn other_loads(deck: &DeckModel, subcase: &Subcase) -> Vec<OtherLoad>
     let sets = deck.model.load_sets.iter().filter(|s| s.sid == sid);
     all.extend(sets.flat_map(|s| &s.loads).filter_map(|(factor, load)| {
         match load {
-            // Temperatures act where TEMPERATURE selects them.
+            // Temperatures act only if TEMPERATURE selects them.
             Load::Unsupported(name, at) if *factor != 0.0 && !name.starts_with("TEMP") => {
                 Some(OtherLoad {
                     name: name.clone(),
@@ -56,7 +56,7 @@ pub(super) fn thermal_loads(deck: &DeckModel, subcase: &Subcase) -> Vec<OtherLoa
         let at = deck.deck.case_control.place_of(word, Some(subcase.id));
         at.unwrap_or(subcase.at)
     };
-    // Equal sets before and after make no thermal strain.
+    // Equal temperature sets before and after cause no thermal strain.
     let heat = subcase.temperature_load.filter(|_| {
         subcase.temperature_initial != subcase.temperature_load
             && is_heated(&deck.model, &case).unwrap_or(false)
@@ -103,7 +103,7 @@ fn selected_sets(cards: &Cards, sid: u32) -> BTreeSet<u32> {
     })
 }
 
-/// Returns a set with all sets that its sums name, directly or through other sums; `named` are the sets that the sum of an id names.
+/// Returns the set `sid` and all sets that its sums contain, directly or through other sums. `named` returns the sets in the sum of an id.
 fn sets_of(sid: u32, named: impl Fn(u32) -> Vec<u32>) -> BTreeSet<u32> {
     let (mut all, mut next) = (BTreeSet::new(), vec![sid]);
     while let Some(sid) = next.pop() {
@@ -114,7 +114,7 @@ fn sets_of(sid: u32, named: impl Fn(u32) -> Vec<u32>) -> BTreeSet<u32> {
     all
 }
 
-/// Loads of these sets that are neither forces nor moments at grids, and are not zero.
+/// Returns the loads of these sets that are neither forces nor moments at grids, and are not zero.
 fn loads_with_a_struct(cards: &Cards, sets: &BTreeSet<u32>) -> Vec<OtherLoad> {
     let mut all = Vec::new();
     let mut add = |name: &str, sid: u32, size: f64, at: Place| {

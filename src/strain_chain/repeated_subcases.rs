@@ -37,7 +37,7 @@ pub fn find_repeated_subcases(read: &DeckModel) -> Vec<Finding> {
     repeated.map(warn).collect()
 }
 
-/// Refuses a deck with two subcases of one number: loads, references and results select a subcase by its number.
+/// Refuses a deck with two subcases of the same number, since loads, references and results select a subcase by its number.
 ///
 /// # Errors
 /// One fault for each line that repeats a number.

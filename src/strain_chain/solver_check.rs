@@ -11,12 +11,12 @@ use std::collections::BTreeMap;
 
 /// When results are compared with the built-in solver, and from which difference on they contradict the deck.
 struct Rules {
-    /// Share of the strain ([`StrainDifference::share`]) by which two programs differ at most on one deck; an error from twice this share on.
-    /// On public decks with results of MSC, NX and MYSTRAN the share is 0 to 0.1, and 0.26 on a deck with an element of each kind alone.
+    /// Share of the strain ([`StrainDifference::share`]) by which two programs differ at most on one deck. From twice this share on, the difference
+    /// is an error. On public decks with results of MSC, NX and MYSTRAN the share is 0 to 0.1. On a deck with one element of each kind it is 0.26.
     share: f64,
-    /// Share of the strain of one shell: its surfaces or axes are others. On the public decks the largest share is 0.84.
+    /// Share of the strain of one shell above which its surfaces or axes differ from the deck. On the public decks the largest share is 0.84.
     of_shell: f64,
-    /// Mean strain of a load, as a share of the largest of all loads, below which a field is rounding: results have single precision.
+    /// Mean strain of a load, as a share of the largest of all loads, below which a field is rounding, since results have single precision.
     strained: f64,
     /// Cosine above which both fields differ by a factor alone.
     cosine: f64,
@@ -31,7 +31,8 @@ const RULES: Rules = Rules {
 
 /// Solves the loads of a job on its deck and compares the strain with the `results`, in the order of the loads.
 ///
-/// Returns `None` where they agree, and where the deck is too large or contains what the solver does not carry; a note then states the reason.
+/// Returns `None` if they agree. It also returns `None` if the deck is too large, or contains cards that the solver does not support. A note then
+/// states the reason.
 pub(super) fn check_against_solver(
     work: &mut Work,
     job: &Job,
@@ -68,7 +69,7 @@ pub(super) fn check_against_solver(
     of_loads(deck, &differences).or_else(|| of_single_shells(deck, &differences))
 }
 
-/// Returns the loads that strain the structure: the difference of two fields of rounding errors is as large as the fields.
+/// Returns the loads that strain the structure. For other loads, the fields are rounding errors, and their difference is as large as the fields.
 fn keep_straining_loads(mut loads: Vec<(&str, StrainDifference)>) -> Vec<(&str, StrainDifference)> {
     let largest = loads.iter().map(|l| l.1.mean).fold(0.0, f64::max);
     loads.retain(|l| l.1.mean > RULES.strained * largest);
@@ -122,7 +123,7 @@ fn of_single_shells(deck: &DeckModel, differences: &[(&str, StrainDifference)]) 
     Some(finding.with_numbers(worst, RULES.of_shell))
 }
 
-/// Returns the difference in words: a factor if that is all, otherwise the share.
+/// Returns the difference as a message: a factor if the fields differ only by a factor, otherwise the share.
 fn words_of(difference: &StrainDifference) -> String {
     let StrainDifference {
         share,

@@ -24,7 +24,7 @@ pub fn corrected_spec_of(model: &Model, job: &Job, g: &JobGauge) -> Result<Gauge
     Ok(spec)
 }
 
-/// A gauge of the job with its ids resolved on the model.
+/// Returns the spec of a gauge of the job, with its ids resolved on the model.
 ///
 /// # Errors
 /// Ids that the deck lacks.
@@ -87,7 +87,7 @@ fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
     };
     let axes = axes_at(place)?;
     let stated = g.surface_stated.then_some(g.surface);
-    // Shell and side of the first pair, as the gauge is laid.
+    // Shell and side of the first pair at the installed position of the gauge.
     let seat = match place {
         GaugePlace::Shell(own) => Some((own, side_of(model, g))),
         GaugePlace::Nearest(x) if g.pair.is_some() => {
@@ -147,8 +147,8 @@ fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
     })
 }
 
-/// Returns the axes by rows, basic frame, in which the direction `d` of a gauge at `place` is counted: those of its system at the gauge. `None`
-/// where `d` has a part that does not exist there: radial or tangential on the axis of a cylindrical or spherical system.
+/// Returns the axes, by rows in the basic frame, to which the direction `d` of a gauge at `place` refers. These are the axes of its system at the
+/// gauge. `None` if `d` has a component that does not exist there, such as radial or tangential on the axis of a cylindrical or spherical system.
 fn axes_of_direction(model: &Model, frame: &Frame, d: [f64; 3], place: GaugePlace) -> Option<Mat3> {
     if frame.kind == CoordKind::Rectangular {
         return Some(frame.axes);
@@ -160,10 +160,11 @@ fn axes_of_direction(model: &Model, frame: &Frame, d: [f64; 3], place: GaugePlac
     (along_axis || off_axis).then(|| frame.axes_at(at))
 }
 
-/// Share of the size of an element within which its middle counts as on the axis of a system: decks state coordinates with six to eight digits.
+/// Share of the size of an element within which its centre counts as on the axis of a system. Decks state coordinates with six to eight digits.
 const ON_AXIS: f64 = 1e-6;
 
-/// Returns where a gauge is, basic frame, and the size of its element: the centre of a shell, the station on the axis of a bar.
+/// Returns the location of a gauge in the basic frame, and the size of its element. The location is the centre of a shell, or the station on the axis
+/// of a bar.
 fn location(model: &Model, place: GaugePlace) -> Option<(Vec3, f64)> {
     match place {
         GaugePlace::Nearest(x) => Some((x, 0.0)),

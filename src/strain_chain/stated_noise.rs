@@ -4,8 +4,8 @@ use crate::host::fault::{Fault, FaultList, Faults};
 use crate::job::{Job, suggest};
 use crate::sensitivity::GaugeNoise;
 
-/// Returns the noise of these gauges in units of the root mean square that the job states; `None` where all have the same, independent of each
-/// other.
+/// Returns the noise of these gauges, in units of the root mean square that the job states. `None` if the noise of all gauges is equal and
+/// independent.
 ///
 /// # Errors
 /// Gauges without stated noise if other gauges have it; names that are not gauges.

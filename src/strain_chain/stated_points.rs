@@ -1,4 +1,4 @@
-//! Points that gauges state: held against the element and the side that are stated for the same gauge.
+//! Stated points of gauges, compared with the element and the side that are stated for the same gauge.
 
 use crate::estimate::NORMAL_95;
 use crate::fe::strain_tensor::Surface;
@@ -20,8 +20,8 @@ pub fn point_findings(model: &Model, job: &Job) -> Vec<Finding> {
     out
 }
 
-/// Returns where the point stated for a gauge may be, basic frame: next to an element, it may be meant in the axes of `cid`, as the direction
-/// is, or in the basic ones.
+/// Returns the possible locations, in the basic frame, of the point stated for a gauge. If an element is stated as well, the point may be in the axes
+/// of `cid`, like the direction, or in the basic axes.
 fn stated_points(model: &Model, g: &JobGauge) -> impl Iterator<Item = Vec3> + use<> {
     let frame = model
         .frame_ix(g.cid)
@@ -38,7 +38,7 @@ fn stated_points(model: &Model, g: &JobGauge) -> impl Iterator<Item = Vec3> + us
     g.position.map(of).into_iter().flatten().flatten()
 }
 
-/// Returns the shell of a gauge with a stated point, and how the point is placed to its skins.
+/// Returns the shell of a gauge with a stated point, and the position of the point relative to the skins of the shell.
 fn at_skins(model: &Model, g: &JobGauge) -> Option<(ShellIx, BetweenSkins)> {
     let on_element = |ix: ShellIx| {
         stated_points(model, g)
@@ -61,7 +61,7 @@ fn at_skins(model: &Model, g: &JobGauge) -> Option<(ShellIx, BetweenSkins)> {
     Some((ix, between_skins(model, ix, x)?))
 }
 
-/// Returns the side of a gauge on an element: the stated one, else that of the skin nearest to the stated point, else the top.
+/// Returns the side of a gauge on an element. This is the stated side, else the side of the skin nearest to the stated point, else the top.
 pub fn side_of(model: &Model, g: &JobGauge) -> Surface {
     if g.surface_stated {
         return g.surface;
@@ -126,7 +126,7 @@ fn side_finding(model: &Model, job: &Job, g: &JobGauge) -> Option<Finding> {
     skins.contradicts(g.surface).then(contradicted)
 }
 
-/// How well a point of a drawing is read and rounded, m: a gauge and its tabs are some 5 mm wide.
+/// Error of a point that is read from a drawing and rounded, m. A gauge and its tabs are some 5 mm wide.
 const READ_OFF_M: f64 = 5e-3;
 
 /// Returns how far a gauge's stated point may be beyond the faces of its element, job units. It is the 95 % limit of the gauge's position tolerance
@@ -141,8 +141,8 @@ fn point_tolerance(job: &Job) -> f64 {
     NORMAL_95 * stated.into_iter().fold(0.0, f64::max) + READ_OFF_M / job.units.length_m()
 }
 
-/// Returns the findings on gauges whose stated point is off their stated element. One of the two is wrong: an error if their distance exceeds the
-/// size of the element, else a warning. The strain of the element is used.
+/// Returns the findings on gauges whose stated point is off their stated element. One of the two is wrong. The finding is an error if their distance
+/// exceeds the size of the element, else a warning. The strain of the element is used.
 fn off_their_elements(model: &Model, job: &Job) -> Vec<Finding> {
     let beside = |g: &JobGauge, x: Vec3| match g.place {
         StatedPlace::Element(id) => beside_shell(model, model.shell_ix(id)?, x),
@@ -159,7 +159,7 @@ fn off_their_elements(model: &Model, job: &Job) -> Vec<Finding> {
             StatedPlace::Element(id) | StatedPlace::BeamPoint { element: id, .. } => id,
             StatedPlace::Position(..) | StatedPlace::Unstated => return None,
         };
-        // A bar that states no recovery points doesn't say how deep it is.
+        // Without recovery points, the depth of a bar is unknown.
         let near = found.faces.map_or(found.size, |faces| faces + tolerance);
         let (severity, limit) = match found.distance > found.size.max(near) {
             true => (Severity::Error, found.size.max(near)),

@@ -5,7 +5,7 @@ use crate::host::fault::{Fault, FaultList, Faults};
 use crate::job::{Component, Job, JobLoad, LoadActs};
 use crate::model::{Model, Vec3};
 
-/// Unit loads of the job, each of its size `applied`.
+/// Returns the unit loads of the job, each with its size `applied`.
 ///
 /// # Errors
 /// Grids and coordinate systems that the deck lacks.
@@ -15,7 +15,7 @@ pub fn unit_loads(job: &Job, model: &Model) -> Result<Vec<UnitLoad>, Faults> {
         .loads
         .iter()
         .filter_map(|l| match l.acts {
-            // A set of temperatures alone heats the structure.
+            // If the set contains only temperatures, the unit load is thermal.
             LoadActs::Set(sid)
                 if model.load_sets.iter().all(|s| s.sid != sid)
                     && model.temperatures.iter().any(|t| t.sid == sid) =>
@@ -113,7 +113,7 @@ pub(super) fn refuse_missing_sets(
     Faults::check(faults)
 }
 
-/// The fault of a load at a grid that the deck lacks.
+/// Returns the fault of a load at a grid that the deck lacks.
 fn no_grid(job: &Job, load: &JobLoad, grid: u32) -> Fault {
     Fault::with_line(
         &*job.file,

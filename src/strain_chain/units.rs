@@ -21,9 +21,9 @@ pub struct LoadUnits {
 pub struct LoadSigma {
     /// Load.
     pub name: String,
-    /// One standard deviation, report units: what `recover` states for loads of their expected size, from noise and model uncertainty.
+    /// One standard deviation in report units, from noise and model uncertainty, as `recover` states it for loads of their expected size.
     pub sigma: f64,
-    /// Standard deviation with the tolerances of gluing and of the gauge factor, if the job states them.
+    /// Standard deviation with the tolerances of the installation and of the gauge factor, if the job states them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sigma_as_glued: Option<f64>,
     /// Report unit.
@@ -31,7 +31,7 @@ pub struct LoadSigma {
 }
 
 impl LoadSigma {
-    /// Returns the standard deviation that a reader can count on: as glued where the job states tolerances.
+    /// Returns the standard deviation with installation tolerances if the job states them, otherwise without.
     pub fn sigma(&self) -> f64 {
         self.sigma_as_glued.unwrap_or(self.sigma)
     }

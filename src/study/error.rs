@@ -11,9 +11,9 @@ pub enum ErrorKind {
     AbsoluteUniform,
     /// Reading plus e microstrain, normal, sd size.
     AbsoluteNormal,
-    /// Glued elsewhere on its surface: normal, sd size along both surface directions, job length.
+    /// Installed position off along both surface directions: normal, sd size, job length.
     Position,
-    /// Glued at another angle: normal, sd size degrees.
+    /// Installed angle off: normal, sd size degrees.
     Angle,
     /// Gauge or bridge factor: reading times 1 + e, e normal, sd size.
     Factor,
@@ -31,7 +31,7 @@ impl ErrorKind {
         Self::Factor,
     ];
 
-    /// Whether its size is a fraction of the reading.
+    /// Returns whether the size of the error is a fraction of the reading.
     pub fn is_relative(self) -> bool {
         matches!(
             self,
@@ -52,7 +52,8 @@ impl ErrorKind {
         }
     }
 
-    /// From a job; `relative`, `absolute`, `uniform`, `normal` alone mean relative-uniform, absolute-normal and so on.
+    /// Parses the kind of error from a job. `relative`, `absolute`, `uniform` and `normal` alone are short forms of relative-uniform, absolute-normal
+    /// and so on.
     pub fn from_word(word: &str) -> Option<Self> {
         match word {
             "relative" | "uniform" => Some(Self::RelativeUniform),

@@ -1,4 +1,4 @@
-//! Effect of errors of readings and gluing on recovered loads: recovery repeated under stated errors.
+//! Effect of errors of readings and of gauge installation on recovered loads: recovery repeated under stated errors.
 
 mod error;
 mod trials;

@@ -3,7 +3,7 @@
 use super::*;
 use crate::linalg::Matrix;
 
-/// Eight gauges, two loads; microstrain per unit.
+/// Returns eight gauges under two loads, in microstrain per unit.
 fn pool() -> Vec<PoolGauge> {
     (0..8)
         .map(|i| {
@@ -39,7 +39,7 @@ fn error(kind: ErrorKind, size: f64) -> StudyError {
     StudyError { kind, size }
 }
 
-/// (S'S)^-1 S' of the pool.
+/// Returns (S'S)^-1 S' of the pool.
 fn inverse() -> Matrix {
     let p = pool();
     let s = Matrix::from_fn(8, 2, |g, l| p[g].row[l]);
@@ -55,7 +55,7 @@ fn normal_noise_scatters_the_loads_as_the_covariance_says_and_intervals_cover() 
         &spec(20_000),
     );
     let a = inverse();
-    // 20,000 draws tell an sd to 1 / sqrt(2 20,000) = .5 %, a share of .95 to .0015: four of each.
+    // 20,000 draws determine an sd to 1 / sqrt(2 * 20,000) = .5 %, and a share of .95 to .0015. The limits are four times these values.
     for l in 0..2 {
         let expected = 3e-6 * a.row(l).norm();
         assert!((row.sigma[l] / expected - 1.0).abs() < 0.02, "{row:?}");
@@ -74,7 +74,7 @@ fn uniform_errors_scatter_as_a_third_of_their_square() {
         &spec(20_000),
     );
     let (a, p) = (inverse(), pool());
-    // A sum of eight uniform errors is nearly normal: four times the .5 % to which 20,000 draws tell its sd.
+    // A sum of eight uniform errors is nearly normal. The limit is four times the .5 % to which 20,000 draws determine its sd.
     for l in 0..2 {
         let variance: f64 = (0..8)
             .map(|g| {
@@ -91,7 +91,7 @@ fn uniform_errors_scatter_as_a_third_of_their_square() {
 
 #[test]
 fn a_wrong_angle_shortens_the_reading_and_leaves_a_bias() {
-    // To second order: e(a) = e0 + 2 a (e45 - m) - 2 a^2 (e0 - e90) / 2, so the mean is off by -sd^2 (e0 - e90).
+    // To second order, e(a) = e0 + 2 a (e45 - m) - 2 a^2 (e0 - e90) / 2. The mean is therefore off by -sd^2 (e0 - e90).
     let sd = 1.0_f64;
     let row = study_layout(
         &pool(),
@@ -130,7 +130,7 @@ fn places_scatter_by_the_slope_of_the_strain() {
         &spec(20_000),
     );
     let a = inverse();
-    // Four times the .5 % to which 20,000 draws tell an sd.
+    // The limit is four times the .5 % to which 20,000 draws determine an sd.
     for l in 0..2 {
         let per = f64::hypot(2e-9 * 100.0, 1e-9 * 40.0) * 2.0;
         let expected = per * a.row(l).norm();
@@ -166,7 +166,7 @@ fn layouts_that_do_not_separate_the_loads_are_counted_and_left_out() {
 
 #[test]
 fn nuisance_loads_are_drawn_and_their_prior_is_used() {
-    // A third column that is blind to none of the gauges: with its prior in S it costs less than left out.
+    // A third load that strains all gauges: with its prior in S, the error is smaller than if the load is left out.
     let mut p = pool();
     for (g, gauge) in p.iter_mut().enumerate() {
         gauge.row.push(1e-6 * (0.4 * g as f64).cos());
@@ -191,7 +191,7 @@ fn nuisance_loads_are_drawn_and_their_prior_is_used() {
         noise: 1.0,
         ..with.clone()
     };
-    // A noise far above the readings' makes the prior strong: as if the load were left out.
+    // If the assumed noise far exceeds the noise of the readings, the prior dominates, as if the load were left out.
     let left_out = study_layout(
         &p,
         &all_gauges_layout(),
@@ -230,7 +230,7 @@ fn the_condition_number_is_that_of_scaled_columns() {
     );
 }
 
-/// Readings in error by a factor: with independent loads `f`, the variance of the error is `sum_g a_lg^2 u^2 sum_l s_gl^2 sd_l^2`.
+/// For readings with an error factor and independent loads `f`, the variance of the error is `sum_g a_lg^2 u^2 sum_l s_gl^2 sd_l^2`.
 #[test]
 fn loads_are_drawn_with_their_standard_deviation() {
     let drawn = StudySpec {
@@ -251,7 +251,7 @@ fn loads_are_drawn_with_their_standard_deviation() {
                 (a[(l, g)] * 0.02).powi(2) * y
             })
             .sum();
-        // A product of two normal numbers has kurtosis 9: its sd over 20,000 draws is known to 1 %, of the sum to less.
+        // A product of two normal numbers has kurtosis 9. 20,000 draws therefore determine its sd to 1 %, and the sd of the sum more closely.
         assert!(
             (row.sigma[l] / variance.sqrt() - 1.0).abs() < 0.03,
             "{row:?}"
@@ -275,7 +275,7 @@ fn the_sign_convention_of_a_load_changes_the_sign_of_its_bias_and_nothing_else()
     for kind in ErrorKind::ALL {
         let [one, other] = [pool(), negated.clone()]
             .map(|p| study_layout(&p, &all_gauges_layout(), error(kind, 0.5), &drawn));
-        // Rounding of sums of 200 errors.
+        // Tolerance for rounding in sums of 200 errors.
         let close = |a: f64, b: f64, of: f64| (a - b).abs() <= 1e-9 * of;
         for (l, sign) in [(0, 1.0), (1, -1.0)] {
             let sigma = one.sigma[l];

@@ -15,9 +15,9 @@ use std::f64::consts::TAU;
 pub struct PoolGauge {
     /// Strain per job unit of each load.
     pub row: Vec<f64>,
-    /// The row with the gauge turned by 45 and by 90 degrees; `None` where it can't be turned (a bar's).
+    /// Row of the gauge if it is turned by 45 and by 90 degrees; `None` if it cannot be turned (on a bar).
     pub turned: Option<[Vec<f64>; 2]>,
-    /// Change of the row per length along two directions of the surface; `None` where unknown.
+    /// Change of the row per length along two directions of the surface; `None` if unknown.
     pub slope: Option<[Vec<f64>; 2]>,
 }
 
@@ -26,7 +26,7 @@ pub struct PoolGauge {
 pub enum TrueLoad {
     /// One size in all trials.
     Known(f64),
-    /// Drawn in every trial: normal, mean 0, this standard deviation.
+    /// Random in every trial: normal, mean 0, this standard deviation.
     Drawn(f64),
 }
 
@@ -53,7 +53,7 @@ pub struct StudySpec {
     pub noise: f64,
     /// Trials a layout and error.
     pub trials: usize,
-    /// Seed; the same for every layout, so that layouts meet the same luck.
+    /// Seed, equal for all layouts, so that all layouts have the same random errors.
     pub seed: u64,
 }
 
@@ -66,13 +66,13 @@ pub struct StudyRow {
     pub bias: Vec<f64>,
     /// Standard deviation of the error by load.
     pub sigma: Vec<f64>,
-    /// Share of 95 % intervals (noise from the residual, Student) that hold the load; NaN without spare gauges.
+    /// Share of 95 % intervals (noise from the residual, Student) that contain the load; NaN without spare gauges.
     pub coverage: Vec<f64>,
     /// Layouts that do not separate the loads.
     pub singular: usize,
 }
 
-/// Columns times `sizes`, else of unit norm.
+/// Returns S with its columns times `sizes`; without sizes, with columns of unit norm.
 fn scale_columns(mut s: Matrix, sizes: Option<&[f64]>) -> Matrix {
     for (c, mut column) in s.column_iter_mut().enumerate() {
         let norm = column.norm();
@@ -82,8 +82,8 @@ fn scale_columns(mut s: Matrix, sizes: Option<&[f64]>) -> Matrix {
     s
 }
 
-/// Recovers `spec.trials` times, the trials dealt over `layouts` (lists of pool gauges) in turn. In parallel; every trial has its own
-/// stream of random numbers, so the answer does not depend on the number of threads.
+/// Recovers the loads in `spec.trials` trials, which are distributed over `layouts` (lists of pool gauges) in turn. Trials run in parallel. Every
+/// trial has its own stream of random numbers, so the result does not depend on the number of threads.
 pub fn study_layout(
     pool: &[PoolGauge],
     layouts: &[Vec<usize>],
@@ -141,8 +141,8 @@ pub fn study_layout(
 /// Entries of a column of S up to this share apart count as equally large.
 const EQUALLY_LARGE: f64 = 1e-6;
 
-/// Returns the sign of the largest entry in column `l` of S, the first of equally large ones. A load that is counted the other way round has the
-/// other sign: times this sign, the same draw is the same state of the structure.
+/// Returns the sign of the largest entry in column `l` of S, the first of equally large ones. A load with the opposite positive direction has the
+/// opposite sign. Multiplied by this sign, the same draw is therefore the same state of the structure.
 fn sense(pool: &[PoolGauge], l: usize) -> f64 {
     let column = || pool.iter().map(|g| g.row[l]);
     let largest = column().map(f64::abs).fold(0.0, f64::max);
@@ -150,7 +150,7 @@ fn sense(pool: &[PoolGauge], l: usize) -> f64 {
     first.unwrap_or(1.0).signum()
 }
 
-/// S of a layout and its least-squares solution for readings of equal noise.
+/// Returns S of a layout and its least-squares solution for readings of equal noise.
 fn solver(
     pool: &[PoolGauge],
     layout: &[usize],
@@ -268,7 +268,7 @@ fn trial(
     (errors, held)
 }
 
-/// Reading of a gauge turned by `angle`, from its readings at 0, 45 and 90 degrees: strain turns as
+/// Returns the reading of a gauge turned by `angle`, from its readings at 0, 45 and 90 degrees. The strain at an angle a is
 /// `(e0 + e90)/2 + (e0 - e90)/2 cos 2a + (e45 - (e0 + e90)/2) sin 2a`.
 fn rotate_reading(e0: f64, e45: f64, e90: f64, angle: f64) -> f64 {
     let (mean, half) = ((e0 + e90) / 2.0, (e0 - e90) / 2.0);

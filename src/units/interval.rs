@@ -4,7 +4,7 @@ use super::number::number;
 
 /// Sizes between which a value is written without an exponent.
 const PLAIN: std::ops::Range<f64> = 1e-3..1e6;
-/// Half width below which it is written with an exponent: there would be more zeros than digits.
+/// Half width below which it is written with an exponent, since it would have more zeros than digits.
 const TINY: f64 = 1e-6;
 
 /// Returns a value with the half width of its 95 % interval: `4.53 ± 0.36`. The half width has two significant digits; the value ends at the
@@ -50,16 +50,16 @@ pub fn half_width(half: f64) -> String {
 }
 
 fn exponent(x: f64) -> i32 {
-    // What rounds up to the next power of ten counts there.
+    // A number that rounds up to the next power of ten has the exponent of that power.
     let e = x.abs().log10().floor() as i32;
     let two = x.abs() / 10f64.powi(e - 1);
     if two.round() >= 100.0 { e + 1 } else { e }
 }
 
-/// A number that ends at a decimal place; negative places are those before the point.
+/// Formats a number up to a decimal place; negative places are before the decimal point.
 fn format_rounded(x: f64, places: i32) -> String {
     let unit = 10f64.powi(-places);
-    // Zero without a sign.
+    // Adding 0.0 removes the sign of a negative zero.
     let x = (x / unit).round() * unit + 0.0;
     format!("{x:.*}", places.max(0) as usize)
 }
@@ -77,7 +77,7 @@ mod tests {
             (0.00012, 0.36, "0.00 ± 0.36"),
             (-0.00012, 0.36, "0.00 ± 0.36"),
             (12.0, 0.0996, "12.00 ± 0.10"),
-            // Four digits of a value are enough, and its half width never becomes zero.
+            // The value has at most four digits, and the half width is never rounded to zero.
             (123.456789, 0.0012, "123.5 ± 0.0012"),
             (2.7e6, 1.2e4, "2.700e6 ± 1.2e4"),
             (0.0, 0.5, "0.00 ± 0.50"),

@@ -1,6 +1,6 @@
-//! Units at the door: the unit system of a model, the units of reports and of measured files, and factors between them.
+//! Units of input and output: the unit system of a model, the units of reports and of measured files, and factors between them.
 //!
-//! Inside, a model keeps the units of its deck; a number is converted once on reading and once in a report.
+//! A model keeps the units of its deck. A number is converted once when it is read and once in a report.
 
 mod interval;
 mod number;

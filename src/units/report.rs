@@ -15,7 +15,7 @@ pub struct ReportUnits {
 }
 
 impl ReportUnits {
-    /// The system's own units.
+    /// Returns the units of a system.
     pub fn from_system(system: UnitSystem) -> Self {
         Self {
             force: system.unit(Quantity::Force),
@@ -26,7 +26,7 @@ impl ReportUnits {
         }
     }
 
-    /// The unit of a quantity; accelerations are reported in SI.
+    /// Returns the unit of a quantity. Accelerations are reported in SI.
     pub fn unit(&self, quantity: Quantity) -> Unit {
         match quantity {
             Quantity::Force => self.force,

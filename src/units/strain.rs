@@ -1,6 +1,6 @@
 //! Units of strain, as measuring systems write them.
 
-/// Microstrain in one of a unit; none stated means microstrain, `None` where it is no unit of strain.
+/// Returns the microstrain in one unit. No stated unit means microstrain. `None` if the text is not a unit of strain.
 pub fn microstrain_in(unit: &str) -> Option<f64> {
     let word: String = unit
         .to_lowercase()

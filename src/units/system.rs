@@ -36,7 +36,7 @@ impl UnitSystem {
     /// All of them, as a job may name them.
     pub const ALL: [UnitSystem; 4] = [Self::MKgS, Self::MmTS, Self::MmKgS, Self::InLbfS];
 
-    /// The name used in a job.
+    /// Returns the name of the system in a job.
     pub fn name(self) -> &'static str {
         match self {
             Self::MKgS => "m-kg-s",
@@ -46,12 +46,12 @@ impl UnitSystem {
         }
     }
 
-    /// The system of that name.
+    /// Returns the system with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|s| s.name() == name)
     }
 
-    /// The system that PARAM,UNITSYS names, `None` for one we have no name for.
+    /// Returns the system that PARAM,UNITSYS names; `None` if it is not a known system.
     ///
     /// # Reference
     /// Simcenter writes `MN-MM` for millinewton and millimetre.
@@ -83,7 +83,7 @@ impl UnitSystem {
         }
     }
 
-    /// The SI value of its unit of a quantity (`kg m / s^2` and so on): multiply by this to get SI.
+    /// Returns the SI value of the system's unit of a quantity (`kg m / s^2` and so on). A number times this value is in SI units.
     pub fn si(self, quantity: Quantity) -> f64 {
         let (l, m) = (self.length_m(), self.mass_kg());
         match quantity {
@@ -127,7 +127,7 @@ impl UnitSystem {
         }
     }
 
-    /// Standard gravity (9.80665 m/s^2) in this system.
+    /// Returns standard gravity (9.80665 m/s^2) in this system.
     pub fn standard_gravity(self) -> f64 {
         9.806_65 / self.length_m()
     }

@@ -84,7 +84,7 @@ fn densities_of_no_material_are_an_error_where_all_is_a_metal_in_another_system(
         assert_eq!(severity, Error, "{right}");
         assert!(remedy.contains(right), "{remedy}");
     }
-    // The weight of steel in place of its density, and a deck that says which system it is in.
+    // The weight density of steel in place of its mass density, and a deck that states its system.
     assert_eq!(judged(UnitSystem::InLbfS, None, 30.46e6, 0.2836).0, Warning);
     let said = judged(UnitSystem::InLbfS, Some("IN-LBF"), 210e3, 7.85e-9);
     assert_eq!(said.0, Warning);
@@ -115,21 +115,21 @@ fn factors_go_from_model_to_report_units() {
     assert!(
         (factor(UnitSystem::MmKgS, find_unit(Quantity::Force, "N").unwrap()) - 1e-3).abs() < 1e-18
     );
-    // 1 lbf s^2/in weighs 386.0886 lb.
+    // 1 lbf s^2/in is a mass of 386.0886 lb.
     let lb = factor(UnitSystem::InLbfS, find_unit(Quantity::Mass, "lb").unwrap());
     assert!((lb - 386.0886).abs() < 1e-3, "{lb}");
 }
 
 #[test]
 fn the_likely_system_is_one_that_the_check_accepts_and_none_where_none_is() {
-    // steel as each system writes it
+    // Steel in the units of each system.
     for system in UnitSystem::ALL {
         let e = 2.1e11 / system.si(Quantity::Stress);
         let rho = 7850.0 / (system.mass_kg() / system.length_m().powi(3));
         let found = likely_system(None, &[(1, e)], &[(1, rho)]);
         assert_eq!(found, Some(system));
     }
-    // a modulus of 1 is none of a material in any system
+    // A modulus of 1 is not plausible for a material in any system.
     assert_eq!(likely_system(None, &[(1, 1.0)], &[]), None);
     assert_eq!(likely_system(None, &[], &[]), None);
     assert_eq!(

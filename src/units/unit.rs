@@ -26,7 +26,7 @@ impl Quantity {
         Self::Acceleration,
     ];
 
-    /// The word a job uses.
+    /// Returns the name of the quantity in a job.
     pub fn word(self) -> &'static str {
         match self {
             Self::Force => "force",
@@ -120,7 +120,7 @@ pub fn find_unit(quantity: Quantity, name: &str) -> Option<Unit> {
         .find(|u| u.quantity == quantity && plain(u.name) == wanted)
 }
 
-/// Names of the units of a quantity, for messages.
+/// Returns the names of the units of a quantity, for messages.
 pub fn unit_names(quantity: Quantity) -> Vec<&'static str> {
     UNITS
         .iter()

@@ -8,9 +8,9 @@ pub const MODULUS_LIMITS_GPA: [f64; 2] = [1.0, 1000.0];
 /// Limits of a plausible density, kg/m^3: from foam cores to tungsten.
 pub const DENSITY_LIMITS: [f64; 2] = [20.0, 25_000.0];
 
-/// The largest size, SI units, that a quantity of a structure's loads has: the weight of the heaviest ships and buildings is a few times 1e9 N, on
-/// arms of up to ten kilometres. Lengths are coordinates too, whose origin may be far away, as in a survey: northings reach 1e7 m. A larger number is
-/// in another unit or wrong. Numbers of load sets are multiples of the set.
+/// Returns the largest plausible size, in SI units, of a quantity of a structure's loads. The weight of the heaviest ships and buildings is a few
+/// times 1e9 N, on arms of up to ten kilometres. Lengths include coordinates with a distant origin, as in a survey, where northings reach 1e7 m. A
+/// larger number is in another unit or wrong. Numbers of load sets are multiples of the set.
 pub fn largest_size(quantity: Option<Quantity>) -> f64 {
     match quantity {
         Some(Quantity::Force) | None => 1e11,
@@ -22,11 +22,12 @@ pub fn largest_size(quantity: Option<Quantity>) -> f64 {
     }
 }
 
-/// Findings where PARAM,UNITSYS, Young's moduli or densities (id, value; densities times WTMASS) contradict the declared system.
+/// Returns findings on PARAM,UNITSYS, Young's moduli or densities that contradict the declared system. Moduli and densities are given by id and
+/// value, densities times WTMASS.
 ///
-/// Dummy materials exist in honest decks: some implausible values are a warning, all of them an error; for densities still a warning,
-/// because a common factor of all masses leaves the strain of a balanced structure unchanged, unless modulus and density are both those of a
-/// metal in another system.
+/// Valid decks may contain dummy materials. Some implausible values are therefore a warning, and only if all are implausible, an error. For densities
+/// this is a warning too, since a common factor of all masses does not change the strain of a balanced structure. It is an error if modulus and
+/// density are both plausible for a metal in another system.
 pub fn check_units(
     system: UnitSystem,
     unitsys: Option<&str>,
@@ -65,7 +66,7 @@ pub fn check_units(
         Severity::Error,
         system,
     ));
-    // Where the deck says which system it is in, its densities are wrong, not its units.
+    // If the deck states its system, the densities are wrong, not the units.
     let is_said = unitsys.and_then(UnitSystem::from_unitsys) == Some(system);
     let meant = metal_elsewhere(system, moduli, densities).filter(|_| !is_said);
     let density = find_implausible_value(
@@ -88,32 +89,34 @@ pub fn check_units(
     out
 }
 
-/// kg/m^3 in a unit of density of a system.
+/// Returns the density unit of a system in kg/m^3.
 fn density_si(system: UnitSystem) -> f64 {
     system.mass_kg() / system.length_m().powi(3)
 }
 
-/// How far a modulus and a density, SI, are from those of a metal, 100 GPa and 5,000 kg/m^3: the sum of the sizes of their logarithms.
+/// Returns the distance of a modulus and a density (SI units) from a metal with 100 GPa and 5,000 kg/m^3. The distance is the sum of the absolute
+/// logarithms of both ratios.
 fn from_metal(e: f64, rho: Option<f64>) -> f64 {
     let from = |x: f64, usual: f64| (x / usual).ln().abs();
     from(e, 100e9) + rho.map_or(0.0, |r| from(r, 5000.0))
 }
 
-/// The middle of the positive values.
+/// Returns the median of the positive values.
 fn median_positive(values: &[(u32, f64)]) -> Option<f64> {
     let mut v: Vec<f64> = values.iter().map(|v| v.1).filter(|x| *x > 0.0).collect();
     v.sort_by(f64::total_cmp);
     v.get(v.len() / 2).copied()
 }
 
-/// The other system in which the typical modulus and density are both those of a metal, where they are of none in `system`.
+/// Returns another system in which the median modulus and density are plausible for a metal. `None` if they are plausible for a metal in `system`, or
+/// in no system.
 fn metal_elsewhere(
     system: UnitSystem,
     moduli: &[(u32, f64)],
     densities: &[(u32, f64)],
 ) -> Option<UnitSystem> {
-    /// Magnesium (45 GPa, 1,800 kg/m^3) is 1.8 from it, tungsten (400 GPa, 19,300 kg/m^3) 2.7; a metal in the units of another system is 5.8 and
-    /// more from it.
+    /// Largest distance of a metal (`from_metal`). It is 1.8 for magnesium (45 GPa, 1,800 kg/m^3) and 2.7 for tungsten (400 GPa, 19,300 kg/m^3). For
+    /// a metal in the units of another system it is 5.8 or more.
     const METALS: f64 = 3.0;
     let (e, rho) = (median_positive(moduli)?, median_positive(densities)?);
     let distance =
@@ -125,7 +128,7 @@ fn metal_elsewhere(
     others.find(|s| distance(*s) <= METALS)
 }
 
-/// The finding with the system in which the deck is written by its looks.
+/// Returns the finding, extended by the system in which the deck is probably written.
 fn named_elsewhere(f: Finding, other: UnitSystem) -> Finding {
     Finding {
         message: format!(
@@ -238,11 +241,12 @@ pub fn likely_system(
         .min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
-/// A typical size of a load on a structure whose loads are not known yet, SI units: a wheel of a light truck, and that on an arm of 0.2 m.
+/// Typical size of a load on a structure whose loads are unknown, SI units. It is the wheel force of a light truck, and its moment on an arm of 0.2
+/// m.
 const TYPICAL_FORCE_N: f64 = 1e4;
 const TYPICAL_MOMENT_N_M: f64 = 2e3;
 
-/// Returns the typical size of a force or moment in the units of a deck, where nothing is known of it; `None` for other quantities.
+/// Returns the typical size of an unknown force or moment in the units of a deck; `None` for other quantities.
 pub fn typical_load(system: UnitSystem, quantity: Quantity) -> Option<f64> {
     let si = match quantity {
         Quantity::Force => TYPICAL_FORCE_N,
@@ -252,7 +256,7 @@ pub fn typical_load(system: UnitSystem, quantity: Quantity) -> Option<f64> {
     Some(si / system.si(quantity))
 }
 
-/// Returns whether a force or moment has the size of a unit load: a power of ten in the units of the deck, and at most a hundredth of
+/// Returns whether a force or moment has the size of a unit load. This is a power of ten in the units of the deck, at most a hundredth of
 /// [`typical_load`]. Such loads scale an influence coefficient and do not show the size of the loads of a vehicle.
 pub fn is_unit_load(system: UnitSystem, quantity: Quantity, size: f64) -> bool {
     let exponent = size.abs().log10();

@@ -51,7 +51,7 @@ pub struct ChannelFloor {
 /// is declared.
 ///
 /// # Errors
-/// As [`motion`].
+/// Errors of [`motion`].
 pub fn channel_floors(
     vehicle: &Vehicle,
     values: &[f64],
@@ -90,7 +90,7 @@ pub fn channel_floors(
     for (name, sd, _) in &present {
         let sd = sd.unwrap_or(0.0);
         for c in noisy.list.iter_mut().filter(|c| c.name == **name) {
-            // Uniform of that variance: the sum of many samples is normal anyway.
+            // Add uniform noise of the given variance. The sum of many samples is normal in any case.
             let width = sd * 12f64.sqrt();
             c.samples
                 .iter_mut()

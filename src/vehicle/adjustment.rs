@@ -33,7 +33,7 @@ pub struct Slip {
     pub by_s: f64,
 }
 
-/// A low-pass: order 1 is 1 / (1 + i w T), order 2 Butterworth's 1 / (1 + i w T sqrt 2 - w^2 T^2).
+/// A low-pass filter. Order 1 is 1 / (1 + i w T). Order 2 is Butterworth's 1 / (1 + i w T sqrt 2 - w^2 T^2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lag {
     /// Order, 1 or 2.

@@ -71,7 +71,7 @@ impl ChannelSpectra {
     }
 }
 
-/// Accelerations of each body in each of its motions; those of a body with one sensor are the sensor's.
+/// Returns the accelerations of each body in each of its motions. A body with one sensor has the acceleration of the sensor.
 pub(super) fn body_motions(
     vehicle: &Vehicle,
     spectra: &[Vec<Spectrum>],

@@ -30,12 +30,13 @@ pub struct SpringForce {
     pub link: String,
     /// Samples.
     pub force: Vec<f64>,
-    /// Half width of their 95 % interval: the parameters, and what the balance of the body leaves.
+    /// Half width of the 95 % interval of `force`. It includes the uncertainty of the parameters and the residual of the body's balance.
     pub half: Vec<f64>,
 }
 
 impl ChassisForce {
-    /// Returns the RMS of the difference between the two ways, an estimate of the error of either; `None` with one way alone.
+    /// Returns the RMS of the difference between the two methods, an estimate of the error of either. The result is `None` if only one method is
+    /// available.
     pub fn difference(&self) -> Option<f64> {
         let pairs = self.by_mass.iter().zip(&self.by_springs);
         let is_known = !self.by_springs.is_empty();
@@ -105,8 +106,8 @@ pub fn chassis_forces(
 
 /// Returns the half width of `sum_j M_0j q_j''` by sample.
 ///
-/// The heave force is `sum_s c_s a_s` over the accelerometers of the body, `c = M_0 pinv(phi)`: a gain error of each one counts with `c_s a_s`, white
-/// noise with `c_s` times its share in the band, `sqrt(2 (high - low) / rate)`.
+/// The heave force is `sum_s c_s a_s` over the accelerometers of the body, with `c = M_0 pinv(phi)`. A gain error of an accelerometer counts with
+/// `c_s a_s`. White noise counts with `c_s` times its share in the band, `sqrt(2 (high - low) / rate)`.
 fn half_widths_by_mass(
     task: &IdentifyTask,
     found: &Identification,

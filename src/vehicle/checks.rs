@@ -5,7 +5,7 @@ use crate::finding::{Finding, Severity};
 use crate::units::number;
 use serde::Serialize;
 
-/// Identified mass against weighed mass.
+/// Comparison of identified mass and weighed mass.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MassClosure {
     /// Sprung and unsprung mass identified.
@@ -14,18 +14,18 @@ pub struct MassClosure {
     pub sigma: f64,
     /// Mean wheel force over gravity.
     pub weighed: f64,
-    /// identified / weighed: 1 when dynamics and statics agree.
+    /// Identified mass / weighed mass. The ratio is 1 if dynamics and statics agree.
     pub ratio: f64,
 }
 
-/// Departure of the mass ratio from 1 worth a word.
+/// Departure of the mass ratio from 1 above which a finding is reported.
 const CLOSURE_LIMIT: f64 = 0.05;
-/// Difference between sides of a vehicle worth a word.
+/// Difference between sides of a vehicle above which a finding is reported.
 const SIDES_LIMIT: f64 = 0.2;
 
 /// Compares identified sprung and unsprung mass with the mean wheel force over gravity.
 ///
-/// The mean vertical force on a vehicle that goes nowhere up or down is its weight. `None` without a static part.
+/// Without net vertical motion, the mean vertical force on a vehicle is its weight. The result is `None` without a static part.
 pub fn check_mass_closure(
     identified: f64,
     sigma: f64,

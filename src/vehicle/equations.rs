@@ -16,11 +16,13 @@ pub struct Equation {
     pub driven: bool,
 }
 
-/// Equations of every body whose outside forces are all measured, then of the total momentum of the vehicle.
+/// Returns the equations of every body whose outside forces are all measured, then the equations of the total momentum of the vehicle.
 ///
-/// Body: M q'' + sum over link ends of weight phi F_link = sum over wheels of phi F_wheel, one equation a motion (thesis 5.1 to
-/// 5.5 for bodies that only heave). Total: their sum (heave), moments about y and x where the sprung body turns; link forces
-/// cancel in it (a total in which they don't is left out). Totals need every wheel force. The vehicle should be one piece ([`Vehicle::components`]).
+/// Each motion of a body gives one equation: M q'' + sum over link ends of weight phi F_link = sum over wheels of phi F_wheel (thesis 5.1 to 5.5 for
+/// bodies that only heave).
+///
+/// The totals are the sum of these equations (heave) and, if the sprung body turns, the moments about y and x. Link forces cancel in a total, and a
+/// total in which they do not cancel is left out. Totals need every wheel force. The vehicle should be one piece ([`Vehicle::components`]).
 pub fn equations(vehicle: &Vehicle, motion: &Motion) -> Vec<Equation> {
     let measured = |b: usize| {
         vehicle
@@ -71,8 +73,8 @@ pub fn equations(vehicle: &Vehicle, motion: &Motion) -> Vec<Equation> {
     out
 }
 
-/// Whether link forces cancel in the total of a motion: not where a spring bears on the frame ahead of its axle, nor where a link goes to
-/// a witness.
+/// Whether link forces cancel in the total of a motion. They do not cancel if a spring bears on the frame ahead of its axle, or if a link goes to a
+/// witness.
 fn links_cancel(vehicle: &Vehicle, letter: &str) -> bool {
     vehicle.links.iter().all(|link| {
         if link.ends.iter().any(|(_, p)| vehicle.is_witness(p.body)) {

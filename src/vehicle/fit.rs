@@ -62,7 +62,7 @@ pub fn fit(equations: &[Equation], allowed: &[ParameterRange]) -> Fit {
         .collect();
     let held = |i: usize| matches!(allowed[i], ParameterRange::Known(v) if v != 0.0);
     if largest == 0.0 || weights.contains(&0.0) && !suffices(&triangles, &weights, allowed) {
-        // Scale equations without outside force by what is held, or by their own columns.
+        // Scale equations without outside force by the terms of known parameters, or by their columns.
         for (w, t) in weights
             .iter_mut()
             .zip(&triangles)
@@ -155,7 +155,7 @@ fn suffices(triangles: &[Triangle], weights: &[f64], allowed: &[ParameterRange])
     }
 }
 
-/// Solution in the free parameters with the others at `fixed`.
+/// Solves for the free parameters. All other parameters are held at `fixed`.
 fn solve_free(triangles: &[Triangle], weights: &[f64], free: &[usize], fixed: &[f64]) -> Solution {
     let n = fixed.len();
     let reduced: Vec<(f64, Triangle)> = triangles

@@ -40,8 +40,8 @@ pub fn absent_sentence(names: &[String], unmeasured: &[String]) -> String {
     )
 }
 
-/// Sentences for combinations of parameters that act alike in the record, from the weak directions of a fit, and the sigmas that
-/// make them so.
+/// Returns sentences for combinations of parameters that the record cannot distinguish. They come from the weak directions of a fit and the sigmas of
+/// the parameters.
 pub fn weak_sentences(fit: &Fit, parameters: &[Parameter], unknown: &[usize]) -> Vec<String> {
     /// Share of a direction above which a parameter takes part in it.
     const PART: f64 = 0.3;

@@ -45,7 +45,7 @@ pub struct Estimate {
     pub value: Option<f64>,
     /// One standard deviation, coloured residuals and declared tolerances included.
     pub sigma: Option<f64>,
-    /// Unit in words.
+    /// Unit as text.
     pub unit: String,
     /// Whether record and model determine it.
     pub identifiable: bool,
@@ -123,7 +123,7 @@ impl Identification {
     pub fn verdict(&self) -> Option<Finding> {
         let mut parameters = self.parameters.iter();
         let told = parameters.any(|p| p.identifiable && !p.known);
-        // A wrong input is the reason. Without links, the forces of stated masses are what was asked.
+        // A wrong input explains the lack of parameters. Without links, the job only asks for the forces of stated masses.
         let is_explained = self.vehicle.links.is_empty()
             || self
                 .wrong_input()

@@ -23,11 +23,10 @@ use crate::series::detrend::rms;
 
 pub use super::identification::{ChannelFit, Estimate, Identification, IdentifyTask};
 
-/// Parameters of the vehicle from a record; a second record, never fitted, judges them.
+/// Identifies the parameters of the vehicle from a record. A second record takes no part in the fit and tests them.
 ///
 /// # Errors
-/// [`VehicleError`] when channels are missing, the record is too short, a known parameter is not one of the model's, or no
-/// equation is left.
+/// [`VehicleError`] if channels are missing, the record is too short, a known parameter is not in the model, or no equation remains.
 pub fn identify(
     task: &IdentifyTask,
     record: &Channels,
@@ -75,7 +74,7 @@ pub fn identify(
             .map(|h| motion(&part.part, h, &in_record(h)))
             .transpose()
             .map_err(|e| VehicleError::HeldOut(Box::new(e)))?;
-        // A change of mass or spring has its time in the fitted record: it alone can judge.
+        // A change of mass or spring occurs at a time of the fitted record. Only this record can test it.
         let judged = hold_out.filter(|_| !part.part.changes()).unwrap_or(record);
         let floors = if part.fit.is_some() {
             let (values, blend) = (&part.values, &part.blend);
@@ -128,7 +127,7 @@ fn declared_tolerances(task: &IdentifyTask) -> DeclaredErrors {
 /// Whether [`identify`] can begin with these records: their channels, rate and length, and the parameters that the task names.
 ///
 /// # Errors
-/// As [`identify`].
+/// Errors of [`identify`].
 pub fn check_records(
     task: &IdentifyTask,
     record: &Channels,
@@ -320,7 +319,7 @@ fn add_tolerances(
     Ok(())
 }
 
-/// Compares masses with the mean wheel forces, over the parts that rest on their wheels alone, every one of them measured.
+/// Compares masses with the mean wheel forces. Only parts that rest on their wheels alone count, and only if every wheel force is measured.
 fn close_masses(task: &IdentifyTask, answer: &mut Identification, record: &Channels) {
     let v = &answer.vehicle;
     let (mut mass, mut variance, mut force, mut parts) = (0.0, 0.0, 0.0, 0);

@@ -20,10 +20,12 @@ pub struct Spread {
 /// Smallest number of blocks: fewer do not determine a variance.
 const MIN_BLOCKS: usize = 8;
 
-/// Covariance B (sum over blocks of s s') B of the free parameters, B = (A'W^2A)^-1, s a block's sum of w^2 a r over its samples
-/// and all equations: right for residuals correlated in time up to a block's length and across equations.
+/// Returns the covariance B (sum over blocks of s s') B of the free parameters.
 ///
-/// `memory_s` is that length, about 1.5 periods of the lower band edge.
+/// Here B = (A'W^2A)^-1, and s is the sum of w^2 a r over the samples of a block and all equations. The covariance is valid for residuals that are
+/// correlated across equations, and in time up to the length of a block.
+///
+/// `memory_s` is the length of a block, about 1.5 periods of the lower band edge.
 ///
 /// # Reference
 /// Newey & West, Econometrica 55 (1987) 703; batch means: Carlstein, Ann. Statist. 14 (1986) 1171.
@@ -61,7 +63,7 @@ pub fn spread(equations: &[Equation], fit: &Fit, rate_hz: f64, memory_s: f64) ->
             }
         }
     }
-    // Whole record against the blocks' share of it, and the parameters that the residuals have already spent.
+    // The factor corrects for samples outside the blocks, and for the degrees of freedom that the parameters use.
     let factor = n as f64 / (n_blocks * length) as f64 * n_blocks as f64
         / (n_blocks.saturating_sub(p)).max(1) as f64;
     let b = &fit.solution.inverse;

@@ -6,8 +6,8 @@ use super::wrong_inputs::unit_of_accelerations;
 use crate::estimate::NORMAL_95;
 use crate::series::channels::Channels;
 
-/// Returns the sprung bodies of stated inertia whose motion is measured, without links and wheels; `None` where the motion of every body is measured,
-/// or no inertia is stated.
+/// Returns the sprung bodies of stated inertia whose motion is measured, without links and wheels. The result is `None` if the motion of every body
+/// is measured, or if no inertia is stated.
 pub(super) fn bodies_of_known_inertia(task: &IdentifyTask, record: &Channels) -> Option<Vehicle> {
     let v = &task.vehicle;
     let is_measured = |b: usize| {

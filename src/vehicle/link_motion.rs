@@ -104,7 +104,7 @@ fn wide_band(
     (d.iter().map(|d| d + level).collect(), joined(1, &rate))
 }
 
-/// Each change of mass: what is there of it times acceleration.
+/// Returns a column for each change of mass: the share present at each time, times the sum of acceleration and `step.gravity`.
 pub(super) fn step_columns(
     vehicle: &Vehicle,
     record: &Channels,

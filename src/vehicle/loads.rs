@@ -41,7 +41,7 @@ pub fn link_forces(vehicle: &Vehicle, values: &[f64], motion: &Motion) -> Vec<Ve
     out
 }
 
-/// M q'' + sum of link forces on each motion of a body: the outside force it needs (0 for a sprung body in a perfect model).
+/// Returns the outside force that each motion of a body needs: M q'' + sum of link forces. It is 0 for a sprung body in a perfect model.
 pub fn needed_forces(
     vehicle: &Vehicle,
     values: &[f64],
@@ -90,9 +90,11 @@ pub fn sprung_residuals(
         .collect()
 }
 
-/// Force of each wheel in the band: unsprung inertia plus link forces (thesis 5.7), plus the blended share of what the sprung
-/// equations leave over. With a blend of 0 it is the spring path; with shares that sum to 1 total momentum (sum of m a).
-/// NaN where a body carries more wheels than it has motions.
+/// Returns the force of each wheel in the band. It is unsprung inertia plus link forces (thesis 5.7), plus the blended share of the residuals of the
+/// sprung equations.
+///
+/// With a blend of 0 the force is from the spring path. With shares that sum to 1 it is from total momentum (sum of m a). It is NaN if a body carries
+/// more wheels than it has motions.
 pub fn wheel_forces(
     vehicle: &Vehicle,
     values: &[f64],
@@ -153,11 +155,11 @@ fn signals(
 /// Share of the physical blend's error below which a free combination of all signals replaces it.
 const FREE_GAIN: f64 = 0.85;
 
-/// Computes the blend that fits measured wheel forces best; empty shares if no wheel force is measured.
+/// Computes the blend that fits measured wheel forces best. The shares are empty if no wheel force is measured.
 ///
-/// First choice: shares of the sprung residuals, which weigh the spring path against the momentum path and keep the physical
-/// parameters. Where the model misses something that the same sensors see (the other side of a beam axle, friction), a free
-/// combination of all accelerations and link terms, a calibrated transfer from motion to force, takes over.
+/// The first choice is shares of the sprung residuals. They weight the spring path against the momentum path and keep the physical parameters. The
+/// model may lack an effect that the sensors measure, for example the other side of a beam axle, or friction. The blend is then a free combination of
+/// all accelerations and link terms, a calibrated transfer from motion to force.
 pub fn best_blend(vehicle: &Vehicle, values: &[f64], motion: &Motion) -> Blend {
     let links = link_forces(vehicle, values, motion);
     let signals = signals(vehicle, values, motion, &links);
@@ -199,7 +201,7 @@ pub fn best_blend(vehicle: &Vehicle, values: &[f64], motion: &Motion) -> Blend {
         .collect()
 }
 
-/// Wheel forces of a record in the band, one sigma a sample from what the identification left over.
+/// Returns the wheel forces of a record in the band. The sigma of a sample is from the residual of the identification.
 pub fn wheel_force_history(found: &Identification, motion: &Motion) -> LoadHistory {
     let v = &found.vehicle;
     LoadHistory {
@@ -243,9 +245,9 @@ fn scaled_wheel_forces(found: &Identification, motion: &Motion) -> Vec<Vec<f64>>
     out
 }
 
-/// Mean load of each wheel that carries a part of the vehicle alone, (sprung + unsprung mass) g, from identified masses: the
-/// same type as loads recovered from strain, to be compared with them. A part that the ground holds, or whose mass changes during the
-/// record, has none.
+/// Returns the mean load of each wheel that carries a part of the vehicle alone: (sprung + unsprung mass) g, from identified masses. The type equals
+/// the type of loads recovered from strain, so that both can be compared. A part linked to the ground, or with a mass that changes during the record,
+/// has no mean load.
 pub fn static_loads(found: &Identification, gravity: f64, run: &str) -> LoadEstimate {
     let v = &found.vehicle;
     let mut loads: Vec<(String, f64, Vec<usize>)> = Vec::new();

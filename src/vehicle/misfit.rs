@@ -19,8 +19,8 @@ pub fn channel_misfits(
         .collect()
 }
 
-/// Channel, measured less predicted, RMS of measured: every measured wheel force, then the accelerometers of every body whose outside
-/// forces are measured, predicted from forces and stretch.
+/// Returns for each channel its name, measured minus predicted value, and RMS of the measured value. The channels are every measured wheel force,
+/// then the accelerometers of every body whose outside forces are measured. Accelerations are predicted from forces and stretch.
 pub fn channel_residuals(
     part: &Vehicle,
     values: &[f64],
@@ -43,7 +43,7 @@ pub fn channel_residuals(
         if part.is_witness(b) || wheels.iter().any(|&w| m.forces[w].is_none()) {
             continue;
         }
-        // Residual of each equation of the body, turned into an error of acceleration by its inertia.
+        // Residual of each equation of the body, converted to an error of acceleration by the inertia.
         let mut r = needed_forces(part, values, m, &links, b);
         for &w in &wheels {
             if let Some(force) = &m.forces[w] {

@@ -1,13 +1,12 @@
 //! Vehicles as rigid bodies on springs: parameters and wheel loads from accelerations.
 //!
-//! - [`layout`]: bodies, accelerometers, wheels and links of a vehicle; [`term`]: what a link does; [`preset`]: the vehicles that
-//!   a job can name
+//! - [`layout`]: bodies, accelerometers, wheels and links of a vehicle; [`term`]: terms of a link force; [`preset`]: vehicles that a job can name
 //! - [`motion`]: measured channels made comparable; [`equations`]: the equations of motion, linear in the parameters
 //! - [`fit`]: weighted least squares with bounds; [`interval`]: covariance under coloured residuals
-//! - [`identify`]: all of it, with [`identifiability`] in words, [`checks`] and [`wrong_inputs`]
+//! - [`identify`]: the whole identification, with messages on [`identifiability`], [`checks`] and [`wrong_inputs`]
 //! - [`loads`]: wheel forces; [`chassis`]: chassis forces
-//! - [`stretch`]: slow stretch from force, where integration drifts
-//! - [`simulate`]: forward in time; [`refine`]: nonlinear parameters by simulation error
+//! - [`stretch`]: slow stretch from force, for frequencies at which integration drifts
+//! - [`simulate`]: simulation in time; [`refine`]: nonlinear parameters by simulation error
 
 pub mod adequacy;
 pub mod adjustment;

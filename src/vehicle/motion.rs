@@ -120,11 +120,11 @@ impl Motion {
     }
 }
 
-/// The vehicle with constants of terms that the job left open (0) set from the record: friction velocity 2 % of the rms rate of
-/// stretch, free travel of a bump stop 70 % of the largest stretch.
+/// Returns the vehicle with constants from the record for terms that the job leaves open (0). Friction velocity is 2 % of the rms rate of stretch,
+/// free travel of a bump stop is 70 % of the largest stretch.
 ///
 /// # Errors
-/// As [`motion`].
+/// Errors of [`motion`].
 pub fn resolve_constants(
     vehicle: &Vehicle,
     record: &Channels,
@@ -161,11 +161,11 @@ pub fn resolve_constants(
     Ok(out)
 }
 
-/// The motion of a vehicle in a record. Constant offsets and gravity fall to the band's lower edge; nonlinear terms are formed
-/// from stretch and rate down to half of that edge with no upper edge, then limited like everything else.
+/// Computes the motion of a vehicle in a record. The band's lower edge removes constant offsets and gravity. Nonlinear terms use stretch and rate
+/// down to half of the lower edge, without an upper edge. They are then limited to the band like all other columns.
 ///
 /// # Errors
-/// [`VehicleError`] when a channel is missing, a body's motion is not measured, or the record is shorter than the band needs.
+/// [`VehicleError`] if a channel is missing, a body's motion is not measured, or the record is shorter than the band needs.
 pub fn motion(
     vehicle: &Vehicle,
     record: &Channels,

@@ -181,7 +181,7 @@ fn put_fit(
 ) {
     let fitted = channel_misfits(&part.part, &part.values, &part.motion, &part.blend);
     let judged = held.map(|h| channel_misfits(&part.part, &part.values, h, &part.blend));
-    // A model without values of its parameters explains nothing.
+    // A model without parameter values explains none of the signal.
     let share = |error: &f64, size: &f64| match (error / size).is_finite() {
         true => error / size,
         false => 1.0,

@@ -26,7 +26,7 @@ impl PartProblem {
     /// Builds the equations of a part.
     ///
     /// # Errors
-    /// As [`motion`].
+    /// Errors of [`motion`].
     pub fn from_part(
         task: &IdentifyTask,
         part: &Vehicle,
@@ -68,7 +68,7 @@ impl PartProblem {
 /// Returns how the record is treated, and the vehicle with the sensors that the record has.
 ///
 /// # Errors
-/// As [`super::identify::identify`].
+/// Errors of [`super::identify::identify`].
 pub(super) fn prepare_identification(
     task: &IdentifyTask,
     record: &Channels,
@@ -100,7 +100,8 @@ pub(super) fn prepare_identification(
     }
 }
 
-/// The vehicle less sensors whose channels the record lacks, where the rest still gives the body's motion.
+/// Returns the vehicle without the sensors whose channels the record lacks. A body keeps all its sensors if the present ones do not determine its
+/// motion.
 fn with_measured_sensors(vehicle: &Vehicle, record: &Channels) -> Vehicle {
     let mut out = vehicle.clone();
     let enough = |b: usize| {

@@ -392,13 +392,13 @@ fn oscillator() -> Vehicle {
     }
 }
 
-/// Links that couple what the plain model keeps apart; a term that names one (`k_axle`) adds it.
+/// Links that couple bodies which the plain model leaves uncoupled. A term that names a link (`k_axle`) adds it.
 pub const COUPLINGS: [&str; 5] = ["axle", "roll", "bar", "cross", "pitch"];
 
 /// Channel of the body over the next axle.
 pub const NEXT: &str = "a_body_next";
 
-/// Adds the body over the next axle as a witness, where the model is of one axle or bogie; `channel` is its accelerometer.
+/// Adds the body over the next axle as a witness, if the model is of one axle or bogie. `channel` is its accelerometer.
 pub fn add_next(v: &mut Vehicle, channel: &str) {
     let of_one = matches!(v.name.as_str(), "front2" | "front_pair" | "rear3");
     if of_one && v.bodies.iter().all(|b| b.shape != Shape::Witness) {
@@ -408,12 +408,15 @@ pub fn add_next(v: &mut Vehicle, channel: &str) {
     }
 }
 
-/// A coupling link without terms.
+/// Returns a coupling link without terms, or `None` if the model has no link of this name.
 ///
-/// `front_pair`: `axle` joins the wheels, `roll` the bodies, `bar` resists unequal stretch of both sides, `cross` joins this side's
-/// body to the other wheel. `rear3`: `axle` joins mid and rear wheel, `bar` adds their stretches. `pitch` joins the body to that over
-/// the next axle ([`add_next`]): a frame of mass M and pitch inertia J whose centre of gravity is a behind this axle and b ahead of the next
-/// has inertance b_pitch = (J - M a b) / (a + b)^2 between them, and m_b is its static share, M b / (a + b).
+/// - In `front_pair`, `axle` joins the wheels and `roll` the bodies. `bar` resists unequal stretch of both sides. `cross` joins this side's body to
+///   the other wheel.
+/// - In `rear3`, `axle` joins mid and rear wheel, and `bar` adds their stretches.
+/// - `pitch` joins the body to the body over the next axle ([`add_next`]).
+///
+/// For `pitch`, consider a frame of mass M and pitch inertia J. Its centre of gravity is at distance a behind this axle and b ahead of the next. The
+/// inertance between the bodies is b_pitch = (J - M a b) / (a + b)^2, and m_b is the static share, M b / (a + b).
 pub fn coupling(v: &Vehicle, name: &str) -> Option<Link> {
     let next = v.bodies.iter().position(|b| b.shape == Shape::Witness);
     let to_next = next.map(|n| [(1.0, 0), (-1.0, n)]);

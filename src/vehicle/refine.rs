@@ -37,11 +37,11 @@ pub const OPEN: Band = Band {
     high_hz: f64::INFINITY,
 };
 
-/// Sets up what to simulate from a record: bodies whose wheels are all measured are driven by them; the motion of a body with an
-/// unmeasured wheel, and of those in `witnesses`, is given, integrated from its accelerometer down to half the band's lower edge.
+/// Sets up the simulation of a record. Measured wheel forces drive the bodies whose wheels are all measured. The motion of a body with an unmeasured
+/// wheel, or of a body in `witnesses`, is given. It is integrated from the accelerometer down to half the band's lower edge.
 ///
 /// # Errors
-/// [`SeriesError`] when a channel is missing or the record is too short for the band.
+/// [`SeriesError`] if a channel is missing or the record is too short for the band.
 pub fn comparison(
     vehicle: &Vehicle,
     record: &Channels,

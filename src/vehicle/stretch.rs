@@ -9,7 +9,7 @@ use crate::series::detrend::mean;
 /// Returns the slow stretch of every link with a nonlinear term whose force follows from the equation of one body. This body only heaves, no other
 /// link holds it, and all its outside forces are measured.
 ///
-/// F = (sum of wheel forces - m q'') / weight; then sum of coefficient times term(d, d') = F is solved for d step by step
+/// The force is F = (sum of wheel forces - m q'') / weight. The equation sum of coefficient times term(d, d') = F is then solved for d step by step
 /// (implicit Euler, Newton's method). Links whose law can't be solved are left out.
 pub fn slow_stretches(
     vehicle: &Vehicle,
@@ -37,7 +37,7 @@ fn link_force(
 ) -> Option<Vec<f64>> {
     let ends = &vehicle.links.get(link)?.ends;
     let mut candidates: Vec<(f64, usize)> = ends.iter().map(|(w, p)| (*w, p.body)).collect();
-    // A body without wheels needs no force channel.
+    // Try bodies without wheels first: they need no force channel.
     candidates.sort_by_key(|(_, b)| vehicle.wheels.iter().any(|w| w.at.body == *b));
     let alone = |b: usize| {
         vehicle
@@ -144,7 +144,7 @@ fn solve_stretch(
     for (i, &f) in force.iter().enumerate() {
         let t_s = record.start_s + i as f64 * h;
         let miss = |v: f64| law(d + h * v, v, t_s) - f;
-        // The law rises with v: the root stays between the last points of either sign.
+        // The law increases with v, so that the root is between the last points of either sign.
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         for _ in 0..STEPS {
             let g = miss(v);

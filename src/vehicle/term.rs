@@ -52,7 +52,7 @@ impl UnitNames {
         format!("{}/s", self.length)
     }
 
-    /// The unit of a quantity, in words.
+    /// Returns the name of the unit of a quantity.
     pub fn unit_name(&self, quantity: Quantity) -> String {
         let Self {
             mass: m,
@@ -85,7 +85,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// The word in a job.
+    /// Returns the name in a job.
     pub fn word(self) -> &'static str {
         match self {
             Self::Both => "both",
@@ -94,7 +94,7 @@ impl Side {
         }
     }
 
-    /// The side of a word.
+    /// Parses the name in a job.
     pub fn from_name(word: &str) -> Option<Self> {
         [Self::Both, Self::Compression, Self::Rebound]
             .into_iter()

@@ -1,4 +1,4 @@
-//! Wrong inputs of a vehicle record: what the search of [`crate::input_faults`] needs of record and vehicle.
+//! Wrong inputs of a vehicle record. This module gives the search of [`crate::input_faults`] the data of record and vehicle.
 
 use super::checks::is_static;
 use super::fit::{Fit, fit};
@@ -75,8 +75,8 @@ pub(super) fn unit_of_accelerations(
     finding_of_scale(&channels, task.gravity, scale)
 }
 
-/// Returns the finding on a channel of the record that is reversed, exchanged or in another unit, by what the vehicle explains; then that on the
-/// unit of all of them, by the masses that were identified.
+/// Returns the finding on a channel of the record that is reversed, exchanged or in another unit, from the residual of the vehicle. Without such a
+/// channel, returns the finding on the unit of all channels, from the identified masses.
 pub(super) fn wrong_input(
     task: &IdentifyTask,
     record: &Channels,
@@ -107,11 +107,12 @@ pub(super) fn wrong_input(
     })
 }
 
-/// Returns the share of the motion that the vehicle leaves unexplained: root mean square over its equations, weight included, of the residual over
-/// the measured force, or over the largest term where no force is measured. Parameters keep their limits. `None` without equations.
+/// Returns the share of the motion that the vehicle does not explain. It is the root mean square over the equations, including weight, of the
+/// residual divided by the measured force. Without a measured force, the divisor is the largest term. Parameters keep their limits. The result is
+/// `None` without equations.
 ///
 /// # Errors
-/// As [`super::identify::identify`].
+/// Errors of [`super::identify::identify`].
 fn unexplained_share(task: &IdentifyTask, record: &Channels) -> Result<Option<f64>, VehicleError> {
     let (treatment, vehicle) = prepare_identification(task, record)?;
     let mut shares = Vec::new();
@@ -130,7 +131,7 @@ fn unexplained_share(task: &IdentifyTask, record: &Channels) -> Result<Option<f6
                 false => terms.fold(0.0, f64::max),
             };
             let share = left / size;
-            // An equation whose parameters all vanish explains nothing.
+            // An equation whose parameters are all zero explains none of the motion.
             shares.push(match share.is_finite() {
                 true => share.min(1.0),
                 false => 1.0,
@@ -143,8 +144,8 @@ fn unexplained_share(task: &IdentifyTask, record: &Channels) -> Result<Option<f6
     Ok((!shares.is_empty()).then(|| rms(&shares)))
 }
 
-/// Returns the relative difference between the mean wheel forces of a part and the weight of its masses, at most 1; `None` where wheels do not carry
-/// all of it or do not show their static load.
+/// Returns the relative difference between the mean wheel forces of a part and the weight of its masses, at most 1. The result is `None` if the
+/// wheels do not carry the whole part, or if their channels do not contain the static load.
 fn unexplained_weight(
     task: &IdentifyTask,
     vehicle: &Vehicle,

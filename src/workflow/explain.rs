@@ -45,7 +45,7 @@ pub fn explain(code: &str) -> Result<&'static Code, Faults> {
     })
 }
 
-/// The closest code, else those that share a word, else where all are listed.
+/// Suggests the closest code, else the codes that share a word with it, else the option that lists all codes.
 fn suggest_code(code: &str) -> String {
     let names = explain::codes().iter().map(|c| c.code);
     let meant = remedy(code, names.clone());

@@ -31,11 +31,11 @@ pub struct IdentifiedParameters {
     pub band_hz: [f64; 2],
     /// Parameters and ratios.
     pub parameters: Vec<Estimate>,
-    /// Parameters that the data do not determine, in words.
+    /// Descriptions of the parameters that the data do not determine.
     pub unidentifiable: Vec<String>,
     /// How well each channel is explained.
     pub fit: Vec<ChannelFit>,
-    /// Identified over weighed mass.
+    /// Ratio of the identified mass to the weighed mass.
     pub mass_closure: Option<f64>,
     /// Identified mass, weighed mass, and their ratio.
     pub mass_closure_detail: Option<MassClosure>,
@@ -107,7 +107,7 @@ pub struct WheelLoad {
     pub value: Option<f64>,
     /// Standard deviation of the wheel load.
     pub sigma: Option<f64>,
-    /// Unit in words.
+    /// Unit as text.
     pub unit: String,
     /// Smallest sample of the dynamic part.
     pub min: f64,
@@ -124,11 +124,11 @@ pub struct ChassisForceOf {
     pub body: String,
     /// By its inertia.
     pub rms_by_mass: f64,
-    /// By its springs and dampers, where they were identified.
+    /// Root mean square by the springs and dampers, if they were identified.
     pub rms_by_springs: Option<f64>,
-    /// Error of either, where both were identified.
+    /// Root mean square of the difference between both forces, an estimate of the error of either; `None` if only one was identified.
     pub rms_difference: Option<f64>,
-    /// Unit in words.
+    /// Unit as text.
     pub unit: String,
 }
 

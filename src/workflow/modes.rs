@@ -51,7 +51,7 @@ fn or_null<S: Serializer>(x: &f64, s: S) -> Result<S::Ok, S::Error> {
 pub struct Modes {
     /// Ascending.
     pub modes: Vec<ModeRow>,
-    /// Support of the structure, in words.
+    /// Description of the support of the structure.
     pub support: String,
     /// Number of unsupported rigid motions, which are not modes.
     pub rigid_motions: usize,

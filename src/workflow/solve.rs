@@ -49,7 +49,7 @@ pub struct SolvedCases {
     pub balance: Vec<Balance>,
     /// Mass and its centre.
     pub mass: Option<MassAndCentre>,
-    /// Support of the structure under the unit loads of a job, in words; `None` for a deck, whose subcases state their support.
+    /// Description of the support of the structure under the unit loads of a job; `None` for a deck, whose subcases state their support.
     pub support: Option<String>,
     /// By load case: resultants of the applied loads and of the reactions, and the reactions by grid, basic frame; empty without a support.
     pub reactions: Vec<Reactions>,
@@ -115,7 +115,7 @@ struct Task {
     combined: Vec<CombinedSubcase>,
     /// Reason why a subcase of the deck is left out.
     left_out: Vec<String>,
-    /// Support of the structure of a job, in words.
+    /// Description of the support of a job's structure.
     support: Option<String>,
 }
 
@@ -322,7 +322,7 @@ fn of_deck(work: &mut Work, path: &Path) -> Result<Task, Faults> {
             Relief::None => return None,
             _ => Support::without_spc(&read.model),
         };
-        // SUPORT without PARAM,INREL is already reported, with what is assumed.
+        // SUPORT without PARAM,INREL is already reported, together with the assumption.
         let new = |f: &Finding| !explained || f.code != "inertia-relief-assumed";
         relief_finding(&read.model, support, SupportChoice::Deck).filter(new)
     }));

@@ -92,7 +92,8 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
     Faults::check(deck.unread_part_faults())?;
     work.findings.extend(deck.findings.iter().cloned());
     work.findings.extend(find_repeated_subcases(&deck));
-    // Without elements nothing can be placed. Else the run was possible, and a fault elsewhere (an unused set, say) is worth a warning.
+    // Without elements, strain has no place, so every fault is an error. Otherwise the solver could run the deck, and a fault elsewhere (for example
+    // an unused set) is a warning.
     if deck.model.shells.is_empty() && deck.model.beams.is_empty() {
         Faults::check(deck.faults.clone())?;
     }

@@ -23,7 +23,7 @@ use crate::vehicle::term::UnitNames;
 use crate::vehicle::wrong_inputs::motion_channels;
 use std::sync::Arc;
 
-/// Band where the job names none, Hz: rigid-body and axle motion of a truck.
+/// Band if the job states none, Hz: rigid-body and axle motion of a truck.
 const DEFAULT_BAND_HZ: [f64; 2] = [0.7, 20.0];
 
 /// A task with its records.
@@ -121,7 +121,7 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
             let channels = motion_channels(&model, record, unit_of);
             let wrong = channels_by_gravity(&channels, gravity);
             let mut findings = check_channels(record, gravity, used);
-            // A mean that shows another sign or unit is no offset.
+            // A mean that indicates another sign or unit is not an offset.
             findings.retain(|f| f.code != "offset" || !wrong.contains(&f.subject.as_str()));
             work.findings.extend(findings.into_iter().map(|f| Finding {
                 subject: format!("{}: {}", named.given, f.subject),
@@ -246,7 +246,7 @@ pub fn preset_request(section: &VehicleJob) -> PresetRequest {
     }
 }
 
-/// A fault at the line of the job for what the vehicle layer refuses.
+/// Returns the fault for an error of the vehicle layer, at the line of the job.
 pub fn vehicle_fault(job: &Job, file: &str, e: &VehicleError) -> Fault {
     let line = job.vehicle.as_ref().map_or(0, |v| v.line);
     let (wrong, remedy) = e.parts();
@@ -293,7 +293,7 @@ fn read_record(
         ..Options::default()
     };
     let read = open_record(Arc::new(bytes), &options).and_then(|record| {
-        // A rate that the job states confirms the unit.
+        // A sampling rate that the job states confirms the unit of time.
         let is_open = !record.is_time_unit_stated() && section.sample_rate.is_none();
         let rate_hz = record.clock.rate_hz;
         let doubtful = is_open.then(|| clock::check_rate(rate_hz)).flatten();
@@ -333,10 +333,10 @@ fn kind_in(model: &Vehicle, name: &str) -> Option<Quantity> {
     of_sensor.or(force.map(|_| Quantity::Force))
 }
 
-/// Returns the factor that converts a number in that unit into the job's units; of a channel that the model does not use, by the quantity of its
-/// unit.
+/// Returns the factor that converts a number in that unit into the job's units. For a channel that the model does not use, the unit determines the
+/// quantity.
 fn factor(job: &Job, kind: Option<Quantity>, unit: &str) -> Option<f64> {
-    // A voltage, say, is taken as it is.
+    // A voltage, for example, is not converted.
     if matches!(unit, "-" | "1" | "V") {
         return Some(1.0);
     }

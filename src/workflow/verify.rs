@@ -187,7 +187,7 @@ fn compare(folder: &Path, again: &Path) -> Result<Recomputation, Faults> {
     let (old, new) = (read_made(folder)?, read_made(again)?);
     let mut out = Recomputation::default();
     for (i, input) in old.inputs.iter().enumerate() {
-        // The main input may be named from elsewhere now.
+        // The path of the main input may have changed.
         let now = new.inputs.iter().find(|n| n.path == input.path);
         let now = now.or_else(|| new.inputs.first().filter(|_| i == 0));
         out.file(
@@ -196,7 +196,7 @@ fn compare(folder: &Path, again: &Path) -> Result<Recomputation, Faults> {
             now.map_or("not read", |n| &n.sha256),
         );
     }
-    // A folder may hold files of other commands; one without a manifest tells nothing of whose they are.
+    // A folder may contain files of other commands. Without a manifest, all its files are compared.
     let ours = match Manifest::read(folder).names_of(&old.command) {
         own if own.is_empty() => names(folder)?,
         own => own,
@@ -248,7 +248,7 @@ impl ResultProvenance {
 }
 
 impl Recomputation {
-    /// An error where anything differs.
+    /// Returns an error if anything differs.
     fn findings(&self, folder: &Path) -> Option<Finding> {
         let first = self.differs.first()?;
         let n = self.differs.len();
@@ -342,7 +342,7 @@ impl Recomputation {
                 for key in keys {
                     let none = Value::Null;
                     let (x, y) = (a.get(key).unwrap_or(&none), b.get(key).unwrap_or(&none));
-                    // Paths are as given, and digests are compared with the files.
+                    // Paths are as the user gave them. Digests are compared with the files.
                     if at.is_empty() && key == "inputs" {
                         continue;
                     }

@@ -1,4 +1,4 @@
-//! Puts physical lines together to cards: continuations, replication.
+//! Joins physical lines into cards, with continuations and replication.
 
 use std::sync::atomic::AtomicUsize;
 
@@ -20,7 +20,7 @@ enum Open {
     Card,
     /// Fields with `=` and `*(n)`, to be filled from the card before.
     Replica,
-    /// Continuation lines of a card elsewhere.
+    /// Continuation lines of a card that is elsewhere.
     Orphan,
 }
 
@@ -81,7 +81,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
         }
     }
 
-    /// The next line.
+    /// Reads the next line.
     #[inline]
     pub(super) fn line(&mut self, line: Line<'a>) {
         let body = without_comment(line.text);
@@ -126,14 +126,15 @@ impl<'a, 'b> Assembler<'a, 'b> {
             .card(name.as_bytes(), &self.fields, &mut self.part.labels);
     }
 
-    /// Whether a line whose commas are behind a blank field 1 continues the open card: the card holds text, or the line is no card.
+    /// Returns whether a line with a blank field 1 before its commas continues the open card. It does if the card contains text, or if the line is
+    /// not a card.
     fn goes_on_with(&self, cut: &Cut<'a>) -> bool {
         let open = self.open == Open::Card && !self.comma;
         open && (holds_text(self.name.as_bytes()) || Name::new(cut.head).is_none())
     }
 
     fn not_a_card(&mut self, line: &Line) {
-        // An included file may be any file of the machine: its lines are not shown.
+        // An included file may be any file of the machine, so the message does not quote its lines.
         let found = if self.source == SourceIx(0) {
             excerpt(trim(line.text))
         } else {
@@ -170,7 +171,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
         }
     }
 
-    /// Whether the open card takes a continuation of another name: neither it nor the name asks for others.
+    /// Returns whether the open card accepts a continuation of another name: the card asks for no continuation, and no other card asks for this name.
     fn takes(&self, wanted: &[u8]) -> bool {
         let is_free =
             !matches!(self.label, [b'+' | b'*', ..]) || strip_marks(self.label).is_empty();
@@ -188,7 +189,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
         self.comma = cut.is_open();
     }
 
-    /// Attaches without looking at names.
+    /// Attaches a continuation line without comparing names.
     pub(super) fn attach_line(&mut self, line: Line<'a>) {
         let mut cut = cut(without_comment(line.text));
         if cut.lead != Lead::Continuation && cut.field_1_is_blank() {
@@ -225,7 +226,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
         }
     }
 
-    /// A line that begins with data goes on where the line before ended in a comma.
+    /// Appends a line that begins with data to the card whose last line ended in a comma.
     fn data(&mut self, cut: &Cut<'a>, line: &Line) {
         if self.open != Open::Card || !self.comma {
             self.finish();
@@ -309,7 +310,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
         self.comma = false;
     }
 
-    /// Makes `n` cards from the template, each from the one before.
+    /// Makes `n` cards from the template, each from the card before.
     fn repeat(&mut self, n: usize) {
         let at = self.spans.first().map_or(
             Place {
@@ -336,7 +337,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
             self.spans.clear();
             return;
         };
-        // A count that asks for more than there is room for is a wrong count: no card is made of it.
+        // A count that exceeds the memory budget is treated as wrong, and no card is made.
         let n = match replicate::spend(self.budget, &template, n) {
             Ok(()) => n,
             Err(what) => {
@@ -399,7 +400,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
     }
 }
 
-/// Whether the card holds text rather than fields, so that commas of its continuations separate nothing.
+/// Returns whether the card contains text instead of fields, so that commas in its continuations are not separators.
 fn holds_text(name: &[u8]) -> bool {
     matches!(
         name,

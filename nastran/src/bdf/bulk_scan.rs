@@ -1,10 +1,10 @@
-//! Bulk data cut into chunks, up to the next line that is no card.
+//! Cuts bulk data into chunks, up to the next line that is not a card.
 
 use super::chunk::CHUNK_BYTES;
 use super::line::{Lines, is_blank, trim, without_comment};
 use super::source::Chunk;
 
-/// A line of bulk data that is no card.
+/// A line of bulk data that is not a card.
 pub(super) enum BulkStatement {
     Include,
     Begin,
@@ -56,7 +56,7 @@ pub(super) fn scan(
     None
 }
 
-/// Whether a card may begin after this line: it is no comment and does not end in a comma.
+/// Returns whether a card may begin after this line: the line is not a comment and does not end in a comma.
 fn is_closed(line: &[u8]) -> bool {
     let body = without_comment(line);
     body.iter()
@@ -86,7 +86,7 @@ fn parse_special_statement(line: &[u8]) -> Option<BulkStatement> {
     }
 }
 
-/// The first word in upper case, at most 12 letters; empty for blank lines and comments.
+/// Returns the first word in upper case, at most 12 letters; empty for blank lines and comments.
 pub(super) fn first_word(line: &[u8]) -> Vec<u8> {
     let line = trim(line);
     line.iter()

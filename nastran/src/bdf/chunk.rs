@@ -1,4 +1,4 @@
-//! Reads pieces of bulk data, many at once.
+//! Reads chunks of bulk data, many in parallel.
 
 use std::sync::atomic::AtomicUsize;
 
@@ -12,13 +12,13 @@ use super::part::Part;
 use super::source::{Chunk, Source};
 use crate::place::SourceIx;
 
-/// Bytes after which a chunk ends at the next card.
+/// Size in bytes after which a chunk ends at the next card.
 pub(super) const CHUNK_BYTES: usize = 192 << 10;
 
-/// Chunks that are in memory in addition to the cards they join.
+/// Number of chunks in memory at once, in addition to the cards that are joined.
 const BATCH: usize = 32;
 
-/// Reads all chunks; the parts are joined in order.
+/// Reads all chunks, and joins their parts in order.
 pub(super) fn read_chunks(
     chunks: &[Chunk],
     sources: &[Source],

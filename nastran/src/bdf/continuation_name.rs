@@ -1,4 +1,4 @@
-//! Names of continuations: field 10 of a line, field 1 of the line that continues it.
+//! Names of continuations: field 10 of a line, and field 1 of the line that continues it.
 
 use std::collections::HashSet;
 
@@ -11,7 +11,7 @@ use crate::place::{Place, SourceIx};
 /// Names of continuations, in upper case.
 pub(super) type ContinuationNames = HashSet<Vec<u8>>;
 
-/// Returns the name without the marks of columns 1 and 73, which are no part of it. MSC Nastran writes names that begin with `+`.
+/// Returns the name without the marks of columns 1 and 73, which do not belong to it. MSC Nastran writes names that begin with `+`.
 pub(super) fn strip_marks(label: &[u8]) -> &[u8] {
     match label {
         [b'+' | b'*', rest @ ..] => strip_marks(trim(rest)),
@@ -24,7 +24,7 @@ pub(super) fn is_marked(label: &[u8]) -> bool {
     matches!(label, [b'+' | b'*', ..]) && !strip_marks(label).is_empty()
 }
 
-/// Returns the name in field 10 where column 73 holds another mark than `+` or `*`.
+/// Returns the name in field 10 if column 73 contains a mark other than `+` or `*`.
 fn behind_mark(label: &[u8]) -> &[u8] {
     match label {
         [b'+' | b'*', ..] | [] => &[],
@@ -32,12 +32,12 @@ fn behind_mark(label: &[u8]) -> &[u8] {
     }
 }
 
-/// Returns the name in upper case: letters of both cases count as equal.
+/// Returns the name in upper case: names are compared without regard to case.
 pub(super) fn key(name: &[u8]) -> Vec<u8> {
     name.to_ascii_uppercase()
 }
 
-/// Whether field 10 asks for the continuation of this name.
+/// Returns whether field 10 asks for the continuation of this name.
 pub(super) fn asks(label: &[u8], wanted: &[u8]) -> bool {
     let is = |name: &[u8]| name.eq_ignore_ascii_case(wanted);
     !wanted.is_empty() && (is(strip_marks(label)) || is(behind_mark(label)))
@@ -64,7 +64,7 @@ pub(super) fn claim<'a>(label: &'a [u8], claimed: &ContinuationNames) -> Option<
 pub(super) struct Asker {
     pub name: Vec<u8>,
     pub at: Place,
-    /// The continuation, where it is on the next line.
+    /// The continuation, if it is on the next line.
     pub continuation: Option<Place>,
 }
 

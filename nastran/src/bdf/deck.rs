@@ -11,24 +11,24 @@ use super::split::{Lead, cut};
 use crate::cards::{Cards, Param};
 use crate::place::Place;
 
-/// A card without a dedicated struct, kept word for word.
+/// A card without a dedicated struct, kept as text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OtherCard {
     /// Upper case, without `*`.
     pub name: String,
-    /// First field where that is an integer from 0: the id of an element or a set.
+    /// First field if it is an integer from 0: the id of an element or a set.
     pub first: Option<u32>,
     /// First line of the card.
     pub at: Place,
-    /// Bytes of its first line to the end of its last, comments between included.
+    /// Bytes from the first line to the end of the last line, comments between them included.
     pub(super) start: usize,
     pub(super) end: usize,
 }
 
-/// A deck: its bytes, its typed cards, and everything that is wrong with it.
+/// A deck: its bytes, its typed cards, and all its faults.
 #[derive(Clone, Debug, Default)]
 pub struct Deck {
-    /// The files, the first deck first; places point here.
+    /// The files, the main deck first; places refer to this list.
     pub sources: Vec<Source>,
     /// Typed cards.
     pub cards: Cards,
@@ -38,7 +38,7 @@ pub struct Deck {
     pub others: Vec<OtherCard>,
     /// Case control.
     pub case_control: CaseControl,
-    /// Solution number, also where SOL names it (`SESTATIC` is 101).
+    /// Solution number, also for a named SOL (`SESTATIC` is 101).
     pub sol: Option<u32>,
     /// SOL as written.
     pub sol_text: Option<String>,
@@ -46,7 +46,7 @@ pub struct Deck {
     pub sol_at: Place,
     /// The approach that APP states, upper case, such as HEAT.
     pub approach: Option<(String, Place)>,
-    /// Statements above CEND that change the solution sequence or start from an earlier run: their first word in upper case.
+    /// Statements above CEND that change the solution sequence or start from an earlier run: the first keyword of each, in upper case.
     pub program_changes: Vec<Note>,
     /// Bulk data of superelements and other models that is kept and not read: its place, and its first line in upper case.
     pub parts: Vec<Note>,
@@ -60,7 +60,7 @@ pub struct Deck {
 }
 
 impl Deck {
-    /// Whether the text contains nothing of a deck: no section, no card with a struct.
+    /// Returns whether the text contains no part of a deck: no section, and no card with a struct.
     pub(super) fn is_empty(&self) -> bool {
         self.bounds == SectionBounds::default()
             && self.sol_text.is_none()
@@ -69,7 +69,7 @@ impl Deck {
             && self.others.iter().all(|c| c.first.is_none())
     }
 
-    /// The text of a card that has no struct; bytes that are not UTF-8 as Latin-1.
+    /// Returns the text of a card that has no struct; bytes that are not UTF-8 are read as Latin-1.
     pub fn text(&self, card: &OtherCard) -> String {
         let source = self.sources.get(card.at.source.0 as usize);
         text_of(
@@ -79,7 +79,7 @@ impl Deck {
         )
     }
 
-    /// Returns the fields behind the name of a card that has no struct, trimmed, upper case; blank fields are empty.
+    /// Returns the fields after the name of a card that has no struct, trimmed and in upper case; blank fields are empty.
     pub fn fields(&self, card: &OtherCard) -> Vec<String> {
         let source = self.sources.get(card.at.source.0 as usize);
         let bytes = source.and_then(|s| s.bytes.get(card.start..card.end));
@@ -99,14 +99,14 @@ impl Deck {
         fields.iter().map(upper).collect()
     }
 
-    /// The file's path at a place.
+    /// Returns the path of the file of a place.
     pub fn path(&self, at: Place) -> &str {
         self.sources
             .get(at.source.0 as usize)
             .map_or("", |s| s.path.as_str())
     }
 
-    /// The name that a comment gives this property, component or material.
+    /// Returns the name that a comment gives this property, component or material.
     pub fn label(&self, kind: NameOwner, id: u32) -> Option<&str> {
         self.labels
             .iter()
@@ -114,7 +114,8 @@ impl Deck {
             .map(|l| l.name.as_str())
     }
 
-    /// The value of a parameter: case control above the subcases wins over bulk data, later over earlier.
+    /// Returns the value of a parameter. Case control above the subcases takes precedence over bulk data; a later value takes precedence over an
+    /// earlier one.
     pub fn param(&self, name: &str) -> Option<&Param> {
         let bulk = self
             .cards

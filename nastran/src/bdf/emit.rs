@@ -1,4 +1,4 @@
-//! Reads the fields of a finished card into its struct, or keeps it word for word.
+//! Reads the fields of a finished card into its struct, or keeps the card as text.
 
 use std::sync::atomic::AtomicUsize;
 
@@ -50,7 +50,7 @@ pub(super) fn emit(
     }
 }
 
-/// Whether the card is a scalar mass or damper, whose ends may be scalar points.
+/// Returns whether the card is a scalar mass or damper, whose ends may be scalar points.
 fn connects_points(name: &[u8]) -> bool {
     matches!(
         name,

@@ -10,7 +10,7 @@ use crate::place::Place;
 pub struct Fault {
     /// First line of the card.
     pub at: Place,
-    /// Card name, or the statement; empty without either.
+    /// Card name, or the statement; empty if the fault has neither.
     pub card: String,
     /// The field, if the fault is in one.
     pub field: Option<FieldName>,
@@ -54,11 +54,11 @@ pub enum DeckFaultKind {
         found: String,
         allowed: &'static str,
     },
-    /// A value where the card has no field.
+    /// A value in a field that the card does not have.
     NoSuchField {
         found: String,
     },
-    /// A card that asks for a continuation which is nowhere.
+    /// A card that asks for a continuation that does not exist.
     NoContinuation {
         label: String,
     },
@@ -66,11 +66,11 @@ pub enum DeckFaultKind {
     NotACard {
         found: String,
     },
-    /// A continuation whose card is nowhere.
+    /// A continuation whose card does not exist.
     Orphan {
         label: String,
     },
-    /// A continuation whose name does not determine one card.
+    /// A continuation whose name fits more than one card.
     Ambiguous {
         label: String,
         why: String,
@@ -105,7 +105,7 @@ pub enum DeckFaultKind {
     CutShort,
     /// A text without any card or section of a deck.
     NotADeck,
-    /// A name that no dialect has: the known name nearest to it, and how many cards bear it.
+    /// A name that exists in no dialect: the nearest known name, and the number of cards with this name.
     UnknownName {
         near: Option<&'static str>,
         cards: usize,
@@ -118,7 +118,7 @@ pub enum DeckFaultKind {
 }
 
 impl DeckFaultKind {
-    /// Whether part of the deck was not read: it is cut, an INCLUDE leads nowhere, or a name is unknown.
+    /// Returns whether part of the deck was not read: the deck is cut, an INCLUDE file is missing, or a name is unknown.
     pub fn is_incomplete(&self) -> bool {
         match self {
             Self::CutShort
@@ -147,7 +147,7 @@ impl DeckFaultKind {
         }
     }
 
-    /// The text that was found, where there is one.
+    /// Returns the text that was found, if the fault has one.
     pub fn found_text(&self) -> Option<&str> {
         match self {
             Self::NotInteger { found }
@@ -205,7 +205,7 @@ impl DeckFaultKind {
             Self::NotACard { found } => {
                 format!("the line is neither a card nor a continuation: {found}")
             }
-            // A name of a continuation has a number in it; a word may be of a file that is no deck, and is not shown.
+            // A continuation name normally contains a digit. Text without a digit may come from a file that is not a deck, and is not quoted.
             Self::Orphan { label } if !label.contains(|c: char| c.is_ascii_digit()) => {
                 "the continuation belongs to no card".to_owned()
             }
@@ -302,7 +302,7 @@ impl DeckFaultKind {
 }
 
 impl Fault {
-    /// `file:line: field: what is wrong: what to do`.
+    /// Shows the fault as `file:line: field: problem: remedy`.
     pub fn show<'a>(&'a self, sources: &'a [Source]) -> impl fmt::Display + 'a {
         FaultMessage {
             fault: self,

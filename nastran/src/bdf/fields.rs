@@ -1,4 +1,4 @@
-//! Reads typed values out of the fields of one card, noting every fault.
+//! Reads typed values from the fields of one card, and adds a fault for each invalid value.
 
 use std::sync::atomic::AtomicUsize;
 
@@ -25,14 +25,14 @@ pub(super) struct Fields<'a, 'f> {
     faults: &'f mut Vec<Fault>,
     /// Remaining bytes for content that the deck expands from short text.
     budget: &'f AtomicUsize,
-    /// An id could not be read: the card is left out.
+    /// An id could not be read: the card is omitted.
     pub unusable: bool,
 }
 
-/// At most this many faults are kept of a part of a deck: beyond, the file is not a deck.
+/// Largest number of faults that are kept for a part of a deck. A text with more faults is not a deck.
 pub(super) const MAX_FAULTS: usize = 2_000;
 
-/// The field as a message shows it.
+/// Returns the field as a message shows it.
 pub(super) fn excerpt(field: &[u8]) -> String {
     let mut text: String = super::line::text_of(field.get(..40).unwrap_or(field))
         .chars()
@@ -69,7 +69,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         }
     }
 
-    /// Number of fields up to the last that is not blank.
+    /// Returns the number of fields up to the last field that is not blank.
     pub(super) fn len(&self) -> usize {
         self.list
             .iter()
@@ -101,7 +101,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         }
     }
 
-    /// Notes a fault at field `i`.
+    /// Adds a fault at field `i`.
     pub(super) fn fault(&mut self, i: usize, name: &'static str, what: DeckFaultKind) {
         let number = (i / 8 * 10 + i % 8 + 2) as u32;
         let card = super::line::text_of(self.name);
@@ -120,7 +120,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         excerpt(self.bytes_at(i))
     }
 
-    /// An integer; `None` and a fault where the field is neither blank nor integer.
+    /// Reads an integer; `None` and a fault if the field is neither blank nor an integer.
     #[inline]
     pub(super) fn integer(&mut self, i: usize, name: &'static str) -> Option<i64> {
         match self.value(i) {
@@ -134,7 +134,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         }
     }
 
-    /// A required positive id; without one the card is unusable.
+    /// Reads a required positive id; without an id the card is unusable.
     #[inline]
     pub(super) fn id(&mut self, i: usize, name: &'static str) -> u32 {
         if let Value::Integer(n) = self.value(i)
@@ -164,7 +164,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         0
     }
 
-    /// An id of 0 or more; `None` where blank or faulty.
+    /// Reads an id of 0 or more; `None` if the field is blank or faulty.
     #[inline]
     pub(super) fn opt_id(&mut self, i: usize, name: &'static str) -> Option<u32> {
         let n = self.integer(i, name)?;
@@ -183,7 +183,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         id
     }
 
-    /// An id that may be negative.
+    /// Reads an id that may be negative.
     #[inline]
     pub(super) fn opt_signed(&mut self, i: usize, name: &'static str) -> Option<i32> {
         let n = self.integer(i, name)?;
@@ -202,7 +202,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         id
     }
 
-    /// A real; `None` where blank, or faulty.
+    /// Reads a real; `None` if the field is blank or faulty.
     #[inline]
     pub(super) fn opt_real(&mut self, i: usize, name: &'static str) -> Option<f64> {
         match self.value(i) {
@@ -221,13 +221,13 @@ impl<'a, 'f> Fields<'a, 'f> {
         }
     }
 
-    /// A real with a default.
+    /// Reads a real with a default.
     #[inline]
     pub(super) fn real_or(&mut self, i: usize, name: &'static str, default: f64) -> f64 {
         self.opt_real(i, name).unwrap_or(default)
     }
 
-    /// A required real; 0 and a fault where blank.
+    /// Reads a required real; 0 and a fault if the field is blank.
     pub(super) fn required_real(&mut self, i: usize, name: &'static str) -> f64 {
         if self.is_blank(i) {
             self.fault(i, name, DeckFaultKind::Missing);
@@ -235,7 +235,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         self.opt_real(i, name).unwrap_or(0.0)
     }
 
-    /// `N` consecutive reals, 0 where blank.
+    /// Reads `N` consecutive reals; a blank field is 0.
     pub(super) fn reals<const N: usize>(
         &mut self,
         first: usize,
@@ -244,7 +244,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         std::array::from_fn(|k| self.real_or(first + k, names.get(k).copied().unwrap_or(""), 0.0))
     }
 
-    /// Degrees of freedom; `None` where blank or faulty. 0 is the empty set.
+    /// Reads degrees of freedom; `None` if the field is blank or faulty. 0 is the empty set.
     pub(super) fn opt_dofs(&mut self, i: usize, name: &'static str) -> Option<Dofs> {
         let raw = self.bytes_at(i);
         if raw.is_empty() {
@@ -261,12 +261,12 @@ impl<'a, 'f> Fields<'a, 'f> {
         dofs
     }
 
-    /// Degrees of freedom, none where blank.
+    /// Reads degrees of freedom; a blank field is the empty set.
     pub(super) fn dofs(&mut self, i: usize, name: &'static str) -> Dofs {
         self.opt_dofs(i, name).unwrap_or_default()
     }
 
-    /// A single component 0 to 6.
+    /// Reads a single component 0 to 6.
     pub(super) fn component(&mut self, i: usize, name: &'static str) -> u8 {
         match self.integer(i, name) {
             None => 0,
@@ -286,7 +286,7 @@ impl<'a, 'f> Fields<'a, 'f> {
         }
     }
 
-    /// The ids of a range written out; a range too long for the deck's memory is a fault at field `i`.
+    /// Lists the ids of a range. A range that exceeds the deck's memory budget is a fault at field `i`.
     pub(super) fn written_out(
         &mut self,
         i: usize,
@@ -305,17 +305,17 @@ impl<'a, 'f> Fields<'a, 'f> {
         Vec::new()
     }
 
-    /// The field in upper case.
+    /// Returns the field in upper case.
     pub(super) fn word(&self, i: usize) -> String {
         super::line::text_of(self.bytes_at(i)).to_ascii_uppercase()
     }
 
-    /// Whether the field is this word (upper case), in any case.
+    /// Returns whether the field is this keyword (upper case), in upper or lower case.
     pub(super) fn is_word(&self, i: usize, word: &str) -> bool {
         self.bytes_at(i).eq_ignore_ascii_case(word.as_bytes())
     }
 
-    /// Whether the field is text: not blank and not a number.
+    /// Returns whether the field is text: not blank and not a number.
     pub(super) fn is_text(&self, i: usize) -> bool {
         matches!(self.value(i), Value::Text)
     }

@@ -1,4 +1,4 @@
-//! INCLUDE: which paths a name may mean, and who reads them.
+//! INCLUDE: the paths that a file name may mean, and the loader of the files.
 
 use std::collections::BTreeMap;
 
@@ -24,22 +24,22 @@ pub struct LoadedFile {
     pub differing_path: Option<String>,
 }
 
-/// Reads included files for [`super::read_deck`], which opens none itself.
+/// Loads included files for [`super::read_deck`], which opens no file itself.
 pub trait Loader {
-    /// Returns the file, or the reason why it can't be loaded.
+    /// Returns the file, or the reason why it cannot be loaded.
     ///
     /// # Errors
     ///
-    /// A few words for the message of the fault.
+    /// A short reason for the message of the fault.
     fn load(&mut self, request: &IncludeRequest) -> Result<LoadedFile, String>;
 }
 
 impl IncludeRequest {
-    /// Paths to try. A bare file name: the including file's folder, then the first deck's; a path with folders: the other way round. Then
-    /// both with `\` for `/`.
+    /// Returns the paths to try, in order. A bare file name is searched in the folder of the including file, then in the folder of the main deck. A
+    /// path with folders is searched in the opposite order. Then both are tried with `\` replaced by `/`.
     ///
     /// `symbol` gives the value of a logical symbol or environment variable, which is used in `SYMBOL:path`, `$SYMBOL/path`, `${SYMBOL}/path` and
-    /// `%SYMBOL%/path`. `Err` holds a symbol that has no value.
+    /// `%SYMBOL%/path`.
     ///
     /// # Errors
     ///
@@ -72,14 +72,14 @@ impl IncludeRequest {
     }
 }
 
-/// `/x`, `\x`, `C:\x`, `C:/x`.
+/// Returns whether the path is absolute: `/x`, `\x`, `C:\x`, `C:/x`.
 fn is_absolute(name: &str) -> bool {
     let b = name.as_bytes();
     matches!(b, [b'/' | b'\\', ..])
         || matches!(b, [d, b':', b'/' | b'\\', ..] if d.is_ascii_alphabetic())
 }
 
-/// `name` in the folder of the file `beside`.
+/// Returns the path of `name` in the folder of another file.
 fn join(beside: &str, name: &str) -> String {
     match beside.rfind(['/', '\\']) {
         Some(i) => format!("{}{name}", beside.get(..=i).unwrap_or_default()),
@@ -116,7 +116,7 @@ fn expand(name: &str, symbol: &impl Fn(&str) -> Option<String>) -> Result<String
     {
         return Ok(value(s)? + tail);
     }
-    // a single letter before the colon is a drive
+    // A single letter before the colon is a drive.
     if let Some((s, tail)) = name.split_once(':')
         && s.len() > 1
         && s.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
@@ -164,7 +164,7 @@ impl Loader for MemoryLoader {
     }
 }
 
-/// The path with `.` and `a/..` taken out.
+/// Returns the path with `.` and `a/..` removed.
 fn without_dots(path: &str) -> String {
     let mut parts: Vec<&str> = Vec::new();
     for part in path.split('/') {

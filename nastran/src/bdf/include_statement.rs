@@ -3,10 +3,10 @@
 use super::fields::excerpt;
 use super::line::{Line, Lines, text_of, trim};
 
-/// Lines of one INCLUDE statement.
+/// Largest number of lines of one INCLUDE statement.
 const MAX_NAME_LINES: usize = 16;
 
-/// The file name of an INCLUDE statement, which may go on over several lines.
+/// Returns the file name of an INCLUDE statement, which may continue over several lines.
 pub(super) fn include_name(lines: &mut Lines) -> Result<String, String> {
     let first = lines.next().map(|l: Line| l.text).unwrap_or_default();
     let rest = trim(trim(first).get(7..).unwrap_or_default());
@@ -21,7 +21,7 @@ pub(super) fn include_name(lines: &mut Lines) -> Result<String, String> {
                     return Ok(text_of(&name));
                 }
                 name.extend_from_slice(trim(part));
-                // a comma at the end of a line only says that the name goes on
+                // A comma at the end of a line only marks that the name continues.
                 if name.last() == Some(&b',') {
                     name.pop();
                 }
@@ -55,7 +55,7 @@ pub(super) fn include_name(lines: &mut Lines) -> Result<String, String> {
     }
 }
 
-/// A `$` that follows a blank begins a comment; at the start of a name it is a symbol.
+/// Removes a comment: a `$` after a blank begins a comment; a `$` at the start of a name begins a symbol.
 fn without_comment_after_blank(s: &[u8]) -> &[u8] {
     match memchr::memmem::find(s, b" $") {
         Some(i) => s.get(..i).unwrap_or(s),

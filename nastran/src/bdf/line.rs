@@ -1,19 +1,19 @@
-//! Physical lines of a text file, whatever ends them.
+//! Physical lines of a text file, with any kind of line ending.
 
 /// A line without its ending.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line<'a> {
     /// Bytes, without the line ending.
     pub text: &'a [u8],
-    /// Offset of its first byte.
+    /// Offset of the first byte.
     pub start: usize,
-    /// Offset after its line ending.
+    /// Offset after the line ending.
     pub end: usize,
     /// Number, from 1 in the file.
     pub number: u32,
 }
 
-/// Walks over lines that end in LF, CR LF or CR.
+/// Iterates over lines that end in LF, CR LF or CR.
 #[derive(Clone, Debug)]
 pub(super) struct Lines<'a> {
     bytes: &'a [u8],
@@ -23,7 +23,7 @@ pub(super) struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// Lines of `bytes[start..end]`, of which the first has the given number.
+    /// Iterates over the lines of `bytes[start..end]`; the first line has the given number.
     pub(super) fn new(bytes: &'a [u8], start: usize, end: usize, number: u32) -> Self {
         let end = end.min(bytes.len());
         Lines {
@@ -34,12 +34,12 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Offset of the next line.
+    /// Returns the offset of the next line.
     pub(super) fn offset(&self) -> usize {
         self.at
     }
 
-    /// Number of the next line.
+    /// Returns the number of the next line.
     pub(super) fn number(&self) -> u32 {
         self.next_number
     }
@@ -72,13 +72,13 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// Whether a byte counts as blank: space, tab and control characters.
+/// Returns whether a byte counts as blank: space, tab and control characters.
 #[inline]
 pub(super) fn is_blank(c: u8) -> bool {
     c <= b' '
 }
 
-/// The slice without blanks at its ends.
+/// Returns the slice without blanks at its ends.
 #[inline]
 pub(super) fn trim(mut s: &[u8]) -> &[u8] {
     while let [first, rest @ ..] = s {
@@ -96,7 +96,7 @@ pub(super) fn trim(mut s: &[u8]) -> &[u8] {
     s
 }
 
-/// The line up to a `$` comment.
+/// Returns the line up to a `$` comment.
 #[inline]
 pub(super) fn without_comment(line: &[u8]) -> &[u8] {
     match memchr::memchr(b'$', line) {
@@ -105,7 +105,7 @@ pub(super) fn without_comment(line: &[u8]) -> &[u8] {
     }
 }
 
-/// The slice as text; bytes that are not UTF-8 are read as Latin-1.
+/// Returns the slice as text; bytes that are not UTF-8 are read as Latin-1.
 pub(super) fn text_of(s: &[u8]) -> String {
     match std::str::from_utf8(s) {
         Ok(t) => t.to_owned(),

@@ -1,4 +1,4 @@
-//! Continuations that are not below their card: found by name when all lines are read.
+//! Joins continuations that are not below their card: they are found by name after all lines are read.
 
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::AtomicUsize;
@@ -12,7 +12,7 @@ use super::part::{DeferredCard, OrphanContinuation, Part, Span};
 use super::source::{Chunk, Source};
 use crate::place::Place;
 
-/// Cards that wait for continuations, continuations that wait for cards, and where both are.
+/// Cards that wait for continuations, continuations that wait for cards, and the text of both.
 pub(super) struct PendingContinuations<'a> {
     pub deferred: &'a [DeferredCard],
     pub orphans: &'a mut [OrphanContinuation],
@@ -22,8 +22,8 @@ pub(super) struct PendingContinuations<'a> {
 
 /// Joins deferred cards with their continuations and reads them.
 ///
-/// A continuation goes to the card that names it, within a file before others. A name that is there twice, or that no card has, is a fault.
-/// So is a card that asks for a name which no continuation has.
+/// A continuation belongs to the card that names it; a card of the same file is preferred. A name that occurs twice, or that no card has, is a fault.
+/// A card that asks for a name that no continuation has is a fault, too.
 pub(super) fn resolve(loose: PendingContinuations<'_>, budget: &AtomicUsize) -> Part {
     let PendingContinuations {
         deferred,
@@ -87,7 +87,7 @@ pub(super) fn resolve(loose: PendingContinuations<'_>, budget: &AtomicUsize) -> 
     rest
 }
 
-/// Returns the next continuation of a list, one of the file of the last line before others.
+/// Returns the next continuation of a list; a continuation of the same file as the last line is preferred.
 fn next_of(list: &mut Vec<usize>, orphans: &[OrphanContinuation], lines: &[Span]) -> Option<usize> {
     let source = lines.last().map(|s| s.at.source);
     let of_file = |i: &usize| {
@@ -177,7 +177,7 @@ fn refuse_shared(
     shared
 }
 
-/// Returns two lines in words, with the file where it is not that of the continuation.
+/// Describes two lines in text, with the file if it differs from the continuation's file.
 fn lines(a: Place, b: Place, at: Place, sources: &[Source]) -> String {
     let of = |p: Place| match sources.get(p.source.0 as usize) {
         Some(s) if p.source != at.source => format!(" of `{}`", s.path),

@@ -1,4 +1,4 @@
-//! Joins the parts of a deck that were read apart.
+//! Joins the parts of a deck that were read separately.
 
 use super::part::Part;
 use crate::cards::Cards;
@@ -23,8 +23,8 @@ pub(super) fn append(to: &mut Part, from: Part) {
     to.orphans.extend(from.orphans);
 }
 
-/// Joins the fields of two [`Cards`]: of `one` the later counts, of `many` the lists are put together. A field that is not listed does
-/// not compile.
+/// Joins the fields of two [`Cards`]. Of a field in `one` the later value counts; the lists of a field in `many` are concatenated. A field that is
+/// not listed does not compile.
 macro_rules! join_cards {
     ($to:ident, $from:ident, one: $($one:ident)*, many: $($many:ident)*) => {
         let Cards { $($one,)* $($many,)* } = $from;

@@ -28,7 +28,7 @@ pub(super) fn missing_statement(card: &str, at: Place, found: &str, why: &'stati
     }
 }
 
-/// Whether a line of case control is an entry of bulk data: BEGIN BULK is missing above.
+/// Returns whether a line of case control is an entry of bulk data, so that BEGIN BULK is missing above it.
 pub(super) fn is_bulk_entry(text: &str) -> bool {
     let name = text_of(&first_word(text.as_bytes()));
     case_word(&name).is_none() && effect_of_card(&name).is_some()

@@ -1,4 +1,4 @@
-//! Nastran decks: reads executive and case control and bulk data, keeps every byte, edits and writes back.
+//! Nastran decks: reads executive control, case control and bulk data; keeps every byte; edits a deck and writes it back.
 
 mod assemble;
 mod budget;

@@ -28,7 +28,7 @@ pub struct Label {
     pub at: Place,
 }
 
-/// Reads the comments above a card, for its names.
+/// Reader of names in the comments above a card.
 #[derive(Debug, Default)]
 pub(super) struct NameReader {
     /// Name for the next property or material card.
@@ -38,7 +38,7 @@ pub(super) struct NameReader {
 }
 
 impl NameReader {
-    /// Takes a comment line, `$` first.
+    /// Reads a comment line, which begins with `$`.
     pub(super) fn comment(&mut self, comment: &[u8], at: Place, labels: &mut Vec<Label>) {
         let body = trim(comment.get(1..).unwrap_or_default());
         if let Some((kind, id)) = self.next_line.take() {
@@ -80,7 +80,7 @@ impl NameReader {
         }
     }
 
-    /// Takes a card that begins below the comments, its fields without the name.
+    /// Assigns names to a card below the comments; `fields` begin after the card's name.
     #[inline]
     pub(super) fn card(&mut self, name: &[u8], fields: &[&[u8]], labels: &mut Vec<Label>) {
         if self.pending.is_some() || self.next_line.is_some() {
@@ -93,7 +93,7 @@ impl NameReader {
         *self = NameReader::default();
     }
 
-    /// Gives the waiting name to a property or material card, or to the property of an element card.
+    /// Assigns the pending name to a property or material card, or to the property of an element card.
     #[cold]
     fn give(&mut self, name: &[u8], fields: &[&[u8]], labels: &mut Vec<Label>) {
         let pending = self.pending.take();
@@ -117,7 +117,7 @@ impl NameReader {
         }));
     }
 
-    /// `$* Property: rail`, `$* Property Name: rail`, `$*  NX PHYSICAL PROPERTY: rail`, `$*  I-DEAS property: 1  name: rail`.
+    /// Reads `$* Property: rail`, `$* Property Name: rail`, `$*  NX PHYSICAL PROPERTY: rail`, `$*  I-DEAS property: 1  name: rail`.
     fn star(&mut self, body: &[u8], at: Place) {
         let Some(colon) = memchr::memchr(b':', body) else {
             return;
@@ -143,7 +143,7 @@ impl NameReader {
         }
     }
 
-    /// `HEAD : name`.
+    /// Reads `HEAD : name`.
     fn read_name_after(&mut self, body: &[u8], head: &[u8], (kind, at): (NameOwner, Place)) {
         if starts(body, head)
             && let Some(rest) = body.get(head.len()..).map(trim)
@@ -154,7 +154,7 @@ impl NameReader {
         }
     }
 
-    /// `ANSA_NAME_COMMENT;5;PSHELL;rail;..` or `ANSA_NAME;5;PSHELL;~` with the name on the next line.
+    /// Reads `ANSA_NAME_COMMENT;5;PSHELL;rail;..`, or `ANSA_NAME;5;PSHELL;~` with the name on the next line.
     fn ansa(&mut self, body: &[u8], at: Place, labels: &mut Vec<Label>) {
         let mut parts = body.split(|&c| c == b';').skip(1);
         let (id, card, name) = (
@@ -181,7 +181,7 @@ impl NameReader {
     }
 }
 
-/// `Component: wheel LF, grid 900001`.
+/// Reads `Component: wheel LF, grid 900001`.
 fn component_at_grid(body: &[u8], at: Place) -> Option<Label> {
     const HEAD: &[u8] = b"Component";
     let rest = body.get(HEAD.len()..).filter(|_| starts(body, HEAD))?;
@@ -210,7 +210,7 @@ fn number(field: &[u8]) -> Option<u32> {
     }
 }
 
-/// Whether the card defines a property by the id in its first field.
+/// Returns whether the card defines a property by the id in its first field.
 fn is_property(name: &[u8]) -> bool {
     name.starts_with(b"P")
         && !name.starts_with(b"PLOAD")
@@ -220,7 +220,7 @@ fn is_property(name: &[u8]) -> bool {
         )
 }
 
-/// Whether the card is an element with a property id in its second field.
+/// Returns whether the card is an element with a property id in its second field.
 fn has_property(name: &[u8]) -> bool {
     name.starts_with(b"C")
         && !matches!(name.get(..4), Some(b"CORD" | b"CONM" | b"CONR"))
@@ -275,7 +275,7 @@ fn read_quoted_names(rest: &[u8], at: Place, labels: &mut Vec<Label>) {
     }
 }
 
-/// Returns what is before, within and after the first quotation marks.
+/// Returns the text before, within and after the first quotation marks.
 fn quotation(text: &[u8]) -> Option<(&[u8], &[u8], &[u8])> {
     let open = memchr::memchr(b'"', text)?;
     let rest = text.get(open + 1..)?;
@@ -287,7 +287,7 @@ fn quotation(text: &[u8]) -> Option<(&[u8], &[u8], &[u8])> {
     ))
 }
 
-/// `Femap with NX Nastran Property 1 : rail`.
+/// Reads `Femap with NX Nastran Property 1 : rail`.
 fn femap(body: &[u8], at: Place) -> Option<Label> {
     let colon = memchr::memchr(b':', body)?;
     let mut words = body

@@ -9,10 +9,10 @@ pub enum Number {
     Real(f64),
 }
 
-/// The number in a trimmed field, correctly rounded; `None` where the field is no finite number.
+/// Reads the number in a trimmed field, correctly rounded; `None` if the field is not a finite number.
 ///
-/// A real has a point or an exponent letter (E or D); the letter may be missing before a signed exponent when
-/// there is a point (`1.5-3`). A blank is allowed after a leading sign and before the exponent.
+/// A real has a point or an exponent letter (E or D). If there is a point, the letter may be missing before a signed exponent (`1.5-3`). A blank is
+/// allowed after a leading sign and before the exponent.
 pub fn read_number(field: &[u8]) -> Option<Number> {
     let mut at = 0;
     let mut negative = false;
@@ -48,10 +48,10 @@ pub fn read_number(field: &[u8]) -> Option<Number> {
     parse_with_std(field)
 }
 
-/// Digits that a `u64` holds whatever they are.
+/// Largest number of digits that always fit in a `u64`.
 const DIGITS: usize = 18;
 
-/// The digits from `at` on appended to a mantissa, modulo 2^64, and where they end.
+/// Appends the digits from `at` on to a mantissa, modulo 2^64; also returns where they end.
 #[inline]
 fn digits(field: &[u8], mut at: usize, mut mantissa: u64) -> (usize, u64) {
     while let Some(digit) = field.get(at).map(|c| c.wrapping_sub(b'0'))
@@ -70,7 +70,7 @@ fn skip_blanks(field: &[u8], mut at: usize) -> usize {
     at
 }
 
-/// The integer of these digits; zeros before them do not count.
+/// Returns the integer of these digits; leading zeros do not count.
 fn integer(digits: &[u8], mantissa: u64, negative: bool) -> Option<Number> {
     if digits.len() > DIGITS && digits.iter().skip_while(|c| **c == b'0').count() > DIGITS {
         return None;
@@ -79,7 +79,7 @@ fn integer(digits: &[u8], mantissa: u64, negative: bool) -> Option<Number> {
     Some(Number::Integer(if negative { -value } else { value }))
 }
 
-/// The exponent that begins at `at`, which must fill the rest of the field.
+/// Reads the exponent that begins at `at` and must extend to the end of the field.
 fn exponent(field: &[u8], at: usize, point: bool) -> Option<i64> {
     let mut at = skip_blanks(field, at);
     let letter = matches!(field.get(at), Some(b'e' | b'E' | b'd' | b'D'));
@@ -109,7 +109,7 @@ fn exponent(field: &[u8], at: usize, point: bool) -> Option<i64> {
     Some(if negative { -value } else { value })
 }
 
-/// `mantissa * 10^power` where one rounding suffices: both factors are exact doubles.
+/// Returns `mantissa * 10^power` if one rounding suffices, that is if both factors are exact doubles.
 fn scale_exactly(mantissa: u64, power: i64) -> Option<f64> {
     const POWERS: [f64; 23] = [
         1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
@@ -120,7 +120,7 @@ fn scale_exactly(mantissa: u64, power: i64) -> Option<f64> {
     Some(if power < 0 { m / factor } else { m * factor })
 }
 
-/// By the standard library, for long mantissas and large exponents.
+/// Reads a long mantissa or a large exponent with the standard library.
 fn parse_with_std(field: &[u8]) -> Option<Number> {
     let mut text = String::with_capacity(field.len() + 1);
     let mut digit_seen = false;

@@ -12,7 +12,7 @@ use crate::place::Place;
 pub(super) struct Name(pub [u8; 8]);
 
 impl Name {
-    /// Returns the name; `None` for text that is not a name: letters and digits, at most 8, a letter first.
+    /// Returns the name; `None` for text that is not a name. A name has at most 8 letters and digits and begins with a letter.
     pub(super) fn new(head: &[u8]) -> Option<Name> {
         if head.is_empty() || head.len() > 8 || !head.first().is_some_and(u8::is_ascii_alphabetic) {
             return None;
@@ -44,13 +44,13 @@ pub(super) struct Part {
     pub labels: Vec<Label>,
     pub deferred: Vec<DeferredCard>,
     pub orphans: Vec<OrphanContinuation>,
-    /// Named continuations below a card that has no such continuation: their cards are elsewhere, or missing.
+    /// Named continuations below a card that does not name them: their cards are elsewhere, or missing.
     pub loose: Vec<Span>,
 }
 
 impl Part {
     pub(super) fn count(&mut self, name: Name) {
-        // cards of one name follow each other: the last used is moved to the end
+        // Cards of one name often follow each other, so the entry used last is moved to the end.
         match self.counts.iter().rposition(|(n, _)| *n == name) {
             Some(i) => {
                 if let Some((_, n)) = self.counts.get_mut(i) {
@@ -73,7 +73,7 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// The line's bytes.
+    /// Returns the line's bytes.
     pub(super) fn text<'a>(&self, sources: &'a [Source]) -> &'a [u8] {
         sources
             .get(self.at.source.0 as usize)

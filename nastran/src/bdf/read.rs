@@ -23,7 +23,7 @@ use crate::place::Place;
 
 /// Reads the deck in `bytes` with all files that it includes. [`Deck::faults`] lists everything that cannot be read.
 ///
-/// `main_path` is the name of the first deck in messages, and relative INCLUDE names start at its folder.
+/// `main_path` is the name of the main deck in messages; relative INCLUDE names start at its folder.
 ///
 /// # Example
 /// ```
@@ -70,14 +70,14 @@ pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> De
     if sections.bounds.case_start.is_some() {
         check_executive(&sections.executive, &mut deck.faults);
     } else {
-        // Without CEND executive control is part of the first section; RESTART is a word of case control there.
+        // Without CEND, executive control is part of the first section. There, RESTART is a case control command.
         let changes = program_changes(&sections.case);
         let changes = changes.into_iter().filter(|c| c.text != "RESTART");
         deck.program_changes.extend(changes);
     }
     deck.case_control = case::read_case_control(&sections.case, &mut deck.faults);
     deck.faults.extend(sections.faults);
-    // Of a text that is no deck every line is wrong: said once, and none of it shown.
+    // In a text that is not a deck every line is a fault. One fault replaces them all, and none of the text is quoted.
     let nameless = |f: &Fault| f.card.is_empty();
     if deck.is_empty() && deck.faults.is_empty() && faults.iter().all(nameless) {
         deck.others.clear();
@@ -110,7 +110,7 @@ pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> De
     deck
 }
 
-/// Refuses several cards of defaults, of which a deck may have one.
+/// Adds a fault if a deck has several cards of defaults, of which it may have one.
 fn refuse_several_defaults(deck: &mut Deck) {
     let cards = &deck.cards;
     let places = [
@@ -145,7 +145,7 @@ fn program_changes(statements: &[Statement]) -> Vec<Note> {
     changes.map(|(text, at)| Note { at, text }).collect()
 }
 
-/// Reads the cards, each with its continuations wherever they are.
+/// Reads the cards; continuations of a card may be anywhere in the deck.
 fn read_bulk(chunks: &[Chunk], sources: &[Source]) -> Part {
     let mut budget = AtomicUsize::new(BUDGET);
     let mut part = read_chunks(chunks, sources, &budget, &ContinuationNames::default());
@@ -169,7 +169,7 @@ fn read_bulk(chunks: &[Chunk], sources: &[Source]) -> Part {
     part
 }
 
-/// Takes the solution from `SOL 101`, `SOL 2,1`, `SOL SESTATIC`, and the approach from `APP HEAT`.
+/// Reads the solution from `SOL 101`, `SOL 2,1`, `SOL SESTATIC`, and the approach from `APP HEAT`.
 fn read_sol(statements: &[Statement], deck: &mut Deck) {
     for statement in statements {
         let text = statement.text.trim();
@@ -209,7 +209,7 @@ fn read_sol(statements: &[Statement], deck: &mut Deck) {
 
 fn named_solution(name: &str) -> Option<u32> {
     Some(match name {
-        // LINEAR STATIC and NORMAL MODES: Autodesk
+        // Autodesk writes LINEAR STATIC and NORMAL MODES.
         "SESTATIC" | "SESTATICS" | "STATIC" | "STATICS" | "LINEAR" => 101,
         "SEMODES" | "MODES" | "NORMAL" | "MODAL" => 103,
         "SEBUCKL" | "BUCKLING" => 105,

@@ -7,14 +7,14 @@ use super::fault::DeckFaultKind;
 use super::fields::excerpt;
 use super::number::{Number, read_number};
 
-/// A card and the steps that make the next from it.
+/// A card and the steps that make the next card from it.
 #[derive(Clone, Debug)]
 pub(super) struct Template {
     pub card: Vec<Vec<u8>>,
     pub steps: Vec<Vec<u8>>,
 }
 
-/// The count of `=(n)` or `=n`.
+/// Returns the count of `=(n)` or `=n`.
 pub(super) fn count(head: &[u8]) -> Option<usize> {
     let rest = head.strip_prefix(b"=")?;
     let digits = rest
@@ -26,7 +26,7 @@ pub(super) fn count(head: &[u8]) -> Option<usize> {
     }
 }
 
-/// Takes the memory of `n` more cards off the budget: of all or of none.
+/// Takes the memory of `n` more cards off the budget. Takes nothing if the budget does not suffice.
 pub(super) fn spend(
     budget: &AtomicUsize,
     template: &Template,
@@ -105,7 +105,7 @@ fn zero_like(n: Number) -> Number {
     }
 }
 
-/// Every digit of the number, with a point or exponent.
+/// Returns every digit of the number, with a point or exponent.
 fn format_exact_real(x: f64) -> Vec<u8> {
     format!("{x:?}").into_bytes()
 }

@@ -1,4 +1,4 @@
-//! The sections of a deck and its included files, in reading order: which lines are executive control, case control, bulk data.
+//! Sections of a deck and its included files, in reading order: executive control, case control, bulk data.
 
 use std::collections::BTreeMap;
 
@@ -12,11 +12,11 @@ use super::missing_sections::{PARTS, is_bulk_entry, missing_statement};
 use super::source::{Chunk, Note, Position, SectionBounds, Source};
 use crate::place::{Place, SourceIx};
 
-/// Files included within files.
+/// Largest depth of files that include each other.
 const MAX_DEPTH: usize = 32;
-/// INCLUDE statements of a deck.
+/// Largest number of INCLUDE statements of a deck.
 const MAX_INCLUDES: usize = 10_000;
-/// Bytes of files that are included more than once, counted from the second time.
+/// Largest number of bytes from files that are included more than once, counted from the second time.
 const MAX_REPEATED: usize = 16 << 20;
 
 /// The sections of a deck.
@@ -27,7 +27,7 @@ enum Section {
     Executive,
     Case,
     Bulk,
-    /// Bulk data of a superelement or auxiliary model: kept, not read.
+    /// Bulk data of a superelement or auxiliary model: kept as text.
     Part,
 }
 
@@ -35,10 +35,10 @@ enum Section {
 #[derive(Clone, Debug)]
 pub(super) struct Statement {
     pub at: Place,
-    /// Offset of the line and of the next.
+    /// Offsets of the line and of the next line.
     pub start: usize,
     pub end: usize,
-    /// Without comment, not trimmed on the left.
+    /// Text without comment, not trimmed on the left.
     pub text: String,
 }
 
@@ -52,7 +52,7 @@ pub(super) struct Sections<'l> {
     pub chunks: Vec<Chunk>,
     pub faults: Vec<Fault>,
     pub notes: Vec<Note>,
-    /// First lines of bulk data that is kept and not read.
+    /// First lines of bulk data that is kept as text.
     pub parts: Vec<Note>,
     pub bounds: SectionBounds,
     /// Files being read, outermost first.
@@ -63,7 +63,7 @@ pub(super) struct Sections<'l> {
     done: bool,
 }
 
-/// The sections of the deck in `bytes`, with the text of its INCLUDEs in their places.
+/// Reads the sections of the deck in `bytes`, each INCLUDE replaced by the text of its file.
 pub(super) fn read_sections<'l>(
     main_path: &str,
     bytes: Vec<u8>,
@@ -115,7 +115,7 @@ impl Sections<'_> {
         );
     }
 
-    /// Refuses bulk data in case control: BEGIN BULK is missing. One fault, at the first entry; what is below is not read.
+    /// Refuses bulk data in case control, where BEGIN BULK is missing. Adds one fault, at the first entry; the entries are not read.
     fn refuse_cards_above_bulk(&mut self) {
         if self.bounds.bulk_line.is_some() || !self.parts.is_empty() || !self.chunks.is_empty() {
             return;
@@ -130,7 +130,7 @@ impl Sections<'_> {
         }
     }
 
-    /// Bulk data that no ENDDATA closes: a fault where the file ends within a line, for then it is cut; else a note.
+    /// Reports bulk data that no ENDDATA closes. If the file ends within a line, it is cut, which is a fault; otherwise a note is added.
     fn note_missing_end(&mut self) {
         if self.done || self.bounds.bulk_line.is_none() {
             return;
@@ -191,7 +191,7 @@ impl Sections<'_> {
         self.stack.pop();
     }
 
-    /// One line of executive or case control (INCLUDE: its lines).
+    /// Reads one line of executive or case control (for INCLUDE, all its lines).
     fn control(&mut self, source: u32, at: usize, number: u32) -> (usize, u32) {
         let bytes = self.bytes(source);
         let Some(line) = Lines::new(bytes, at, bytes.len(), number).next() else {
@@ -220,7 +220,7 @@ impl Sections<'_> {
                 });
                 return after;
             }
-            // a deck without BEGIN BULK ends here
+            // A deck without BEGIN BULK ends here.
             b"ENDDATA" => {
                 self.bounds.enddata = Some(position);
                 self.done = true;
@@ -287,7 +287,7 @@ impl Sections<'_> {
         false
     }
 
-    /// Bulk data up to the next INCLUDE, BEGIN or ENDDATA, which is dealt with.
+    /// Reads bulk data up to the next INCLUDE, BEGIN or ENDDATA, and handles this statement.
     fn bulk(&mut self, source: u32, at: usize, number: u32) -> (usize, u32) {
         let read = self.section != Section::Part;
         let mut chunks = std::mem::take(&mut self.chunks);
@@ -339,7 +339,7 @@ impl Sections<'_> {
         }
     }
 
-    /// The statement that begins at `at`; returns where the next line begins.
+    /// Reads the statement that begins at `at`; returns where the next line begins.
     fn include(&mut self, source: u32, at: usize, number: u32) -> (usize, u32) {
         let place = Place {
             source: SourceIx(source),
@@ -425,7 +425,7 @@ impl Sections<'_> {
     }
 }
 
-/// The statement without its comment; a `$` within quotes is text.
+/// Returns the statement without its comment; a `$` within quotes is text.
 fn statement_text(line: &[u8]) -> &[u8] {
     let mut quote = None;
     for (i, &c) in line.iter().enumerate() {
@@ -436,7 +436,7 @@ fn statement_text(line: &[u8]) -> &[u8] {
             _ => {}
         }
     }
-    // an unclosed quote is an apostrophe
+    // A quotation mark that is not closed is an apostrophe.
     if quote.is_some() {
         without_comment(line)
     } else {
@@ -444,7 +444,7 @@ fn statement_text(line: &[u8]) -> &[u8] {
     }
 }
 
-/// Whether the file has sections before bulk data, by statements that no bulk data has.
+/// Returns whether the file has sections before bulk data, found by statements that bulk data cannot contain.
 fn first_section(bytes: &[u8]) -> Section {
     let mut begin = false;
     for line in Lines::new(bytes, 0, bytes.len(), 1) {

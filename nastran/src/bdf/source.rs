@@ -26,7 +26,7 @@ pub(super) struct Position {
     pub offset: usize,
 }
 
-/// Where the sections of the deck meet.
+/// Boundaries between the sections of the deck.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub(super) struct SectionBounds {
     /// Start of the line after CEND, or of the deck.
@@ -39,7 +39,7 @@ pub(super) struct SectionBounds {
     pub(super) sol: Option<(Position, usize)>,
 }
 
-/// Lines of bulk data that begin with a card and hold no INCLUDE, BEGIN or ENDDATA.
+/// Lines of bulk data that begin with a card and contain no INCLUDE, BEGIN or ENDDATA.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chunk {
     pub source: u32,

@@ -3,7 +3,7 @@
 use super::line::{is_blank, trim};
 use super::number::{Number, read_number};
 
-/// How the fields of a line are written.
+/// Format of the fields of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     /// 8 columns a field.
@@ -23,9 +23,9 @@ pub(super) enum Lead {
     Name,
     /// A continuation, its name in field 1 possibly blank.
     Continuation,
-    /// `=` or `=(n)`: the card above again.
+    /// `=` or `=(n)`: a repetition of the card above.
     Replica,
-    /// Data that goes on from a line that ended in a comma.
+    /// Data that continues a line that ended in a comma.
     Data,
 }
 
@@ -34,7 +34,7 @@ pub(super) enum Lead {
 pub(super) struct Cut<'a> {
     pub format: Format,
     pub lead: Lead,
-    /// Field 1, trimmed, without `*` behind a name.
+    /// Field 1, trimmed, without the `*` after a name.
     pub head: &'a [u8],
     /// The line without its comment.
     body: &'a [u8],
@@ -42,7 +42,7 @@ pub(super) struct Cut<'a> {
     rest: usize,
 }
 
-/// Cuts a line that holds more than blanks; `body` has no comment.
+/// Cuts a line that contains more than blanks; `body` has no comment.
 pub(super) fn cut(body: &[u8]) -> Cut<'_> {
     let comma = memchr::memchr(b',', body);
     if let Some(comma) = comma {
@@ -98,7 +98,7 @@ pub(super) fn cut(body: &[u8]) -> Cut<'_> {
     }
 }
 
-/// `=(n)` or `=n`, which may be longer than a field.
+/// Returns `=(n)` or `=n`, which may be longer than a field.
 fn repetition(body: &[u8]) -> Option<&[u8]> {
     let token = body.split(|&c| is_blank(c)).find(|t| !t.is_empty())?;
     matches!(token, [b'=', b'(' | b'0'..=b'9', ..]).then_some(token)
@@ -138,7 +138,7 @@ fn lead(head: &[u8], otherwise: Lead) -> Lead {
     }
 }
 
-/// Words that go on a list of ids after a trailing comma though they begin with a letter.
+/// Returns whether a keyword continues a list of ids after a trailing comma, although it begins with a letter.
 pub(super) fn is_list_word(head: &[u8]) -> bool {
     [
         b"THRU".as_slice(),
@@ -153,7 +153,7 @@ pub(super) fn is_list_word(head: &[u8]) -> bool {
 }
 
 impl<'a> Cut<'a> {
-    /// Whether field 1 is blank and text of field 2 precedes the first comma, so that the commas may belong to the text.
+    /// Returns whether field 1 is blank and text of field 2 precedes the first comma, so that the commas may belong to the text.
     #[inline]
     pub(super) fn field_1_is_blank(&self) -> bool {
         let is_free = matches!(self.format, Format::Free | Format::FreeLarge);
@@ -165,7 +165,7 @@ impl<'a> Cut<'a> {
             }
     }
 
-    /// The line in fields of 8 columns, field 1 blank.
+    /// Returns the line in fields of 8 columns, with field 1 blank.
     pub(super) fn with_blank_field_1(&self) -> Cut<'a> {
         Cut {
             format: Format::Small,
@@ -176,7 +176,7 @@ impl<'a> Cut<'a> {
         }
     }
 
-    /// Number of fields of a full line.
+    /// Returns the number of fields of a full line.
     pub(super) fn width(&self) -> usize {
         match self.format {
             Format::Small | Format::Free => 8,
@@ -184,13 +184,13 @@ impl<'a> Cut<'a> {
         }
     }
 
-    /// Whether the line ends in a comma, so that the next may go on with data.
+    /// Returns whether the line ends in a comma, so that the next line may continue with data.
     pub(super) fn is_open(&self) -> bool {
         matches!(self.format, Format::Free | Format::FreeLarge)
             && self.body.iter().rev().find(|&&c| !is_blank(c)) == Some(&b',')
     }
 
-    /// Appends the fields behind field 1, and returns the continuation name of field 10 (empty where blank).
+    /// Appends the fields after field 1, and returns the continuation name of field 10 (empty if blank).
     #[inline]
     pub(super) fn fields(&self, out: &mut Vec<&'a [u8]>) -> &'a [u8] {
         match self.format {
@@ -219,9 +219,9 @@ impl<'a> Cut<'a> {
         slice(72, 80)
     }
 
-    /// A tab goes to the next column after a multiple of 8.
+    /// Appends the fields of a line with tabs. A tab moves to the next column after a multiple of 8.
     fn split_tabbed_fields(&self, out: &mut Vec<&'a [u8]>) -> &'a [u8] {
-        // byte offset at which columns 0, 8, 16 .. 80 begin
+        // Byte offsets of columns 0, 8, 16 .. 80.
         let mut starts = [self.body.len(); 11];
         let mut column = 0_usize;
         for (i, &c) in self.body.iter().enumerate() {
@@ -259,7 +259,7 @@ impl<'a> Cut<'a> {
             start = comma + 1;
         }
         out.push(trim(rest.get(start..).unwrap_or_default()));
-        // blanks beyond the line's last field are only commas too many
+        // Commas after the line's last field are superfluous.
         while out.len() > first + width && out.last().is_some_and(|f| f.is_empty()) {
             out.pop();
         }
@@ -273,7 +273,7 @@ impl<'a> Cut<'a> {
         &[]
     }
 
-    /// The tokens of a line that goes on with data.
+    /// Appends the tokens of a line that continues with data.
     pub(super) fn data(&self, out: &mut Vec<&'a [u8]>) {
         for field in self.body.split(|&c| c == b',') {
             out.push(trim(field));
@@ -281,7 +281,7 @@ impl<'a> Cut<'a> {
     }
 }
 
-/// Whether the token behind the last field is a continuation name rather than data.
+/// Returns whether the token after the last field is a continuation name instead of data.
 fn is_label(token: &[u8], is_last: bool) -> bool {
     match token.first() {
         Some(b'+' | b'*') => match read_number(token) {

@@ -1,4 +1,4 @@
-//! Refuses names that no dialect of Nastran has.
+//! Refuses names that exist in no dialect of Nastran.
 
 use super::deck::Deck;
 use super::fault::{DeckFaultKind, Fault};
@@ -12,7 +12,7 @@ use super::vocabulary::{
 use crate::place::SourceIx;
 use std::collections::BTreeSet;
 
-/// Adds a fault for each unknown name of bulk data and each unknown word of case control, and a note for each misspelt parameter.
+/// Adds a fault for each unknown bulk data name and each unknown case control command, and a note for each misspelt parameter.
 pub(super) fn check_names(deck: &mut Deck) {
     check_words(deck);
     note_parameters(deck);
@@ -97,7 +97,8 @@ pub(super) fn check_executive(statements: &[Statement], faults: &mut Vec<Fault>)
 }
 
 fn check_words(deck: &mut Deck) {
-    // Without CEND in the first file executive control is part of the first section, and so is that of an included file.
+    // An executive statement is a fault only if the main deck has CEND and contains the statement. Elsewhere executive control is part of the first
+    // section.
     let first = SourceIx(0);
     let without_cend = deck.bounds.case_start.is_none();
     for line in deck.case_control.lines.iter().filter(|l| !l.in_packet) {

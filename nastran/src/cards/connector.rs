@@ -15,7 +15,7 @@ pub enum WeldPatches {
     Properties(u32, u32),
     /// ALIGN: the grids GA and GB.
     Align,
-    /// Any other word.
+    /// Another keyword.
     Unknown(String),
 }
 
@@ -55,7 +55,7 @@ pub struct Pweld {
 pub struct Fastener {
     pub id: u32,
     pub pid: Option<u32>,
-    /// PROP, ELEM, or another word.
+    /// PROP, ELEM, or another keyword.
     pub kind: String,
     /// IDA, IDB: shell properties or shells.
     pub patches: [u32; 2],
@@ -107,6 +107,6 @@ pub struct Pgap {
     pub kb: Option<f64>,
     /// Stiffness across the axis, closed.
     pub kt: Option<f64>,
-    /// Coefficient of friction: what KT defaults to, times KA.
+    /// Coefficient of friction; the default of KT is this coefficient times KA.
     pub mu1: f64,
 }

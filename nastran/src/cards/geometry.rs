@@ -17,7 +17,7 @@ pub struct Grid {
     pub seid: Option<u32>,
 }
 
-/// GRDSET: what blank fields of GRID take.
+/// GRDSET: defaults for the blank fields of GRID.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[allow(missing_docs)]
 pub struct Grdset {
@@ -35,7 +35,7 @@ impl Dofs {
     /// All six.
     pub const ALL: Dofs = Dofs(0b11_1111);
 
-    /// From digits such as 123456; `None` if a digit is not 1 to 6. 0 is the empty set (scalar points).
+    /// Reads the set from digits such as 123456; `None` if a digit is not 1 to 6. 0 is the empty set (scalar points).
     pub fn from_digits(mut digits: u32) -> Option<Dofs> {
         let mut bits = 0_u8;
         while digits > 0 {
@@ -49,22 +49,22 @@ impl Dofs {
         Some(Dofs(bits))
     }
 
-    /// Whether dof `d` (1 to 6) is in the set.
+    /// Returns whether dof `d` (1 to 6) is in the set.
     pub fn has(self, d: u8) -> bool {
         (1..=6).contains(&d) && self.0 >> (d - 1) & 1 == 1
     }
 
-    /// The dofs, 0-based and ascending.
+    /// Returns the dofs, 0-based and ascending.
     pub fn iter0(self) -> impl Iterator<Item = usize> {
         (0..6).filter(move |i| self.0 >> i & 1 == 1)
     }
 
-    /// How many.
+    /// Returns the number of dofs in the set.
     pub fn len(self) -> usize {
         self.0.count_ones() as usize
     }
 
-    /// Whether none.
+    /// Returns whether the set is empty.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }

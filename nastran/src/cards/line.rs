@@ -86,7 +86,7 @@ pub struct Bush {
     /// End B is `None` when grounded.
     pub grids: (u32, Option<u32>),
     pub orientation: Orientation,
-    /// CID: the element frame, 0 basic. Wins over `orientation`.
+    /// CID: the element frame, 0 basic. It takes precedence over `orientation`.
     pub cid: Option<u32>,
     /// S: location of the spring between A and B, default 0.5.
     pub s: Option<f64>,

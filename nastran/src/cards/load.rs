@@ -136,7 +136,7 @@ pub struct Temp {
     pub t: f64,
 }
 
-/// TEMPD: the temperature of all grids without TEMP.
+/// TEMPD: the temperature of every grid that has no TEMP.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub struct Tempd {
@@ -172,7 +172,7 @@ pub struct Temprb {
     pub at_points: bool,
 }
 
-/// FORCE1, FORCE2, MOMENT1, MOMENT2: a size and a direction that grids give.
+/// FORCE1, FORCE2, MOMENT1, MOMENT2: a magnitude, and a direction from grids.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub struct ForceAlong {

@@ -28,17 +28,17 @@ pub struct Conm2 {
     pub mass: f64,
     /// Offset of the centre of gravity from the grid.
     pub offset: [f64; 3],
-    /// I11, I21, I22, I31, I32, I33 about the centre of gravity; products are stored as the card states them
-    /// (`I21 = integral x1 x2 dm`, the tensor's off-diagonal is its negative).
+    /// I11, I21, I22, I31, I32, I33 about the centre of gravity. Products are stored as the card states them, `I21 = integral x1 x2 dm`; the
+    /// off-diagonal term of the tensor has the opposite sign.
     pub inertia: [f64; 6],
 }
 
-/// NSM, NSM1, NSML, NSML1: non-structural mass of properties or elements, acting where case control selects the set.
+/// NSM, NSM1, NSML, NSML1: non-structural mass of properties or elements; it acts if case control selects the set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NonstructuralMass {
     /// Set id.
     pub sid: u32,
-    /// NSML, NSML1: `value` is a mass, spread over all that is named; else it is mass per area or length.
+    /// NSML, NSML1: `value` is a mass that is spread over all listed items; otherwise it is mass per area or length.
     pub lumped: bool,
     /// PSHELL, PCOMP, PBAR .. or ELEMENT.
     pub of: String,

@@ -73,7 +73,7 @@ pub struct MaterialTable {
     pub id: u32,
     /// Form of the table (one of the four cards), with its parameters.
     pub form: MaterialTableForm,
-    /// Words on the first line that ask for something other than straight lines between points; empty if there are none.
+    /// Keywords on the first line that request an interpolation other than straight lines between points; empty if the card has no keyword.
     pub options: String,
 }
 

@@ -110,17 +110,17 @@ pub struct Cards {
     pub tempp1s: Vec<PlacedCard<Tempp1>>,
     pub temprbs: Vec<PlacedCard<Temprb>>,
     pub params: Vec<PlacedCard<Param>>,
-    /// Entries of an OP2 that act and have no struct; decks keep them word for word instead.
+    /// Entries of an OP2 that act and have no struct. A deck keeps such cards as text instead.
     pub unread: Vec<PlacedCard<UnreadEntry>>,
 }
 
 /// An entry of the geometry blocks of an OP2 that acts and has no struct.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct UnreadEntry {
-    /// Name of the entry, or the code of its record where the name is not known.
+    /// Name of the entry, or the code of its record if the name is not known.
     pub name: String,
     /// Id of the element, property or set; `None` for a record whose entries have no known length.
     pub id: Option<u32>,
-    /// Whether it is a load, which acts where its set is selected.
+    /// Whether the entry is a load, which acts if case control selects its set.
     pub is_load: bool,
 }

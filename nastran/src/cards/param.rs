@@ -19,7 +19,7 @@ pub enum ParamValue {
 }
 
 impl ParamValue {
-    /// The value as a number, integers included.
+    /// Returns the value as a number, integers included.
     pub fn as_f64(&self) -> Option<f64> {
         match self {
             Self::Integer(i) => Some(*i as f64),

@@ -42,7 +42,7 @@ pub struct Pcomp {
     pub tref: Option<f64>,
     /// Damping.
     pub ge: f64,
-    /// LAM is SYM: the plies are the lower half.
+    /// Symmetric laminate: the plies are the lower half (LAM is SYM, SYMEM, SYBEND or SYSMEAR).
     pub symmetric: bool,
     /// LAM as written (`MEM`, `BEND`, `SMEAR` ..); empty where blank.
     pub lam: String,
@@ -50,7 +50,7 @@ pub struct Pcomp {
     pub plies: Vec<Ply>,
 }
 
-/// A ply; blank material or thickness are already those of the ply before.
+/// A ply. A blank material or thickness is already replaced by the value of the ply before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub struct Ply {
@@ -109,7 +109,7 @@ pub struct Pbarl {
 pub struct Pbeam {
     pub id: u32,
     pub mid: u32,
-    /// End A first, then as listed; the last has x/xb = 1 (end B), added as a copy of A where the card lacks it.
+    /// End A first, then as listed. The last station has x/xb = 1 (end B); if the card lacks it, a copy of end A is added.
     pub stations: Vec<BeamStation>,
     /// Shear stiffness factors K1, K2.
     pub k: [Option<f64>; 2],
@@ -131,7 +131,7 @@ pub struct Pbeam {
 pub struct BeamStation {
     /// Share of the length from end A.
     pub x_xb: f64,
-    /// SO: stress is put out here.
+    /// SO: stress is output at this station.
     pub output: bool,
     pub area: f64,
     pub i1: f64,

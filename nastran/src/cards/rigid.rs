@@ -17,7 +17,7 @@ pub struct Rbe2 {
     pub alpha: f64,
 }
 
-/// RBE3: the reference grid moves as the weighted mean of the others.
+/// RBE3: the reference grid moves as the weighted mean of the other grids.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rbe3 {
     /// Element id.
@@ -62,13 +62,13 @@ pub struct Rbar {
     pub grids: [u32; 2],
     /// CNA, CNB: independent dofs at A and B.
     pub independent: [Dofs; 2],
-    /// CMA, CMB: dependent dofs; both empty: all that are not independent.
+    /// CMA, CMB: dependent dofs; both empty: all dofs that are not independent.
     pub dependent: [Dofs; 2],
     /// Thermal expansion coefficient.
     pub alpha: f64,
 }
 
-/// RSPLINE: an elastic tube through grids, of which those without dependent dofs, the first and the last carry the others.
+/// RSPLINE: an elastic tube through grids. The first grid, the last grid and the grids without dependent dofs carry the other grids.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rspline {
     /// Element id.

@@ -13,7 +13,7 @@ pub enum ShellShape {
 }
 
 impl ShellShape {
-    /// Number of grids, mid-side grids included.
+    /// Returns the number of grids, mid-side grids included.
     pub fn n_grids(self) -> usize {
         match self {
             Self::Quad4 | Self::QuadR => 4,
@@ -23,7 +23,7 @@ impl ShellShape {
         }
     }
 
-    /// Number of corners.
+    /// Returns the number of corners.
     pub fn n_corners(self) -> usize {
         match self {
             Self::Quad4 | Self::QuadR | Self::Quad8 => 4,
@@ -31,7 +31,7 @@ impl ShellShape {
         }
     }
 
-    /// Card name.
+    /// Returns the card name.
     pub fn card(self) -> &'static str {
         match self {
             Self::Quad4 => "CQUAD4",
@@ -75,7 +75,8 @@ pub struct Shell {
 }
 
 impl Shell {
-    /// Returns the card with the thicknesses that it states times `factor`; `None` where it states none, or as shares of that of its property.
+    /// Returns the card with its stated thicknesses times `factor`. Returns `None` if the card states no thickness, or states shares of the
+    /// property's thickness.
     pub fn with_thickness_times(&self, factor: f64) -> Option<Shell> {
         let stated = !self.tflag && self.thickness.iter().any(Option::is_some);
         let thickness = self.thickness.map(|t| t.map(|t| t * factor));

@@ -11,7 +11,7 @@ pub enum SolidShape {
 }
 
 impl SolidShape {
-    /// Number of corners.
+    /// Returns the number of corners.
     pub fn n_corners(self) -> usize {
         match self {
             Self::Tetra => 4,
@@ -21,7 +21,7 @@ impl SolidShape {
         }
     }
 
-    /// Card name.
+    /// Returns the card name.
     pub fn card(self) -> &'static str {
         match self {
             Self::Tetra => "CTETRA",

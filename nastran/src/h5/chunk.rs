@@ -1,7 +1,7 @@
-//! Chunks of a compressed table, unpacked here.
+//! Unpacks the chunks of a compressed table.
 //!
-//! MSC Nastran 2020 packs with deflate first and shuffle after it, so the bytes that are shuffled have any length; the HDF5 library then
-//! shuffles whole elements and copies the rest behind them. `hdf5-pure` 0.47 refuses such a length, hence this file.
+//! MSC Nastran 2020 applies deflate first and shuffle after it, so the shuffled bytes may have any length. The HDF5 library then shuffles whole
+//! elements and copies the leftover bytes after them. `hdf5-pure` 0.47 refuses such a length, so this file unpacks the chunks.
 //!
 //! # Reference
 //! HDF5 library, `H5Zshuffle.c` (leftover bytes) and file format specification, filter pipeline message.
@@ -14,7 +14,7 @@ const DEFLATE: u16 = 1;
 const SHUFFLE: u16 = 2;
 const FLETCHER32: u16 = 3;
 
-/// The chunks of a one-dimensional table, by first row.
+/// Chunks of a one-dimensional table, by first row.
 pub(super) struct Chunks {
     filters: Vec<Filter>,
     rows_a_chunk: u64,
@@ -22,7 +22,7 @@ pub(super) struct Chunks {
 }
 
 impl Chunks {
-    /// `None` where the table is not chunked, or is packed with other filters than deflate, shuffle and Fletcher's checksum.
+    /// Returns `None` if the table is not chunked, or is packed with filters other than deflate, shuffle and Fletcher's checksum.
     pub(super) fn from_dataset(
         dataset: &Dataset,
         rows_a_chunk: u64,
@@ -43,10 +43,10 @@ impl Chunks {
         }))
     }
 
-    /// The records of rows `start .. end` of the chunk that holds row `start`, and that `end`.
+    /// Returns the records of rows `start .. end`, and `end`, where `end` is the end of the chunk that contains row `start`.
     ///
     /// # Errors
-    /// [`H5Error::Container`] where no chunk holds the row, or its bytes do not unpack to a chunk of records.
+    /// [`H5Error::Container`] if no chunk contains the row, or if the chunk's bytes do not unpack to a chunk of records.
     pub(super) fn records(
         &self,
         file: &[u8],
@@ -81,7 +81,7 @@ impl Chunks {
                 continue;
             }
             bytes = match filter.id {
-                // Fletcher's four bytes may still follow the content.
+                // The four bytes of Fletcher's checksum may still follow the content.
                 DEFLATE => inflate(&bytes, whole.saturating_add(4))
                     .ok_or_else(|| damaged("its chunk does not inflate"))?,
                 SHUFFLE => unshuffle(
@@ -107,7 +107,7 @@ impl Chunks {
     }
 }
 
-/// At most `limit` bytes of a zlib stream; `None` where it is damaged or longer.
+/// Inflates at most `limit` bytes of a zlib stream; `None` if the stream is damaged or longer.
 fn inflate(packed: &[u8], limit: usize) -> Option<Vec<u8>> {
     let mut out = Vec::new();
     let most = u64::try_from(limit).ok()?.checked_add(1)?;
@@ -118,7 +118,7 @@ fn inflate(packed: &[u8], limit: usize) -> Option<Vec<u8>> {
     (out.len() <= limit).then_some(out)
 }
 
-/// Undoes the byte shuffle: plane `j` holds byte `j` of every element; leftover bytes follow the planes.
+/// Undoes the byte shuffle. Plane `j` contains byte `j` of every element; leftover bytes follow the planes.
 fn unshuffle(data: &[u8], element: usize) -> Vec<u8> {
     let n = data.len().checked_div(element).unwrap_or(0);
     if element <= 1 || n <= 1 {

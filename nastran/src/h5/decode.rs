@@ -1,11 +1,11 @@
-//! From records to rows.
+//! Decodes records into rows.
 
 use super::H5Error;
 use super::layout::{Kind, Layout};
 use super::table::{Field, Table};
 use crate::results::{RowId, Rows};
 
-/// The rows of records `start .. start + count`.
+/// Returns the rows of records `start .. start + count`.
 pub(super) fn rows(
     table: &Table<'_>,
     layout: &Layout,
@@ -30,7 +30,7 @@ pub(super) fn rows(
     } else {
         None
     };
-    // Damaged fields could claim any array length; the record bounds what each holds, so places are bounded too.
+    // A damaged field could state any array length. The size of the record bounds the array, and so the number of locations.
     let places = grid.map_or(1, |g| g.count);
     let mut out = Rows {
         columns: layout.columns,
@@ -58,7 +58,7 @@ pub(super) fn rows(
             }
             Kind::ShellCentre | Kind::ShellCorner => {
                 for k in 0..places {
-                    // The first GRID word is not a grid at the centre (it counts the corners).
+                    // At the centre the first word of GRID is the number of corners, not a grid.
                     let at = if k == 0 {
                         0
                     } else {
@@ -75,7 +75,7 @@ pub(super) fn rows(
                 for k in 0..places {
                     let at = grid.map_or(0, |g| g.id(r, k));
                     let x_xb = fields.first().map_or(0.0, |f| value(f, k));
-                    // Stations that were not asked for are zeros.
+                    // The solver writes zeros for stations without an output request.
                     if k == 0 || at != 0 || x_xb != 0.0 {
                         out.ids.push(RowId {
                             entity,

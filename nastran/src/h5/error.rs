@@ -29,22 +29,22 @@ pub enum H5Error {
         /// The field.
         field: &'static str,
     },
-    /// A table claims more than the file can contain.
+    /// A table states more data than the file can contain.
     #[error("`{path}`: {claimed} bytes claimed, at most {possible} possible: the file is damaged")]
     TooLarge {
         /// The table.
         path: String,
-        /// Records times record size.
+        /// Number of records times record size.
         claimed: u64,
-        /// From the file's size.
+        /// Largest size that fits the size of the file.
         possible: u64,
     },
     /// The block index is out of range.
     #[error("block {index} does not exist: the file has {blocks}")]
     NoSuchBlock {
-        /// Asked for.
+        /// Requested index.
         index: usize,
-        /// There are.
+        /// Number of blocks in the file.
         blocks: usize,
     },
     /// A table of a kind that is not decoded.
@@ -56,7 +56,7 @@ pub enum H5Error {
 }
 
 impl H5Error {
-    /// Whether the file contradicts itself, other than being of a kind that is not read.
+    /// Returns whether the file contradicts itself, and is not only of a kind that is not read.
     pub(crate) fn is_damage(&self) -> bool {
         matches!(
             self,

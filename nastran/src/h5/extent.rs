@@ -1,10 +1,10 @@
-//! The length of the file that the superblock states.
+//! Length of the file that the superblock states.
 
-/// Bytes that the file must have by its superblock; `None` where the superblock is of no known version or cut itself.
+/// Returns the length of the file that the superblock states. Returns `None` if the superblock has an unknown version or is cut.
 ///
 /// # Reference
-/// HDF5 file format specification, version 3.0, II.A: versions 0 and 1 keep the end of file address after two addresses behind the
-/// 24 (28) bytes of the head, versions 2 and 3 behind 12.
+/// HDF5 file format specification, version 3.0, II.A: The end of file address follows the head and two other addresses. The head has 24 bytes in
+/// version 0, 28 in version 1, and 12 in versions 2 and 3.
 pub(super) fn stated_length(bytes: &[u8]) -> Option<u64> {
     let version = *bytes.get(8)?;
     let (size_at, head) = match version {

@@ -38,7 +38,7 @@ struct Span {
 }
 
 impl H5 {
-    /// Builds the index of a whole HDF5 result file. The bytes are copied once: the HDF5 layer owns its input.
+    /// Builds the index of a whole HDF5 result file. The bytes are copied once, because the HDF5 layer owns its input.
     ///
     /// # Errors
     /// [`H5Error::Damaged`] for a file that is cut short or whose tables can't all be opened, and every error of [`H5::salvage`].
@@ -93,7 +93,7 @@ impl H5 {
         Table::open(&self.file, path)
     }
 
-    /// Names of the tables and groups in a group, sorted; none where it does not exist.
+    /// Returns the names of the tables and groups in a group, sorted; an empty list if the group does not exist.
     fn children(&self, path: &str) -> Result<(Vec<String>, Vec<String>), H5Error> {
         let Ok(group) = self.file.group(path) else {
             return Ok((Vec::new(), Vec::new()));
@@ -153,7 +153,7 @@ impl H5 {
         Ok(())
     }
 
-    /// A table that can't be read: damage, or of a kind that is passed over.
+    /// Records a table that cannot be read, as damage or as a note on skipped content.
     fn note_unread_table(&mut self, path: &str, why: &H5Error) {
         if why.is_damage() {
             self.damage.push(Damage {
@@ -172,7 +172,7 @@ impl H5 {
         });
     }
 
-    /// Adds the blocks of a table, one a run of equal DOMAIN_ID, or a note.
+    /// Adds the blocks of a table, one for each run of equal DOMAIN_ID, or a note.
     fn index(
         &mut self,
         path: &str,
@@ -183,7 +183,7 @@ impl H5 {
             let Some(layout) = layout(&table) else {
                 return Ok(Vec::new());
             };
-            // Asked now rather than when rows are: a field that is missing is a note on the table.
+            // The fields are looked up here so that a missing field becomes a note on the table, not an error when rows are read.
             table.need(layout.id)?;
             layout
                 .fields
@@ -263,7 +263,7 @@ impl H5 {
         }
     }
 
-    /// The rows of block `index`.
+    /// Returns the rows of block `index`.
     ///
     /// # Errors
     /// [`H5Error`]: no such block, or damage found while reading.
@@ -283,7 +283,7 @@ impl H5 {
     }
 }
 
-/// Fibre or curvature form of shells: curvature form shows by its fibre column, 0 and -1; stress is always at fibres.
+/// Returns the form of a shell block. Curvature form shows by its fibre column, 0 and -1; stress is always at fibres.
 fn form(table: &Table<'_>, span: &Span) -> Result<Option<ShellForm>, H5Error> {
     if !matches!(span.layout.kind, Kind::ShellCentre | Kind::ShellCorner) {
         return Ok(None);

@@ -1,28 +1,28 @@
-//! Which fields of a table make a row, by table name and fields.
+//! Fields of a table that make a row, by table name and fields.
 
 use super::table::Table;
 use crate::results::{ElementType, Quantity, columns as c};
 
-/// How records become rows.
+/// Form in which records become rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Kind {
-    /// A row a record.
+    /// One row for each record.
     Plain,
-    /// A row a record, numbered within its element.
+    /// One row for each record, numbered within its element.
     Station,
-    /// A row a ply.
+    /// One row for each ply.
     Ply,
-    /// Two rows a record, the fibres.
+    /// Two rows for each record, one for each fibre.
     ShellCentre,
-    /// Two rows a place: the centre, then the corners of array GRID.
+    /// Two rows for each location: the centre, then the corners of array GRID.
     ShellCorner,
-    /// A row a station of array GRID.
+    /// One row for each station of array GRID.
     Beam,
-    /// A row a place of array GRID.
+    /// One row for each location of array GRID.
     Solid,
 }
 
-/// A table's meaning.
+/// Meaning of a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Layout {
     pub kind: Kind,
@@ -38,7 +38,7 @@ pub(super) struct Layout {
 const NODAL: &[&str] = &["X", "Y", "Z", "RX", "RY", "RZ"];
 const SHELL: &[&str] = &["FD1", "X1", "Y1", "TXY1", "FD2", "X2", "Y2", "TXY2"];
 
-/// The layout of `/NASTRAN/RESULT/NODAL/<name>`.
+/// Returns the layout of `/NASTRAN/RESULT/NODAL/<name>`.
 pub(super) fn nodal(name: &str) -> Option<Layout> {
     let quantity = match name {
         "DISPLACEMENT" => Quantity::Displacement,
@@ -60,7 +60,7 @@ pub(super) fn nodal(name: &str) -> Option<Layout> {
     })
 }
 
-/// The layout of `/NASTRAN/RESULT/ELEMENTAL/STRAIN/<name>` or `STRESS`.
+/// Returns the layout of `/NASTRAN/RESULT/ELEMENTAL/STRAIN/<name>` or `STRESS`.
 pub(super) fn elemental_layout(
     quantity: Quantity,
     name: &str,

@@ -1,9 +1,9 @@
 //! HDF5 result files of MSC Nastran (NH5RDB) and of solvers that write the same tree.
 //!
-//! `/NASTRAN/RESULT/DOMAINS` lists subcases and steps; every result is a table of records whose last field, DOMAIN_ID, points there.
-//! `/NASTRAN/RESULT/NODAL` holds nodal vectors, `/NASTRAN/RESULT/ELEMENTAL/STRAIN` and `STRESS` one table an element type.
-//! Fields are found by name, so a schema that adds fields still reads. What the tables leave out (principal values, von Mises of
-//! shells and solids) is NaN in the rows.
+//! `/NASTRAN/RESULT/DOMAINS` lists subcases and steps. Every result is a table of records whose last field, DOMAIN_ID, refers to this list.
+//! `/NASTRAN/RESULT/NODAL` contains nodal vectors. `/NASTRAN/RESULT/ELEMENTAL/STRAIN` and `STRESS` contain one table for each element type. Fields
+//! are found by name, so a schema with additional fields can still be read. Values that the tables do not contain (principal values, von Mises of
+//! shells and solids) are NaN in the rows.
 
 mod chunk;
 mod decode;
@@ -18,7 +18,7 @@ mod weight;
 pub use error::H5Error;
 pub use file::H5;
 
-/// Whether `bytes` begin as an HDF5 file does.
+/// Returns whether `bytes` begin with the signature of an HDF5 file.
 pub fn is_h5(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\x89HDF\r\n\x1a\n")
 }

@@ -1,12 +1,12 @@
-//! A dataset of records, read by field name and in windows of rows.
+//! Reads a dataset of records by field name, in windows of rows.
 
 use super::H5Error;
 use super::chunk::Chunks;
 use hdf5_pure::{Dataset, Datatype, DatatypeByteOrder, File};
 
-/// The best that deflate can do is 1032 to 1 (zlib, technical details): a table larger than that is a lie.
+/// Largest compression ratio of deflate, 1032 to 1 (zlib, technical details). A table that states a larger size is damaged.
 const MOST_DEFLATE: u64 = 1032;
-/// Records are read in windows of about this many bytes, so that memory follows the window.
+/// Approximate size in bytes of the windows in which records are read. Memory use follows this size.
 const WINDOW_BYTES: u64 = 4 << 20;
 /// The largest chunk that is unpacked; writers stay near 1 MB.
 const MOST_CHUNK_BYTES: u64 = 16 << 20;
@@ -99,12 +99,12 @@ impl<'f> Table<'f> {
         })
     }
 
-    /// Returns the field with a name, if the table has it and it is a number or an array of numbers.
+    /// Returns the field of this name, if the table has it and it is a number or an array of numbers.
     pub(super) fn field(&self, name: &str) -> Option<Field> {
         self.fields.iter().find(|(n, _)| n == name).map(|&(_, f)| f)
     }
 
-    /// Returns the field with a name, or an error with this name.
+    /// Returns the field of this name, or an error with the name.
     pub(super) fn need(&self, name: &'static str) -> Result<Field, H5Error> {
         self.field(name).ok_or_else(|| H5Error::MissingField {
             path: self.path.clone(),
@@ -215,7 +215,7 @@ impl Field {
         })
     }
 
-    /// Entry `k` as a real; NaN outside the array.
+    /// Returns entry `k` as a real; NaN outside the array.
     pub(super) fn read_real(self, record: &[u8], k: usize) -> f64 {
         match (self.bits(record, k), self.number, self.size) {
             (None, ..) => f64::NAN,
@@ -225,7 +225,7 @@ impl Field {
         }
     }
 
-    /// Entry `k` as an integer; 0 outside the array and for reals.
+    /// Returns entry `k` as an integer; 0 outside the array and for reals.
     pub(super) fn integer(self, record: &[u8], k: usize) -> i64 {
         let Some(bits) = self.bits(record, k) else {
             return 0;
@@ -238,7 +238,7 @@ impl Field {
         }
     }
 
-    /// Entry `k` as an id; 0 where it is negative or too large.
+    /// Returns entry `k` as an id; 0 if it is negative or too large.
     pub(super) fn id(self, record: &[u8], k: usize) -> u32 {
         u32::try_from(self.integer(record, k)).unwrap_or(0)
     }

@@ -6,7 +6,7 @@ fn read_shared_file(path: &str) -> Option<Vec<u8>> {
     crate::support::bytes(&format!("nastran/{path}"))
 }
 
-/// The oracle's table of that name: rows of (ids, values).
+/// Returns the table of this name from the reference data: rows of (ids, values).
 fn read_expected_rows(case: &str, result: &str, n_ids: usize) -> Option<Vec<(Vec<u32>, Vec<f64>)>> {
     let json: Value =
         serde_json::from_slice(&read_shared_file(&format!("{case}/expected.json"))?).unwrap();
@@ -41,7 +41,7 @@ fn block(h5: &H5, quantity: Quantity, element: Option<u32>) -> usize {
         .unwrap()
 }
 
-/// Largest difference of the columns `cols` relative to the largest oracle value in them.
+/// Returns the largest difference of the columns `cols`, relative to the largest reference value in these columns.
 fn difference(rows: &Rows, wanted: &[(Vec<u32>, Vec<f64>)], cols: std::ops::Range<usize>) -> f64 {
     let mut worst = vec![0.0_f64; cols.len()];
     let mut largest = vec![0.0_f64; cols.len()];
@@ -83,7 +83,7 @@ fn the_double_precision_h5_of_the_svanberg_beam_agrees_with_the_op2_of_the_same_
                 .collect::<Vec<_>>(),
             wanted.iter().map(|w| w.0.clone()).collect::<Vec<_>>()
         );
-        // The OP2 is single precision.
+        // The OP2 has single precision.
         assert!(difference(&rows, &wanted, 0..6) < 1e-7, "{name}");
     }
     for (quantity, name) in [
@@ -99,7 +99,7 @@ fn the_double_precision_h5_of_the_svanberg_beam_agrees_with_the_op2_of_the_same_
                 .collect::<Vec<_>>(),
             wanted.iter().map(|w| w.0.clone()).collect::<Vec<_>>()
         );
-        // pyNastran's columns are sxc .. smin, mst, msc: without the station.
+        // The columns in pyNastran are sxc .. smin, mst, msc; they do not contain the station.
         let shifted: Vec<_> = wanted
             .into_iter()
             .map(|(ids, v)| (ids, [vec![0.0], v].concat()))
@@ -138,7 +138,7 @@ fn the_grid_point_weight_of_the_svanberg_beam_is_that_of_its_printed_output() {
     {
         assert!((got - want).abs() <= 1e-6 * weight.mass[0], "{got} {want}");
     }
-    // The mean position of the mass: five equal beams from 0 to 5.
+    // The mean position of the mass is 2.5: five equal beams extend from 0 to 5.
     assert!((weight.cg[1][0] - 2.5).abs() < 1e-12);
 }
 
@@ -148,10 +148,10 @@ fn compressed_tables_of_msc_agree_with_the_op2_that_nx_wrote_for_the_same_deck()
         return;
     };
     let h5 = H5::read(&bytes).unwrap();
-    // Measured: the two solvers agree to single precision on this deck.
+    // The tolerances are measured: the two solvers agree to single precision on this deck.
     for (quantity, element, name, n_ids, cols, tolerance) in [
         (Quantity::Displacement, None, "displacements", 2, 0..6, 1e-6),
-        // A component whose reactions nearly cancel is known to fewer digits.
+        // Reactions that nearly cancel have fewer correct digits.
         (Quantity::SpcForce, None, "spc_forces", 2, 0..6, 2e-3),
         (Quantity::AppliedLoad, None, "load_vectors", 2, 0..6, 1e-6),
         (
@@ -294,7 +294,7 @@ fn truncated_and_mutated_files_give_an_answer_or_an_error_but_no_panic() {
     for _ in 0..N_MUTATIONS {
         let mut damaged = bytes.clone();
         for _ in 0..=next(8) {
-            // The superblock and root, or the last part, where result tables and their headers stand.
+            // The offset is in the superblock and root, or in the last part, which contains the result tables and their headers.
             let at = if next(4) == 0 {
                 next(4096)
             } else {

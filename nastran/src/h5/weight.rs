@@ -4,7 +4,7 @@ use super::H5Error;
 use super::table::Table;
 use crate::results::GridPointWeight;
 
-/// The first record of the table; `None` where it is empty.
+/// Reads the first record of the table; `None` if the table is empty.
 pub(super) fn grid_point_weight(table: &Table<'_>) -> Result<Option<GridPointWeight>, H5Error> {
     let (id, mo, s, inertia) = (
         table.need("ID")?,

@@ -1,9 +1,9 @@
-//! Tables and their records: the keys between the physical records.
+//! Tables and their records, from the keys between the physical records.
 //!
-//! A file is an optional header (key 3 + date, key 7 + tape label, key 2 + version label, key -1), then tables. A table is
-//! key 2 + name, key -1, key 7 + trailer, and records. Record n starts with the keys -n, 1, type (0 table, 1 matrix column) and
-//! contains the data after positive keys; solvers split long records into several such pieces. The first record is the sub-table name.
-//! Key 0 ends the table. MSC 2020 and later put key 6 + 24 bytes (solver version) after the version label and after each name.
+//! A file is an optional header (key 3 + date, key 7 + tape label, key 2 + version label, key -1), then tables. A table is key 2 + name, key -1, key
+//! 7 + trailer, and records. Record n starts with the keys -n, 1 and type (0 table, 1 matrix column). The data follow after positive keys; solvers
+//! split long records into several such pieces. The first record is the sub-table name. Key 0 ends the table. MSC 2020 and later put key 6 + 24 bytes
+//! (solver version) after the version label and after each name.
 
 use super::fortran::{Cursor, Physical, Stop};
 use super::words::{Format, Words};
@@ -18,7 +18,7 @@ pub enum TableKind {
     Geometry,
     /// Columns of a matrix.
     Matrix,
-    /// Anything else; skipped.
+    /// A table of another kind; skipped.
     Unknown,
 }
 
@@ -33,7 +33,7 @@ pub struct TableEntry {
     pub trailer: [i64; 7],
     /// Kind of the content.
     pub kind: TableKind,
-    /// Offset of its first byte.
+    /// Offset of the first byte.
     pub offset: usize,
     /// Records after the sub-table name.
     pub(super) records: std::ops::Range<usize>,
@@ -46,7 +46,7 @@ pub(super) struct Piece {
     pub len: usize,
 }
 
-/// A logical record: pieces `first ..` up to the first piece of the next record.
+/// A logical record: its pieces from `first` on, up to the first piece of the next record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Record {
     pub first_piece: usize,
@@ -113,7 +113,7 @@ pub(super) fn read_container(file: &[u8], format: Format) -> Container {
             Ok(item) => closed = item == Item::Zero,
             Err(Trouble::Stop(Stop::End)) if cursor.pos == start => {
                 if !closed {
-                    // OUTPUT2 files without header may end like this
+                    // OUTPUT2 files without a header may end here.
                     let what =
                         "the file ends without the closing key 0; further tables may be missing";
                     if c.version_label.is_some() {
@@ -197,7 +197,7 @@ impl Container {
             records: self.records.len()..self.records.len(),
         };
         let outcome = self.read_records(cursor, &mut table);
-        // an empty record stands before the key 0 that ends a table
+        // An empty record precedes the key 0 that ends a table.
         if self.records.len() > table.records.start
             && self.records.last().is_some_and(|r| r.bytes == 0)
         {
@@ -242,7 +242,7 @@ impl Container {
                             expected: "-1 after the table name",
                         });
                     }
-                    // records are numbered one by one: a gap is a lost record, a step back one that stands twice or elsewhere
+                    // Records are numbered consecutively. A gap is a lost record; a smaller number is a record that is repeated or misplaced.
                     let expected = number.saturating_add(1);
                     number = key.unsigned_abs().try_into().unwrap_or(i64::MAX);
                     if number != expected {
@@ -290,7 +290,7 @@ impl Container {
         }
     }
 
-    /// Adds a piece to the record being read; matrices are not kept.
+    /// Adds a piece to the current record; matrices are not kept.
     fn store(&mut self, number: i64, table: &TableEntry, piece: Physical<'_>) {
         let len = piece.bytes.len();
         if number <= 2 || table.kind == TableKind::Matrix || len == 0 {
@@ -325,7 +325,7 @@ impl Container {
         self.damage.push(Damage { at, what });
     }
 
-    /// The last table and record that was met.
+    /// Describes the last table and record that were read.
     fn describe_position(&self) -> String {
         self.tables.last().map_or_else(
             || "file".to_owned(),
@@ -334,7 +334,7 @@ impl Container {
     }
 }
 
-/// Moves on to the next place after `from` that looks like a table: key 2, a name, key -1 or 6.
+/// Moves to the next position after `from` that looks like a table: key 2, a name, key -1 or 6.
 fn skip_to_table(cursor: &mut Cursor<'_>, file: &[u8], from: usize) -> bool {
     cursor.pos = from;
     let _ = cursor.next();
@@ -358,7 +358,7 @@ fn skip_to_table(cursor: &mut Cursor<'_>, file: &[u8], from: usize) -> bool {
     }
 }
 
-/// Whether a record is a table name: two words of printable characters that start with a letter.
+/// Returns whether a record is a table name: two words of printable characters that start with a letter.
 fn is_name(record: Option<Physical<'_>>, format: Format) -> bool {
     record.is_some_and(|r| {
         r.bytes.len() == 2 * format.bytes()

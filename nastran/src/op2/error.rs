@@ -4,7 +4,7 @@ use crate::results::{Damage, ElementType};
 
 /// Why an OP2, or a block of it, could not be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[allow(missing_docs)] // the messages say what the values are
+#[allow(missing_docs)] // the messages describe the values
 pub enum Op2Error {
     /// The first record is not a key of one word.
     #[error(
@@ -12,7 +12,7 @@ pub enum Op2Error {
     )]
     NotOp2 { first: Vec<u8> },
 
-    /// No table could be read at all.
+    /// No table could be read.
     #[error(
         "damaged OP2: no table could be read, {what} at byte {offset}; export the results again"
     )]
@@ -49,7 +49,7 @@ pub enum Op2Error {
 }
 
 impl Op2Error {
-    /// Whether the file contradicts itself, other than being of a kind that is not read.
+    /// Returns whether the file contradicts itself, and is not only of a kind that is not read.
     pub(crate) fn is_damage(&self) -> bool {
         matches!(
             self,

@@ -1,4 +1,4 @@
-//! An OP2 as a caller sees it.
+//! Public view of an OP2 file.
 
 use std::borrow::Cow;
 use std::collections::HashSet;
@@ -14,7 +14,7 @@ use super::words::{ByteOrder, Format, Words};
 use crate::cards::Cards;
 use crate::results::{Block, GridPointWeight, Note, Quantity, Rows, SalvagedFile};
 
-/// Who wrote a file, by its labels.
+/// Solver that wrote a file, by its labels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
 pub enum Solver {
@@ -23,18 +23,18 @@ pub enum Solver {
     Optistruct,
     Autodesk,
     Mystran,
-    /// No header, or a label we do not know.
+    /// The file has no header, or an unknown label.
     Unknown,
 }
 
-/// An OP2 that was read once through; rows are decoded when asked for.
+/// Index of an OP2 file from one pass over the file; rows are decoded on request.
 #[derive(Clone, Debug)]
 pub struct Op2<'a> {
     file: &'a [u8],
     format: Format,
-    /// Who wrote it.
+    /// Solver that wrote the file.
     pub solver: Solver,
-    /// Version label of the header (`XXXXXXXX`, `NX2019.2`); `None` in files without header.
+    /// Version label of the header (`XXXXXXXX`, `NX2019.2`); `None` for a file without a header.
     pub version_label: Option<String>,
     /// Bytes of a word, 4 or 8.
     pub word_bytes: usize,
@@ -64,7 +64,7 @@ impl<'a> Op2<'a> {
             .map_err(Op2Error::Damaged)
     }
 
-    /// Indexes the readable part of a file that may be cut or damaged, with the damage: tables may be missing, the last block may lack rows.
+    /// Indexes the readable part of a file that may be cut or damaged, with the damage. Tables may be missing, and the last block may lack rows.
     ///
     /// # Errors
     ///
@@ -105,12 +105,12 @@ impl<'a> Op2<'a> {
         Ok(SalvagedFile { file: op2, damage })
     }
 
-    /// Rows of block `block` (an index of [`Op2::blocks`]).
+    /// Returns the rows of block `block` (an index of [`Op2::blocks`]).
     ///
     /// # Errors
     ///
-    /// [`Op2Error::Unsupported`] for complex, SORT2 and random results and for layouts we do not know; [`Op2Error::BadId`] in a
-    /// damaged record; [`Op2Error::NoBlock`].
+    /// [`Op2Error::Unsupported`] for complex, SORT2 and random results and for unknown layouts; [`Op2Error::BadId`] in a damaged record;
+    /// [`Op2Error::NoBlock`].
     pub fn rows(&self, block: usize) -> Result<Rows, Op2Error> {
         let (Some(b), Some(span)) = (self.blocks.get(block), self.spans.get(block)) else {
             return Err(Op2Error::NoBlock {
@@ -155,7 +155,7 @@ impl<'a> Op2<'a> {
         })
     }
 
-    /// The solver's mass matrix, if table OGPWG is there.
+    /// Returns the solver's mass matrix, if the file contains table OGPWG.
     pub fn grid_point_weight(&self) -> Option<GridPointWeight> {
         let rows = self.weight?;
         let ident = self.record_bytes(rows.checked_sub(1)?);
@@ -166,8 +166,8 @@ impl<'a> Op2<'a> {
         read_weight(Words::new(&self.record_bytes(rows), self.format), reference)
     }
 
-    /// The cards of the geometry blocks, and what was passed over in them. A card that is in two tables (`GEOM1` and `GEOM1S`) is taken once; what
-    /// the solver derives from other cards (PSHELL of a PCOMP, PBAR of a PBARL) is left out.
+    /// Returns the cards of the geometry blocks, and notes on skipped content. A card in two tables (`GEOM1` and `GEOM1S`) is returned once. Cards
+    /// that the solver derives from other cards (PSHELL of a PCOMP, PBAR of a PBARL) are omitted.
     pub fn cards(&self) -> (Cards, Vec<Note>) {
         let mut out = Geometry::default();
         let mut seen: HashSet<(usize, u64)> = HashSet::new();
@@ -189,7 +189,7 @@ impl<'a> Op2<'a> {
         (out.cards, out.notes)
     }
 
-    /// The bytes of a record: unchanged if it is one piece, else joined.
+    /// Returns the bytes of a record: borrowed if the record is one piece, otherwise joined.
     fn record_bytes(&self, record: usize) -> Cow<'a, [u8]> {
         let Some(r) = self.records.get(record) else {
             return Cow::Borrowed(&[]);
@@ -212,7 +212,7 @@ impl<'a> Op2<'a> {
         }
     }
 
-    /// Record number within the table (3 is the first after the sub-table name) and byte offset.
+    /// Returns the record number within the table (3 is the first after the sub-table name) and the byte offset.
     fn locate(&self, span: &Span) -> (usize, usize) {
         let first = self.tables.get(span.table).map_or(0, |t| t.records.start);
         let offset = self
@@ -241,7 +241,7 @@ fn fingerprint(bytes: &[u8]) -> u64 {
     hasher.finish()
 }
 
-/// By the version label; MYSTRAN uses MSC's label and is known by its second records, which carry no name.
+/// Identifies the solver by the version label. MYSTRAN uses MSC's label; its sub-table records, which contain no name, identify it.
 fn solver(c: &Container) -> Solver {
     let Some(label) = c.version_label.as_deref() else {
         return Solver::Unknown;

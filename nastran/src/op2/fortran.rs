@@ -1,8 +1,8 @@
-//! Fortran records: a 4-byte length, the bytes, the same length again (also in 64-bit files).
+//! Fortran records: a 4-byte length, the bytes, the length again (also in 64-bit files).
 
 use super::words::{Format, Words};
 
-/// Reads record after record.
+/// Reads consecutive records.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cursor<'a> {
     file: &'a [u8],
@@ -13,19 +13,19 @@ pub(super) struct Cursor<'a> {
 /// A physical record.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Physical<'a> {
-    /// Where its bytes start in the file.
+    /// Offset of the record's bytes in the file.
     pub offset: usize,
     pub bytes: &'a [u8],
 }
 
-/// Why there is no further record.
+/// Reason why there is no further record.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Stop {
     /// The file ends where a record may start.
     End,
-    /// The file ends within a record, whose bytes run from `offset` to the end of the file.
+    /// The file ends within a record, whose bytes extend from `offset` to the end of the file.
     Short { offset: usize, stated: usize },
-    /// A length that cannot be, or two lengths that differ.
+    /// A length is impossible, or the two lengths differ.
     Marks {
         offset: usize,
         before: i64,
@@ -36,7 +36,7 @@ pub(super) enum Stop {
 }
 
 impl Stop {
-    /// Byte offset of the trouble.
+    /// Returns the byte offset of the error.
     pub(super) fn offset(&self, file: &[u8]) -> usize {
         match self {
             Self::End => file.len(),
@@ -74,7 +74,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// The next record.
+    /// Returns the next record.
     pub(super) fn next(&mut self) -> Result<Physical<'a>, Stop> {
         let left = self.file.get(self.pos..).unwrap_or(&[]);
         if left.is_empty() {
@@ -114,7 +114,7 @@ impl<'a> Cursor<'a> {
         Ok(Physical { offset, bytes })
     }
 
-    /// The next record as a key.
+    /// Returns the next record as a key.
     pub(super) fn key(&mut self) -> Result<i64, Stop> {
         let record = self.next()?;
         let words = Words::new(record.bytes, self.format);
@@ -127,7 +127,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// The bytes of a record that the end of the file cuts short.
+    /// Returns the bytes of a record that the end of the file cuts.
     pub(super) fn cut_short(&self, offset: usize) -> &'a [u8] {
         self.file.get(offset..).unwrap_or(&[])
     }

@@ -3,7 +3,7 @@
 use super::words::Words;
 use crate::results::{Analysis, ElementType, Quantity, ShellForm};
 
-/// Words of an identification record.
+/// Number of words in an identification record.
 pub(super) const IDENT_WORDS: usize = 146;
 
 /// Content of an identification record.
@@ -67,8 +67,8 @@ pub(super) fn read_ident(w: Words<'_>) -> Option<Ident> {
 }
 
 impl Ident {
-    /// Returns the quantity. The stress code distinguishes strain from stress, the element type ply rows. The table's name decides only between SPC
-    /// and MPC forces, which share a code, and marks tables that are not plain results.
+    /// Returns the quantity. The stress code distinguishes strain from stress; the element type marks ply rows. The table's name distinguishes SPC
+    /// from MPC forces, which share a code, and marks tables that are not plain results.
     pub(super) fn quantity(&self, table: &str) -> Quantity {
         if self.thermal != 0 || self.random || is_derived(table) {
             return Quantity::Other;
@@ -90,12 +90,12 @@ impl Ident {
             },
             19 => Quantity::GridPointForce,
             39 => Quantity::SpcForce,
-            // 14 to 17 are the same of the solution set, whose ids are no grids
+            // Codes 14 to 17 are quantities of the solution set, whose ids are not grids.
             _ => Quantity::Other,
         }
     }
 
-    /// Fibre or curvature form; `None` where rows are no shell stress or strain.
+    /// Returns fibre or curvature form; `None` if the rows are not shell stress or strain.
     pub(super) fn form(&self, quantity: Quantity) -> Option<ShellForm> {
         let shell = matches!(self.element, 33 | 64 | 70 | 74 | 75 | 82 | 144 | 227 | 228);
         match quantity {
@@ -106,7 +106,7 @@ impl Ident {
         }
     }
 
-    /// The element type of element results.
+    /// Returns the element type of element results.
     pub(super) fn element_type(&self, quantity: Quantity) -> Option<ElementType> {
         use Quantity as Q;
         let of_elements = matches!(
@@ -117,7 +117,7 @@ impl Ident {
     }
 }
 
-/// Element types whose rows are plies.
+/// Returns whether the rows of an element type are plies.
 fn is_composite(element: u32) -> bool {
     matches!(element, 95..=98 | 232 | 233)
 }
@@ -126,8 +126,8 @@ fn is_mpc_force(table: &str) -> bool {
     table.starts_with("OQM") || table.starts_with("RAQM")
 }
 
-/// Tables that share codes with plain results but hold something else: random results, response spectra, contributions, and
-/// contact and glue forces.
+/// Returns whether a table shares codes with plain results but contains other data: random results, response spectra, contributions, contact forces,
+/// glue forces.
 fn is_derived(table: &str) -> bool {
     ["PSD", "ATO", "RMS", "CRM", "NO1", "NO2", "XNO", "XRM"]
         .iter()

@@ -1,4 +1,4 @@
-//! The list of result blocks: which records of which tables hold rows, and of what.
+//! Index of result blocks: the records that contain rows, and their quantity.
 
 use super::container::{Container, TableEntry, TableKind};
 use super::ident::{IDENT_WORDS, Ident, read_ident};
@@ -13,7 +13,7 @@ pub(super) struct Span {
     pub record: usize,
     pub table_code: i32,
     pub random: bool,
-    /// Entity of a SORT2 record that holds a single step, so that its rows can be decoded unchanged.
+    /// Entity of a SORT2 record that contains a single step, so that its rows can be decoded like SORT1 rows.
     pub entity: Option<u32>,
     pub layout: Option<Layout>,
 }
@@ -27,7 +27,7 @@ pub(super) struct Index {
     pub weight: Option<usize>,
 }
 
-/// Lists the blocks; sets the kind of every table and adds notes on what is passed over.
+/// Lists the blocks, sets the kind of every table, and adds notes on skipped tables.
 pub(super) fn index(file: &[u8], format: Format, c: &mut Container) -> Index {
     let mut out = Index::default();
     let mut tables = std::mem::take(&mut c.tables);
@@ -50,7 +50,7 @@ pub(super) fn index(file: &[u8], format: Format, c: &mut Container) -> Index {
     out
 }
 
-/// Adds the blocks of one table; false if it has no identification record.
+/// Adds the blocks of one table; returns false if the table has no identification record.
 fn index_table(
     file: &[u8],
     format: Format,
@@ -104,7 +104,8 @@ fn index_table(
         out.blocks.push(block);
         out.spans.push(span);
     }
-    // Among results that are read, what is no identification record is one that was harmed: its rows would be lost in silence.
+    // In a table with readable results, rows without an identification record show damage. It is reported, so that the rows are not lost without
+    // notice.
     let mut blocks = out.blocks.iter().skip(first_block);
     if let Some(r) = stray
         && blocks.any(|b| b.quantity != Quantity::Other)
@@ -171,7 +172,7 @@ fn describe(
     )
 }
 
-/// Why a block's rows will not be decoded; `None` if they will.
+/// Returns why the rows of a block are not decoded; `None` if they are decoded.
 fn passed_over(block: &Block, span: &Span) -> Option<String> {
     if block.complex {
         Some("complex results; listed, not decoded".to_owned())
@@ -207,7 +208,7 @@ fn note_once(c: &mut Container, table: &str, message: &str) {
     }
 }
 
-/// Bulk data tables, with the suffixes of the solvers (`GEOM1S` after superelement partitioning, `GEOM1N` ..).
+/// Returns whether a table contains bulk data, with any solver's suffix (`GEOM1S` after superelement partitioning, `GEOM1N` ..).
 fn is_geometry(name: &str) -> bool {
     ["GEOM1", "GEOM2", "GEOM3", "GEOM4"]
         .iter()
@@ -215,7 +216,7 @@ fn is_geometry(name: &str) -> bool {
         || matches!(name, "EPT" | "EPTS" | "MPT" | "MPTS")
 }
 
-/// Tables that carry no results and nothing a deck would miss; skipped without a note.
+/// Returns whether a table is known and contains no results and no cards that would be lost; it is skipped without a note.
 fn is_known(name: &str) -> bool {
     matches!(
         name,

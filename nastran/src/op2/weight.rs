@@ -3,7 +3,7 @@
 use super::words::Words;
 use crate::results::GridPointWeight;
 
-/// From the 78 words of the record: MO 6 x 6, S 3 x 3, mass and centre of gravity in each direction, IS 3 x 3, IQ 3, Q 3 x 3.
+/// Reads the 78 words of the record: MO 6 x 6, S 3 x 3, mass and centre of gravity in each direction. IS 3 x 3, IQ 3 and Q 3 x 3 follow.
 pub(super) fn read_weight(w: Words<'_>, reference: u32) -> Option<GridPointWeight> {
     if w.len() < 78 {
         return None;

@@ -1,4 +1,4 @@
-//! Words of a record: 4 or 8 bytes, either byte order.
+//! Words of a record: 4 or 8 bytes in either byte order.
 
 /// Order of the bytes in a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -8,7 +8,7 @@ pub enum ByteOrder {
     Big,
 }
 
-/// How the words of a file are stored.
+/// Storage format of the words of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Format {
     pub order: ByteOrder,
@@ -16,12 +16,13 @@ pub(super) struct Format {
 }
 
 impl Format {
-    /// Bytes a word: 4 or 8.
+    /// Returns the bytes of a word: 4 or 8.
     pub(super) fn bytes(self) -> usize {
         if self.wide { 8 } else { 4 }
     }
 
-    /// The format of a file, by its first record: a key of one word, so its length is 4 or 8 in one of the two orders.
+    /// Detects the format of a file from the length of its first record. The record is a key of one word, so its length is 4 or 8 in one of the two
+    /// byte orders.
     pub(super) fn detect(file: &[u8]) -> Option<Format> {
         let first = *file.first_chunk::<4>()?;
         match (u32::from_le_bytes(first), u32::from_be_bytes(first)) {
@@ -45,7 +46,7 @@ impl Format {
         }
     }
 
-    /// A 4-byte integer, as in the record marks of both word sizes.
+    /// Reads a 4-byte integer, as in the record marks of both word sizes.
     pub(super) fn mark(self, bytes: [u8; 4]) -> i32 {
         match self.order {
             ByteOrder::Little => i32::from_le_bytes(bytes),
@@ -54,7 +55,7 @@ impl Format {
     }
 }
 
-/// A run of words.
+/// A sequence of words.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Words<'a> {
     bytes: &'a [u8],
@@ -62,7 +63,7 @@ pub(super) struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
-    /// The whole words of `bytes`; a rest shorter than a word is left off.
+    /// Wraps the complete words of `bytes`; an incomplete word at the end is omitted.
     pub(super) fn new(bytes: &'a [u8], format: Format) -> Self {
         let whole = bytes.len() - bytes.len() % format.bytes();
         Words {
@@ -71,12 +72,12 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Number of words.
+    /// Returns the number of words.
     pub(super) fn len(&self) -> usize {
         self.bytes.len() / self.format.bytes()
     }
 
-    /// Words `from .. from + n`; `None` if there are fewer.
+    /// Returns words `from .. from + n`; `None` if there are fewer.
     pub(super) fn part(&self, from: usize, n: usize) -> Option<Words<'a>> {
         let w = self.format.bytes();
         let a = from.checked_mul(w)?;
@@ -87,7 +88,7 @@ impl<'a> Words<'a> {
         })
     }
 
-    /// Words from `from` on; empty past the end.
+    /// Returns the words from `from` on; empty past the end.
     pub(super) fn rest(&self, from: usize) -> Words<'a> {
         let a = from.saturating_mul(self.format.bytes());
         Words {
@@ -96,7 +97,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Pieces of `n` words each; a shorter rest is left off.
+    /// Splits the words into entries of `n` words each; an incomplete entry at the end is omitted.
     pub(super) fn entries(&self, n: usize) -> impl ExactSizeIterator<Item = Words<'a>> + use<'a> {
         let format = self.format;
         let size = n.max(1).saturating_mul(format.bytes());
@@ -105,14 +106,14 @@ impl<'a> Words<'a> {
             .map(move |bytes| Words { bytes, format })
     }
 
-    /// The bytes of word `i`.
+    /// Returns the bytes of word `i`.
     fn bytes_at(&self, i: usize) -> Option<&'a [u8]> {
         let w = self.format.bytes();
         let a = i.checked_mul(w)?;
         self.bytes.get(a..a.checked_add(w)?)
     }
 
-    /// Word `i` as an integer.
+    /// Returns word `i` as an integer.
     #[inline]
     pub(super) fn int(&self, i: usize) -> Option<i64> {
         let raw = self.bytes_at(i)?;
@@ -136,7 +137,7 @@ impl<'a> Words<'a> {
         })
     }
 
-    /// Word `i` as a real; 32-bit values are widened exactly.
+    /// Returns word `i` as a real; 32-bit values are widened exactly.
     #[inline]
     pub(super) fn real_at(&self, i: usize) -> Option<f64> {
         let raw = self.bytes_at(i)?;
@@ -160,7 +161,7 @@ impl<'a> Words<'a> {
         })
     }
 
-    /// A double of 8 bytes that starts at word `i`: one word of a 64-bit file, two of a 32-bit file.
+    /// Returns the 8-byte real that starts at word `i`: one word of a 64-bit file, two words of a 32-bit file.
     pub(super) fn double_at(&self, i: usize) -> Option<f64> {
         let a = i.checked_mul(self.format.bytes())?;
         let raw = *self.bytes.get(a..)?.first_chunk()?;
@@ -170,7 +171,7 @@ impl<'a> Words<'a> {
         })
     }
 
-    /// Appends words `from .. from + n` as reals; fewer where the words end.
+    /// Appends words `from .. from + n` as reals; appends nothing if there are fewer words.
     #[inline]
     pub(super) fn push_reals(&self, from: usize, n: usize, out: &mut Vec<f64>) {
         let Some(Words { bytes, .. }) = self.part(from, n) else {
@@ -216,8 +217,8 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The characters of words `from .. from + n`, trimmed. In 64-bit files either 4 characters a word and 4 blanks
-    /// (`XXXX    XXXX    `), or all 8; what is not printable becomes a blank.
+    /// Returns the characters of words `from .. from + n`, trimmed. A word of a 64-bit file contains 4 characters and 4 blanks (`XXXX    XXXX    `),
+    /// or 8 characters. Characters that are not printable become blanks.
     pub(super) fn text(&self, from: usize, n: usize) -> String {
         let Some(Words { bytes, .. }) = self.part(from, n) else {
             return String::new();

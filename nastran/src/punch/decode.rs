@@ -1,11 +1,11 @@
-//! From the words of an entry to rows.
+//! Decodes the values of an entry into rows.
 
 use super::PunchError;
 use super::entry::{Entry, Word};
 use crate::results::{Block, Quantity, RowId, Rows, columns as c};
 use std::ops::RangeInclusive;
 
-/// Table and element type, for messages.
+/// Returns the table and the element type, for messages.
 pub(super) fn name(block: &Block) -> String {
     match block.element {
         Some(e) => format!(
@@ -17,7 +17,7 @@ pub(super) fn name(block: &Block) -> String {
     }
 }
 
-/// Why the rows of a block are not decoded; `None` where they are.
+/// Returns why the rows of a block are not decoded; `None` if they are decoded.
 pub(super) fn refusal(block: &Block) -> Option<String> {
     if block.complex {
         return Some("complex numbers".to_string());
@@ -31,7 +31,7 @@ pub(super) fn refusal(block: &Block) -> Option<String> {
     None
 }
 
-/// Whether the rows are shell strain or stress at fibres.
+/// Returns whether the rows are shell strain or stress at fibres.
 pub(super) fn is_shell(block: &Block) -> bool {
     matches!(
         layout(block),
@@ -39,7 +39,7 @@ pub(super) fn is_shell(block: &Block) -> bool {
     )
 }
 
-/// Column names of a block.
+/// Returns the column names of a block.
 pub(super) fn columns(block: &Block) -> Option<&'static [&'static str]> {
     Some(match layout(block)? {
         Layout::Nodal | Layout::Bush => c::NODAL,
@@ -106,7 +106,7 @@ pub(super) fn push(block: &Block, entry: &Entry, rows: &mut Rows) -> Result<(), 
         layer,
     };
     match layout(block) {
-        // A scalar point has one word; its other components stay zero.
+        // A scalar point has one value; its other components stay zero.
         Some(Layout::Nodal) => {
             let kind = match entry.letter {
                 Some(b'S') => 2,
@@ -122,7 +122,7 @@ pub(super) fn push(block: &Block, entry: &Entry, rows: &mut Rows) -> Result<(), 
             push_row(rows, id(kind, 0), words);
             rows.values.extend(std::iter::repeat_n(0.0, missing));
         }
-        // A blank margin of safety at the end of an entry is cut off with the line's other blanks.
+        // A margin of safety that is blank at the end of an entry is removed with the trailing blanks of the line.
         Some(Layout::Bar) => push_padded_row(entry, 13..=15, id(0, 0), rows)?,
         Some(Layout::Rod) => push_padded_row(entry, 3..=4, id(0, 0), rows)?,
         Some(Layout::Spring) => push_padded_row(entry, 1..=1, id(0, 0), rows)?,
@@ -146,7 +146,7 @@ pub(super) fn push(block: &Block, entry: &Entry, rows: &mut Rows) -> Result<(), 
             two_fibres(entry, 0, words, rows);
         }
         Some(Layout::ShellCorner) => {
-            // CEN/, corner count, 16 reals, then a grid and 16 reals a corner.
+            // Layout: CEN/, corner count, 16 reals, then a grid and 16 reals for each corner.
             let corners = words.len().saturating_sub(18) / 17;
             count(entry, 18 + 17 * corners)?;
             two_fibres(entry, 0, words.get(2..18).unwrap_or(&[]), rows);
@@ -172,7 +172,7 @@ pub(super) fn push(block: &Block, entry: &Entry, rows: &mut Rows) -> Result<(), 
             for (i, station) in words.chunks(10).enumerate() {
                 let (grid, values) = station.split_first().unwrap_or((&Word::Blank, &[]));
                 let x_xb = values.first().map_or(0.0, |w| w.to_real());
-                // Stations that were not asked for are rows of zeros.
+                // The solver writes zeros for stations without an output request.
                 if i == 0 || grid.id().unwrap_or(0) != 0 || x_xb != 0.0 {
                     push_row(rows, id(grid.id().unwrap_or(0), 0), values);
                     rows.values.extend(std::iter::repeat_n(
@@ -183,7 +183,7 @@ pub(super) fn push(block: &Block, entry: &Entry, rows: &mut Rows) -> Result<(), 
             }
         }
         Some(Layout::Solid) => {
-            // CID, CTYPE, corner count; a location: grid, xx xy max 3 cosines pressure vm, yy yz mid 3 cosines, zz zx min 3 cosines.
+            // Layout: CID, CTYPE, corner count. Then each location: grid, xx xy max 3 cosines pressure vm, yy yz mid 3 cosines, zz zx min 3 cosines.
             let locations = words.len().saturating_sub(3) / 21;
             count(entry, 3 + 21 * locations)?;
             for location in words.get(3..).unwrap_or(&[]).chunks_exact(21) {

@@ -1,4 +1,4 @@
-//! Entries: an id and its words, from fixed columns.
+//! Reads entries, an id and its values, from fixed columns.
 
 use super::PunchError;
 
@@ -28,7 +28,7 @@ impl Word {
     }
 }
 
-/// One entry: the id, the letter after it (`G`, `S` ..; blank for elements) and its words, trailing blanks cut off.
+/// One entry: the id, the letter after it (`G`, `S` ..; blank for elements) and its values, trailing blanks removed.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Entry {
     pub line: u32,
@@ -37,13 +37,13 @@ pub(super) struct Entry {
     pub words: Vec<Word>,
 }
 
-/// The columns of a line that hold content: 1 to 72.
+/// Returns columns 1 to 72 of a line, which contain its content.
 pub(super) fn content(line: &[u8]) -> &[u8] {
     let line = line.strip_suffix(b"\r").unwrap_or(line);
     line.get(..72).unwrap_or(line)
 }
 
-/// Whether the line continues an entry.
+/// Returns whether the line continues an entry.
 pub(super) fn is_continuation(line: &[u8]) -> bool {
     line.starts_with(b"-CONT-")
 }
@@ -51,7 +51,7 @@ pub(super) fn is_continuation(line: &[u8]) -> bool {
 /// Calls `each` with every entry of `text`; `first_line` is the number of its first line. The entry is reused.
 ///
 /// # Errors
-/// [`PunchError::BadField`] for an id or a slot that is neither number, text nor blank; whatever `each` returns.
+/// [`PunchError::BadField`] for an id or a slot that is neither number, text nor blank; every error that `each` returns.
 pub(super) fn each_entry(
     text: &[u8],
     first_line: u32,
@@ -138,7 +138,7 @@ fn word(slot: &[u8]) -> Option<Word> {
         .then_some(Word::Text)
 }
 
-/// A real, exponents of three digits without E (`1.234567-101`) and D exponents included; `None` for anything else.
+/// Reads a real; also with D exponents, and with three-digit exponents without a letter (`1.234567-101`). `None` for other text.
 pub(super) fn parse_real(text: &str) -> Option<f64> {
     let starts_as_number =
         text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.'));

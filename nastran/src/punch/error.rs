@@ -18,7 +18,7 @@ pub enum PunchError {
     NoSuchBlock {
         /// Requested index.
         index: usize,
-        /// There are.
+        /// Number of blocks in the file.
         blocks: usize,
     },
     /// The block is complex, SORT2 or of a type that is not decoded.
@@ -41,22 +41,22 @@ pub enum PunchError {
         /// Description of a valid field.
         expected: &'static str,
     },
-    /// An entry has another number of words than its element type has.
+    /// The number of values of an entry differs from the number that its element type has.
     #[error(
         "line {line}: {found} words in the entry, expected {expected}: the file is cut or damaged"
     )]
     WordCount {
         /// First line of the entry, from 1.
         line: u32,
-        /// Words found.
+        /// Number of values found.
         found: usize,
-        /// Words of the element type.
+        /// Number of values of the element type.
         expected: usize,
     },
 }
 
 impl PunchError {
-    /// Whether the text contradicts its layout, other than being of a kind that is not decoded.
+    /// Returns whether the text contradicts its layout, and is not only of a kind that is not decoded.
     pub(crate) fn is_damage(&self) -> bool {
         matches!(
             self,

@@ -5,7 +5,7 @@ use super::header::Header;
 use super::{PunchError, decode};
 use crate::results::{Block, Damage, Note, Quantity, Rows, SalvagedFile, ShellForm};
 
-/// Columns of a line as solvers write it: a line of this length is complete even without a line end.
+/// Columns of a line as solvers write it. A line of this length is complete even without a line end.
 const FULL_LINE: usize = 80;
 
 /// Index of the blocks of a punch file. Rows are decoded block by block from the borrowed bytes.
@@ -100,7 +100,7 @@ impl<'a> Punch<'a> {
             }
             position = next;
         }
-        // Text before the first header that names a result is no block of ours.
+        // Text before the first header that names a result is not a result block.
         let known = this
             .blocks
             .iter()
@@ -118,8 +118,8 @@ impl<'a> Punch<'a> {
         Ok(SalvagedFile { file: this, damage })
     }
 
-    /// Damage where the text ends in a header, within a line or within an entry of the last block. A cut between two whole entries
-    /// doesn't show.
+    /// Returns the damage if the text ends in a header, within a line, or within an entry of the last block. A cut between two complete entries
+    /// cannot be detected.
     fn cut_at_the_end(&self, in_entries: bool, line: u32) -> Option<Damage> {
         let damage = |what: String| {
             Some(Damage {
@@ -150,7 +150,7 @@ impl<'a> Punch<'a> {
         read.err().and_then(|e| damage(e.to_string()))
     }
 
-    /// Shell forms, which the header does not state, and notes on what is not decoded.
+    /// Sets the forms of shell blocks, which the header does not state, and adds notes on blocks that are not decoded.
     fn finish(&mut self) {
         for i in 0..self.blocks.len() {
             let (Some(block), Some(span)) =
@@ -180,14 +180,14 @@ impl<'a> Punch<'a> {
         }
     }
 
-    /// Curvature form shows by its fibre column, 0 and -1; stress is always at fibres.
+    /// Returns the form of a shell block. Curvature form shows by its fibre column, 0 and -1; stress is always at fibres.
     fn shell_form(&self, block: &Block, span: Span) -> ShellForm {
         let mut curvature = false;
         let text = self.bytes.get(span.start..span.end).unwrap_or(&[]);
         let mut seen = false;
         let _ = each_entry(text, span.line, |entry| {
             if seen {
-                // Any error ends the walk; this one is not shown.
+                // This error only ends the loop after the first entry; it is not reported.
                 return Err(PunchError::NoBlocks);
             }
             seen = true;
@@ -208,7 +208,7 @@ impl<'a> Punch<'a> {
         }
     }
 
-    /// The rows of block `index`.
+    /// Returns the rows of block `index`.
     ///
     /// # Errors
     /// [`PunchError`]: no such block, a block that is not decoded, or damaged text with its line.
@@ -237,7 +237,7 @@ impl<'a> Punch<'a> {
     }
 }
 
-/// Offset and line of the last entry of a text of entries.
+/// Returns the offset and the line of the last entry of a text of entries.
 fn last_entry(text: &[u8], first_line: u32) -> (usize, u32) {
     let (mut at, mut number) = (0_usize, first_line);
     let mut found = (at, number);

@@ -39,7 +39,7 @@ impl Default for Header {
 }
 
 impl Header {
-    /// Takes in one `$` line (columns 73 to 80 already cut off).
+    /// Reads one `$` line (columns 73 to 80 already removed).
     pub(super) fn take(&mut self, line: &str) {
         let body = line.trim_start_matches('$').trim_end();
         let Some((key, value)) = body.split_once('=') else {
@@ -47,7 +47,7 @@ impl Header {
         };
         let (key, value) = (key.trim(), value.trim());
         match key {
-            // A title opens a header: what belongs to the last block only is forgotten.
+            // A title begins a new header: values that apply only to the last block are reset.
             "TITLE" => {
                 *self = Self {
                     titles: [value.to_string(), String::new(), String::new()],
@@ -65,7 +65,7 @@ impl Header {
                     .trim()
                     .to_string();
             }
-            // `11 IDENTIFIED BY FREQUENCY`: the steps follow.
+            // SORT2, such as `11 IDENTIFIED BY FREQUENCY`: the entries are the steps of entity 11.
             "POINT ID" | "ELEMENT ID" => {
                 self.sort2 = true;
                 let by = value.split_once("IDENTIFIED BY").map(|by| by.1.trim());
@@ -128,7 +128,7 @@ impl Header {
         }
     }
 
-    /// Returns the quantity, with results of plies as one of their own.
+    /// Returns the quantity; results of plies are a separate quantity.
     pub(super) fn quantity(&self) -> Quantity {
         let plies = self
             .element
@@ -141,7 +141,7 @@ impl Header {
     }
 }
 
-/// Returns the analysis whose steps a word names.
+/// Returns the analysis of a keyword that names its steps.
 fn analysis_of(word: &str) -> Option<Analysis> {
     Some(match word {
         "FREQUENCY" => Analysis::Frequency,

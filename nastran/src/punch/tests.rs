@@ -29,7 +29,7 @@ fn header(subcase: u32, quantity: &str, more: &str) -> String {
     }
 }
 
-/// An element entry from its words.
+/// Returns the lines of an element entry from its values.
 fn entry(id: u32, words: &[String]) -> String {
     let mut text = String::new();
     for (i, three) in words.chunks(3).enumerate() {

@@ -20,12 +20,12 @@ pub enum Quantity {
     /// Ply by ply, in ply axes.
     PlyStress,
     PlyStrain,
-    /// Anything else; the table is noted and left alone.
+    /// Another quantity; the table is reported in a note and is not decoded.
     Other,
 }
 
 impl Quantity {
-    /// The word used in reports and in `result.json`.
+    /// Returns the name used in reports and in `result.json`.
     pub fn word(self) -> &'static str {
         match self {
             Self::Displacement => "displacement",
@@ -62,7 +62,7 @@ pub enum Analysis {
 }
 
 impl Analysis {
-    /// From the approach code.
+    /// Returns the kind of analysis from the approach code.
     pub fn from_code(code: i32) -> Self {
         match code {
             1 => Self::Statics,
@@ -77,7 +77,7 @@ impl Analysis {
         }
     }
 
-    /// The word used in reports and in `result.json`.
+    /// Returns the name used in reports and in `result.json`.
     pub fn word(self) -> &'static str {
         match self {
             Self::Statics => "statics",
@@ -93,7 +93,7 @@ impl Analysis {
     }
 }
 
-/// How shell strain or stress is put out.
+/// Form in which shell strain or stress is output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ShellForm {
     /// Two rows at the fibre distances Z1 and Z2.
@@ -128,7 +128,7 @@ pub struct Block {
     pub complex: bool,
     /// SORT2 tables run over steps for one entity. Rows are decoded in statics only, which has one step; a SORT1 block often contains the same rows.
     pub sort2: bool,
-    /// Words a row in the file; 0 where it has no meaning.
+    /// Number of words in a row of the file; 0 if the file kind has no words.
     pub num_wide: u32,
     /// Number of file entries (elements, grids, or stations), as far as the sizes show it.
     pub entries: usize,
@@ -137,7 +137,7 @@ pub struct Block {
 }
 
 impl Block {
-    /// Whether nodal vectors are in the basic frame instead of the grids' displacement frames (CD).
+    /// Returns whether nodal vectors are in the basic frame instead of the grids' displacement frames (CD).
     pub fn is_in_basic(&self) -> bool {
         self.table.starts_with("BOUG")
     }

@@ -1,12 +1,12 @@
-//! Column names of [`Rows`](super::Rows), one list a kind of row.
+//! Column names of [`Rows`](super::Rows), one list for each kind of row.
 
 /// Displacements, forces, moments at grids; bushes.
 pub const NODAL: &[&str] = &["t1", "t2", "t3", "r1", "r2", "r3"];
-/// Shell strain, a row a fibre; `gxy` is engineering shear.
+/// Shell strain, one row for each fibre; `gxy` is engineering shear.
 pub const SHELL_STRAIN: &[&str] = &["fiber", "exx", "eyy", "gxy", "angle", "emax", "emin", "vm"];
-/// Shell stress, a row a fibre.
+/// Shell stress, one row for each fibre.
 pub const SHELL_STRESS: &[&str] = &["fiber", "oxx", "oyy", "txy", "angle", "omax", "omin", "vm"];
-/// Ply strain or stress, a row a ply, in ply axes.
+/// Ply strain or stress in ply axes, one row for each ply.
 pub const PLY: &[&str] = &[
     "s11", "s22", "s12", "s1z", "s2z", "angle", "smax", "smin", "vm",
 ];
@@ -15,11 +15,11 @@ pub const BAR: &[&str] = &[
     "s1a", "s2a", "s3a", "s4a", "axial", "smaxa", "smina", "mst", "s1b", "s2b", "s3b", "s4b",
     "smaxb", "sminb", "msc",
 ];
-/// CBAR with stations, a row a station.
+/// CBAR with stations, one row for each station.
 pub const BAR_STATION: &[&str] = &[
     "x_xb", "s1", "s2", "s3", "s4", "axial", "smax", "smin", "ms",
 ];
-/// CBEAM, a row a station.
+/// CBEAM, one row for each station.
 pub const BEAM: &[&str] = &[
     "x_xb", "sxc", "sxd", "sxe", "sxf", "smax", "smin", "mst", "msc",
 ];
@@ -29,7 +29,7 @@ pub const ROD: &[&str] = &["axial", "msa", "torsion", "mst"];
 pub const SPRING: &[&str] = &["value"];
 /// CSHEAR.
 pub const SHEAR_PANEL: &[&str] = &["max", "average", "margin"];
-/// CTETRA, CPENTA, CHEXA, a row a location; shear strain is engineering shear.
+/// CTETRA, CPENTA, CHEXA, one row for each location; shear strain is engineering shear.
 pub const SOLID: &[&str] = &[
     "xx", "yy", "zz", "xy", "yz", "zx", "max", "mid", "min", "vm",
 ];
@@ -39,9 +39,9 @@ pub const SHELL_FORCE: &[&str] = &["fx", "fy", "fxy", "mx", "my", "mxy", "qx", "
 pub const BAR_FORCE: &[&str] = &[
     "m1a", "m2a", "m1b", "m2b", "shear1", "shear2", "axial", "torque",
 ];
-/// CBAR forces with stations, a row a station.
+/// CBAR forces with stations, one row for each station.
 pub const BAR_STATION_FORCE: &[&str] = &["x_xb", "m1", "m2", "shear1", "shear2", "axial", "torque"];
-/// CBEAM forces, a row a station.
+/// CBEAM forces, one row for each station.
 pub const BEAM_FORCE: &[&str] = &[
     "x_xb",
     "m1",

@@ -1,6 +1,6 @@
 //! Evidence that a file was cut or damaged.
 
-/// A place at which a file contradicts itself: the rest of the file may be missing, or wrong.
+/// A place at which a file contradicts itself. Content after this place may be missing or wrong.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Damage {
     /// Place: table and record, a line, or a path within the file.

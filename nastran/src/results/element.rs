@@ -5,7 +5,7 @@
 pub struct ElementType(pub u32);
 
 impl ElementType {
-    /// Card name with the usual suffix where one card has several types; `None` for a number we do not know.
+    /// Returns the card name, with the usual suffix if one card has several types; `None` for an unknown number.
     pub fn name(self) -> Option<&'static str> {
         Some(match self.0 {
             1 => "CROD",

@@ -1,4 +1,4 @@
-//! One front for every kind of result file.
+//! One interface to every kind of result file.
 
 use super::{Block, GridPointWeight, Note, Rows, SalvagedFile};
 use crate::cards::Cards;
@@ -47,7 +47,7 @@ pub enum ResultsFile<'a> {
 /// Why a result file, or a block of one, could not be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ResultsError {
-    /// No kind of result file begins like this.
+    /// The file does not begin like a known kind of result file.
     #[error(
         "`{name}` is neither an OP2 nor a punch nor an HDF5 file: give a file with result output (PARAM,POST,-1 or (PUNCH) or MDLPRM,HDF5)"
     )]
@@ -67,7 +67,7 @@ pub enum ResultsError {
 }
 
 impl ResultsError {
-    /// Whether the file is cut or damaged, other than being of a kind that is not read.
+    /// Returns whether the file is cut or damaged, and is not only of a kind that is not read.
     pub fn is_damage(&self) -> bool {
         match self {
             Self::UnknownKind { .. } => false,
@@ -79,10 +79,10 @@ impl ResultsError {
 }
 
 impl<'a> ResultsFile<'a> {
-    /// Reads the index of a whole result file; `name` is only used in messages and to break ties.
+    /// Reads the index of a whole result file; `name` affects errors only: a name that ends in `.op2` gives the error of the OP2 reader.
     ///
     /// # Errors
-    /// [`ResultsError`]: a file that is cut or damaged ([`ResultsError::is_damage`]), and those of [`ResultsFile::salvage`].
+    /// [`ResultsError`]: a file that is cut or damaged ([`ResultsError::is_damage`]), and every error of [`ResultsFile::salvage`].
     pub fn read(bytes: &'a [u8], name: &str) -> Result<Self, ResultsError> {
         let SalvagedFile { file, damage } = Self::salvage(bytes, name)?;
         let Some(first) = damage.into_iter().next() else {
@@ -117,7 +117,7 @@ impl<'a> ResultsFile<'a> {
         }
     }
 
-    /// The solver, with the version where the file states it; other programs write OP2 files in the form of MSC Nastran without a version.
+    /// Returns the solver, with its version if the file states it. Other programs write OP2 files in the form of MSC Nastran without a version.
     pub fn solver(&self) -> String {
         match self {
             Self::Op2(op2) => {
@@ -147,7 +147,7 @@ impl<'a> ResultsFile<'a> {
         }
     }
 
-    /// Bytes a number: 4 or 8 for OP2, 8 for HDF5, 0 for the text of a punch file.
+    /// Returns the bytes of a number: 4 or 8 for OP2, 8 for HDF5, 0 for the text of a punch file.
     pub fn word_bytes(&self) -> usize {
         match self {
             Self::Op2(op2) => op2.word_bytes,
@@ -156,7 +156,7 @@ impl<'a> ResultsFile<'a> {
         }
     }
 
-    /// Relative rounding of the numbers as the file holds them: single or double precision, or the seven digits of a punch file.
+    /// Returns the relative rounding of the numbers in the file: single or double precision, or the seven digits of a punch file.
     pub fn precision(&self) -> f64 {
         match self {
             Self::Op2(op2) if op2.word_bytes == 4 => f64::from(f32::EPSILON) / 2.0,
@@ -165,7 +165,7 @@ impl<'a> ResultsFile<'a> {
         }
     }
 
-    /// The index of results, in file order.
+    /// Returns the index of results, in file order.
     pub fn blocks(&self) -> &[Block] {
         match self {
             Self::Op2(op2) => &op2.blocks,
@@ -174,7 +174,7 @@ impl<'a> ResultsFile<'a> {
         }
     }
 
-    /// The rows of block `index`.
+    /// Returns the rows of block `index`.
     ///
     /// # Errors
     /// Errors of the reader: the block does not exist, is not decoded, or is damaged.
@@ -213,7 +213,7 @@ impl<'a> ResultsFile<'a> {
     }
 }
 
-/// Text whose first line that is not blank is a `$` line (punch files open with `$TITLE`).
+/// Returns whether the first non-blank line of the text is a `$` line (punch files begin with `$TITLE`).
 fn looks_like_punch(bytes: &[u8]) -> bool {
     let start = bytes.get(..bytes.len().min(400)).unwrap_or(&[]);
     let text = start

@@ -1,9 +1,9 @@
 //! Decoded rows of one block.
 
-/// Which entity a row belongs to, and where on it.
+/// Entity of a row, and the location on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct RowId {
-    /// Grid or element id (device code taken off).
+    /// Grid or element id (device code removed).
     pub entity: u32,
     /// Shells and solids: corner grid, 0 the centre. Beams: station grid (0 between the ends). Nodal rows: grid type.
     /// Plies: 0. Bars with stations: station number from 1. Grid point forces: the element (0 for totals).
@@ -13,12 +13,12 @@ pub struct RowId {
     pub layer: u32,
 }
 
-/// A word of up to eight characters that labels a row.
+/// A label of a row, up to eight characters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub struct Label([u8; 8]);
 
 impl Label {
-    /// From text; what is beyond eight bytes, or not ASCII, is left off.
+    /// Builds the label from text. Characters beyond eight bytes and characters that are not ASCII are omitted.
     pub fn new(text: &str) -> Self {
         let mut word = [b' '; 8];
         word.iter_mut()
@@ -27,7 +27,7 @@ impl Label {
         Label(word)
     }
 
-    /// The text, trimmed.
+    /// Returns the text, trimmed.
     pub fn as_str(&self) -> &str {
         std::str::from_utf8(&self.0).unwrap_or("").trim_end()
     }
@@ -36,19 +36,19 @@ impl Label {
 /// Rows of one block: `values` is row-major, `ids.len()` rows by `columns.len()`.
 ///
 /// Columns by quantity:
-/// - nodal vectors: `t1 t2 t3 r1 r2 r3`;
-/// - shell strain: `fiber exx eyy gxy angle emax emin vm` (vm: von Mises or maximum shear; gxy is engineering shear);
-///   shell stress: `fiber oxx oyy txy angle omax omin vm`;
-/// - bars: `s1a s2a s3a s4a axial smaxa smina mst s1b s2b s3b s4b smaxb sminb msc` (s1..s4 at recovery points C D E F);
-///   with stations: `x_xb s1 s2 s3 s4 axial smax smin ms`;
-/// - beams, a row a station: `x_xb sxc sxd sxe sxf smax smin mst msc`;
-/// - rods: `axial msa torsion mst`; springs: `value`; bushes: `t1 t2 t3 r1 r2 r3`; shear panels: `max average margin`;
-/// - plies: `s11 s22 s12 s1z s2z angle smax smin vm` in ply axes (strains are engineering shear);
-/// - fasteners (CFAST): `t1 t2 t3 r1 r2 r3`; grid point forces: the same, with [`Rows::labels`];
-/// - forces of shells: `fx fy fxy mx my mxy qx qy` per length; of bars: `m1a m2a m1b m2b shear1 shear2 axial torque`, with
-///   stations: `x_xb m1 m2 shear1 shear2 axial torque`; of beams: `x_xb m1 m2 shear1 shear2 axial torque warping_torque`; of
-///   rods: `axial torque`;
-/// - solids, a row a location: `xx yy zz xy yz zx max mid min vm` (shear strain is engineering shear).
+/// - nodal vectors: `t1 t2 t3 r1 r2 r3`.
+/// - shell strain: `fiber exx eyy gxy angle emax emin vm` (vm: von Mises or maximum shear; gxy is engineering shear).
+///   Shell stress: `fiber oxx oyy txy angle omax omin vm`.
+/// - bars: `s1a s2a s3a s4a axial smaxa smina mst s1b s2b s3b s4b smaxb sminb msc` (s1..s4 at recovery points C D E F).
+///   With stations: `x_xb s1 s2 s3 s4 axial smax smin ms`.
+/// - beams, one row for each station: `x_xb sxc sxd sxe sxf smax smin mst msc`.
+/// - rods: `axial msa torsion mst`. Springs: `value`. Bushes: `t1 t2 t3 r1 r2 r3`. Shear panels: `max average margin`.
+/// - plies: `s11 s22 s12 s1z s2z angle smax smin vm` in ply axes (shear strains are engineering shear).
+/// - fasteners (CFAST): `t1 t2 t3 r1 r2 r3`. Grid point forces: `t1 t2 t3 r1 r2 r3`, with [`Rows::labels`].
+/// - shell forces: `fx fy fxy mx my mxy qx qy` per length. Bar forces: `m1a m2a m1b m2b shear1 shear2 axial torque`.
+///   With stations: `x_xb m1 m2 shear1 shear2 axial torque`.
+///   Beam forces: `x_xb m1 m2 shear1 shear2 axial torque warping_torque`. Rod forces: `axial torque`.
+/// - solids, one row for each location: `xx yy zz xy yz zx max mid min vm` (shear strain is engineering shear).
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Rows {
     /// Column names.
@@ -57,23 +57,23 @@ pub struct Rows {
     pub ids: Vec<RowId>,
     /// Row-major values.
     pub values: Vec<f64>,
-    /// Grid point forces: what each row comes from (an element name, `APP-LOAD`, `F-OF-SPC`, `*TOTALS*`); otherwise empty.
+    /// Grid point forces: the source of each row (an element name, `APP-LOAD`, `F-OF-SPC`, `*TOTALS*`); otherwise empty.
     pub labels: Vec<Label>,
 }
 
 impl Rows {
-    /// Values of row `i`.
+    /// Returns the values of row `i`.
     pub fn row(&self, i: usize) -> &[f64] {
         let w = self.columns.len();
         self.values.get(i * w..(i + 1) * w).unwrap_or(&[])
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.ids.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether the block has no rows.
     pub fn is_empty(&self) -> bool {
         self.ids.is_empty()
     }
@@ -101,6 +101,6 @@ pub struct GridPointWeight {
 pub struct Note {
     /// Table or record of the note.
     pub subject: String,
-    /// Description of the content, and its treatment.
+    /// Description of the content, and whether it was skipped or kept.
     pub message: String,
 }

@@ -41,8 +41,8 @@ fn chances(found: &Calibration) -> Vec<(&'static str, f64)> {
     tests.map(|t| (t.term.name(), t.p)).collect()
 }
 
-/// The zero is 20 times the noise: a straight line through zero leaves it, and the intercept is what was put in, to four standard errors of a mean of
-/// some runs in the middle of which the line is known.
+/// The zero is 20 times the noise, so that a straight line through zero leaves it. The intercept is the planted zero to four standard errors. The
+/// standard error is the error of a mean of several runs, in the middle of which the line is known.
 #[test]
 fn a_common_zero_is_found_and_an_intercept_is_what_it_was() {
     let mut random = ChaCha8Rng::seed_from_u64(43);
@@ -98,7 +98,7 @@ fn a_common_zero_is_found_and_an_intercept_is_what_it_was() {
             }
         }
     }
-    // Of 48 intervals of 95 %, 41 or fewer hold once in a hundred times.
+    // Of 48 intervals of 95 %, 41 or fewer contain the load once in a hundred times.
     assert!(held.iter().all(|h| *h > 41), "{held:?}");
     assert!(halves[1] < 0.5 * halves[0], "{halves:?}");
 }
@@ -117,7 +117,7 @@ fn strain_that_bends_is_reported_and_a_straight_line_is_not() {
     assert!(
         severe(&straight, "lack-of-fit").is_none() && severe(&straight, "common-zero").is_none()
     );
-    // 10 % at full load.
+    // The curvature is 10 % at full load.
     let bent = calibrate(&task(
         2,
         runs(&s, 20, (&none, 0.1 / 200.0), &mut random),
@@ -145,7 +145,7 @@ fn an_error_that_known_loads_share_is_that_of_every_recovered_load() {
             let sum: f64 = run.loads.mean.iter().sum();
             for (w, known) in of_run.iter().zip(run.loads.mean.iter().chain([&sum])) {
                 let share = w[1] / known;
-                // The recovered load is the known one to a hundredth; noise, and few runs, add to its error.
+                // The recovered load is the known load to 1 %. Noise and few runs add to its error.
                 assert!(share > 0.049 && share < 0.066, "{count} runs: {share}");
             }
         }

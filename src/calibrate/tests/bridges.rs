@@ -1,4 +1,5 @@
-//! Two measured county bridges under a truck of known weight (`shared/bridges`): half of the runs teach, the others are weighed.
+//! Two measured county bridges under a truck of known weight (`shared/bridges`). Half of the runs are calibration runs, and the other runs are
+//! weighed.
 
 use crate::calibrate::*;
 use crate::recovery::{ErrorModel, Readings, recover};
@@ -130,7 +131,7 @@ struct WeighingResults {
     alarms: usize,
 }
 
-/// Weighs half of the runs by a calibration with the other half, which is drawn at random within each lane by these seeds.
+/// Weighs half of the runs with a calibration from the other half. Each seed draws the halves at random within each lane.
 fn weigh(name: &str, seeds: std::ops::Range<u64>) -> Option<WeighingResults> {
     let b = bridge(name, |_, fit| fit == "1")?;
     let k = b.lanes.len();
@@ -212,7 +213,7 @@ fn half_of_the_runs_at_ponca_teach_to_weigh_the_others_within_their_intervals() 
         return;
     };
     let (_, sd) = mean_sd(&w.errors);
-    // The limits of the protocol, over twenty splits: 95 % intervals that hold nine of ten, 9 % wide to a side, 4 % of scatter.
+    // Limits of the protocol over twenty splits: nine of ten 95 % intervals contain the load, half width 9 %, scatter 4 %.
     assert!(
         w.held as f64 >= 0.9 * w.errors.len() as f64,
         "{} of {}",
@@ -243,13 +244,13 @@ fn runs_that_scatter_more_than_those_that_taught_are_weighed_in_their_lane() {
         w.alarms
     );
     assert!(w.held as f64 >= 0.93 * w.errors.len() as f64);
-    // Scatter of trucks has longer tails than a Gaussian: of runs in their lane fifteen in a thousand are named, where one was asked for.
+    // The scatter of trucks has longer tails than a Gaussian. Fifteen in a thousand runs in their lane are reported, although the limit is for one.
     assert!(100 * w.alarms <= 2 * w.errors.len(), "{}", w.alarms);
-    // One of 900 in the splits of the program's own trials lies just within the limit.
+    // One of 900 runs in the splits of the program's own trials is just within the limit.
     assert!(w.unsaid.len() <= 1, "{:?}", w.unsaid);
-    // Strain of R29 and R31 (30 mph, middle, going north) lies between two lanes where runs going south alone teach the middle.
+    // The strain of R29 and R31 (30 mph, middle, going north) is between two lanes if only runs going south calibrate the middle.
     let others = w.wrong_lanes.iter().filter(|r| *r != "R29" && *r != "R31");
-    // Of the rest one in a hundred: the rate of false names that is asked for elsewhere.
+    // One in a hundred of the other runs may have a wrong lane, the rate of false alarms that other tests allow.
     assert!(
         100 * others.count() <= w.errors.len(),
         "{:?}",
@@ -262,7 +263,7 @@ fn half_of_the_runs_at_ashland_teach_to_weigh_the_others_within_their_intervals(
     let Some(w) = weigh("ashland", 0..20) else {
         return;
     };
-    // The protocol: intervals that hold nine of ten, 20 % wide to a side, 7 % of scatter.
+    // Limits of the protocol: nine of ten intervals contain the load, half width 20 %, scatter 7 %.
     assert!(
         w.held as f64 >= 0.9 * w.errors.len() as f64,
         "{} of {}",
@@ -270,13 +271,13 @@ fn half_of_the_runs_at_ashland_teach_to_weigh_the_others_within_their_intervals(
         w.errors.len()
     );
     assert!(median(&w.halves) < 0.2, "{}", median(&w.halves));
-    // R51 ran between two lanes (README of the data); it is the only one whose lane is missed.
+    // R51 ran between two lanes (README of the data). It is the only run with a wrong lane.
     assert!(
         w.wrong_lanes.iter().all(|r| r == "R51"),
         "{:?}",
         w.wrong_lanes
     );
-    // With that one, which no column of S describes.
+    // The scatter includes R51, which no column of S describes.
     let (_, sd) = mean_sd(&w.errors);
     assert!(sd <= 0.07, "{sd}");
 }
@@ -305,7 +306,7 @@ fn a_wrong_lane_and_loggers_tared_under_load_are_named_without_being_told() {
     }
 }
 
-/// Findings on gauges when the test runs of a planted case are weighed by its calibration runs.
+/// Returns the findings on gauges when the test runs of a planted case are weighed with its calibration runs.
 fn check_planted_case(case: &str) -> Option<(Vec<String>, Vec<String>)> {
     let folder = format!("planted/{case}");
     find_bridge_file(&format!("{folder}/truth.json"))?;
@@ -365,10 +366,10 @@ fn planted_faults_of_gauges_are_named_and_controls_stay_clean() {
             "{case}: {subjects:?}"
         );
     }
-    // Peaks do not tell two of them. Case 08 drifts by 20 microstrain over each record: at the peaks, less the zero that they are taken from,
-    // the others expect of the gauge what it reads to 1 % (-1.6 +- 7.9 microstrain). Case 09 reads .7 of what it should: .96 of what the
-    // others expect. In other cases at Ponca, where it is sound, it reads .93 to 1.47 of that. What is asked of them is that no other gauge is
-    // blamed.
+    // Peaks do not show the fault in two of the cases. In case 08 the gauge drifts by 20 microstrain over each record. At the peaks, minus the zero
+    // of each record, the other gauges predict its reading to 1 % (-1.6 +- 7.9 microstrain). In case 09 the gauge reads 0.7 of its true strain, which
+    // is 0.96 of the prediction from the other gauges. In other cases at Ponca, where this gauge is sound, it reads 0.93 to 1.47 of the prediction.
+    // These cases must not blame another gauge.
     for case in ["case01", "case05", "case08", "case09", "case10"] {
         let (codes, subjects) = check_planted_case(case).unwrap();
         assert!(codes.is_empty(), "{case}: {codes:?} {subjects:?}");
@@ -389,8 +390,8 @@ enum PlantedFault {
     Dead,
 }
 
-/// Half of the whole runs of a bridge are calibration runs. The others are recovered with a fault at gauges drawn among those that read a fifth of
-/// the largest: the gauges at fault, and those named.
+/// Calibrates with half of the complete runs of a bridge and recovers the other half with a fault at some gauges. These gauges are drawn from the
+/// gauges that read a fifth of the largest strain. Returns the gauges at fault and the reported gauges.
 fn with_fault(b: &Bridge, planted: PlantedFault, seed: u64) -> (Vec<String>, Vec<String>) {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let whole = |i: &usize| b.runs[*i].2.iter().all(|v| v.is_finite());
@@ -452,7 +453,7 @@ fn with_fault(b: &Bridge, planted: PlantedFault, seed: u64) -> (Vec<String>, Vec
     (faulty, named.collect())
 }
 
-/// Five of each fault a bridge and ten without; `STRAINBRIDGE_TRIALS=20` for twenty and forty.
+/// Each bridge has five trials of each fault and ten without a fault. With `STRAINBRIDGE_TRIALS=20` it has twenty and forty.
 #[test]
 fn faults_at_gauges_drawn_at_random_are_named_and_sound_gauges_are_not() {
     use PlantedFault::*;
@@ -472,11 +473,11 @@ fn faults_at_gauges_drawn_at_random_are_named_and_sound_gauges_are_not() {
                 blamed.extend(sound.map(|g| (planted, seed, g)));
             }
             eprintln!("{name}, {planted:?}: {hits} of {trials} named");
-            // What a turned gauge reads is off by twice its strain, a hundred times what repeats scatter by.
+            // A reversed gauge is wrong by twice its strain, a hundred times the scatter of repeats.
             assert!(planted != Turned || hits + 1 >= trials, "{name}: {hits}");
         }
         eprintln!("{name}: blamed {blamed:?}");
-        // One in a hundred of 7 x asked; more than this by a chance of one in twenty.
+        // The allowed rate is one in a hundred of `7 * asked` trials. The limit is exceeded with a chance of one in twenty.
         assert!(blamed.len() as u64 <= 1 + asked / 10, "{name}: {blamed:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! Words for gauges of the clamped strip that are wrong in one way that is known.
+//! Causes reported for gauges of the clamped strip that have one known fault.
 
 use super::installed_position::{NOISE, draw_normal, pushes, reading, row, sites};
 use crate::calibrate::*;
@@ -32,7 +32,7 @@ fn off_drawing() -> OffDrawing {
     }
 }
 
-/// Pushes of a strip whose gauge `wrong` sits at an offset (along, across, turned) and has a gain.
+/// Returns the pushes of a strip whose gauge `wrong` has an offset (along, across, turned) and a gain.
 fn task(wrong: usize, offset: [f64; 3], gain: f64, seed: u64) -> Task {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let sites = sites();
@@ -79,7 +79,8 @@ fn task(wrong: usize, offset: [f64; 3], gain: f64, seed: u64) -> Task {
     }
 }
 
-/// Words for the wrong gauge, every gauge in turn and a few draws each; the others keep theirs or stay without one.
+/// Returns the reported causes for the wrong gauge, for every gauge in turn and four draws each. No other gauge may have the cause `Angle` or
+/// `Place`.
 fn words(offset: [f64; 3], gain: f64) -> Vec<ShiftWord> {
     let n = sites().len();
     (0..4 * n)
@@ -100,7 +101,7 @@ fn count(words: &[ShiftWord], word: ShiftWord) -> usize {
     words.iter().filter(|w| **w == word).count()
 }
 
-/// Asserts that every word is `word`, `None` or `Undetermined`, and that at least `least` of a hundred are `word`.
+/// Asserts that every cause is `word`, `None` or `Undetermined`, and that at least `least` of a hundred are `word`.
 fn is_named(words: &[ShiftWord], word: ShiftWord, least: usize) {
     let silent = count(words, ShiftWord::None) + count(words, ShiftWord::Undetermined);
     let named = count(words, word);
@@ -121,7 +122,7 @@ fn a_gain_is_a_gain_and_never_an_angle_or_a_place() {
 fn a_turned_gauge_is_named_so_where_the_pushes_tell() {
     for degrees in [10.0_f64, -10.0, -20.0] {
         let words = words([0.0, 0.0, degrees.to_radians()], 1.0);
-        // Those at 60 and 90 degrees read so little of the bending that a change of theirs may stay within the model's error: two of eight.
+        // Two of eight gauges, at 60 and 90 degrees, read little of the bending. Their change may stay within the error of the model.
         is_named(&words, ShiftWord::Angle, 70);
     }
 }
@@ -129,7 +130,7 @@ fn a_turned_gauge_is_named_so_where_the_pushes_tell() {
 #[test]
 fn a_displaced_gauge_is_named_so_where_the_pushes_tell() {
     for across in [20.0, -20.0] {
-        // Across the strip the moment in plane alone changes; at 60 and 90 degrees it is what a gauge reads little of.
+        // Across the strip only the in-plane moment changes. Gauges at 60 and 90 degrees read little of it.
         is_named(&words([0.0, across, 0.0], 1.0), ShiftWord::Place, 60);
     }
 }
@@ -140,7 +141,7 @@ fn without_the_change_of_rows_an_angle_is_not_guessed() {
     let model = task.model.as_mut().unwrap();
     let off = model.off_drawing.take().unwrap();
     assert_ne!(calibrate(&task).unwrap().shifts[0].word, ShiftWord::Angle);
-    // A tolerance of the gluing tells how the row would change; that it fits is no comparison with what else would.
+    // An installation tolerance states how the row would change. A fit of this change is not a comparison with other causes.
     task.model.as_mut().unwrap().moves = vec![Move {
         kind: MoveKind::Turned,
         change: off.turned,

@@ -1,4 +1,4 @@
-//! A clamped strip whose strain is known in closed form, with gauges that were not glued where they were drawn.
+//! A clamped strip whose strain is known in closed form, with gauges away from their nominal positions.
 
 use crate::calibrate::*;
 use crate::linalg::Matrix;
@@ -26,8 +26,8 @@ pub(super) fn draw_normal(random: &mut ChaCha8Rng) -> f64 {
     (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
 }
 
-/// exx, eyy, gxy at (x, y) of a strip clamped at x = 0 under a tip force out of plane, a moment in plane, a pull and a torque, each
-/// of size 1: Euler's beam and Saint-Venant's torsion.
+/// Returns exx, eyy, gxy at (x, y) of a strip clamped at x = 0, for each load of size 1. The loads are a tip force out of plane, a moment in plane, a
+/// pull and a torque. The equations are Euler's beam and Saint-Venant's torsion.
 fn strain(x: f64, y: f64) -> [[f64; 3]; 4] {
     let axial = |e: f64| [e, -POISSON * e, 0.0];
     [
@@ -38,7 +38,7 @@ fn strain(x: f64, y: f64) -> [[f64; 3]; 4] {
     ]
 }
 
-/// A gauge as drawn: x, y, angle of its axis.
+/// Nominal position of a gauge: x, y, angle of its axis.
 pub(super) type Site = [f64; 3];
 
 pub(super) fn row(site: Site, [along, across, turned]: [f64; 3]) -> Vec<f64> {
@@ -79,8 +79,8 @@ pub(super) fn reading(row: &[f64], f: &[f64; 4]) -> f64 {
     row.iter().zip(f).map(|(s, f)| s * f).sum()
 }
 
-/// Sd of (along, across, turned) that no unbiased use of the pushes and of what is stated can undercut: the inverse of
-/// `J' J / noise^2 + prior`, J by differences of the closed form, the gain known to within `gain`.
+/// Returns the least standard deviations of (along, across, turned) of an unbiased estimate from the pushes and the stated tolerances. They come from
+/// the inverse of `J' J / noise^2 + prior`, with `J` by differences of the closed form. The gain is known to within `gain`.
 fn sd_lower_bound(site: Site, gain: f64) -> [f64; 3] {
     let pushes = pushes();
     let drawn = row(site, [0.0; 3]);
@@ -108,7 +108,7 @@ struct Trial {
     of: usize,
     /// Stated sd over the bound.
     over_bound: Vec<f64>,
-    /// Errors of loads recovered with the drawing, and as glued.
+    /// Errors of loads recovered with the nominal positions, and with the installed positions.
     before: Vec<f64>,
     after: Vec<f64>,
 }
@@ -213,7 +213,7 @@ fn six_pushes_tell_where_gauges_sit_as_well_as_can_be_told() {
         .iter()
         .fold((0, 0), |a, t| (a.0 + t.held, a.1 + t.of));
     let share = held as f64 / of as f64;
-    // 1,440 intervals: .6 % is one sd of the share.
+    // With 1,440 intervals, one standard deviation of the share is 0.6 %.
     assert!((share - 0.95).abs() < 0.03, "{held} of {of} held");
     let ratios: Vec<f64> = trials.iter().flat_map(|t| t.over_bound.clone()).collect();
     let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;

@@ -75,7 +75,8 @@ fn two_runs_with_each_others_label_are_named_together_and_not_used() {
 
 #[test]
 fn blank_readings_beside_runs_that_contradict_leave_a_covariance() {
-    // All that the runs leave is one pattern, and gauges are many: a covariance made pair by pair of the runs that have both would not be one.
+    // The residuals of the runs are one pattern, and gauges are many. A matrix computed for each pair from the runs that have both gauges would not
+    // be a covariance.
     for seed in 0..20 {
         let mut wrong = lanes(4, 0.003, seed);
         let loads = wrong.runs[3].loads.clone();
@@ -98,7 +99,7 @@ fn of_two_runs_a_lane_it_is_an_error_that_names_both_exchanges_that_may_be() {
         let found = c.findings.iter().find(|f| f.code == "runs-exchanged");
         let found = found.expect("a finding");
         assert_eq!(found.severity, Severity::Error);
-        // R1 and R2, or the other two of these lanes.
+        // The exchanged runs are R1 and R2, or R4 and R5, which have the same lanes.
         for run in ["`R1`", "`R2`", "`R4`", "`R5`"] {
             assert!(found.message.contains(run), "{}", found.message);
         }
@@ -107,7 +108,7 @@ fn of_two_runs_a_lane_it_is_an_error_that_names_both_exchanges_that_may_be() {
 
 #[test]
 fn loads_that_a_single_known_run_shares_out_by_chance_are_an_error() {
-    // Of all runs but one the sum alone is known: who carries it is told by one run, and by chance.
+    // Only the sum is known for all runs but one. This one run determines by chance how the sum is shared.
     let mut task = lanes(4, 0.03, 1);
     task.loads.truncate(2);
     task.sums = vec![vec![1.0; 2]];
@@ -130,7 +131,7 @@ fn sound_gauges_are_not_blamed_where_the_runs_do_not_tell_the_loads_apart() {
     for seed in 0..5 {
         let mut task = lanes(4, 0.03, seed);
         let unlike = task.runs.split_off(6);
-        // One loading in five sizes.
+        // The runs have one loading in different sizes.
         let first = task.runs[0].clone();
         for (i, run) in task.runs.iter_mut().enumerate() {
             let size = 0.5 + 0.1 * i as f64;

@@ -48,7 +48,7 @@ fn calibrate_four_pushes() -> Calibration {
     calibrate(&task).unwrap()
 }
 
-/// Sigma of load `l` recovered from the readings of that load alone, of its size.
+/// Returns the sigma of load `l`, recovered from the readings of this load alone at its size.
 fn sigma_of(s: &Sensitivity, sizes: &[f64], l: usize) -> f64 {
     let readings = Readings {
         run: String::new(),
@@ -82,7 +82,7 @@ fn the_next_load_buys_what_its_readings_would_take_from_the_covariance_of_s() {
         let r = DMatrix::identity(n, n) * (NOISE * NOISE);
         let total = &a * &v * a.transpose() + &r;
         let after = &v - &v * a.transpose() * total.clone().try_inverse().unwrap() * &a * &v;
-        // In units of the noise, lest determinants underflow.
+        // In units of the noise, so that determinants do not underflow.
         let gained = 0.5 * (total / (NOISE * NOISE)).determinant().ln();
         assert!(
             (run.information / gained - 1.0).abs() < 1e-6,
@@ -98,7 +98,7 @@ fn the_next_load_buys_what_its_readings_would_take_from_the_covariance_of_s() {
             (sigma(known.covariance.clone(), l), sigma(then, l))
         };
         let (before, then) = ratio(run.load);
-        // A difference of covariances near to each other: six figures are left.
+        // The difference of two similar covariances has six correct digits.
         assert!(
             (run.sigma_before / before - 1.0).abs() < 1e-6,
             "{run:?} {before}"
@@ -186,7 +186,7 @@ fn with_repeats_that_scatter_the_next_load_buys_what_a_refit_with_it_has() {
             .log_det()
     };
     for run in next {
-        // The run as the others are taken, its readings those that S makes, so that the refit changes the covariance alone.
+        // This run has an equation like the other runs. Its readings are the prediction of S, so that the refit changes only the covariance.
         let phi: Vec<f64> = run
             .loads
             .iter()

@@ -41,8 +41,8 @@ fn what_an_unshrunk_scatter_says_of_loads_is_widened_by_the_patterns_it_has_lear
     }
 }
 
-/// Eight gauges whose scatter of 3 % goes together, correlation .9; runs of two loads each drawn at random; whether the intervals of one more run
-/// hold, each load and the sum.
+/// Returns whether the intervals of one more run contain each load and the sum. Eight gauges have a scatter of 3 % with a correlation of 0.9. Each
+/// run has two loads drawn at random.
 fn check_common_scatter(runs: usize, seed: u64) -> Vec<bool> {
     const NOISE: f64 = 1e-8;
     const N: usize = 8;
@@ -92,7 +92,7 @@ fn intervals_hold_where_gauges_scatter_together_and_are_many_against_the_runs() 
             .collect();
         let held = trials.iter().flatten().filter(|h| **h).count() as f64 / 3600.0;
         eprintln!("{runs} runs: {:.1} % held", 100.0 * held);
-        // Loads of a trial go together: three sd of a binomial of 1,200, 1.9 %.
+        // The loads of a trial are correlated. The limit is three standard deviations of a binomial of 1,200, 1.9 %.
         assert!((held - 0.95).abs() < 0.019, "{runs}: {held}");
     }
 }

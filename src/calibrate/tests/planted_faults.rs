@@ -1,4 +1,4 @@
-//! One thing wrong, planted: a sign or a unit of known loads, a gauge wired backwards, two exchanged.
+//! One planted fault: a sign or a unit of known loads, a gauge with reversed polarity, two exchanged gauges.
 
 use super::severe;
 use crate::calibrate::*;
@@ -98,7 +98,7 @@ fn a_run_whose_load_has_the_wrong_sign_is_named_and_not_used() {
             assert_eq!(c.refused, [wrong], "{:?}", c.findings);
             let named = severe(&c, "run-contradicts").map(|f| f.1);
             assert_eq!(named, Some(task.runs[wrong].run.clone()));
-            // Without it noise explains the rest.
+            // Without this run, noise explains the residuals.
             assert_eq!(c.repeat_scatter_rel, None);
         }
     }
@@ -152,7 +152,7 @@ fn a_load_whose_sign_is_turned_in_all_runs_is_an_error_that_asks_for_the_sign() 
 
 #[test]
 fn strain_that_known_loads_do_not_explain_at_all_is_an_error() {
-    // Loads of two other structures: the runs' strain drawn anew.
+    // The strain of the runs is random and does not depend on the loads.
     let mut wrong = task(3, 6);
     wrong.model = None;
     let mut random = ChaCha8Rng::seed_from_u64(1);
@@ -238,7 +238,7 @@ fn a_model_of_a_third_of_the_strain_is_put_right_by_the_runs_and_not_refused() {
 
 #[test]
 fn a_gauge_wired_backwards_says_nothing_of_how_far_the_rows_of_others_may_be_off() {
-    // The torque acts in no run: what is known of its column is the prior.
+    // The torque acts in no run, so that only the prior determines its column.
     let mut wired = task(1, 11);
     wired.runs.truncate(2);
     let wrong = 1;
@@ -264,7 +264,7 @@ fn a_gauge_wired_backwards_says_nothing_of_how_far_the_rows_of_others_may_be_off
     };
     for (g, of_all) in [(4, 5), (5, 6), (6, 7)].map(|(r, a)| (r, torque(&all, a))) {
         let ratio = of_all / torque(&rest, g);
-        // Steps of the errors that are tried are the square root of two.
+        // The tried errors differ by a factor of the square root of two.
         assert!((0.85..1.18).contains(&ratio), "{g}: {ratio}");
     }
 }

@@ -1,4 +1,5 @@
-//! Runs alike: what they have in common, runs weighed by sums alone, a column that the loads depend on. Truth is drawn; coverage and width are held.
+//! Repeats and their common error, runs with a known sum only, and a column that the loads depend on. The tests draw the truth and check the coverage
+//! and width of intervals.
 
 use super::installed_position::draw_normal;
 use crate::calibrate::*;
@@ -80,9 +81,9 @@ fn tally(trials: &[Vec<[f64; 3]>], which: usize) -> Tally {
     }
 }
 
-/// Six loadings of a bridge, five passages of each, and one more truck that is weighed. The offset of a loading from its lane moves `aside` (1 sd, of
-/// the strain) from one lane's pattern to the other's. The offset of each passage moves `passage`. `told`: whether the job states which runs are
-/// repeats.
+/// Simulates six loadings of a bridge, five passages of each, and one more truck that is weighed. The offset of a loading from its lane moves `aside`
+/// (1 sd, of the strain) from one lane's pattern to the other's. The offset of each passage moves `passage`. `told` is whether the job states which
+/// runs are repeats.
 fn passages(aside: f64, passage: f64, told: bool, seed: u64) -> Vec<[f64; 3]> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let s = lanes(&mut random);
@@ -139,7 +140,7 @@ fn with_repeats_named_intervals_hold_where_a_loading_stands_aside_of_its_lane() 
     let untold = all_passages(0.03, 0.005, false);
     for load in 0..2 {
         let (with, without) = (tally(&told, load), tally(&untold, load));
-        // Three sd of a binomial of 400, 3.3 %.
+        // The limit is three standard deviations of a binomial of 400, 3.3 %.
         assert!((0.915..0.985).contains(&with.held), "{with:?} {without:?}");
         assert!(without.held < 0.915, "{with:?} {without:?}");
     }
@@ -152,7 +153,7 @@ fn repeats_that_have_nothing_in_common_tell_as_much_as_any_other_runs() {
     for load in 0..2 {
         let (with, without) = (tally(&told, load), tally(&untold, load));
         assert!((0.915..0.985).contains(&with.held), "{with:?} {without:?}");
-        // One trial in twenty takes chance for something in common.
+        // One trial in twenty finds a common error by chance.
         assert!(with.half < 1.1 * without.half, "{with:?} {without:?}");
         assert!((0.8..1.2).contains(&with.ratio), "{with:?}");
     }
@@ -181,8 +182,8 @@ enum LoadSeparation {
     Nothing,
 }
 
-/// Sixteen runs of three bays weighed by their sum alone; then one to be weighed: its loads, their sum, and the sum as a true S and noise alone
-/// would have it.
+/// Simulates sixteen runs of three bays with a known sum only, and one more run to be weighed. Returns its loads, their sum, and the sum from a true
+/// S with noise alone.
 fn by_sums(apart: LoadSeparation, seed: u64) -> Vec<[f64; 3]> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let model = Matrix::from_fn(GAUGES, 3, |_, _| 1e-6 * draw_normal(&mut random));
@@ -231,7 +232,7 @@ fn by_sums(apart: LoadSeparation, seed: u64) -> Vec<[f64; 3]> {
     };
     let prior = (apart == LoadSeparation::Model).then_some(prior);
     let c = calibrate(&task(3, runs, prior)).unwrap();
-    // Two of three combinations: what the sum leaves.
+    // If only the sum is known, two of three combinations are undetermined.
     let untold = if apart == LoadSeparation::Runs { 0 } else { 2 };
     assert_eq!(c.undetermined.len(), untold, "{apart:?}");
     let f = draw(&mut random);
@@ -253,13 +254,13 @@ fn of_runs_weighed_by_sums_and_nothing_else_the_sum_is_known_and_what_it_is_made
         .map(|seed| by_sums(LoadSeparation::Nothing, seed))
         .collect();
     let sum = tally(&trials, 3);
-    // Three sd of a binomial of 400, 3.3 %.
+    // The limit is three standard deviations of a binomial of 400, 3.3 %.
     assert!((0.917..=0.983).contains(&sum.held), "{sum:?}");
     assert!((0.85..1.15).contains(&sum.ratio), "{sum:?}");
-    // Three columns are learnt of sixteen runs, and each of these has a sum that is off by as much as noise makes of one.
+    // Three columns come from sixteen runs, and the sum of each run has the error of one sum from noise.
     let best = tally(&trials, 4);
     assert!(sum.half < 1.5 * best.half, "{sum:?} {best:?}");
-    // Loads of up to 30.
+    // Loads are up to 30.
     for load in 0..3 {
         let narrowest = trials.iter().map(|t| t[load][2]).fold(f64::MAX, f64::min);
         assert!(narrowest > 15.0, "{load}: {narrowest}");
@@ -273,10 +274,10 @@ fn runs_weighed_by_their_sum_alone_teach_with_intervals_as_wide_as_their_errors(
             .into_par_iter()
             .map(|seed| by_sums(apart, seed))
             .collect();
-        // Each load, and the sum.
+        // Index 3 is the sum of the loads.
         for which in 0..4 {
             let found = tally(&trials, which);
-            // Three sd of a binomial of 200, 4.6 %.
+            // The limit is three standard deviations of a binomial of 200, 4.6 %.
             let held = (0.904..=0.996).contains(&found.held);
             assert!(held, "{apart:?} {which}: {found:?}");
             let as_wide = (0.8..1.2).contains(&found.ratio);
@@ -296,7 +297,7 @@ fn slope_of(slope: f64, seed: u64) -> [f64; 2] {
         } else {
             [0.0, 220.0]
         };
-        // Both lanes at one mean speed: a slope is a share of what loads are at the mean.
+        // Both lanes have one mean speed, because a slope is relative to the loads at the mean.
         let speed = 20.0 + 4.0 * f64::from(i / 2) * 2.0;
         let size = (1.0 + slope * (speed - 48.0)) * (1.0 + 0.02 * draw_normal(&mut random));
         let row = |g: usize| (0..2).map(|l| s[(g, l)] * f[l] * size).sum::<f64>();
@@ -319,7 +320,7 @@ fn slope_of(slope: f64, seed: u64) -> [f64; 2] {
 
 #[test]
 fn the_sigma_of_a_slope_is_what_slopes_scatter_by() {
-    // Over the speeds the last is seven times what passages scatter by, both root mean squares.
+    // Over the speeds, the last slope changes loads by seven times the scatter of passages (both root mean squares).
     for slope in [0.0, 0.002, 0.004, 0.008] {
         let trials: Vec<[f64; 2]> = (0..300)
             .into_par_iter()
@@ -327,7 +328,7 @@ fn the_sigma_of_a_slope_is_what_slopes_scatter_by() {
             .collect();
         let square = |i: usize| trials.iter().map(|t| t[i] * t[i]).sum::<f64>();
         let ratio = (square(0) / square(1)).sqrt();
-        // Of 300 trials a ratio is known to 4 %; three of these.
+        // The error of a ratio from 300 trials is 4 %. The limit is three times this error.
         assert!((0.88..1.12).contains(&ratio), "{slope}: {ratio}");
     }
 }

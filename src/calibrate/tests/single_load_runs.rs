@@ -50,11 +50,11 @@ fn a_calibration_knows_whether_each_of_its_runs_had_one_load_alone() {
     };
     assert!(one_by_one(&task(&[])));
     assert!(!one_by_one(&task(&[[150.0, 200.0]])));
-    // A load that is known with an error acts too.
+    // A load with uncertainty counts as acting too.
     let mut loose = task(&[]);
     loose.runs[0].loads.covariance[3] = 1.0;
     assert!(!one_by_one(&loose));
-    // With a model the loads are forces at places: that their strain adds up is known.
+    // With a model the loads are forces at places, and their strain is known to add up.
     let mut with_model = task(&[]);
     let values = calibrate(&with_model).unwrap().sensitivity.values;
     with_model.model = Some(ModelPrior {

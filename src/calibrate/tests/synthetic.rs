@@ -116,7 +116,7 @@ fn rms<'a>(v: impl Iterator<Item = &'a f64>) -> f64 {
 
 #[test]
 fn model_and_runs_together_beat_either_and_their_intervals_hold() {
-    // Two thousand in the long test.
+    // The long test has 2,000 trials.
     let trials_asked: u64 = std::env::var("STRAINBRIDGE_TRIALS").map_or(60, |t| t.parse().unwrap());
     let (n, k) = (12, 6);
     let mut before = f64::INFINITY;
@@ -142,14 +142,15 @@ fn model_and_runs_together_beat_either_and_their_intervals_hold() {
         );
         assert!(both < before, "more runs tell more");
         before = both;
-        // The protocol's two per cent of 2,000 trials; of 60, chance: errors of six loads of a trial go together, so three sd of a binomial
-        // of 95 % with a third as many.
+        // The protocol allows two per cent for 2,000 trials. For 60 trials chance sets the limit. The errors of the six loads of a trial are
+        // correlated. The limit is therefore three standard deviations of a binomial of 95 % with a third as many.
         let apart = f64::max(0.02, 3.0 * (0.95 * 0.05 * 3.0 / intervals).sqrt());
         println!("{m} runs: held {held}, error {both}, stated {sigma}");
         assert!((held - 0.95).abs() < apart, "{m} runs: {held}");
-        // Numbers whose sizes differ from trial to trial: of 360, six a trial, a fifth is three standard errors. To the side of caution more, with
-        // 2,000 as well: what a few runs say of the rows' error differs from trial to trial, and so does sigma, whose square mean the wide ones
-        // make, while the coverage above is that of all. A fifth where runs are fewer than loads, a tenth where they are as many or more.
+        // The sizes of the errors differ from trial to trial. For 360 loads, six a trial, three standard errors are a fifth. The limit is wider to
+        // the side of caution, with 2,000 trials too. A few runs give a different estimate of the rows' error in each trial, and so a different
+        // sigma. Wide intervals dominate the mean square of sigma, while the coverage above counts all intervals. The limit is a fifth if runs are
+        // fewer than loads, and a tenth otherwise.
         let wider = if m < k { 0.2 } else { 0.1 };
         let apart = 0.2 * (60.0 / trials.len() as f64).sqrt();
         let ratio = both / sigma;

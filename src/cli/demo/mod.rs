@@ -1,5 +1,5 @@
-//! `demo`: the truck story in a folder. Solve, place, glue and drive (made up here), recover, reconcile, recover again, weigh the payload,
-//! stress, report.
+//! `demo`: the truck story in a folder. Solve, place, glue and drive (simulated here), recover, reconcile, recover again, weigh the payload, stress,
+//! report.
 
 mod chapter;
 mod jobs;
@@ -130,10 +130,10 @@ impl Report for Outcome<Story> {
     }
 }
 
-/// Plays the story in `folder`.
+/// Runs the story in `folder`.
 ///
 /// # Errors
-/// A folder that can't be written.
+/// A folder that cannot be written.
 pub fn story(folder: &Path, cx: &Context) -> Result<Outcome<Story>, Faults> {
     let mut work = Work::new(cx);
     let units = StatedUnits::from_units(UnitSystem::MmTS, &jobs::report_units());
@@ -312,7 +312,7 @@ fn run_story(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         command: "reconcile",
         step,
     });
-    // What was found of the channels goes on with them.
+    // The corrections found for the channels apply to the next steps.
     let corrections = corrections_of(&folder.join("4-reconcile").join("job_extended.toml"));
     let strain = "strain.csv";
     let corrected = |job: String| format!("{job}\n{corrections}");
@@ -440,7 +440,7 @@ fn solve_options() -> SolveOptions {
     }
 }
 
-/// The `[[correction]]` entries of a job, as text; empty where it has none.
+/// Returns the `[[correction]]` entries of a job as text; empty if it has none.
 fn corrections_of(job: &Path) -> String {
     let text = std::fs::read_to_string(job).unwrap_or_default();
     let mut table: toml::Table = text.parse().unwrap_or_default();

@@ -6,7 +6,7 @@ use crate::report::page::{Block, Card, Page, Section};
 
 /// Errors before and after the correction, for the head of the page.
 pub(super) struct Figures {
-    /// Whether the hidden effect was named.
+    /// Whether `reconcile` identified the hidden effect.
     pub found: bool,
     /// Error of the wheel loads, rms, relative: as measured, and with the effect in the model.
     pub before: f64,
@@ -37,7 +37,7 @@ pub(super) fn page(chapters: &[Chapter], figures: &Figures) -> Page {
     )
 }
 
-/// The plan of the gauges, large, with what came of it.
+/// The plan of the gauges, large, with its results.
 fn head(chapters: &[Chapter], figures: &Figures) -> Vec<Card> {
     let plan = chapters.iter().find(|c| c.command == "place");
     let found = match figures.found {

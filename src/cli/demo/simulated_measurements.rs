@@ -1,4 +1,4 @@
-//! The truck as measured, by simulation: what its gauges and wheel transducers would have read.
+//! Simulated measurements of the truck: the readings of its gauges and wheel transducers.
 
 use super::chapter::DECK;
 use super::jobs::{NOISE, PAYLOAD, WHEELS};
@@ -62,7 +62,7 @@ pub(super) struct SimulatedMeasurements {
 }
 
 impl SimulatedMeasurements {
-    /// Root mean square error of the recovered wheel loads over that of the loads.
+    /// Returns the root mean square error of the recovered wheel loads over the root mean square of the loads.
     pub(super) fn error_of(&self, result: &Value) -> f64 {
         let (mut off, mut size) = (0.0, 0.0);
         for load in result["loads"].as_array().into_iter().flatten() {
@@ -129,7 +129,7 @@ impl SimulatedMeasurements {
     }
 }
 
-/// Payload by run: mass in kg, shift along the truck from the nominal place in mm. A container sits between its rails: none across.
+/// Payload by run: mass in kg, shift along the truck from the nominal place in mm. A container sits between its rails and does not shift across.
 const RUNS: [(f64, f64); 12] = [
     (3700.0, -300.0),
     (5500.0, 250.0),
@@ -198,7 +198,7 @@ pub(super) fn simulate(glued: &[InstalledGauge]) -> Result<SimulatedMeasurements
             moment: *moment,
         })
         .collect();
-    // The truck itself is finer than its model: what it reads comes from a mesh half as wide.
+    // The real truck has a finer mesh than its model: its readings come from elements of half the size.
     let real = model
         .refine_shells()
         .ok_or_else(|| program("the mesh cannot be refined".into()))?;

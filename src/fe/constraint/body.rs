@@ -38,7 +38,7 @@ pub(super) fn relations(
         .map(|(g, _)| (model.grids[g.us()].x - centre).norm())
         .fold(0.0, f64::max);
     let size = if size > 0.0 { size } else { 1.0 };
-    // Rotations times `size`, so that the conditioning does not depend on the unit of length.
+    // The unknowns are rotations times `size`, so that the conditioning does not depend on the unit of length.
     let rows = |g: GridIx| {
         let mut s = rigid_matrix(&model.grids[g.us()].x, &centre, &axes[g.us()]);
         for mode in 3..6 {

@@ -7,14 +7,14 @@ use crate::linalg::{DMatrix, Matrix6};
 use crate::model::{GridIx, Mat3, Model, RigidElement};
 use nastran::cards::Dofs;
 
-/// Relations of an RBE3.
+/// Returns the relations of an RBE3.
 ///
-/// The reference motion is the rigid motion that fits the arms best: u_ref = (sum S' W S)^-1 sum S' W u, S the rows of rigid motions
-/// about the reference at each arm's dofs, W the weights, those of rotations times the mean squared arm length. REFC picks rows; with
-/// UM the same equations are solved for those dofs instead.
+/// The reference motion is the rigid motion with the best fit to the arms: u_ref = (sum S' W S)^-1 sum S' W u. S are the rows of rigid motions about
+/// the reference at each arm's dofs. W are the weights; weights of rotations are multiplied by the mean squared arm length. REFC picks rows. With UM
+/// the same equations are solved for the dofs of UM instead.
 ///
 /// # Errors
-/// Arms that do not fix the motion (collinear grids with translations only), UM of another number than REFC.
+/// Arms that do not fix the motion (collinear grids with translations only); UM with a different number of dofs than REFC.
 pub(super) fn relations(
     model: &Model,
     axes: &[Option<Mat3>],
@@ -48,7 +48,7 @@ pub(super) fn relations(
     } else {
         1.0
     };
-    // Unknown rotations times `length`.
+    // The unknowns are rotations times `length`.
     let rows = |g: GridIx| {
         let mut s = rigid_matrix(&model.grids[g.us()].x, &centre, &axes[g.us()]);
         for mode in 3..6 {
@@ -80,7 +80,7 @@ pub(super) fn relations(
             "add grids or dofs",
         ));
     };
-    // Rows of the reference in its own displacement frame, rotations back to radians.
+    // Rows of the reference in its displacement frame, with rotations in radians again.
     let back = {
         let mut b = rigid_matrix(&centre, &centre, &axes[reference.us()]);
         for mode in 3..6 {

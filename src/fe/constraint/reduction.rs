@@ -181,7 +181,7 @@ pub(crate) fn reduce(
     resolve(model, &relations, &claims, (spc, enforced))
 }
 
-/// The first term by the others; `None` where it has no coefficient.
+/// Solves an equation for its first term; `None` if the coefficient of that term is zero.
 fn express_first_term(terms: &[(GridIx, u8, f64)], claim: u32) -> Option<Relation> {
     let (&(g, i, a), rest) = terms.split_first()?;
     (a != 0.0).then(|| Relation {
@@ -262,7 +262,7 @@ fn resolve(
             });
         }
         if relation.terms.is_empty() {
-            // Follows nothing: a support, such as a rigid bush to ground, with a reaction.
+            // A dof without terms is a support with a reaction, such as a rigid bush to ground.
             state[dof as usize] = State::Held;
             held_by.insert(dof, claim.card.clone());
         } else {
@@ -288,7 +288,7 @@ fn rows_without_dependent(
     state: &[State],
     enforced: &HashMap<u32, f64>,
 ) -> Result<Vec<Row>, FeError> {
-    // Depth first: a row is final when all dependent dofs in it have been replaced.
+    // Depth first: a row is complete when all dependent dofs in it are replaced.
     #[derive(Clone, Copy, PartialEq)]
     enum Mark {
         New,

@@ -18,7 +18,7 @@ pub fn check_ids(model: &Model, name: &str, file: &ResultsFile) -> Vec<Finding> 
         if block.element.is_some() {
             elements.extend(rows.ids.iter().map(|id| id.entity))
         } else {
-            // Scalar points (grid type 2) are no grids of the model.
+            // Scalar points (grid type 2) are not grids of the model.
             let grid_rows = rows.ids.iter().filter(|id| id.at == 1);
             grids.extend(grid_rows.map(|id| id.entity))
         }
@@ -120,7 +120,7 @@ fn element_ids(model: &Model) -> BTreeSet<u32> {
     model.elements().map(|e| model.element_id(e)).collect()
 }
 
-/// A finding for what the file has and the deck lacks: an error where they have nothing in common.
+/// Adds a finding for ids that the file contains and the deck lacks. It is an error if they have no id in common.
 fn report_missing_ids(
     findings: &mut Vec<Finding>,
     name: &str,

@@ -1,10 +1,10 @@
-//! Do deck and results belong together?
+//! Checks that deck and results belong together.
 //!
-//! - `ids` elements and grids that one has and the other lacks;
+//! - `ids` elements and grids that only one of them has;
 //! - `coordinates` grids with other coordinates;
-//! - `output` strain that was not asked for, PARAM,OMID;
+//! - `output` strain that was not requested, PARAM,OMID;
 //! - `freedom` reactions in a job that should have none;
-//! - `strain` strain that the built-in solver computes otherwise.
+//! - `strain` strain that differs from the built-in solver.
 
 mod coordinates;
 mod freedom;

@@ -24,7 +24,7 @@ fn grids_that_moved_are_an_error_with_the_worst_named() {
         (findings.len(), findings[0].code, findings[0].measured),
         (1, "coordinates-differ", Some(0.5))
     );
-    // Single precision of the geometry blocks is no difference.
+    // Rounding to single precision in the geometry blocks is not a difference.
     moved.grids[1].x = here.grids[1].x.map(|v| f64::from((v * 1.000_000_1) as f32));
     assert!(check_coordinates(&here, "run.op2", &moved).is_empty());
 }

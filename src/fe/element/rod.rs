@@ -67,8 +67,8 @@ pub(crate) fn rod_mass(model: &Model, i: usize) -> f64 {
     (rho * rod.area + rod.nsm) * length
 }
 
-/// Force on the second grid of rod `i` (the first takes its opposite), basic frame, that acts as a rise of temperature; zero for a
-/// rod that its stiffness refuses.
+/// Returns the force on the second grid of rod `i` that is equivalent to a temperature rise, basic frame. The force on the first grid is opposite.
+/// Zero for a rod that the stiffness refuses.
 pub(crate) fn rod_thermal_force(model: &Model, i: usize, rise: f64) -> crate::model::Vec3 {
     let rod = &model.rods[i];
     let d = model.grids[rod.grids[1].us()].x - model.grids[rod.grids[0].us()].x;

@@ -33,16 +33,16 @@ impl Plane {
             area: 0.5 * across.norm(),
         };
         let ([x2, x3, x4], [y3, y4]) = (plane.x, plane.y);
-        // Inner angles below a half turn.
+        // Convex: all inner angles are below 180 degrees.
         let convex = y3 > 0.0 && y4 > 0.0 && x3 > y3 * x4 / y4 && x4 < x2 - (x2 - x3) * y4 / y3;
         convex.then_some(plane)
     }
 
-    /// Energy of a panel under unit average shear flow, times G t: Garvey's distribution, where the flow falls with the distance from
-    /// the line through the meeting points of opposite sides.
+    /// Returns the energy of a panel under unit average shear flow, times G t. In Garvey's distribution, the flow decreases with the distance from
+    /// the line through the intersections of opposite sides.
     fn flexibility(&self, nu: f64) -> f64 {
-        /// Below this tangent two sides count as parallel: the general formulas lose figures to cancellation there, and shear flow
-        /// of a solver's panels is met to 2e-6 with it, to 1e-3 only with a tenth.
+        /// Tangent below which two sides count as parallel, because the general formulas lose digits to cancellation there. With this limit, shear
+        /// flow agrees with the panels of a solver to 2e-6; with a limit of a tenth, only to 1e-3.
         const PARALLEL: f64 = 1e-4;
         let ([x2, x3, x4], [y3, y4]) = (self.x, self.y);
         let area = self.area;
@@ -123,14 +123,14 @@ impl Plane {
     }
 }
 
-/// Stiffness of shear panel `i`, basic frame; rotations are without stiffness.
+/// Computes the stiffness of shear panel `i`, basic frame. Rotations have no stiffness.
 ///
 /// # Reference
 /// Garvey, The quadrilateral shear panel, Aircraft Engineering 23 (1951) 134; NASTRAN Theoretical Manual, section 5.3 (the flexibility
 /// of the panel under the flow that its four corner forces balance).
 ///
 /// # Errors
-/// Panels whose corners make no convex quadrilateral; a material that is no MAT1; a thickness that is not above zero.
+/// Panels whose corners do not form a convex quadrilateral; a material that is not a MAT1; a thickness that is not above zero.
 pub(super) fn shear_panel_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, Refusal> {
     let panel = &model.shear_panels[i];
     let Some(MaterialKind::Isotropic { e, g, nu, .. }) =

@@ -5,7 +5,7 @@ use crate::fe::grid_frames::to_basic;
 use crate::fe::prepared_model::PreparedModel;
 use crate::model::GridIx;
 
-/// Stiffness of spring `i`, basic frame; its dofs are those of the grids' displacement frames.
+/// Computes the stiffness of spring `i`, basic frame. The dofs of the spring are in the grids' displacement frames.
 pub(super) fn spring_stiffness(prepared: &PreparedModel<'_>, i: usize) -> ElementMatrix {
     let spring = &prepared.model.springs[i];
     between_dofs(prepared, &spring.ends, spring.k)

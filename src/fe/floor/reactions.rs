@@ -4,17 +4,17 @@ use crate::linalg::{Matrix, Vector, dense};
 use crate::model::{GridIx, Model, Vec3};
 use std::fmt;
 
-/// Support of a structure on a floor: contacts, and the displacement of each under a unit force up at each.
+/// Support of a structure on a floor: the contacts, and the displacement of each contact under an upward unit force at each contact.
 ///
-/// With `C` (`n x n`) the displacement along `axis` of contact j under a unit force at contact i of the free structure (balanced by its inertia), `k`
-/// the rate of the spring between a contact and the floor, and a rigid motion `t + theta x r`, the reactions `R` obey
+/// `C` (`n x n`) is the displacement along `axis` of contact j under a unit force at contact i of the free structure, balanced by its inertia. `k` is
+/// the rate of the spring between a contact and the floor, and `t + theta x r` is a rigid motion. The reactions `R` obey
 ///
 /// `sum_i C_ji R_i + R_j / k + t + theta_b r_c - theta_c r_b = -lift_j` at every contact,
 /// `sum R = -F`, `sum r_c R = -M_b`, `-sum r_b R = -M_c`,
 ///
-/// `lift_j` the displacement that all other loads give the contact on the free structure, `F`, `M` their resultant, `(axis, b, c)` a
-/// right-handed turn of the basic axes. Exact for any rigid motion in the free solutions. The floor can pull here: a negative reaction
-/// means that the wheel lifts off and that the linear answer ends there.
+/// where `lift_j` is the displacement of the contact under all other loads on the free structure. `F` and `M` are the resultant of these loads.
+/// `(axis, b, c)` is a right-handed permutation of the basic axes. The reactions are exact for any rigid motion in the free solutions. The floor can
+/// pull here: a negative reaction means that the wheel lifts off and that the linear solution is no longer valid.
 #[derive(Clone, Debug)]
 pub struct Floor {
     axis: usize,
@@ -53,7 +53,7 @@ pub enum FloorError {
     Springs {
         /// Number of rigid motions that the springs resist.
         motions: u8,
-        /// The springs in words.
+        /// Descriptions of the springs.
         springs: String,
     },
     /// The solver refused.
@@ -109,9 +109,9 @@ impl std::error::Error for FloorError {}
 const LINE: f64 = 1e-6;
 
 impl Floor {
-    /// The floor under `contacts`, `lifts[i][j]` the displacement along `axis` (0 x, 1 y, 2 z; up) of contact j under a unit force at i.
+    /// Computes the floor under `contacts`. `lifts[i][j]` is the displacement along `axis` (0 x, 1 y, 2 z; up) of contact j under a unit force at i.
     ///
-    /// `rate` of what is between contact and floor (a tyre), force per length; `None`: rigid.
+    /// `rate` is the stiffness between contact and floor (a tyre), force per length; `None`: rigid.
     ///
     /// # Errors
     /// Contacts on a line.
@@ -216,8 +216,8 @@ impl Floor {
         }
     }
 
-    /// The structure's own weight under gravity `g` (positive, model units) against the axis. On the free structure gravity moves every
-    /// grid alike, so it lifts nothing.
+    /// Returns the structure's weight under gravity `g` (positive, model units) against the axis. On the free structure gravity moves every grid
+    /// equally, so all lifts are zero.
     pub fn weight(&self, model: &Model, g: f64) -> FloorLoad {
         let weight = model.weight();
         let mut force = Vec3::zeros();

@@ -16,10 +16,10 @@ pub struct FloorSolution {
     pub others: Vec<CaseResult>,
 }
 
-/// Solves a unit force at every contact, and `others`, on the free structure, and the floor under the contacts.
+/// Solves a unit force at every contact, and `others`, on the free structure, and computes the floor under the contacts.
 ///
 /// # Errors
-/// Those of the solver; contacts on a line; springs to ground that carry the structure already.
+/// The errors of the solver; contacts on a line; springs to ground that already carry the structure.
 pub fn solve_standing(
     model: &Model,
     axis: usize,
@@ -93,8 +93,8 @@ impl FloorSolution {
         self.floor.reactions(&self.floor.weight(model, gravity))
     }
 
-    /// Reactions to forces at grids (basic frame), by reciprocity: the lift of contact j is the work of the forces on the field of the
-    /// unit force at j.
+    /// Computes the reactions to forces at grids (basic frame) by reciprocity. The lift of contact j is the work of the forces on the displacement
+    /// field of the unit force at j.
     pub fn under_forces(&self, model: &Model, forces: &[(GridIx, Vec3)]) -> Vec<f64> {
         let lift = self
             .contacts

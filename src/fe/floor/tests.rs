@@ -64,7 +64,7 @@ fn a_force_over_a_leg_stays_there_on_a_rigid_floor_and_tilts_the_table_on_soft_t
     for (got, expected) in r.iter().zip([8.0, 0.0, 0.0, 0.0]) {
         assert!((got - expected).abs() < 1e-9, "{r:?}");
     }
-    // On tyres far softer than the table it is P (1 + x x_P + y y_P) / 4 as on a rigid plate.
+    // On tyres far softer than the table, the reaction is P (1 + x x_P + y y_P) / 4 as on a rigid plate.
     let rigid_share = [0.75, 0.25, -0.25, 0.25];
     let soft = solve_standing(&m, 2, &legs, &[], Some(1e-6)).expect("solvable");
     let r = soft.under_forces(&m, &[(legs[0], Vec3::new(0.0, 0.0, -1.0))]);

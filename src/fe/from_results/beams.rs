@@ -36,7 +36,7 @@ impl<'m> BeamCollector<'m> {
         }
     }
 
-    /// Whether the rows are those of bars or beams.
+    /// Returns whether the rows belong to bars or beams.
     pub(super) fn takes(rows: &Rows) -> bool {
         [columns::BAR, columns::BAR_STATION, columns::BEAM].contains(&rows.columns)
     }
@@ -50,7 +50,7 @@ impl<'m> BeamCollector<'m> {
         let mut last: Option<u32> = None;
         for (i, id) in rows.ids.iter().enumerate() {
             let new = last.replace(id.entity) != Some(id.entity);
-            // Elements that the model lacks are told of by `deck_result_consistency`.
+            // `deck_result_consistency` reports elements that the model lacks.
             let Some(ix) = ids.find(id.entity) else {
                 continue;
             };
@@ -128,8 +128,10 @@ fn is_tapered(model: &Model, beam: BeamIx) -> bool {
     })
 }
 
-/// Strain of the neutral axis from that of four points by the plane through them: the mean with the weights that put the points'
-/// centre onto the axis. NaN where no such weights are (points on a line that misses the axis).
+/// Computes the strain of the neutral axis from the strain of four points, with the plane through them.
+///
+/// The result is the weighted mean whose weights put the points' centre onto the axis. NaN if no such weights exist (points on a line that misses the
+/// axis).
 fn axial_between(model: &Model, beam: usize, station: f64, points: [f64; 4]) -> f64 {
     /// Misses of the axis below this share of the points' spread are rounding.
     const ON_AXIS: f64 = 1e-9;

@@ -4,8 +4,8 @@ use super::ids::Ids;
 use crate::model::{Model, Vec3};
 use nastran::results::{Block, Rows};
 
-/// Displacements by grid index in basic, NaN where the block has none: `basic = R' local` for translation and rotation alike; those of a
-/// table that is in basic already stay as they are.
+/// Returns the displacements by grid index in the basic frame, NaN at grids that the block lacks: `basic = R' local` for translation and rotation. A
+/// table that is already in basic stays unchanged.
 pub(super) fn to_basic(model: &Model, block: &Block, rows: &Rows) -> Vec<[f64; 6]> {
     let mut all = vec![[f64::NAN; 6]; model.grids.len()];
     let mut ids = Ids::new(&model.grids, |g| g.id);

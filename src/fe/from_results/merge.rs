@@ -49,7 +49,7 @@ fn complete_shells(shells: &mut ShellField, other: ShellField) {
     if order.iter().all(|(_, of_other, _)| !of_other) {
         return;
     }
-    // Where one has no rows at corners, those of the other would be of some elements alone.
+    // If only one field has rows at corners, these rows would cover only some of the elements.
     let has_corners = !shells.corners.is_empty() && !other.corners.is_empty();
     *shells = ShellField {
         elements: Arc::new(order.iter().map(|o| o.0).collect()),

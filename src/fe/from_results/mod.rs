@@ -1,9 +1,9 @@
-//! From result files to a `Solution`: static subcases, shells at their surfaces, bars at their recovery points, displacements in basic.
+//! Reads result files into a `Solution`: static subcases, shells at their surfaces, bars at their recovery points, displacements in basic.
 //!
 //! - `shells` fibre, curvature and corner rows, strain from stress where a file has no strain;
 //! - `beams` the three forms of bar and beam rows;
 //! - `displacement` from displacement frames to basic;
-//! - [`find_repeated_results`](find_repeated_results()) subcases that are there more than once;
+//! - [`find_repeated_results`](find_repeated_results()) subcases that occur more than once;
 //! - `tally` input that was found and can't be used, each kind reported once.
 
 mod beams;

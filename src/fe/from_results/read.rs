@@ -184,7 +184,7 @@ fn read_case(
     let mut decode = |ix: usize| match file.rows(ix) {
         Ok(rows) => Some(rows),
         Err(e) => {
-            // A block of a kind that is not decoded is left out; one that contradicts itself makes the file untrustworthy.
+            // A block of a kind that is not decoded is left out. A block that contradicts itself is damaged, so the whole file is in question.
             let (severity, code, remedy) = if e.is_damage() {
                 (
                     Severity::Error,
@@ -202,7 +202,7 @@ fn read_case(
             None
         }
     };
-    // Strain where there is any; stress only in its place, for shells and bars apart.
+    // Strain is read if the file has any, else stress; shells and bars are handled separately.
     let mut shells = ShellCollector::new(model);
     let mut beams = BeamCollector::new(model);
     let (mut shell_strain, mut beam_strain) = (false, false);

@@ -27,8 +27,8 @@ pub struct RepeatedSubcase {
 /// Key of tables whose rows are comparable: subcase, quantity, card of the elements, form, table of vectors.
 type Key = (u32, Quantity, u32, Option<u8>, String);
 
-/// Returns the static subcases, `wanted` ones or all, whose strain (stress where there is no strain) or displacement is there more than once
-/// with different values. Elements that are spread over several tables or files are no repetition, and neither are equal values.
+/// Returns the static subcases, `wanted` ones or all, whose strain or displacement occurs more than once with different values. Stress replaces
+/// strain if there is no strain. Elements that are spread over several tables or files are not a repetition, and neither are equal values.
 pub fn find_repeated_results(
     files: &[&ResultsFile],
     wanted: Option<&BTreeSet<u32>>,
@@ -86,7 +86,7 @@ fn key_of(block: &Block) -> Option<Key> {
         Quantity::Displacement => block.table.clone(),
         _ => return None,
     };
-    // Types of one card with and without corners.
+    // One number for element types of the same card with and without corners.
     let element = match block.element.map_or(0, |e| e.0) {
         144 => 33,
         228 => 82,
@@ -140,9 +140,9 @@ fn find_conflicting_files(files: &[&ResultsFile], blocks: &[(usize, usize)]) -> 
     marked.map(|(d, _)| d.0).collect()
 }
 
-/// Rows with what they are compared by: id and number among rows of one id (stations of beams), values without those derived of others.
+/// Rows with what they are compared by: id and number among rows of one id (stations of beams), values without derived ones.
 fn rows_to_compare(rows: &Rows) -> impl Iterator<Item = ((RowId, usize), &[f64])> {
-    // The distance of a fibre comes first in rows of shells; angle and principal values follow the components.
+    // Rows of shells begin with the fibre distance; angle and principal values follow the components.
     let columns = match rows.columns.first() {
         Some(&"fiber") => 1..4,
         _ => 0..rows.columns.len(),
@@ -170,7 +170,7 @@ impl RepeatedSubcase {
         self.files.iter().any(|(_, times)| *times > 1)
     }
 
-    /// Returns what is there and where, for messages.
+    /// Returns a description of the repeated results and their places, for messages.
     pub fn words(&self, names: &[&str]) -> String {
         let file = |(f, times): &(usize, usize)| {
             let name = names.get(*f).copied().unwrap_or_default();

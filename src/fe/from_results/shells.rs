@@ -65,7 +65,7 @@ impl<'m> ShellCollector<'m> {
             let target = match current {
                 Some((entity, target)) if entity == first.entity => target,
                 _ => {
-                    // Elements that the model lacks are told of by `deck_result_consistency`.
+                    // `deck_result_consistency` reports elements that the model lacks.
                     let target = ids
                         .find(first.entity)
                         .and_then(|ix| self.target(ix, block, &fibres, tally));
@@ -111,7 +111,7 @@ impl<'m> ShellCollector<'m> {
         if !matches!(law, Law::Curvature(_)) {
             let z = z.centre;
             let thickness = (z[1] - z[0]).abs();
-            // The distances of a property that is not carried are not known.
+            // The fibre distances of an unsupported property are unknown.
             let known = thickness > 0.0;
             for (fibre, z) in fibres.iter().zip(z).filter(|_| known) {
                 if (fibre[0] - z).abs() > FIBRE_TOLERANCE * thickness {

@@ -59,7 +59,7 @@ impl Tally {
     pub(super) fn merge(&mut self, other: Tally) {
         for (met, theirs) in other.0 {
             let ours = self.0.entry(met).or_default();
-            // Subcases usually repeat one another's elements: the largest count says more than the sum.
+            // Subcases usually contain the same elements, so the largest count is kept and not the sum.
             ours.count = ours.count.max(theirs.count);
             for id in theirs.ids {
                 if ours.ids.len() < LISTED && !ours.ids.contains(&id) {

@@ -186,7 +186,7 @@ fn displacements_turn_from_a_cylindrical_frame_to_basic() {
     let solution = solve(&text);
     let u = &solution.cases[0].displacement;
     let ix = |id: u32| model().grid_ix(id).unwrap().us();
-    // Grid 5 lies on its frame's x axis, which is along basic y: radial is basic y there, tangential is -x.
+    // Grid 5 is on its frame's x axis, which is along basic y. There, radial is basic y and tangential is -x.
     let basic = [-2.0, 1.0, 3.0, 0.0, 0.0, 4.0];
     let off = u[ix(5)].iter().zip(basic).map(|(a, b)| (a - b).abs());
     assert!(off.fold(0.0, f64::max) < 1e-14, "{:?}", u[ix(5)]);
@@ -208,7 +208,7 @@ fn displacements_of_a_table_in_the_basic_frame_stay_as_they_are() {
         let solution = solution_from_results(&model(), &files, &ReadOptions::default());
         solution.cases[0].displacement[model().grid_ix(5).unwrap().us()]
     };
-    // Grid 5 has a frame of its own.
+    // Grid 5 has its own displacement frame.
     assert_ne!(at_5(&bytes), stated);
     let names: Vec<usize> = (0..bytes.len() - 8)
         .filter(|&i| bytes[i..].starts_with(b"OUGV1   "))
@@ -287,7 +287,7 @@ fn strain_of_one_file_and_displacements_of_another_make_one_case() {
     let both = solution_from_results(&model(), &[("a", &a), ("b", &b)], &ReadOptions::default());
     assert_eq!(both.cases.len(), 1);
     assert!(!both.cases[0].shells.elements.is_empty() && !both.cases[0].displacement.is_empty());
-    // Equal values are one case.
+    // Equal values count as one case.
     let twice = solution_from_results(&model(), &[("a", &a), ("a2", &a)], &ReadOptions::default());
     assert_eq!(twice.cases.len(), 1);
     assert!(!codes(&twice).contains(&"subcase-ambiguous"));
@@ -363,7 +363,7 @@ fn rows_carry_the_normal_strain_of_plane_stress_and_bars_lie_along_their_axis() 
         |r| rows.push(*r),
     );
     assert_eq!(rows.len(), 2 + 8);
-    // The quad lies in basic x-y with x along side 1-2: ezz = -nu / (1 - nu) exx, tensor shear is half the engineering shear.
+    // The quad is in basic x-y with x along side 1-2. So ezz = -nu / (1 - nu) exx, and tensor shear is half the engineering shear.
     let want = [3e-4, 0.0, -1e-4, 1e-4, 0.0, 0.0];
     rows[0]
         .basic

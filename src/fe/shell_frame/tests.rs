@@ -74,7 +74,7 @@ fn pure_shear_is_plus_and_minus_half_gamma_at_45_degrees() {
 #[test]
 fn renumbering_the_corners_of_a_quad_leaves_the_basic_tensor_unchanged() {
     let (p, a, b) = quad();
-    // A plane strain state in the quad's plane plus a normal strain: what any correct output must give back.
+    // A plane strain state in the quad's plane plus a normal strain, which every correct output must return.
     let n = a.cross(&b);
     let shear = (a * b.transpose() + b * a.transpose()) * 1.5e-4;
     let truth: Mat3 =
@@ -89,7 +89,7 @@ fn renumbering_the_corners_of_a_quad_leaves_the_basic_tensor_unchanged() {
             frames.push(axes);
         }
     }
-    // The frames themselves differ: by quarter turns and by the side they look from.
+    // The frames differ by quarter turns and by the direction of their normal.
     assert!((frames[0] - frames[2]).norm() > 1.0);
 }
 

@@ -11,7 +11,7 @@ fn flip_normals(mut m: Model, which: &[usize]) -> Model {
     m
 }
 
-/// Adds the shells of `other`, its grids moved by `by` and not joined to those of `m`.
+/// Adds the shells of `other`. Its grids are moved by `by` and not joined to the grids of `m`.
 fn with_plate(mut m: Model, other: Model, by: Vec3) -> Model {
     let first = m.grids.len() as u32;
     m.grids.extend(other.grids.into_iter().map(|g| Grid {
@@ -67,7 +67,7 @@ fn a_position_is_on_the_nearest_skin_whatever_the_offset_and_the_normal() {
 
 #[test]
 fn the_nearest_of_close_plates_is_found_by_their_skins() {
-    // Plates of 2 mm: skins at -1 and 1, and at 2 and 4 of the second, whose grids are at 8.
+    // Two plates of 2 mm. The skins of the first are at -1 and 1. The second has grids at 8 and skins at 2 and 4.
     let mut upper = plate(1, 1, 0);
     upper.shells[0].zoffs = -5.0;
     let m = with_plate(plate(1, 1, 0), upper, Vec3::z() * 8.0);
@@ -99,7 +99,7 @@ fn the_nearest_of_close_plates_is_found_by_their_skins() {
 
 #[test]
 fn next_to_a_web_the_skin_of_the_flange_is_found() {
-    // A web in the plane y = 5, its middle surface nearer to the point than that of the flange below it.
+    // A web in the plane y = 5. Its middle surface is nearer to the point than the middle surface of the flange below it.
     let mut web = plate(1, 1, 0);
     for g in &mut web.grids {
         g.x = Vec3::new(g.x.x, 5.0, g.x.y);
@@ -109,7 +109,7 @@ fn next_to_a_web_the_skin_of_the_flange_is_found() {
         find_element_and_side(&m, &spec_at([4.0, 4.5, 1.0])),
         (1, Surface::Top)
     );
-    // Inside the flange, nearer to a skin of the web than to its own: a place stated on the middle surface is in that plate.
+    // The point inside the flange is nearer to a skin of the web than to a skin of the flange. A point on the middle surface belongs to that plate.
     assert_eq!(find_element_and_side(&m, &spec_at([4.0, 3.5, 0.0])).0, 1);
     // Normal of the web: x cross z = -y.
     assert_eq!(
@@ -127,7 +127,7 @@ fn bending_field(m: &Model, corners: CornerRows) -> CaseResult {
     let mut case = field(m, corners, |x, z| {
         E.map(|e| e * (0.2 + (1.0 + 0.01 * x.x) * z))
     });
-    // `field` gives fibres by their distance along each shell's own normal; the basic z is meant.
+    // `field` sorts fibres by their distance along each shell's own normal. This field needs the basic z.
     for (i, s) in m.shells.iter().enumerate() {
         if shell_axes(m, s, ShellPlace::Centre).unwrap()[(2, 2)] < 0.0 {
             case.shells.centre[i].swap(0, 1);
@@ -175,7 +175,7 @@ fn a_grid_over_turned_shells_keeps_its_side_in_space() {
 
 #[test]
 fn a_grid_over_a_step_of_thickness_stays_on_the_same_skin() {
-    // Fibres at 1 and 2.5: pure bending strains each by its distance; half of the grid is on each.
+    // Fibres are at 1 and 2.5, and pure bending strains each by its distance. Half of the grid is on each plate.
     let mut m = plate(2, 1, 0);
     let mut thick = m.shell_properties[0].clone();
     (thick.id, thick.z) = (2, [Some(-2.5), Some(2.5)]);
@@ -193,7 +193,7 @@ fn a_grid_over_a_step_of_thickness_stays_on_the_same_skin() {
         direction: Some(Vec3::x()),
         ..spec_at([10.0, 5.0, -1.0])
     };
-    // Centre rows alone vary linearly between centres: the mean of both at the edge.
+    // Centre rows alone vary linearly between centres, so that the strain at the edge is the mean of both.
     let m_turned = flip_normals(m.clone(), &[1]);
     let mut turned = case.clone();
     turned.shells.centre[1].swap(0, 1);
@@ -242,12 +242,12 @@ fn a_grid_that_is_longer_than_the_part_is_refused_and_one_over_the_edge_is_named
         (10.0, 0, Vec3::x()),
         // The outermost point at which strain is taken is on the part.
         (10.4, 0, Vec3::x()),
-        // A coarse mesh: far less than an element.
+        // The grid is far shorter than an element of this coarse mesh.
         (3.0, 2, Vec3::x()),
     ] {
         assert_eq!(with(length, shell, along).unwrap(), [], "{length} {shell}");
     }
-    // Its middle is 5 from the edge.
+    // The middle of the grid is 5 from the edge.
     let named = with(16.0, 0, Vec3::x()).unwrap();
     assert_eq!(named[0].code, "gauge-off-structure");
     assert_eq!(named[0].severity, Severity::Warning);

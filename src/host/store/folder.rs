@@ -77,7 +77,7 @@ impl Folder {
     /// Removes every stored solution, and the folder if it is empty then. Returns their number and bytes.
     ///
     /// # Errors
-    /// Returns the error of the first file that can't be removed.
+    /// Returns the error of the first file that cannot be removed.
     pub fn clean(&self) -> std::io::Result<(usize, u64)> {
         half_written::remove_stale(&self.0);
         let (mut n, mut bytes) = (0, 0);
@@ -86,7 +86,7 @@ impl Folder {
             n += 1;
             bytes += size;
         }
-        // Refused where something else stands in it.
+        // The system refuses this if the folder contains anything else.
         let _ = std::fs::remove_dir(&self.0);
         Ok((n, bytes))
     }
@@ -112,7 +112,7 @@ impl Folder {
 
     fn forget_oldest(&self) {
         let mut files = self.kept_solutions();
-        // The one just kept stays, however large.
+        // The newest solution stays, however large.
         files.pop();
         let mut room = MOST_BYTES;
         for (age, (_, size, path)) in files.into_iter().rev().enumerate() {
@@ -130,7 +130,7 @@ impl SolutionStore for Folder {
     fn read(&self, key: &Key) -> Result<Option<Vec<u8>>, String> {
         match std::fs::read(self.file(key)) {
             Ok(bytes) => {
-                // Used now: so it is not among the first to go.
+                // The file counts as used now, so that it is not among the first to be removed.
                 let now = std::time::SystemTime::now();
                 let file = std::fs::File::options().write(true).open(self.file(key));
                 let _ = file.and_then(|f| f.set_modified(now));

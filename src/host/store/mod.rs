@@ -1,4 +1,4 @@
-//! Where solutions of the built-in solver are kept between questions.
+//! Store of solutions of the built-in solver between questions.
 //!
 //! The key is the SHA-256 of everything a solution depends on: contents of the files, load cases, version, sources, dependencies and
 //! features of the program. A changed deck or load finds nothing.
@@ -19,23 +19,23 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Store of solutions, as bytes under a key. A store is a handle: its clones share the stored solutions.
 pub trait SolutionStore: Send + Sync {
-    /// The bytes kept under a key; `None` where there are none.
+    /// Returns the bytes kept under a key; `None` if no bytes are kept.
     ///
     /// # Errors
-    /// Why what is there can't be read.
+    /// Reason why the bytes cannot be read.
     fn read(&self, key: &Key) -> Result<Option<Vec<u8>>, String>;
 
     /// Keeps bytes under a key.
     ///
     /// # Errors
-    /// Why they can't be kept.
+    /// Reason why the bytes cannot be kept.
     fn write(&self, key: &Key, bytes: Vec<u8>) -> Result<(), String>;
 }
 
 /// Reads the solution under a key; `None` if the store has none under it.
 ///
 /// # Errors
-/// The reason why a stored solution can't be used.
+/// The reason why a stored solution cannot be used.
 pub(crate) fn read_solution(
     store: &dyn SolutionStore,
     key: &Key,
@@ -53,7 +53,7 @@ pub(crate) fn read_solution(
 /// Keeps a solution.
 ///
 /// # Errors
-/// Why it can't be kept.
+/// Reason why the solution cannot be kept.
 pub(crate) fn write_solution(
     store: &dyn SolutionStore,
     key: &Key,

@@ -1,6 +1,6 @@
 //! A stored solution as bytes: displacements and the report of the solver.
 //!
-//! A mark, the key's hash, little-endian numbers, and the SHA-256 of all bytes before; what does not add up is no solution.
+//! The file contains a mark, the key's hash, little-endian numbers, and the SHA-256 of all bytes before. A file with another sum is not a solution.
 
 use super::key::Key;
 use crate::fe::{Balance, DisplacementSolution, MassProperties, Reaction, Reactions, SolveReport};
@@ -67,7 +67,7 @@ pub(super) fn encode(solved: &DisplacementSolution, Key(hash): &Key) -> Vec<u8> 
             write_count(&mut out, t.len());
             out.extend_from_slice(t.as_bytes());
         }
-        // What is not there is not a number.
+        // A missing number is written as NaN.
         reals(
             &mut out,
             &[f.measured.unwrap_or(f64::NAN), f.limit.unwrap_or(f64::NAN)],

@@ -6,7 +6,7 @@ use crate::units::number;
 
 /// Returns the faults that the means of accelerometers show: minus gravity, or gravity in another unit.
 ///
-/// A unit counts only if every accelerometer shows gravity in it or in the unit that it is read in: the offset of a sensor that does not measure
+/// A unit counts only if every accelerometer shows gravity in it or in the unit that it is read in. The offset of a sensor that does not measure
 /// gravity may have that size as well.
 pub fn faults_by_gravity(channels: &[MotionChannel], gravity: f64) -> Vec<MotionFault> {
     let mut signs = Vec::new();

@@ -4,10 +4,10 @@ use super::{ChannelKind, MotionChannel, RULES, of_kind, other_units, shows};
 use crate::finding::{Finding, Severity, list_few};
 use crate::units::number;
 
-/// Masses that the equations give, and what else fixes the scale of accelerations and forces.
+/// Masses from the equations, and other data that fix the scale of accelerations and forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionScale {
-    /// Identified mass over mean wheel force by gravity, where wheels carry all of it.
+    /// Identified mass over mean wheel force by gravity, if wheels carry the whole mass.
     pub closure: Option<f64>,
     /// Identified mass over the number of wheels, kg, of a vehicle on wheels.
     pub mass_kg: Option<f64>,
@@ -15,8 +15,8 @@ pub struct MotionScale {
     pub is_stated: bool,
 }
 
-/// Returns the finding on the unit of all accelerations or all wheel forces, which scales all parameters alike: an error where the masses
-/// refute it, a warning where the file states no unit of acceleration and nothing confirms the one of the job.
+/// Returns the finding on the unit of all accelerations or all wheel forces, which scales all parameters by one factor. It is an error if the masses
+/// refute the unit. It is a warning if the file states no unit of acceleration and nothing confirms the unit of the job.
 pub fn finding_of_scale(
     channels: &[MotionChannel],
     gravity: f64,
@@ -55,7 +55,7 @@ pub fn finding_of_scale(
     let [least, most] = RULES.mass_kg;
     let possible = |kg: f64| (least..=most).contains(&kg);
     if let Some(kg) = scale.mass_kg.filter(|kg| !possible(*kg)) {
-        // Static forces that agree with the mass leave the unit of forces alone in question.
+        // If static forces agree with the mass, only the unit of forces is in question.
         let closed = scale.closure.is_some_and(|r| shows(r, 1.0));
         let force = of_kind(channels, ChannelKind::Force);
         let force = force.first().map(|c| &channels[*c]);

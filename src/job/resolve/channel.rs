@@ -8,7 +8,7 @@ use super::super::suggest;
 use super::super::types::*;
 use crate::host::fault::{Fault, FaultList};
 
-/// No factor of a sum of loads is larger: between the smallest and the largest unit that a job may name lie nine powers of ten.
+/// Largest factor of a load in a sum. The smallest and the largest unit that a job may name differ by nine powers of ten.
 const LARGEST_FACTOR: f64 = 1e12;
 
 pub(super) fn combinations(
@@ -94,7 +94,7 @@ pub(super) fn corrections(
 
 /// Corrections name gauges of the job, combinations its loads, where the job itself lists these.
 pub fn check_names(job: &Job, faults: &mut FaultList) {
-    // A rosette's legs are channels too: `R1.a`.
+    // The legs of a rosette are channels too: `R1.a`.
     let mut channels: Vec<String> = job.gauges.iter().map(|g| g.name.clone()).collect();
     channels.extend(stated_readings(job));
     for correction in &job.corrections {

@@ -9,7 +9,8 @@ use std::collections::BTreeSet;
 /// Largest rounding error of a share with three digits: three of .333 are thirds, six of .167 sixths. Rounding alone changes the
 /// sum by at most this times the number of shares.
 const ROUNDED: f64 = 0.0005;
-/// Largest error of the sum of the shares, whatever their number: they are divided by their sum, and a larger error would change the job's shares.
+/// Largest error of the sum of the shares, whatever their number. The shares are divided by their sum, so that a larger error would change the job's
+/// shares.
 const ROUNDED_IN_SUM: f64 = 0.01;
 
 /// Keys of the section for comparing damage: they do not change the count of a record.
@@ -128,7 +129,7 @@ fn mission(c: &mut Collector, raw: &RawFleet) -> Vec<MissionKind> {
     {
         let sum: f64 = out.iter().map(|k| k.share).sum();
         let rounding = (ROUNDED * out.len() as f64).min(ROUNDED_IN_SUM);
-        // .4995 and .5 are one unit of the last digit away, but for the last bits of their sum.
+        // 1e-9 allows for rounding in the sum, if a share is off by exactly the limit (.4995 and .5).
         if (sum - 1.0).abs() > rounding + 1e-9 {
             let wrong = format!("the shares sum to {sum:.4}, expected 1");
             let remedy = "state the remaining share of the hours, or correct the shares";

@@ -9,10 +9,10 @@ use crate::gauge::{Bridge, Rosette};
 use crate::host::fault::{Fault, FaultList};
 use crate::placement::Role;
 
-/// Surfaces by their words.
+/// Surfaces by their names in a job.
 pub(super) const SURFACES: [(&str, Surface); 2] =
     [("top", Surface::Top), ("bottom", Surface::Bottom)];
-/// Rosettes by their words.
+/// Rosettes by their names in a job.
 pub(super) const ROSETTES: [(&str, Rosette); 2] = [
     ("rectangular", Rosette::Rectangular),
     ("delta", Rosette::Delta),
@@ -55,7 +55,7 @@ pub(crate) fn rosette_from(word: &str) -> Option<Rosette> {
     find_choice(word, &ROSETTES)
 }
 
-/// Returns a role by its word: `estimate`, `validation` or `reserve`.
+/// Returns the role with this name: `estimate`, `validation` or `reserve`.
 pub(crate) fn role_from(word: &str) -> Option<Role> {
     find_choice(word, &ROLES)
 }
@@ -216,7 +216,7 @@ pub(crate) fn with_pair(
             "give `element2`, or delete `surface2`: the second pair is then on the opposite side",
         );
     }
-    // Without a stated side a stated point may determine it.
+    // Without a stated side, a stated point may determine the side.
     let by_point = !gauge.surface_stated && gauge.position.is_some();
     if own.is_some() && !by_point && pair == own.map(|id| (id, Some(gauge.surface))) {
         fault(SAME_SIDE, SAME_SIDE_REMEDY);

@@ -284,8 +284,8 @@ pub(super) fn payload(
     })
 }
 
-/// Factor from standard gravity on which a gravity is not in m/s2: that of the Sun is 28 times it, that of Phobos a 1,700th, and nobody weighs
-/// there; mm/s2 make 1,000, km/s2 a 1,000th.
+/// Factor from standard gravity beyond which a gravity is not in m/s2. The factor is 28 on the Sun and a 1,700th on Phobos, where nobody measures. A
+/// gravity in mm/s2 gives 1,000, in km/s2 a 1,000th.
 const NOT_GRAVITY: f64 = 100.0;
 
 /// Gravity, m/s^2 whatever the unit system of the job.

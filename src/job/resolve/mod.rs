@@ -1,4 +1,4 @@
-//! Raw job to [`Job`]: required keys, words, defaults, contradictions.
+//! Resolves a raw job to a [`Job`]: required keys, allowed values, defaults, contradictions.
 
 mod calibration;
 mod channel;
@@ -49,7 +49,7 @@ pub(super) fn resolve_job(
     let stem = Path::new(file)
         .file_stem()
         .map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    // S is given, or learnt from runs of known load.
+    // S is given, or estimated from calibration runs.
     let taught = raw.sensitivity.is_some() || raw.calibration.is_some() || raw.runs.is_some();
     let behind = if raw.model.is_none() && taught {
         load::Behind::Table

@@ -16,7 +16,8 @@ use std::ops::Range;
 pub(super) const DEFAULT_NOISE_MICROSTRAIN: f64 = 1.0;
 /// Step between the angles of candidates if the job states none, degrees.
 const DEFAULT_ANGLE_STEP_DEG: f64 = 15.0;
-/// Least step of angles: a tenth of what gauges are glued to. Every place is tried at each angle, and "continuous" takes the best of all.
+/// Smallest step of angles, a tenth of the accuracy of installed gauges. Every place is tried at each angle, and "continuous" takes the best of all
+/// angles.
 const LEAST_ANGLE_STEP_DEG: f64 = 0.1;
 
 pub(super) fn default_criterion(loads: &[JobLoad]) -> Optimality {
@@ -216,7 +217,7 @@ pub(super) fn placement(
     measured: Option<&Measured>,
     criterion: Optimality,
 ) -> Placement {
-    // What is stated of the measurement holds for its plan, until the plan says otherwise.
+    // Values of `[measured]` apply to the plan, unless the plan states its own.
     let noise = measured.map_or(DEFAULT_NOISE_MICROSTRAIN, |m| m.noise_microstrain);
     let model = measured.map_or(0.0, |m| m.model_uncertainty_rel);
     let mut out = Placement {

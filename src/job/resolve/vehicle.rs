@@ -212,7 +212,7 @@ fn numbers(c: &mut Collector, section: &SpannedValue<RawVehicle>) {
         );
     }
     for (name, [low, high]) in &raw.bounds {
-        // An infinite limit is none.
+        // An infinite limit means no limit.
         let none = |v: f64, open: f64| v.is_nan() || v != open && v.abs() > LARGEST_KNOWN;
         let wrong = if none(*low, f64::NEG_INFINITY) || none(*high, f64::INFINITY) {
             format!(

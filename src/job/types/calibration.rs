@@ -15,7 +15,7 @@ pub enum Terms {
 pub struct CalibrationKeys {
     /// Runs that teach; `None`: every run whose loads are known.
     pub runs: Option<Vec<String>>,
-    /// Columns of the runs file: runs alike in these are repeats.
+    /// Columns of the runs file; runs with equal values in these columns are repeats.
     pub repeats: Vec<String>,
     /// Column of the runs file that the scale may depend on.
     pub depends_on: Option<String>,

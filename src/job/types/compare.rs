@@ -15,7 +15,7 @@ pub struct Compare {
     pub line: u32,
 }
 
-/// Time added to the times of recorded loads to get those of the strain record.
+/// Time added to the times of recorded loads to get the times of the strain record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimeShift {
     /// Estimated from recovered and recorded loads.

@@ -6,7 +6,7 @@
 pub struct StrainCorrection {
     /// Channel.
     pub gauge: String,
-    /// 1, or -1 where it is wired backwards.
+    /// 1, or -1 if the gauge has reversed polarity.
     pub sign: f64,
     /// Reading divided by strain.
     pub gain: f64,

@@ -38,7 +38,7 @@ pub struct JobGauge {
     pub surface: Surface,
     /// Whether the job states the surface (else it is `top`, or the one nearest to the stated point).
     pub surface_stated: bool,
-    /// Direction to be laid on the surface, basic frame or that of `cid`; `None`: the element x axis.
+    /// Direction to be projected on the surface, in the basic frame or the frame of `cid`; `None`: the element x axis.
     pub direction: Option<[f64; 3]>,
     /// Coordinate system of the direction.
     pub cid: u32,

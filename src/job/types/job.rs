@@ -71,7 +71,7 @@ pub struct Job {
     pub combinations: Vec<Combination>,
     /// `[[correction]]`, in job order.
     pub corrections: Vec<StrainCorrection>,
-    /// `[[gauge]]`, then those of `[gauges] file`.
+    /// Gauges of `[[gauge]]`, then gauges of `[gauges] file`.
     pub gauges: Vec<JobGauge>,
     /// Names of the readings of gauges that were left out of this job ([`Job::without_validation_gauges`]).
     pub reserved: Vec<String>,

@@ -1,4 +1,4 @@
-//! A job with its defaults filled in and its words checked. Lengths, forces and masses are in the job's units unless a field states another unit.
+//! A job with its defaults filled in and its values checked. Lengths, forces and masses are in the job's units unless a field states another unit.
 
 mod ballast;
 mod calibration;

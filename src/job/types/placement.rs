@@ -57,11 +57,11 @@ pub struct Placement {
     pub proof: bool,
     /// Smallest distance between gauges; default 0.
     pub spacing: f64,
-    /// Noise, microstrain; default: that of `[measured]`, else 1.
+    /// Noise, microstrain; default: the noise of `[measured]`, else 1.
     pub noise_microstrain: f64,
     /// Gluing tolerance, degrees, 1 sd; default 0.
     pub angle_tolerance_deg: f64,
-    /// Model uncertainty, of the predicted strain; default: that of `[measured]`, else 0.
+    /// Model uncertainty, of the predicted strain; default: the model uncertainty of `[measured]`, else 0.
     pub model_uncertainty_rel: f64,
     /// Seed of everything random.
     pub seed: u64,
@@ -81,7 +81,7 @@ pub struct Placement {
     pub costs: Vec<(String, f64)>,
     /// Largest cost of a layout; default: `gauges`.
     pub budget: Option<f64>,
-    /// Numbers of gauges for the curve; empty: none is drawn.
+    /// Numbers of gauges for the curve; empty: no curve.
     pub curve: Vec<usize>,
     /// Gauges reserved for validation.
     pub reserve: usize,

@@ -14,12 +14,12 @@ pub enum LoadFile {
 }
 
 impl LoadFile {
-    /// Whether this build can write it.
+    /// Returns whether this build can write the file.
     pub fn is_built(self) -> bool {
         self != Self::Parquet || cfg!(feature = "parquet")
     }
 
-    /// All of them, with the words of a job.
+    /// All files, with their names in a job.
     pub const ALL: [(&'static str, LoadFile); 4] = [
         ("rpc", Self::Rpc),
         ("nastran", Self::Nastran),

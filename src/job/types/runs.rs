@@ -1,4 +1,4 @@
-//! `[runs]`, and recorded loads of `[compare]`, which are read as those of `[runs]`.
+//! `[runs]`, and recorded loads of `[compare]`, which are read like the loads of `[runs]`.
 
 use super::named_file::NamedFile;
 use crate::reconcile::strain::WheelForces;

@@ -3,8 +3,9 @@ use super::{Cholesky, factor_by_columns};
 /// Sizes on both sides of the order from which blocks are used.
 const ORDERS: [usize; 4] = [1, 30, 64, 150];
 
-/// The covariance 4 (min(i, j) + 1) of a random walk with steps of two: L is two on and below the diagonal, so det C = 4^n; four times its
-/// inverse is the second difference with a last entry of one.
+/// Returns the covariance 4 (min(i, j) + 1) of a random walk with steps of two.
+///
+/// L is two on and below the diagonal, so det C = 4^n. Four times the inverse of C is the second difference with a last entry of one.
 fn walk(n: usize) -> Vec<f64> {
     (0..n * n)
         .map(|k| 4.0 * ((k / n).min(k % n) + 1) as f64)
@@ -18,7 +19,7 @@ fn the_factor_of_a_random_walk_is_that_of_the_closed_form() {
         let log_det = n as f64 * 4f64.ln();
         assert!((c.log_det() / log_det - 1.0).abs() < 1e-12, "{n}");
         let x: Vec<f64> = (0..n).map(|i| ((i * 7 + 3) % 11) as f64).collect();
-        // Twice L^-1 x are its steps.
+        // Twice L^-1 x are the steps of x.
         let steps = |i: usize| x[i] - if i > 0 { x[i - 1] } else { 0.0 };
         let chi2: f64 = (0..n).map(|i| steps(i).powi(2)).sum();
         assert!((4.0 * c.chi2(&x) / chi2 - 1.0).abs() < 1e-12, "{n}");

@@ -1,8 +1,8 @@
-//! A matrix summed from dense terms, branches of the elimination tree side by side.
+//! Sums a matrix from dense terms, with the branches of the elimination tree in parallel.
 //!
-//! A term lies in one branch and the top, as groups of two branches are never joined. So a branch forms its terms and adds what falls into
-//! its columns without regard to others; the rest is added in the end. Every entry is summed in the order of the terms, whatever the number
-//! of threads.
+//! A term belongs to one branch and the top, because groups of two branches are never connected. So a branch forms its terms and adds the entries in
+//! its own columns independently of other branches. The other entries are added at the end. Every entry is summed in the order of the terms, whatever
+//! the number of threads.
 
 use super::block_matrix::{BlockMatrix, DenseTerm};
 use super::branches::OUTSIDE;
@@ -32,7 +32,7 @@ impl BlockMatrix {
         let mut matrix = Self::zeros(symbolic, graph);
         let branches = &symbolic.branches;
         let in_top = |g: u32| branches.in_top[symbolic.position[g as usize] as usize] != OUTSIDE;
-        // Terms by branch; those in the top alone, and those without an unknown, last.
+        // Terms by branch. Terms in the top alone and terms without an unknown come last.
         let mut of_branch: Vec<Vec<usize>> = vec![Vec::new(); branches.list.len() + 1];
         for (i, groups) in groups.iter().enumerate() {
             let below = groups.iter().find(|g| !in_top(**g));

@@ -1,5 +1,4 @@
-//! Branches of the elimination tree that have nothing to do with each other, and the top of the tree above them: what can be factored and
-//! substituted side by side.
+//! Independent branches of the elimination tree, and the top of the tree above them. The branches can be factored and substituted in parallel.
 
 use super::graph::NONE;
 use super::supernodes::Supernodes;
@@ -45,7 +44,7 @@ impl Branches {
         let n = nodes.len();
         let groups = |s: &Range<usize>| nodes.first[s.start] as usize..nodes.first[s.end] as usize;
         let unknowns = |s: &Range<usize>| start[groups(s).start]..start[groups(s).end];
-        // Work of each supernode and all below it, and the lowest below it.
+        // For each supernode: the work of its subtree, and the first supernode of its subtree.
         let (mut below, mut first) = (vec![0.0; n], (0..n).collect::<Vec<usize>>());
         let mut total = 0.0;
         for s in 0..n {
@@ -109,8 +108,8 @@ impl Branches {
         levels
     }
 
-    /// Branches in tasks about as heavy as each other: indices into `list`. As many whatever the number of threads, so that sums over them
-    /// round alike.
+    /// Returns the branches in tasks of similar work, as indices into `list`. The number of tasks does not depend on the number of threads, so that
+    /// sums over tasks round identically.
     pub(super) fn shared_out(&self) -> Vec<Vec<usize>> {
         let mut bins = vec![(0.0_f64, Vec::new()); TASKS];
         for i in self.heaviest_first() {

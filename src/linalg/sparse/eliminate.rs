@@ -1,7 +1,7 @@
 //! Elimination of the first unknowns of a dense symmetric matrix, lower triangles by columns.
 //!
-//! Blocks are halved until they are so narrow that they stay in registers; the rest is matrix products. Large matrices are cut into tiles of a fixed
-//! size that threads share, so that rounding doesn't depend on how many there are. Entries above diagonals are never read.
+//! Blocks are halved until they are narrow enough to stay in registers; the remaining work is matrix products. Threads share large matrices in tiles
+//! of a fixed size, so that rounding doesn't depend on the number of threads. Entries above diagonals are never read.
 
 use super::narrow_blocks;
 use faer::linalg::matmul::matmul;
@@ -119,8 +119,8 @@ pub(super) fn take_out(
     }
 }
 
-/// Multiplications of [`eliminate`] and [`take_out`] that follow each other however many threads share the matrix: of every block of
-/// columns the block itself and one tile of rows, then one strip.
+/// Returns the number of multiplications of [`eliminate`] and [`take_out`] in sequence, however many threads share the matrix. Every block of columns
+/// contributes the block itself and one tile of rows, then one strip.
 pub(super) fn longest_chain(own: usize, below: usize) -> f64 {
     let blocks = (0..own).step_by(BLOCK).map(|k| {
         let (n, tile) = (BLOCK.min(own - k), TILE.min(own + below - k));

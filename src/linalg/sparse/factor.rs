@@ -70,7 +70,7 @@ impl<'a> Factor<'a> {
         .factor(&mut values)?;
         let mut lost = found.lost;
         lost.sort_unstable();
-        // Their springs stand in the factor: the residual is that of the matrix it is the factor of.
+        // The factor contains springs at these unknowns, and so must the matrix that residuals are computed with.
         for &unknown in &lost {
             matrix.add_to_place(symbolic, unknown, 1.0);
         }
@@ -124,7 +124,7 @@ impl Pass<'_> {
         let mut all = FactorPivots::new();
         let mut left: Vec<Option<Update>> = Vec::new();
         left.resize_with(self.symbolic.nodes.len(), || None);
-        // The heaviest begin first; results are taken in elimination order.
+        // The heaviest branches start first; results are taken in elimination order.
         let mut of_branch: Vec<Option<&mut [f64]>> = of_branch.into_iter().map(Some).collect();
         let heaviest = branches.heaviest_first().into_iter();
         let work: Vec<(usize, &mut [f64])> = heaviest
@@ -188,7 +188,7 @@ impl Pass<'_> {
         for s in branch.supernodes.clone() {
             let (panel, rest) = values.split_at_mut(nodes.values(s..s + 1).len());
             values = rest;
-            // In postorder the children of a supernode are the last that wait.
+            // In postorder, the children of a supernode are the last updates in `waiting`.
             let child = |u: &Update| nodes.parent[u.node] as usize == s;
             let first = waiting.len() - waiting.iter().rev().take_while(|u| child(u)).count();
             let front = Front::new(self.symbolic, self.matrix, s);

@@ -239,7 +239,7 @@ impl<'a> Front<'a> {
     /// Sums the contributions of children to the rows below.
     fn collect(&self, left: &mut [f64], children: &[Update], runs: &[Vec<Run>], tiles: Tiles) {
         let n = self.below;
-        // Child and place there, by column.
+        // Sums the contributions of all children to one column.
         let add = |(column, to): (usize, &mut [f64])| {
             to[column..].fill(0.0);
             for (child, runs) in children.iter().zip(runs) {

@@ -1,7 +1,7 @@
 //! Sparse symmetric positive definite systems whose unknowns come in small groups (six to a grid): ordering, factor, solution.
 //!
-//! Orders and the shape of the factor are found on the graph of groups, which has six times fewer vertices than the matrix has rows; the
-//! factor itself is multifrontal, its dense matrices multiplied by faer.
+//! The order and the structure of the factor are determined on the graph of groups. It has six times fewer vertices than the matrix has rows. The
+//! factorization is multifrontal; faer multiplies its dense matrices.
 
 mod assemble;
 mod block_matrix;

@@ -1,5 +1,5 @@
-//! Substitution with the columns of one supernode, for `K` right-hand sides row by row: four columns at a time go by once, from the first
-//! row to the last, while what they multiply stays in registers.
+//! Substitution with the columns of one supernode, for `K` right-hand sides stored by rows. Four columns at a time are read once, from the first row
+//! to the last, while the values that they multiply stay in registers.
 
 /// Columns that go together.
 const TOGETHER: usize = 4;
@@ -55,12 +55,12 @@ impl<const K: usize> pulp::WithSimd for Backward<'_, '_, K> {
 }
 
 impl Panel<'_> {
-    /// Solves L11 x = b on its own rows, the first of `work`, and takes L21 x out of the rest.
+    /// Solves L11 x = b on the supernode's own rows, the first of `work`, and subtracts L21 x from the other rows.
     pub(super) fn forward<const K: usize>(self, work: &mut [[f64; K]]) {
         pulp::Arch::new().dispatch(Forward(self, work));
     }
 
-    /// Solves L11' x = b - L21' y on its own rows, the first of `work`, where the rest is y.
+    /// Solves L11' x = b - L21' y on the supernode's own rows, the first of `work`; y are the other rows.
     pub(super) fn backward<const K: usize>(self, work: &mut [[f64; K]]) {
         pulp::Arch::new().dispatch(Backward(self, work));
     }
@@ -70,7 +70,7 @@ impl Panel<'_> {
     fn columns<const N: usize>(&self, j: usize) -> [&[f64]; N] {
         std::array::from_fn(|a| {
             let column = j + a;
-            // Those before have all rows but as many as stand above their diagonals: 0, 1 .. column - 1.
+            // Earlier columns lack the rows above their diagonals: 0, 1 .. column - 1 rows.
             let from = column * self.rows - column * column.saturating_sub(1) / 2;
             &self.values[from..][..self.rows - column]
         })

@@ -67,8 +67,7 @@ impl Factor<'_> {
         }
     }
 
-    /// Epsilon of each of `k` solutions `y` for right-hand sides `x`; where it is above `limit`, a solution is replaced by its refinement
-    /// if that is better.
+    /// Returns epsilon of each of `k` solutions `y` for right-hand sides `x`. If epsilon is above `limit`, a better refinement replaces the solution.
     fn refine(&self, y: &mut [f64], x: &[f64], k: usize, limit: f64) -> Vec<SolutionAccuracy> {
         let found = self.remainders(y, x, k);
         let mut told = Vec::with_capacity(k);
@@ -159,7 +158,7 @@ impl Factor<'_> {
     fn scale_columns(&self, x: &[f64], k: usize) -> Vec<f64> {
         let (n, symbolic) = (x.len() / k, self.symbolic);
         let mut y = vec![0.0; x.len()];
-        // Groups of a task.
+        // Groups of each parallel task.
         let groups: Vec<&[u32]> = symbolic.order.chunks(GROUPS).collect();
         let mut rest = y.as_mut_slice();
         let mut pieces = Vec::with_capacity(groups.len());

@@ -15,7 +15,7 @@ enum Way {
     Backward,
 }
 
-/// Rows that a substitution reads and writes: those of a branch and those of the top, or of the top alone.
+/// Rows that a substitution reads and writes: rows of a branch and of the top, or of the top alone.
 struct Rows<'a> {
     branch: &'a mut [f64],
     top: &'a mut [f64],

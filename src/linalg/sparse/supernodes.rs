@@ -114,7 +114,7 @@ impl Supernodes {
     }
 }
 
-/// Supernodes being merged; what is merged into another is no longer a child of any.
+/// Supernodes being merged. A supernode that is merged into another is no longer a child.
 struct MergedSupernodes {
     /// Groups of each at first, numbered as in the forest.
     groups: Vec<Range<u32>>,

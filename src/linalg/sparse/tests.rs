@@ -74,7 +74,7 @@ fn the_solution_of_many_right_hand_sides_satisfies_the_equations() {
         let factor = Factor::new(&symbolic, matrix.clone()).unwrap();
         assert!(factor.lost.is_empty());
         let n = symbolic.n_unknowns();
-        // More than go together.
+        // More right-hand sides than are solved together.
         let b: Vec<f64> = (0..29 * n)
             .map(|i| ((i * 37 + 11) % 101) as f64 / 50.0 - 1.0)
             .collect();
@@ -112,7 +112,7 @@ fn every_unknown_is_in_one_branch_or_the_top_and_threads_change_nothing() {
     }
     assert_eq!(in_top, branches.n_top);
     assert!(times.iter().all(|t| *t == 1));
-    // The lattice is divided at all, and the top is the smaller part.
+    // The lattice is divided, and the top is the smaller part.
     assert!(branches.list.len() > 8 && branches.n_top < n / 2);
     let matrix = assemble(&symbolic, &graph, &terms, m);
     let solved = |threads: usize| {
@@ -127,14 +127,14 @@ fn every_unknown_is_in_one_branch_or_the_top_and_threads_change_nothing() {
     let (one, told) = solved(1);
     assert_eq!(told, 7);
     for threads in [2, 5] {
-        // Bit by bit: the factor too is made by that many threads.
+        // Equal in every bit, although the factor too is computed by this number of threads.
         assert!(solved(threads).0 == one);
     }
 }
 
 #[test]
 fn work_on_paper_is_that_of_a_dense_matrix_and_bounded_by_its_longest_chain() {
-    // All groups joined: one front, or a chain of fronts, of a dense matrix.
+    // All groups are connected: one front, or a chain of fronts, of a dense matrix.
     let n: u32 = 100;
     let all: Vec<u32> = (0..n).collect();
     let graph = BlockGraph::from_cliques(n as usize, || std::iter::once(all.as_slice()));
@@ -157,7 +157,7 @@ fn work_on_paper_is_that_of_a_dense_matrix_and_bounded_by_its_longest_chain() {
 fn epsilon_is_small_where_digits_are_lost_and_refinement_makes_it_no_larger() {
     let (side, m) = (40, 6);
     let (graph, sizes, mut terms) = lattice(side, m, true);
-    // Every third spring a million times softer than the rest: digits are lost.
+    // Every third spring is a million times softer than the other springs, so that digits are lost.
     for (_, k) in terms.iter_mut().step_by(3) {
         k.iter_mut().for_each(|k| *k *= 1e-6);
     }
@@ -178,7 +178,8 @@ fn epsilon_is_small_where_digits_are_lost_and_refinement_makes_it_no_larger() {
     };
     for c in 0..2 {
         let at = c * n..(c + 1) * n;
-        // Both are what rounding leaves, summed in another order: equal in size at best. A residual of the wrong matrix is of order one.
+        // Both residuals are rounding errors, summed in a different order, so that only their sizes are similar. A residual of the wrong matrix is of
+        // order one.
         assert!(epsilon(&plain[at.clone()], &b[at.clone()]) < 1e-6);
         assert!(told[c].first < 1e-6, "{:e}", told[c].first);
         assert!(told[c].last <= told[c].first);

@@ -43,9 +43,10 @@ impl Symbolic {
         all
     }
 
-    /// Multiplications after which so many threads are done at the latest: branches one by one to the thread that is free, heaviest first; then level
-    /// by level the fronts above them, each level no later than its work shared out and its longest chain (R. L. Graham, Bell System Tech. J. 45
-    /// (1966) 1563).
+    /// Returns an upper bound for the multiplications in sequence with this number of threads.
+    ///
+    /// A free thread takes the heaviest remaining branch. The fronts above follow level by level. A level takes at most its work shared by all
+    /// threads plus its longest chain (R. L. Graham, Bell System Tech. J. 45 (1966) 1563).
     pub fn work_with(&self, threads: usize) -> f64 {
         let p = threads.max(1);
         let mut busy = vec![0.0_f64; p];

@@ -64,9 +64,9 @@ fn ratios(steady: f64, walk: f64) -> [f64; 2] {
 
 #[test]
 fn a_followed_zero_is_as_far_off_as_is_stated_whether_it_wanders_or_drifts_on() {
-    // No walk, a walk, a steady drift of ten times the noise in a stretch, and both.
+    // No drift, a random walk, a steady drift of ten times the noise between two zero runs, and both.
     for (steady, walk) in [(0.0, 0.0), (0.0, 0.4), (1.0, 0.0), (1.0, 0.4)] {
-        // Of 300 times 8 zeros; a tenth for estimates that are cut off at zero.
+        // The ratio has the scatter of 300 times 8 zeros, plus a tenth for estimates that are cut off at zero.
         for ratio in ratios(steady, walk) {
             assert!((0.8..1.2).contains(&ratio), "{steady} {walk}: {ratio}");
         }

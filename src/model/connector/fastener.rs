@@ -100,8 +100,8 @@ impl Builder<'_> {
         })
     }
 
-    /// The element's own axes, or with MFLAG 1 those of MCID. How MCID turns the element about its axis (MFLAG 0) matters where KT2 and
-    /// KT3, or KR2 and KR3, differ, and is refused there.
+    /// Returns the axes of the stiffnesses: the element axes, or with MFLAG 1 the axes of MCID. With MFLAG 0, MCID turns the element about its axis.
+    /// This matters if KT2 and KT3, or KR2 and KR3, differ, and such an element is refused.
     fn stiffness_axes(&mut self, p: &PlacedCard<Pfast>, own: Mat3, at: Vec3) -> Option<Mat3> {
         let Some(cid) = p.mcid else { return Some(own) };
         let name = format!("PFAST {}", p.id);

@@ -34,11 +34,11 @@ impl Builder<'_> {
         }
     }
 
-    /// KA along the axis and KT (MU1 KA where blank) across while closed, KB along it while open, all between the translations of the
-    /// grids: a grid of solids has no rotation to lean on.
+    /// Returns the springs of a gap between the translations of its grids. A closed gap has KA along the axis and KT (MU1 KA if blank) across it. An
+    /// open gap has KB along the axis. Rotations have no springs: a grid of solids has no rotational stiffness.
     ///
     /// # Reference
-    /// MSC Nastran Quick Reference Guide, CGAP and PGAP: in linear solutions the stiffness is that of the initial state.
+    /// MSC Nastran Quick Reference Guide, CGAP and PGAP: linear solutions use the stiffness of the initial state.
     fn gap(&mut self, g: &PlacedCard<Gap>, p: &PlacedCard<Pgap>, name: &str) -> Option<Joint> {
         let [ga, gb] = g.grids;
         let (a, b) = (
@@ -73,7 +73,7 @@ impl Builder<'_> {
                         let g0 = self.grid(g0, name, "GO", g.at)?;
                         self.x(g0) - xa
                     }
-                    // Across the axis a gap is the same all round.
+                    // The stiffness is equal in all directions across the axis, so any direction will do.
                     Orientation::Blank => {
                         let mut v = Vec3::zeros();
                         v[(xb - xa).iamin()] = 1.0;

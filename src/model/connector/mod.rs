@@ -52,8 +52,8 @@ impl Builder<'_> {
     }
 }
 
-/// Axes of a connector by rows: the first from A to B, or along `normal` where they coincide; the second in the plane of the first and
-/// of the basic axis that it leans to least.
+/// Returns the axes of a connector by rows. The first axis runs from A to B, or along `normal` if both points coincide. The second axis is in the
+/// plane of the first and of the basic axis that is closest to perpendicular to it.
 ///
 /// # Reference
 /// MSC Nastran Quick Reference Guide, CFAST and CWELD (element coordinate system).

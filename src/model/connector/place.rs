@@ -207,8 +207,8 @@ impl Builder<'_> {
         self.fault(stated.name.to_owned(), "GS", stated.at, kind);
     }
 
-    /// Four points about the foot, corners of the square of the weld's area across its axis, each projected; with the halvings of the
-    /// diameter that it took.
+    /// Attaches a weld by four auxiliary points around its foot, each projected onto the patch. The points are the corners of a square with the area
+    /// of the weld across its axis. Also returns how often the diameter was halved until all points were on the patch.
     fn by_auxiliary_points(
         &self,
         patches: &mut Patches,

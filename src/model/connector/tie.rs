@@ -7,9 +7,9 @@ use std::collections::BTreeMap;
 
 type Rows3 = SMatrix<f64, 3, 6>;
 
-/// Motion of the foot of a patch: translation u = sum N_i u_i, rotation half the curl of the tangent plane, from translations alone:
-/// theta_1 = sum dN_i/dy w_i, theta_2 = - sum dN_i/dx w_i, theta_3 = (sum dN_i/dx v_i - sum dN_i/dy u_i) / 2 with x, y in the
-/// tangent plane and w along the normal.
+/// Returns the motion of the foot of a patch from translations alone. The translation is u = sum N_i u_i. The rotation is half the curl in the
+/// tangent plane: `theta_1 = sum dN_i/dy w_i`, `theta_2 = - sum dN_i/dx w_i`, `theta_3 = (sum dN_i/dx v_i - sum dN_i/dy u_i) / 2`. Here x and y are
+/// in the tangent plane and w is along the normal.
 ///
 /// # Reference
 /// MSC Nastran Quick Reference Guide, CWELD (constraints of the formats GRIDID and ELEMID).
@@ -22,7 +22,7 @@ pub(super) fn by_slopes(patch: &Patch, foot: &Foot) -> Option<JointEnd> {
     let t1 = a.try_normalize(0.0)?;
     let n = foot.normal;
     let t2 = n.cross(&t1);
-    // Slopes along x and y from those along r and s.
+    // Converts slopes along r and s to slopes along x and y.
     let (xr, yr, xs, ys) = (a.dot(&t1), a.dot(&t2), b.dot(&t1), b.dot(&t2));
     let det = xr * ys - yr * xs;
     if !(det.abs() > 0.0) {

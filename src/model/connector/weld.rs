@@ -380,8 +380,8 @@ impl Builder<'_> {
     }
 }
 
-/// The six springs at the middle of a beam of round section: EA / L, 12 EI / L^3 (1 + phi) twice, GJ / L, EI / L twice, with
-/// phi = 12 EI / (k G A L^2). With rigid arms of half its length to the ends they are the beam.
+/// Returns the six springs at the middle of a beam of round section. They are EA / L, 12 EI / L^3 (1 + phi) twice, GJ / L and EI / L twice. Here phi
+/// = 12 EI / (k G A L^2). With rigid arms of half the length to both ends the springs are equivalent to the beam.
 fn round_beam(e: f64, g: f64, d: f64, length: f64) -> [f64; 6] {
     let area = PI * d * d / 4.0;
     let i = PI * d.powi(4) / 64.0;

@@ -121,8 +121,8 @@ impl Builder<'_> {
 
     /// Returns the load of an RFORCE or RFORCE1. Only steady rotation of the whole structure is carried.
     ///
-    /// The forces are those of the mass where it is. METHOD 1 gives them for lumped mass, METHOD 2 for mass at grids alone: it leaves out
-    /// the acceleration of mass at an offset from its grid, so that it is refused with such mass. The default of RFORCE1 is METHOD 2.
+    /// The forces act at the true location of the mass. METHOD 1 does so for lumped mass, METHOD 2 for mass at grids alone. METHOD 2 omits the
+    /// acceleration of mass at an offset from its grid, so it is refused with such mass. The default of RFORCE1 is METHOD 2.
     fn rforce(&mut self, card: &PlacedCard<Rforce>) -> Option<Load> {
         let word = if card.is_rforce1 { "RFORCE1" } else { "RFORCE" };
         let name = format!("{word} {}", card.sid);

@@ -7,11 +7,11 @@ use nastran::cards::Pload1;
 use nastran::place::PlacedCard;
 
 impl Builder<'_> {
-    /// A load along a bar or beam in its own axes.
+    /// Returns the load along a bar or beam in element axes.
     ///
     /// # Reference
-    /// MSC Nastran Quick Reference Guide, PLOAD1: LE and LEPR give places as lengths, FR and FRPR as shares; the PR scales count
-    /// intensity per length projected across the direction of the load.
+    /// MSC Nastran Quick Reference Guide, PLOAD1. LE and LEPR give positions as lengths, FR and FRPR as fractions. With the PR scales the intensity
+    /// is per length projected across the load direction.
     pub(super) fn pload1(&mut self, p: &PlacedCard<Pload1>) -> Option<Load> {
         let name = format!("PLOAD1 {}", p.sid);
         let Some(beam) = self.model.beam_ix(p.element) else {
@@ -48,7 +48,7 @@ impl Builder<'_> {
         } else {
             [p.p1, p.p2.unwrap_or(p.p1)].map(|v| v * factor)
         };
-        // Against the rounding of lengths given to a few digits.
+        // Tolerance for lengths that a deck states with few digits.
         const BEYOND: f64 = 1e-6;
         let inside = |x: f64| (-BEYOND..=1.0 + BEYOND).contains(&x);
         if !(inside(from) && inside(to) && from <= to) {

@@ -70,7 +70,7 @@ pub(super) fn dependent_materials<'a>(
         }
         let stated = base.e.is_some() && base.g.is_some();
         if stated && own[0].is_some() != own[1].is_some() {
-            // Solvers differ: either the other modulus stays, or it follows.
+            // Solvers differ: the other modulus is either kept or computed from the first one.
             let card = "MATT1 with one of T(E) and T(G) for a MAT1 with E and G".to_owned();
             found.refuse(card, Some(matt.id), matt.at);
             whole = false;

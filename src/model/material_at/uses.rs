@@ -210,7 +210,7 @@ fn mean(
         let id = model.grids.get(g.us()).map_or(0, |g| g.id);
         list.push(at.get(g.us()).copied().flatten().ok_or(id)?);
     }
-    // Equal temperatures give that temperature, whatever their number.
+    // The mean of equal temperatures is exactly that temperature, without rounding.
     match list.first() {
         Some(first) if list.iter().all(|t| t == first) => Ok(*first),
         _ => Ok(list.iter().sum::<f64>() / list.len().max(1) as f64),

@@ -24,7 +24,7 @@ pub(super) fn hat_on_plate([w, h, crown, t, plate]: [f64; 5]) -> Option<Shape> {
         rectangle([plate, h - t], [half - t, half]),
         rectangle([h - t, h], [-half, half]),
     ]);
-    // Brim and plate are one wall of both thicknesses; the cell has the plate for its floor.
+    // Brim and plate together are one wall of both thicknesses. The plate is the lower wall of the cell.
     let (y0, y1, z) = (plate / 2.0, h - t / 2.0, half - t / 2.0);
     let both = t + plate;
     let cells = of_cells(
@@ -59,8 +59,8 @@ pub(super) fn hat_on_plate([w, h, crown, t, plate]: [f64; 5]) -> Option<Shape> {
     )
 }
 
-/// Width, height, distance of the middle wall's midline from the left side, thickness of left, middle, right wall, of top left, bottom
-/// left, top right, bottom right.
+/// Returns the double box with the dimensions `d`. These are width, height and the distance of the midline of the middle wall from the left side.
+/// Then follow the thicknesses of the left, middle and right wall, and of the top left, bottom left, top right and bottom right wall.
 pub(super) fn double_box(d: [f64; 10]) -> Option<Shape> {
     let [
         w,

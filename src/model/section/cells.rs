@@ -12,11 +12,11 @@ pub(super) struct Cells {
     pub torsion: f64,
 }
 
-/// Walls on midline points (y, z), joined anyhow.
+/// Returns the shear centre of walls on midline points (y, z), joined in any way, and the torsion constant of their cells.
 ///
-/// Twisted by one about a pole, wall e of length l sweeps the sectorial area s_e between its ends; the warping w at the points makes
-/// sum t / l (w_to - w_from - s_e)^2 least, which is the torsion constant of the cells (Bredt's; nothing for open walls). The shear
-/// centre makes the sectorial moments of w about it vanish, as for open walls.
+/// Under unit twist about a pole, wall e of length l sweeps the sectorial area s_e between its ends. The warping w at the points minimises sum t / l
+/// (w_to - w_from - s_e)^2. The minimum is the torsion constant of the cells (Bredt; zero for open walls). The shear centre makes the sectorial
+/// moments of w vanish, as for open walls.
 ///
 /// # Reference
 /// W. D. Pilkey, Analysis and Design of Elastic Beams (2002), chapters 6 and 7; E. Trefftz (1935), shear centre.
@@ -42,7 +42,7 @@ pub(super) fn of_cells(points: &[[f64; 2]], walls: &[Wall]) -> Option<Cells> {
             .map(|p| [p[0] - centroid[0], p[1] - centroid[1]])
     };
     let n = points.len();
-    // The warping of the first point is zero; a constant is of no matter below, once its mean is taken out.
+    // The warping of the first point is set to zero. A constant has no effect, because the mean is subtracted below.
     let mut k = DMatrix::zeros(n, n);
     let mut f = DVector::zeros(n);
     let mut swept = Vec::with_capacity(walls.len());

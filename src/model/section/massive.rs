@@ -56,7 +56,7 @@ pub(super) fn box1([w, h, top, bottom, right, left]: [f64; 6]) -> Option<Shape> 
     let j = 4.0 * enclosed * enclosed
         / (hm * (1.0 / left + 1.0 / right) + wm * (1.0 / top + 1.0 / bottom));
     let k = [hm * (left + right) / a.area, wm * (top + bottom) / a.area];
-    // Closed walls of like thickness: the shear centre is the centroid.
+    // The shear centre of closed walls is taken as the centroid, which is right for walls of similar thickness.
     finish(a, a.centroid, j, k, corners([0.0, h], [0.0, w]))
 }
 

@@ -1,5 +1,5 @@
-//! Cross-sections of PBARL and PBEAML: [`shape`] knows the types of the manual ([`massive`], [`open`], [`boxes`]), [`area`] integrates
-//! over their parts, [`thin`] finds the shear centre of open walls, [`cells`] that and the torsion of closed ones.
+//! Cross-sections of PBARL and PBEAML. [`shape`] contains the section types of the manual ([`massive`], [`open`], [`boxes`]). [`area`] integrates
+//! over the parts of a section. [`thin`] computes the shear centre of open walls, [`cells`] the shear centre and torsion constant of closed walls.
 
 mod area;
 mod boxes;

@@ -258,7 +258,7 @@ pub(super) fn h_section(inner: f64, flange: f64, h: f64, web: f64) -> Option<Sha
         RECTANGLE_SHEAR * 2.0 * h * flange / a.area,
         inner * web / a.area,
     ];
-    // Two flanges that bend against each other.
+    // Warping of two flanges that bend in opposite directions.
     let cw = flange * h.powi(3) * (inner + flange).powi(2) / 24.0;
     finish(
         a,

@@ -1,12 +1,12 @@
-//! The section types of PBARL and PBEAML.
+//! Section types of PBARL and PBEAML.
 //!
-//! Element y points up in the manual's figures and z to the right; recovery points C D E F are at the places of the figures. The element axis runs
-//! through the shear centre. Dimensions DIM1, DIM2 .. are `d[0]`, `d[1]` ..
+//! In the figures of the manual, element y points up and element z points to the right. The recovery points C, D, E and F are at the locations of the
+//! figures. The element axis runs through the shear centre. Dimensions DIM1, DIM2 .. are `d[0]`, `d[1]` ..
 //!
 //! # Reference
-//! MSC Nastran Quick Reference Guide, PBARL and PBEAML (figures of the types). Torsion: W. C. Young, Roark's Formulas for Stress
-//! and Strain, table 20 (bar), Bredt's formula (box), sum of b t^3 / 3 (open walls). Shear factors: share of the walls that carry
-//! the shear, 5/6 where it varies as in a rectangle; 0.9 for a solid and 0.5 for a hollow circle.
+//! MSC Nastran Quick Reference Guide, PBARL and PBEAML (figures of the types). Torsion: W. C. Young, Roark's Formulas for Stress and Strain, table 20
+//! (bar), Bredt's formula (box), sum of b t^3 / 3 (open walls). Shear factors: the area fraction of the walls that carry the shear, times 5/6 if the
+//! shear varies as in a rectangle. A solid circle has 0.9, a hollow circle 0.5.
 
 use super::boxes::{double_box, hat_on_plate};
 use super::massive::{bar, box1, circle, cross, hexagon};

@@ -7,7 +7,7 @@ fn is_close(a: f64, b: f64, tolerance: f64) -> bool {
 
 #[test]
 fn areas_agree_with_the_manuals_formulas() {
-    // Area formulas as the manual's figures give them (pyNastran's list of them), evaluated at these dimensions.
+    // Area formulas of the figures in the manual (as listed in pyNastran), evaluated at these dimensions.
     let d = [6.0, 5.0, 0.7, 0.4, 0.6, 0.5];
     let cases: [(&str, &[f64], f64); 15] = [
         (
@@ -54,7 +54,7 @@ fn areas_agree_with_the_manuals_formulas() {
 
 #[test]
 fn a_channels_shear_centre_is_outside_its_web_by_the_textbook_distance() {
-    // e = 3 b^2 tf / (h tw + 6 b tf) from the midline of the web (Timoshenko, Strength of Materials), midline sizes b, h.
+    // e = 3 b^2 tf / (h tw + 6 b tf) from the midline of the web, with the midline dimensions b and h. Source: Timoshenko, Strength of Materials.
     let (w, h, tw, tf) = (4.0, 9.0, 0.5, 0.6);
     let (b, hm) = (w - tw / 2.0, h - tf);
     let e = 3.0 * b * b * tf / (hm * tw + 6.0 * b * tf);

@@ -9,11 +9,11 @@ pub(super) struct Wall {
     pub t: f64,
 }
 
-/// Shear centre (y, z) of walls on the midline points (y, z).
+/// Returns the shear centre (y, z) of walls on the midline points (y, z).
 ///
-/// With the sectorial coordinate w (dw = (y - yB) dz - (z - zB) dy along the midline from a pole B), the shear centre B + (a, b)
-/// makes the sectorial moments about it vanish: S_wy - a I_yz + b I_yy = 0 and S_wz - a I_zz + b I_yz = 0, where
-/// S_wy = integral w y dA about the centroid and I_yy = integral y^2 dA.
+/// The sectorial coordinate w is dw = (y - yB) dz - (z - zB) dy along the midline from a pole B. The shear centre is B + (a, b). The sectorial
+/// moments about it vanish: S_wy - a I_yz + b I_yy = 0 and S_wz - a I_zz + b I_yz = 0. Here S_wy = integral w y dA about the centroid and I_yy =
+/// integral y^2 dA.
 ///
 /// # Reference
 /// W. D. Pilkey, Analysis and Design of Elastic Beams (2002), chapter 7 (thin-walled beams, open sections).

@@ -13,7 +13,7 @@ fn straight_node_locations(edges: &[(usize, usize)], corners: &[[f64; 3]]) -> Ve
 
 #[test]
 fn a_bent_edge_adds_the_area_under_its_parabola() {
-    // The parabola through (0,0), (1/2,-h), (1,0) has area 2/3 h; so have the mid-side grids of a square and a triangle.
+    // The parabola through (0,0), (1/2,-h), (1,0) has the area 2/3 h. The mid-side grid adds this area to a square and to a triangle.
     let h = 0.3;
     let mut x = straight_node_locations(
         &SQUARE,

@@ -22,8 +22,8 @@ pub struct Model {
     pub frames: Vec<Frame>,
     /// Shells by ascending id.
     pub shells: Vec<Shell>,
-    /// Shell properties by ascending id. Elements that need a property of their own (their temperature, NSM of ELEMENT) have a copy with
-    /// the id of the original behind all others; likewise of beams, solids and materials.
+    /// Shell properties by ascending id. An element that needs a separate property (for its temperature or NSM of ELEMENT) has a copy with the id of
+    /// the original. Copies follow after all other properties. Beam properties, solid properties and materials have copies in the same way.
     pub shell_properties: Vec<ShellProperty>,
     /// CBAR and CBEAM by ascending id.
     pub beams: Vec<Beam>,
@@ -71,7 +71,7 @@ pub struct Model {
     pub material_temperature: Option<u32>,
     /// Cards of the deck that change stiffness, mass, constraints or loads and have no place above: a solver must refuse them.
     pub unsupported_cards: Vec<UnsupportedCard>,
-    /// Parameters that change what the model means.
+    /// Parameters that affect the model, its solution or its output.
     pub params: Params,
     /// Names of properties and components from comments: (`property id`, name).
     pub property_names: Vec<(u32, String)>,

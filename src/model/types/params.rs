@@ -1,6 +1,6 @@
 //! Parameters of the deck.
 
-/// Parameters that change what the model means, with the deck's value or the default.
+/// Parameters that affect the model, its solution or its output, with the value of the deck or the default.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     /// WTMASS, default 1.

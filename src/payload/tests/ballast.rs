@@ -41,7 +41,7 @@ fn one_mass_is_found_with_its_place_and_a_range_that_holds_the_truth() {
         "{b:?}"
     );
     assert_eq!(fit.fixed, 3);
-    // The total is the sum of four readings: 95 % is 1.96 * 0.05 * 2 either way, on the grid of the walk.
+    // The total is the sum of four readings. Its 95 % interval is 1.96 * 0.05 * 2 on either side, on the grid of the search.
     assert!(b.weight_range[0] < 40.0 && b.weight_range[1] > 40.0 - 1e-3);
     assert!(b.weight_range[1] - b.weight_range[0] < 2.0 * 1.96 * 0.05 * 2.0 + 1e-6);
 }

@@ -82,13 +82,13 @@ fn intervals_hold_the_truth_of_an_empty_structure_and_of_small_payloads() {
         };
         let found: Vec<_> = (0..trials).into_par_iter().map(one).collect();
         let held = found.iter().flatten().filter(|f| f.0).count() as f64 / trials as f64;
-        // 95 % less three standard errors of 500; a run that is refused counts as one missed.
+        // 95 % less three standard errors of 500 trials. A refused run counts as a miss.
         assert!(
             held > 0.95 - 3.0 * (0.95 * 0.05 / trials as f64).sqrt() && held <= most,
             "at {at} sigma: {held}"
         );
         let wide = found.iter().flatten().map(|f| f.1).sum::<f64>() / trials as f64;
-        // 2 x 1.96 sigma, and what gauges that may be worse than stated add.
+        // 2 x 1.96 sigma, plus the widening because gauges may be worse than stated.
         assert!(wide < 1.35 * 3.92 * sigma(), "at {at} sigma: {wide}");
     }
 }
@@ -98,7 +98,7 @@ fn an_interval_is_cut_at_zero_as_the_equation_says_and_left_alone_above_it() {
     assert_eq!(cut_at_zero(5.0, [3.0, 7.0]), (5.0, [3.0, 7.0]));
     assert_eq!(cut_at_zero(1.0, [-1.0, 3.0]), (1.0, [0.0, 3.0]));
     assert_eq!(cut_at_zero(-1.0, [-3.0, 1.0]), (0.0, [0.0, 2.0]));
-    // Its end never lies below the half width, however far the readings lie below zero by chance.
+    // The upper end is never below the half width, however negative the readings are by chance.
     assert_eq!(cut_at_zero(-2.5, [-4.5, -0.5]), (0.0, [0.0, 2.0]));
 }
 
@@ -130,7 +130,7 @@ fn a_run_without_an_answer_changes_nothing_of_the_others() {
     for (i, truth) in [(1, 50.0), (3, 80.0), (4, 0.0)] {
         let w = &found.runs[i];
         assert_eq!(w.refused, None);
-        // Four sigma of noise, and three of the model's per cent.
+        // Four standard deviations of noise, and three of the model error of 1 %.
         assert!(
             (w.force - truth).abs() < 4.0 * sigma() + 0.03 * truth,
             "{w:?}"

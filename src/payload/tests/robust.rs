@@ -52,7 +52,7 @@ const THESIS: [(&str, f64, f64); 39] = [
 const TRUTH: [f64; 2] = [32.255, 54.414];
 
 fn spec() -> RobustSpec {
-    // 20 t is the bound that the thesis gave its own search (6.5); 5 % is what a gauge, its place and a model usually scatter.
+    // 20 t is the search limit in the thesis (6.5). 5 % is the usual scatter of a gauge, its position and a model.
     RobustSpec {
         relative_scatter: 0.05,
         largest: 196.2,
@@ -77,7 +77,7 @@ fn the_printed_single_gauge_estimates_of_the_thesis_give_an_interval_that_holds_
             "{truth} kN outside {:?}",
             run.interval
         );
-        // An interval wider than half the load would be no answer.
+        // An interval wider than half of the load would be useless.
         assert!(
             run.interval[1] - run.interval[0] < 0.5 * truth,
             "{:?}",
@@ -167,9 +167,9 @@ fn five_hundred_trucks_with_a_third_of_the_gauges_bad_are_covered_by_the_interva
             .count();
     }
     let coverage = f64::from(u32::try_from(inside).expect("small")) / 1000.0;
-    // 1,000 intervals of 95 %: one sd of the count is 0.7 %, and at least 90 % is asked for.
+    // The standard deviation of the share of 1,000 intervals of 95 % is 0.7 %. At least 90 % is required.
     assert!((0.92..=0.99).contains(&coverage), "coverage {coverage}");
-    // A bad gauge that happens to read the truth can't be told.
+    // A bad gauge that reads the true value by chance can't be detected.
     assert!(
         (bad_used as f64) < 0.06 * bad_all as f64,
         "{bad_used} of {bad_all} bad gauges used"

@@ -1,4 +1,4 @@
-//! Payloads weighed on a truck of six wheels whose gauges answer at random.
+//! Payload weighing on a truck with six wheels and random gauge responses.
 
 use crate::linalg::Matrix;
 use crate::payload::{PayloadModel, PayloadRun, Place, Refusal, WeighSpec, weigh};
@@ -149,7 +149,7 @@ fn intervals_and_regions_cover_as_stated_whatever_the_source() {
             let q = (e * d[0] * d[0] - 2.0 * b * d[0] * d[1] + a * d[1] * d[1]) / (a * e - b * b);
             region += usize::from(q < 5.991);
         }
-        // 95 % of 400: 380 +- 4.4; gauges in doubt by chance widen a little.
+        // 95 % of 400 is 380 +- 4.4. Gauges that are down-weighted by chance widen the intervals a little.
         assert!(
             (362..=396).contains(&held),
             "source {source}: {held} of {trials}"
@@ -191,7 +191,7 @@ fn with_a_third_of_the_gauges_bad_weight_and_place_stay_and_the_bad_ones_are_nam
         }
         for (g, v) in answer.gauges.iter().enumerate() {
             let bad = (g + trial) % 3 == 0;
-            // A gauge that hardly reads is not much changed by a factor.
+            // An error factor has little effect on a gauge with little strain.
             let loud = runs.iter().any(|r| r.strain[g].abs() > 40.0 * MICROSTRAIN) || g % 4 == 1;
             if bad && loud {
                 bad_all += 1;

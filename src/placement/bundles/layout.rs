@@ -43,7 +43,7 @@ pub fn place_bundles(bundles: &Bundles, spec: &BundleSpec) -> Result<BundleLayou
     let mut order = relaxed.by_weight();
     for start in 0..spec.effort.starts.max(1) {
         if start > 0 {
-            // A random order that keeps to the weights.
+            // Random order with probabilities from the weights.
             let mut keyed: Vec<(f64, usize)> = relaxed
                 .by_weight()
                 .into_iter()

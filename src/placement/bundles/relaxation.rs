@@ -120,7 +120,7 @@ pub(super) fn relax(bundles: &Bundles, spec: &BundleSpec) -> Option<BundleRelaxa
             order.truncate(keep);
         }
         order.sort_by(by);
-        // A dear bundle among the best leaves room for fewer: the list holds enough of the cheapest.
+        // An expensive bundle among the best leaves room for fewer bundles, so the list contains enough of the cheapest ones.
         let mut items: Vec<(f64, f64)> = order
             .iter()
             .map(|&u| (worth[u] * bundles.cost[u], bundles.cost[u]))
@@ -139,7 +139,7 @@ pub(super) fn relax(bundles: &Bundles, spec: &BundleSpec) -> Option<BundleRelaxa
         } else {
             (0.3 * gap).min(inner).max(0.2 * spec.tolerance)
         };
-        // New ones begin with a little of everyone's weight.
+        // New bundles start with a small share of the weight of all other bundles.
         let share = 0.1;
         weights.iter_mut().for_each(|w| *w *= 1.0 - share);
         let cost: f64 = fresh.iter().map(|&u| bundles.cost[u]).sum();

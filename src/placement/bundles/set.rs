@@ -1,4 +1,4 @@
-//! The bundles, and what is asked of a layout of them.
+//! Bundles, and the requirements on a layout of bundles.
 
 use crate::linalg::spd;
 use crate::placement::criterion::Criterion;

@@ -63,6 +63,6 @@ fn layouts_of_units_within_a_budget_reach_the_best_of_all_subsets_and_their_boun
         );
         reached += usize::from(own >= best - 1e-9);
     }
-    // Exchange of single bundles is a local search: nearly all, and never above.
+    // Exchange of single bundles is a local search. It finds the optimum in nearly all trials and never exceeds it.
     assert!(reached >= 180, "{reached} of 200");
 }

@@ -6,7 +6,7 @@ use crate::placement::condition;
 
 #[test]
 fn eigenvalues_of_a_chain_of_springs_are_those_in_closed_form() {
-    // 2 on the diagonal, -1 beside it: 2 - 2 cos(i pi / (k + 1)).
+    // The matrix has 2 on the diagonal and -1 next to it. Its eigenvalues are 2 - 2 cos(i pi / (k + 1)).
     for k in [1, 2, 6, 36] {
         let mut a = vec![0.0; k * k];
         for i in 0..k {
@@ -18,7 +18,7 @@ fn eigenvalues_of_a_chain_of_springs_are_those_in_closed_form() {
         }
         for (i, e) in spd::eigenvalues(&a, k).into_iter().enumerate() {
             let angle = (i + 1) as f64 * std::f64::consts::PI / (k + 1) as f64;
-            // Rounding of some hundred rotations.
+            // Tolerance for the rounding of some hundred rotations.
             assert!((e - (2.0 - 2.0 * angle.cos())).abs() < 1e-13, "{k} {i} {e}");
         }
     }
@@ -50,7 +50,7 @@ fn layouts_for_the_condition_number_are_within_a_fifth_of_the_least_of_all_subse
         let got = condition::find_least_condition(&c, &spec, &by_d, &vec![0.0; k * k]).unwrap();
         assert_eq!(got.gauges.len(), s);
         let own = of(&got.gauges);
-        // Eigenvalues of S'S carry the square of the condition number.
+        // The eigenvalues of S'S give the square of the condition number, so the tolerance is wider.
         assert!((own - got.condition).abs() < 1e-6 * own, "trial {trial}");
         assert!(own <= 1.2 * least, "trial {trial}: {own} against {least}");
         assert!(got.least >= least * (1.0 - 1e-6) && got.least <= own * (1.0 + 1e-6));

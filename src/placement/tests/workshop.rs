@@ -201,7 +201,7 @@ fn fewer_gauges_than_loads_are_placed_where_load_sizes_are_known() {
 fn in_the_noise_of_two_degrees_a_layout_that_ignores_it_keeps_a_quarter_and_one_of_weighed_rows_nearly_all()
  {
     let Some((n, t)) = tensors(6) else { return };
-    // Tensors are microstrain for 1 kN: 30 kN, 1 microstrain, 2 degrees.
+    // The tensors are in microstrain for 1 kN. The test uses 30 kN, 1 microstrain of noise and 2 degrees.
     let made = |angle_sd: f64| {
         let scatter = Scatter {
             angle_sd,
@@ -227,7 +227,7 @@ fn in_the_noise_of_two_degrees_a_layout_that_ignores_it_keeps_a_quarter_and_one_
             "{s} gauges: {kept:.3} against {:.4}",
             careful.efficiency_bound
         );
-        // A reference found .19 to .25 and .995, printed with three digits.
+        // A reference solution gave .19 to .25 and .995, printed with three digits.
         assert!(kept < 0.3, "{s}: {kept}");
         assert!(careful.efficiency_bound > 0.995 - 0.001, "{s}");
     }

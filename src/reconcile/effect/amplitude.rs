@@ -1,7 +1,7 @@
 //! Amplitudes that differ from run to run: temperature, side loads, ground.
 
-/// Strain patterns whose amplitudes are unknown in every run and known only by their usual size: a part that repeats in all runs (axles
-/// scrub the same way each time the truck drives up) and a part that is another in every run.
+/// Strain patterns whose amplitudes are unknown in every run, except for their usual size. One part of an amplitude repeats in all runs, since axles
+/// scrub the same way each time the truck drives up. The other part differs in every run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Amplitudes {
     /// One pattern over the gauges each: microstrain per unit amplitude.
@@ -10,9 +10,10 @@ pub struct Amplitudes {
     pub kinds: Vec<usize>,
     /// Usual scatter (prior sd from run to run) of each kind, in `unit`.
     pub usual: Vec<f64>,
-    /// Usual size (prior sd) of the part of each kind that repeats in all runs; zero where nothing repeats, or a parameter holds it.
+    /// Usual size (prior sd) of the part of each kind that repeats in all runs. Zero if no part repeats, or if a parameter contains it.
     pub steady: Vec<f64>,
-    /// Correlation of noise of these patterns, the stated noise included, between a run and the next in file order; zero for all else.
+    /// Correlation between a run and the next run in file order, for patterns that are noise (including the stated noise). Zero for all other
+    /// patterns.
     pub correlation: f64,
     /// Unit for reports.
     pub unit: &'static str,
@@ -30,12 +31,12 @@ pub struct SizedAmplitudes {
 }
 
 impl SizedAmplitudes {
-    /// Variance from run to run of the amplitudes of `kind`.
+    /// Returns the variance from run to run of the amplitudes of `kind`.
     pub fn scatter_variance(&self, kind: usize) -> f64 {
         self.sizes.get(kind).map_or(0.0, |s| s * s)
     }
 
-    /// Variance of what repeats in all runs.
+    /// Returns the variance of the part that repeats in all runs.
     pub fn steady_variance(&self, kind: usize) -> f64 {
         self.sizes
             .get(self.amplitudes.usual.len() + kind)

@@ -1,4 +1,4 @@
-//! `card_gain`: one amplifier or module with a wrong gain for several channels that follow each other.
+//! `card_gain`: one amplifier or module with a wrong gain for several consecutive channels.
 
 use super::channel_fault::{ChannelFault, FaultScope, OnGauges};
 use super::gauge_gain::{gain_parameter, scale};
@@ -10,7 +10,8 @@ use crate::reconcile::strain::StrainFrame;
 pub struct CardGain;
 
 impl CardGain {
-    /// Every stretch of two or more channels in file order, up to half of them (a wrong gain of more is one of the rest, or of all).
+    /// Returns one effect for every range of two or more channels in file order, up to half of all channels. A wrong gain of more channels is
+    /// equivalent to a wrong gain of the other channels, or of all channels.
     pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         /// Amplifier cards hold at most this many channels.
         const MOST: usize = 16;

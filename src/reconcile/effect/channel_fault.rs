@@ -18,19 +18,19 @@ pub struct FaultScope<'a> {
 
 /// Effect of a fault on the channels of its gauges.
 pub trait ChannelFault: Send + Sync {
-    /// Effect id without the place.
+    /// Returns the effect id without the place.
     fn id(&self) -> &'static str;
     /// Returns the stage that the fault changes: the reading by default, the structure for a fault of the gauge itself (angle, place).
     fn stage(&self) -> Stage {
         Stage::Reading
     }
-    /// Parameters common to all runs.
+    /// Returns the parameters common to all runs.
     fn parameters(&self) -> Vec<Parameter> {
         Vec::new()
     }
     /// Turns strain at all gauges of a run (`row`) into readings.
     fn read(&self, _at: FaultScope<'_>, _parameters: &[f64], _row: &mut [f64]) {}
-    /// Change of the influence row of a gauge, for faults of the gauge itself.
+    /// Returns the change of the influence row of a gauge, for faults of the gauge itself.
     fn influence_change(
         &self,
         _frame: &StrainFrame,
@@ -39,7 +39,7 @@ pub trait ChannelFault: Send + Sync {
     ) -> Vec<f64> {
         Vec::new()
     }
-    /// Amplitudes that differ from run to run.
+    /// Returns the amplitudes that differ from run to run.
     fn amplitudes(&self, _frame: &StrainFrame, _gauges: &[usize]) -> Option<Amplitudes> {
         None
     }

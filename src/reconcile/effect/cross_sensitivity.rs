@@ -12,7 +12,7 @@ pub struct CrossSensitivity {
 }
 
 impl CrossSensitivity {
-    /// Every gauge with the one before and the one after it.
+    /// Returns one effect for every gauge with its predecessor, and one with its successor.
     pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         let n = frame.n_gauges();
         let mut out = Vec::new();

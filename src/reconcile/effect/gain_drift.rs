@@ -4,7 +4,7 @@ use super::channel_fault::{ChannelFault, FaultScope, OnGauges};
 use super::{Correction, Extension, Parameter};
 use crate::reconcile::strain::StrainFrame;
 
-/// Reading = strain times (1 + size k / (n - 1)), with k the number of the run from 0 and n the number of runs.
+/// Reading = strain times `1 + size k / (n - 1)`, with k the number of the run from 0 and n the number of runs.
 #[derive(Clone, Debug)]
 pub struct GainDrift;
 
@@ -47,7 +47,7 @@ impl ChannelFault for GainDrift {
         }
     }
     fn extension(&self, names: &[String], _parameters: &[f64]) -> Extension {
-        // What it will be in runs to come nobody knows.
+        // The gain in other runs is unknown.
         Extension::channel(names, Correction::Ignore)
     }
     fn separate_by(&self, place: &str) -> String {

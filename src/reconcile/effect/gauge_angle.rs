@@ -52,8 +52,8 @@ impl ChannelFault for GaugeAngle {
         Stage::Structure
     }
     fn parameters(&self) -> Vec<Parameter> {
-        // A first-order step is zero for a gauge along a principal direction: start on both sides. A gauge glued across is as usual a
-        // mistake as one glued askew: the prior is wide.
+        // The first-order step is zero for a gauge along a principal direction, so the search starts on both sides. A gauge installed across is as
+        // usual a mistake as a gauge installed askew, so the prior is wide.
         let starts = vec![-75.0, -30.0, -8.0, 8.0, 30.0, 75.0];
         vec![Parameter {
             unit: "degree",

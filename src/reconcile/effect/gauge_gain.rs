@@ -9,13 +9,14 @@ use crate::reconcile::strain::StrainFrame;
 pub struct GaugeGain;
 
 impl GaugeGain {
-    /// One on every gauge.
+    /// Returns one effect for every gauge.
     pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         on_every_gauge(frame, &Self)
     }
 }
 
-/// A gain that may be wrong by a bridge factor of 1/4 to 4, a common mistake, or by some tenths, a wrong gauge factor.
+/// Returns the parameter of a gain. A gain may be wrong by a bridge factor of 1/4 to 4, which is a common mistake. It may also be wrong by some
+/// tenths because of a wrong gauge factor.
 pub(super) fn gain_parameter() -> Parameter {
     Parameter {
         unit: "1",

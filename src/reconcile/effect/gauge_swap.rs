@@ -9,7 +9,7 @@ use crate::reconcile::strain::StrainFrame;
 pub struct GaugeSwap;
 
 impl GaugeSwap {
-    /// Every pair that is no pair of legs of one rosette.
+    /// Returns one effect for every pair of gauges that are not legs of the same rosette.
     pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         let n = frame.n_gauges();
         let mut out = Vec::new();

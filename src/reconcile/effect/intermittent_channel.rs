@@ -12,9 +12,10 @@ pub struct IntermittentChannel {
 }
 
 impl IntermittentChannel {
-    /// Every gauge that reads nothing but noise in a run where the model has it read clearly more, and something in another.
+    /// Returns one effect for every gauge that loses its signal. It reads only noise in a run with a clearly larger prediction, and reads strain in
+    /// another run.
     pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
-        /// In units of the noise: what is no reading, and what is one.
+        /// Limits in units of the noise: a smaller reading counts as absent, and a larger one as present (`CLEAR`).
         const NOTHING: f64 = 3.0;
         const CLEAR: f64 = 6.0;
         let predicted = predict(frame, &[]);
@@ -27,7 +28,7 @@ impl IntermittentChannel {
                 )
             };
             let runs = 0..frame.n_runs();
-            // Nearer to nothing than to what the model has it read: a weak reading that was lost counts as well.
+            // The reading is nearer to zero than to the prediction, so a lost weak reading counts as well.
             let noise = frame.noise_of(g);
             let silent = |r: usize| matches!(at(r), (y, Some(p)) if y.abs() < NOTHING * noise && y.abs() < (y - p).abs());
             let clear = |r: usize| matches!(at(r), (_, Some(p)) if p.abs() > CLEAR * noise);

@@ -7,9 +7,10 @@ use crate::reconcile::strain::StrainFrame;
 #[derive(Clone, Debug)]
 pub struct LateralWheelLoads;
 
-/// Components with their usual sizes as shares of a usual wheel force, moments per metre: a scrubbing tyre pushes sideways with a quarter
-/// of its load (a third of what it can before it slides), rolling resistance and brakes left on make a tenth; the side force acts half a
-/// metre below the hub, the others a few centimetres off.
+/// Components with their usual sizes as shares of a usual wheel force, moments per metre.
+///
+/// A scrubbing tyre pushes sideways with a quarter of its load, a third of the force at which it slides. Rolling resistance and brakes left on cause
+/// a tenth of the load. The side force acts half a metre below the hub, and the other forces act a few centimetres off it.
 const USUAL: [(&str, f64); 5] = [
     ("FX", 0.1),
     ("FY", 0.25),
@@ -18,7 +19,7 @@ const USUAL: [(&str, f64); 5] = [
     ("MZ", 0.04),
 ];
 
-/// Usual size of each component in `frame`, kN and kN m.
+/// Returns the usual size of each component in `frame`, kN and kN m.
 fn usual_sizes(frame: &StrainFrame) -> Vec<f64> {
     USUAL.iter().map(|u| u.1 * frame.usual_load()).collect()
 }
@@ -29,7 +30,7 @@ fn component(name: &str) -> Option<usize> {
 }
 
 impl LateralWheelLoads {
-    /// Itself where the frame knows such loads.
+    /// Returns the effect if the frame contains such loads.
     pub fn list_effects(frame: &StrainFrame) -> Vec<Self> {
         if frame
             .other_loads

@@ -30,7 +30,7 @@ use super::zero_drift::ZeroDrift;
 use crate::reconcile::strain::StrainFrame;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
-/// Effect at a place, with the cost of naming it: the log of the number of others that could have been named.
+/// Effect at a place, with its log prior weight, which decreases with the number of possible effects and places.
 pub struct Candidate {
     /// The effect.
     pub effect: Box<dyn StrainEffect>,
@@ -78,10 +78,11 @@ const LIBRARY: [Everywhere; 27] = [
     |_| box_effects(ModelDiscrepancy::list_effects()),
 ];
 
-/// Returns the candidates of `frame`. If `only` is not empty, these are the effects whose id (or id with place) it lists, and the general forms of
-/// discrepancy, which are not named effects.
+/// Returns the candidates of `frame`. If `only` is not empty, these are the effects whose id (or id with place) it lists. The general forms of
+/// discrepancy, which are not named effects, are always included.
 ///
-/// Prior weights sum to one: equal for all possible effects, and shared within an effect by its places.
+/// All possible effects have equal prior weights, and the places of an effect share its weight. The weights sum to one without the smooth error,
+/// which has a further weight.
 pub fn library(frame: &StrainFrame, only: &[String]) -> Vec<Candidate> {
     let wanted = |e: &dyn StrainEffect| {
         let full = super::full_id(e);
@@ -105,14 +106,14 @@ pub fn library(frame: &StrainFrame, only: &[String]) -> Vec<Candidate> {
         );
     }
     let n = out.len();
-    // One more hypothesis, shared by its lengths and amplitudes; that it competes costs no name a part of its weight.
+    // The smooth error is one more hypothesis, and its lengths and amplitudes share its weight. It does not reduce the weights of the named effects.
     let smooth = box_effects(SmoothError::list_effects(frame));
     let log_prior = -((n_groups + 1.0) * smooth.len().max(1) as f64).ln();
     let smooth = smooth.into_iter();
     out.extend(smooth.map(|effect| Candidate { effect, log_prior }));
     if let Some(learnt) = &frame.learnt {
         for c in &mut out {
-            // What one or two gauges do is like no load; what many do may be what a load makes.
+            // A fault of one or two gauges differs from the pattern of any load. A pattern over many gauges may resemble a load.
             let dof = match c.effect.gauges().len() {
                 1 | 2 => learnt.dof_outside,
                 _ => learnt.dof,
@@ -124,8 +125,8 @@ pub fn library(frame: &StrainFrame, only: &[String]) -> Vec<Candidate> {
 }
 
 /// Returns the extra cost of naming one of `n` effects under a covariance estimated with `dof` degrees of freedom, natural log of odds. A deviation
-/// in any one direction then follows Student's t. One search of a hundred reaches a larger deviation by chance than under a known covariance, and
-/// half the difference of both squares is the cost.
+/// in any one direction then follows Student's t. The deviation that one search of a hundred reaches by chance is therefore larger than under a known
+/// covariance. The cost is half the difference of both squared deviations.
 fn cost_of_estimate(dof: f64, n: usize) -> f64 {
     /// Chance of a false name in one search.
     const FALSE: f64 = 0.01;

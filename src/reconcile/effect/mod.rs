@@ -1,7 +1,7 @@
 //! Effects that explain a difference between simulated and measured static strain.
 //!
 //! Each effect has its own file: physics, parameters with plausible sizes, change of the prediction, extension of the model. The search treats all
-//! effects alike. To add an effect, write its file and name it in [`library`]. A channel fault defines its change of a reading as a
+//! effects in the same way. To add an effect, write its file and name it in [`library`]. A channel fault defines its change of a reading as a
 //! [`channel_fault::ChannelFault`]; every other effect implements [`StrainEffect`].
 
 mod amplitude;
@@ -54,7 +54,8 @@ pub enum Stage {
     Reading,
 }
 
-/// Kind of fault, which determines whether two faults may be at one gauge: only a zero drift can be distinguished from another fault there.
+/// Kind of fault, which determines whether two faults may be at one gauge. Only a zero drift can be distinguished from another fault at the same
+/// gauge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaultKind {
     /// Change of how the channel reads strain.
@@ -78,7 +79,7 @@ impl FaultKind {
 /// General form of discrepancy, with the text that describes the gap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Discrepancy {
-    /// Noise alike at all gauges: the stated noise is too small.
+    /// Noise with the same factor at all gauges: the stated noise is too small.
     Noise(&'static str),
     /// A form that is in no model and no channel of the library.
     Form(&'static str),
@@ -114,9 +115,9 @@ pub struct Parameter {
 
 /// A discrepancy with its physics.
 pub trait StrainEffect: Send + Sync {
-    /// Id without the place, as in results.
+    /// Returns the id without the place, as in results.
     fn id(&self) -> &str;
-    /// The place: a gauge, a zone, `a+b`.
+    /// Returns the place: a gauge, a zone, `a+b`.
     fn place(&self) -> Option<String> {
         None
     }
@@ -130,7 +131,7 @@ pub trait StrainEffect: Send + Sync {
     }
     /// Returns the stage at which the effect acts.
     fn stage(&self) -> Stage;
-    /// Parameters common to all runs.
+    /// Returns the parameters common to all runs.
     fn parameters(&self) -> Vec<Parameter> {
         Vec::new()
     }
@@ -146,7 +147,7 @@ pub trait StrainEffect: Send + Sync {
         _part: Part,
     ) {
     }
-    /// Amplitudes that differ from run to run.
+    /// Returns the amplitudes that differ from run to run.
     fn amplitudes(&self, _frame: &StrainFrame) -> Option<Amplitudes> {
         None
     }
@@ -177,7 +178,7 @@ pub struct Member<'a> {
     pub parameters: &'a [f64],
 }
 
-/// Full id, with the place.
+/// Returns the full id, with the place.
 pub fn full_id(effect: &dyn StrainEffect) -> String {
     match effect.place() {
         Some(place) => format!("{}:{place}", effect.id()),

@@ -22,10 +22,10 @@ pub enum ModelDiscrepancy {
     Scatter,
     /// Scatter in proportion to the root mean square reading of each gauge.
     RelativeScatter,
-    /// Each gauge has a different zero error: zeros were taken in another state than the one that the runs count from.
+    /// Each gauge has a different zero error, since its zero was taken in another state than the reference state of the runs.
     Zeros,
-    /// Noise that wanders slowly from run to run, with the correlation between successive runs in percent. All gauges have the same ratio of it to
-    /// their stated noise.
+    /// Noise that varies slowly from run to run, with the correlation between successive runs in percent. Its ratio to the stated noise is equal at
+    /// all gauges.
     Wander(u8),
 }
 
@@ -188,7 +188,7 @@ impl StrainEffect for ModelDiscrepancy {
         };
         let height: Vec<f64> = match self {
             Self::Zeros => vec![1.0; n_g],
-            // Noise is as many times the stated one at all gauges.
+            // The noise exceeds the stated noise by the same factor at all gauges.
             Self::Scatter | Self::Wander(_) => match &frame.gauge_noise {
                 Some(noise) => noise.sd(),
                 None => vec![1.0; n_g],

@@ -8,7 +8,7 @@ use crate::reconcile::strain::{PayloadWeight, StrainFrame, StrainState};
 pub struct PayloadGravityMissing;
 
 impl PayloadGravityMissing {
-    /// Itself where the analyst's model lacks the weight.
+    /// Returns the effect if the analyst's model lacks the weight.
     pub fn list_effects(frame: &StrainFrame) -> Vec<Self> {
         let carries = frame.payload.iter().any(|p| p[0] > 0.0);
         if frame.payload_weight == PayloadWeight::Missing && carries {

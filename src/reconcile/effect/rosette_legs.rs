@@ -7,12 +7,12 @@ use crate::reconcile::strain::StrainFrame;
 /// Channel i of the rosette reads leg `order[i]`.
 #[derive(Clone, Debug)]
 pub struct RosetteLegs {
-    /// Which of the gauges each channel, in file order, reads: indices into the rosette.
+    /// Gauge that each channel, in file order, reads, as an index into the rosette.
     pub order: Vec<usize>,
 }
 
 impl RosetteLegs {
-    /// Every other order of two or three legs at one place; the rosette is named by its first leg.
+    /// Returns every other order of two or three legs at one place. The rosette has the name of its first leg.
     pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         const ORDERS: [&[usize]; 6] = [
             &[1, 0],
@@ -57,7 +57,7 @@ impl ChannelFault for RosetteLegs {
         }
     }
     fn extension(&self, names: &[String], _parameters: &[f64]) -> Extension {
-        // A turn of three is two exchanges, one after the other.
+        // A cyclic exchange of three legs is two exchanges of two legs in sequence.
         let mut now: Vec<usize> = self.order.clone();
         let mut steps = Vec::new();
         for leg in 0..now.len() {
@@ -84,7 +84,7 @@ mod tests {
     use crate::reconcile::effect::channel_fault::ChannelFault;
     use crate::reconcile::effect::{Correction, Extension};
 
-    /// The exchanges, one after the other, give every channel its own leg back.
+    /// Tests that the exchanges, in sequence, return every channel to its own leg.
     #[test]
     fn the_exchanges_undo_every_order_of_the_legs() {
         let names: Vec<String> = ["A", "B", "C"].map(String::from).to_vec();

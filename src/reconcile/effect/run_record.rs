@@ -19,7 +19,7 @@ pub struct RunRecord {
 impl RunRecord {
     /// Returns one effect for each load, for all loads together and for the mass, in every fit run.
     pub fn list_effects(frame: &StrainFrame) -> Vec<Self> {
-        /// A slip is of the order of what is noted: its usual size is a third of the root mean square over all runs.
+        /// Usual size of a record error, as a share of the root mean square of the recorded quantity over all runs.
         const SHARE: f64 = 0.3;
         let rms = |v: &mut dyn Iterator<Item = f64>| {
             let (sum, n) = v.fold((0.0, 0usize), |(s, n), x| (s + x * x, n + 1));
@@ -103,7 +103,7 @@ impl StrainEffect for RunRecord {
                 .iter_mut()
                 .skip(n_l)
                 .for_each(|f| *f *= (mass + size) / mass),
-            // Noted as empty: what is there acts at the nominal place.
+            // The run is recorded as empty, so the unrecorded mass acts at the nominal place.
             RecordedQuantity::Mass => {
                 if let Some(cell) = row.get_mut(n_l) {
                     *cell += size;

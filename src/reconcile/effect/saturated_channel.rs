@@ -7,12 +7,12 @@ use crate::reconcile::strain::{Part, StrainFrame, predict};
 /// Reading = strain, held between -limit and +limit.
 #[derive(Clone, Debug)]
 pub struct SaturatedChannel {
-    /// Largest reading of the channel: the limit is there or it did not act.
+    /// Largest reading of the channel. It is the limit of the range if the channel is saturated.
     pub largest: f64,
 }
 
 impl SaturatedChannel {
-    /// One on every gauge with two or more readings at its largest size, where the model predicts more.
+    /// Returns one effect for every gauge with two or more readings at its largest magnitude for which the model predicts more.
     pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         /// Readings held at a limit differ by noise only: five standard deviations.
         const ALIKE: f64 = 5.0;

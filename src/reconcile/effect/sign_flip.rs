@@ -9,7 +9,7 @@ use crate::reconcile::strain::StrainFrame;
 pub struct SignFlip;
 
 impl SignFlip {
-    /// One on every gauge.
+    /// Returns one effect for every gauge.
     pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         on_every_gauge(frame, &Self)
     }

@@ -1,14 +1,15 @@
-//! `smooth`: the model is off by a factor that changes smoothly from place to place, for all loads alike or for each load separately. This Gaussian
-//! process competes with all effects of the library: an effect that explains no more is not proven.
+//! `smooth`: the model is off by a factor that changes smoothly from place to place. The factor is common to all loads, or each load has its own.
+//! This Gaussian process competes with all effects of the library: an effect that explains no more is not proven.
 
 use super::{Discrepancy, Extension, Parameter, Stage, StrainEffect};
 use crate::linalg::{Matrix, dense};
 use crate::reconcile::strain::{StrainFrame, StrainState};
 use std::sync::Arc;
 
-/// Influence of gauge g under load l times `1 + h_l(x_g)`, with `h_l` a Gaussian process over place x of the squared exponential covariance
-/// `a^2 exp(-|x - x'|^2 / (2 L^2))`, as the leading vectors of its matrix: `h_l(x_g) = sum_k theta_lk sqrt(lambda_k) v_kg`, each theta of prior
-/// standard deviation a.
+/// Influence of gauge g under load l times `1 + h_l(x_g)`, with `h_l` a Gaussian process over place x.
+///
+/// The process has the squared exponential covariance `a^2 exp(-|x - x'|^2 / (2 L^2))`. It is represented by the leading eigenvectors of its matrix:
+/// `h_l(x_g) = sum_k theta_lk sqrt(lambda_k) v_kg`, with the prior standard deviation a of each theta.
 #[derive(Clone, Debug)]
 pub struct SmoothError {
     /// a.
@@ -21,8 +22,8 @@ pub struct SmoothError {
     n_factors: usize,
 }
 
-/// Amplitudes: a few percent (a mesh, sections, a support), and a model that is off by a tenth and more. A true one of 1.7 times as much or
-/// little costs 0.2 of log evidence a mode.
+/// Amplitudes a: a few percent (a mesh, sections, a support), and a tenth or more. If the true amplitude is 1.7 times larger or smaller, this costs
+/// 0.2 of log evidence for each mode.
 const AMPLITUDES: [f64; 2] = [0.04, 0.12];
 /// Lengths, of the greatest distance between gauges.
 const LENGTHS: [f64; 3] = [0.5, 0.25, 0.125];
@@ -30,7 +31,8 @@ const LENGTHS: [f64; 3] = [0.5, 0.25, 0.125];
 const SPACINGS: f64 = 1.5;
 /// Smallest number of gauges that show a curve.
 const FEWEST: usize = 6;
-/// Modes over all factors: those of one factor at the shortest length, and five for each of six loads and the payload.
+/// Largest number of modes over all factors, for one common factor and for one factor by load. The common factor needs the first number at the
+/// shortest length. The second number is about five each for six loads and the payload.
 const MODES: [usize; 2] = [16, 36];
 /// Share of the variance that the modes must contain.
 const HELD: f64 = 0.9;
@@ -38,7 +40,7 @@ const HELD: f64 = 0.9;
 const LEAST: f64 = 1e-3;
 
 impl SmoothError {
-    /// Every length and amplitude, for all loads and for each; none where the place of a gauge isn't known.
+    /// Returns every length and amplitude, with one factor for all loads and with one by load. The list is empty if the place of a gauge is unknown.
     pub fn list_effects(frame: &StrainFrame) -> Vec<Self> {
         let places: Option<Vec<[f64; 3]>> = frame.gauges.iter().map(|g| g.position).collect();
         let Some(places) = places.filter(|p| p.len() >= FEWEST) else {
@@ -73,15 +75,15 @@ impl SmoothError {
         out
     }
 
-    /// h at a gauge for a column of the influence matrix.
+    /// Returns h at a gauge for a column of the influence matrix.
     fn off_by(&self, gauge: usize, column: usize, parameters: &[f64]) -> f64 {
         let first = column.min(self.n_factors - 1) * self.modes.len();
         let own = parameters.iter().skip(first);
         self.modes.iter().zip(own).map(|(m, t)| m[gauge] * t).sum()
     }
 
-    /// `1 + h` at a gauge for a load (of all loads where they share one), and its standard deviation by the joint `covariance` of the
-    /// parameters (`n x n` by rows).
+    /// Returns `1 + h` at a gauge for a load (or for all loads if they share it), and its standard deviation. `covariance` is the joint covariance of
+    /// the parameters (`n x n` by rows).
     pub fn factor(
         &self,
         gauge: usize,
@@ -110,7 +112,7 @@ impl SmoothError {
         self.n_factors > 1
     }
 
-    /// Number of factors: one for all loads, or one for each and one for the payload where it differs from nothing.
+    /// Returns the number of factors: one for all loads, or one for each load and one for a payload other than zero.
     pub fn n_factors(&self) -> usize {
         self.n_factors
     }
@@ -127,7 +129,7 @@ fn distance(p: &[f64; 3], q: &[f64; 3]) -> f64 {
     squares.sum::<f64>().sqrt()
 }
 
-/// Median over gauges of the distance to the nearest one at another place.
+/// Returns the median over gauges of the distance to the nearest gauge at another place.
 fn usual_spacing(places: &[[f64; 3]], same: f64) -> Option<f64> {
     let nearest = |p: &[f64; 3]| {
         let far = places.iter().map(|q| distance(p, q));
@@ -138,8 +140,8 @@ fn usual_spacing(places: &[[f64; 3]], same: f64) -> Option<f64> {
     all.get(all.len() / 2).copied()
 }
 
-/// Returns the leading vectors of the covariance of unit amplitude, times the roots of their values; `None` if `most` vectors contain too little of
-/// it.
+/// Returns the leading eigenvectors of the covariance of unit amplitude, times the roots of their eigenvalues. `None` if `most` vectors contain too
+/// small a share of the variance.
 fn modes(places: &[[f64; 3]], length: f64, most: usize) -> Option<Vec<Vec<f64>>> {
     let n = places.len();
     let kernel = Matrix::from_fn(n, n, |i, j| {

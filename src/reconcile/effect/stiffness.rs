@@ -1,5 +1,5 @@
-//! `rail_stiffness`, `joint_stiffness`, `local_stiffness`: a zone, a joint or a small region stiffer or softer than modelled; and changes
-//! of the structure that the user described.
+//! `rail_stiffness`, `joint_stiffness`, `local_stiffness`: a zone, a joint or a small region stiffer or softer than modelled. Also changes of the
+//! structure that the user described.
 
 use super::{Extension, Parameter, Stage, StrainEffect};
 use crate::reconcile::strain::{StiffnessOf, StiffnessSignature, StrainFrame, StrainState};
@@ -18,12 +18,12 @@ pub struct Stiffness {
 }
 
 impl Stiffness {
-    /// One for every signature of zones, joints and regions.
+    /// Returns one effect for every signature of zones, joints and regions.
     pub fn list_effects(frame: &StrainFrame) -> Vec<Self> {
         Self::where_it(frame, |of| of != StiffnessOf::Described)
     }
 
-    /// One for every change that the user described.
+    /// Returns one effect for every change that the user described.
     pub fn list_described_effects(frame: &StrainFrame) -> Vec<Self> {
         Self::where_it(frame, |of| of == StiffnessOf::Described)
     }
@@ -45,8 +45,8 @@ impl Stiffness {
     }
 }
 
-/// Weights of the known sizes at `size`: the polynomial through zero and all of them (Lagrange); beyond the outermost of them on the
-/// straight line through zero and it, since a polynomial goes astray there.
+/// Returns the weights of the known sizes at `size`, by the polynomial through zero and all known sizes (Lagrange). Beyond the outermost known size,
+/// the weights are on the straight line through zero and this size, since a polynomial is unreliable there.
 fn weights(sizes: &[f64], size: f64) -> Vec<f64> {
     let outermost = sizes
         .iter()
@@ -90,7 +90,7 @@ impl StrainEffect for Stiffness {
             StiffnessOf::Joint | StiffnessOf::Local => ("percent (natural log times 100)", 0.5),
             StiffnessOf::Described => ("1", 0.01 * self.prior),
         };
-        // Four times the prior: a plate of half or one and a half times its thickness, a joint twenty times as stiff.
+        // Four times the prior corresponds to a plate of half or one and a half times its thickness, or a joint twenty times as stiff.
         let plausible = 4.0 * self.prior;
         vec![Parameter {
             unit,

@@ -6,7 +6,7 @@ use crate::reconcile::strain::StrainFrame;
 /// The two patterns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pattern {
-    /// All the structure alike.
+    /// Equal temperature change of the whole structure.
     Uniform,
     /// One side warmer.
     Gradient,
@@ -20,12 +20,12 @@ pub struct ThermalStrain {
 }
 
 impl ThermalStrain {
-    /// An even temperature, where the frame knows its strain.
+    /// Returns the effect of an even temperature if the frame contains its strain.
     pub fn list_uniform_effects(frame: &StrainFrame) -> Vec<Self> {
         Self::list_pattern_effects(frame, Pattern::Uniform)
     }
 
-    /// A gradient, where the frame knows its strain.
+    /// Returns the effect of a gradient if the frame contains its strain.
     pub fn gradient(frame: &StrainFrame) -> Vec<Self> {
         Self::list_pattern_effects(frame, Pattern::Gradient)
     }
@@ -45,7 +45,7 @@ impl ThermalStrain {
         }
     }
 
-    /// Usual size, degrees: what a day outdoors changes, and what sun makes of one side.
+    /// Returns the usual size, degrees: change during a day outdoors, and difference from sun on one side.
     fn usual_degrees(&self) -> f64 {
         match self.pattern {
             Pattern::Uniform => 12.0,

@@ -1,4 +1,4 @@
-//! `unaccounted_mass`: something heavy came aboard after the zero was taken.
+//! `unaccounted_mass`: a mass was added after the zero was taken.
 
 use super::{Extension, Parameter, Stage, StrainEffect};
 use crate::reconcile::strain::{StrainFrame, StrainState};
@@ -13,7 +13,7 @@ pub struct UnaccountedMass {
 }
 
 impl UnaccountedMass {
-    /// One at every place.
+    /// Returns one effect for every place.
     pub fn list_effects(frame: &StrainFrame) -> Vec<Self> {
         frame
             .masses

@@ -1,4 +1,4 @@
-//! `wheel_scale`: the scale or transducer under one wheel, or under all, reads a factor of the true force.
+//! `wheel_scale`: the scale or transducer under one wheel, or under all, reads the true force times a factor.
 
 use super::{Extension, Parameter, Stage, StrainEffect};
 use crate::reconcile::strain::{StrainFrame, StrainState, WheelForces};
@@ -62,7 +62,7 @@ impl StrainEffect for WheelScale {
         Stage::Loads
     }
     fn parameters(&self) -> Vec<Parameter> {
-        // Scales are calibrated to a percent; one that is wrong is wrong by some.
+        // Scales are calibrated to one percent, and a wrong scale is off by several percent.
         let units = if self.loads.len() > 1 {
             &UNITS[..]
         } else {

@@ -9,11 +9,11 @@ use crate::reconcile::strain::{Part, StrainFrame};
 pub enum ZeroDrift {
     /// By the same amount in all runs.
     Step,
-    /// In proportion to the number of the run: it creeps; the size is that of the last run.
+    /// Creep in proportion to the number of the run. The size is the drift at the last run.
     Creep,
-    /// Evenly from where it was at the first run; the size is the way to the last.
+    /// Linear drift from the value at the first run. The size is the change from the first run to the last.
     Line,
-    /// It stays away and scatters about where it went.
+    /// A constant offset with scatter about it from run to run.
     Wander,
 }
 
@@ -25,7 +25,7 @@ const USUAL_SCATTER: f64 = 10.0;
 const PLAUSIBLE: f64 = 1000.0;
 
 impl ZeroDrift {
-    /// All kinds on every gauge.
+    /// Returns one effect of each kind for every gauge.
     pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         let kinds = [Self::Step, Self::Creep, Self::Line, Self::Wander];
         (0..frame.n_gauges())
@@ -106,7 +106,7 @@ impl ChannelFault for ZeroDrift {
         let size = parameters.first().copied().unwrap_or(0.0);
         match self {
             Self::Step => Extension::channel(names, Correction::Offset(size)),
-            // Where it will be in a run to come nobody knows.
+            // The zero in other runs is unknown.
             Self::Creep | Self::Line | Self::Wander => {
                 Extension::channel(names, Correction::Ignore)
             }

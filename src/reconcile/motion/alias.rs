@@ -13,12 +13,13 @@ use crate::reconcile::search::{ScoredSet, Scorer, settle};
 
 /// Adds to `all` the best set with each of its channel faults moved to every other channel of the kind, and sorts `all`, best first.
 ///
-/// The background is in the units of the equations, whose scale the gain of a channel may change. If no force fixes the scale, models that differ by
-/// that scale alone are alike. Each of these sets is therefore compared with the best one under its own background. The lead is the difference of
-/// both likelihoods at their largest.
+/// The background is in the units of the equations, whose scale the gain of a channel may change. If no force fixes the scale, models that differ
+/// only by that scale are indistinguishable. Each of these sets is therefore compared with the best one under its own background. The lead is the
+/// difference of both likelihoods at their largest.
 ///
-/// Constants of forms (the velocity below which friction fades) were found before the fault was added, or with another channel at fault. They are
-/// then as wrong as the channel is. Each of these sets finds its own constants, so that none leads by them.
+/// Constants of forms (such as the velocity below which friction fades) were estimated before the fault was added, or with another channel at fault.
+/// They then contain the error of that channel. The constants are therefore estimated again for each of these sets, so that no set leads only because
+/// of them.
 pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<ScoredSet<MotionFit>>, decisive: f64) {
     let Some(best) = settle(all, decisive) else {
         return;
@@ -102,14 +103,16 @@ fn with_own_background(scorer: &MotionScorer, of: &ScoredSet<MotionFit>) -> Scor
     best
 }
 
-/// Returns whether the scale of all measured quantities is free: two channels, both of motion, without a force and without the weight. A gain of one
-/// channel and the inverse gain of the other are then the same model of the shaken part, whatever a finite record seems to prefer.
+/// Returns whether the scale of all measured quantities is free. This is the case for two channels that both measure motion, without a force and
+/// without the weight. A gain of one channel and the inverse gain of the other are then the same model of the shaken part. A finite record may still
+/// seem to prefer one of them.
 fn has_no_scale(frame: &MotionFrame, fit: &MotionFit) -> bool {
     /// Channels of which one gain is the inverse of another.
     const PAIR: usize = 2;
     let equations = &fit.design.equations;
     let driven = |e: &BinEquation| e.target.iter().any(|t| t.norm_sqr() > 0.0);
-    // A force that is no multiple of the motion, and known.
+    // A known nonlinear force fixes the scale, since it is not proportional to the motion. The test requires a known parameter and a nonlinear term
+    // of any link.
     let mut terms = frame.vehicle.links.iter().flat_map(|l| &l.terms);
     let fixed = !frame.known.is_empty() && terms.any(|t| !t.is_linear());
     !fixed
@@ -118,8 +121,8 @@ fn has_no_scale(frame: &MotionFrame, fit: &MotionFit) -> bool {
         && !equations.iter().any(driven)
 }
 
-/// Returns whether the gains that two fits find for two candidates are inverse to each other, within 3.3 standard deviations of both (one in a
-/// thousand). Another member of the set with a free size can make them differ.
+/// Returns whether the gains of two candidates in two fits are inverse to each other. The limit is 3.3 standard deviations of both (probability one
+/// in a thousand). Another member of the set with a free size can make them differ.
 fn is_inverse(one: (&MotionFit, usize), other: (&MotionFit, usize)) -> bool {
     const DEVIATIONS: f64 = 3.3;
     let gain = |(fit, candidate): (&MotionFit, usize)| -> Option<[f64; 2]> {

@@ -1,4 +1,4 @@
-//! Static part of a record: the mean wheel force is the weight of the vehicle, the mean of an accelerometer is gravity times its gain.
+//! Static part of a record. The mean wheel forces add up to the weight of the vehicle, and the mean of an accelerometer is gravity times its gain.
 
 use super::change::Change;
 use super::design::Design;
@@ -60,14 +60,14 @@ pub fn rest_row(frame: &MotionFrame, design: &Design, values: &[f64]) -> Option<
     }
     let weight: f64 = masses.iter().map(|&(i, g)| g * value(i)).sum();
     let force: f64 = forces.iter().map(|f| f.1).sum();
-    // A force that was zeroed reads less than the weight. One that stays well above nothing was not, and masses that came out at next to
-    // none beside it are those of a fit that went astray: a body without outside force is at rest for masses and springs of zero, too.
+    // A force that was zeroed reads less than the weight. A force that stays well above zero was not zeroed. Masses near zero together with such a
+    // force are from a wrong fit. Masses and springs of zero also satisfy the equations of a body without outside force.
     let ratio = weight / force;
     let astray = force > 0.0 && ratio < STATIC.start && stays_above_nothing(frame, v);
     if !(STATIC.contains(&ratio) || astray) {
         return None;
     }
-    // The mean of m a over the record is its change of momentum over its duration.
+    // The mean of m a over the record is the change of momentum divided by the duration.
     let momentum: f64 = frame
         .bodies
         .iter()
@@ -83,7 +83,7 @@ pub fn rest_row(frame: &MotionFrame, design: &Design, values: &[f64]) -> Option<
     })
 }
 
-/// Whether every wheel force of the compared bodies has a mean of more than one and a half of its standard deviations.
+/// Returns whether every wheel force of the compared bodies has a mean of more than one and a half of its standard deviations.
 fn stays_above_nothing(frame: &MotionFrame, v: &Vehicle) -> bool {
     const TIMES: f64 = 1.5;
     let stays = |channel: &str| {
@@ -122,16 +122,16 @@ fn velocity(design: &Design, body: usize) -> f64 {
             .map(|(a, f)| a.norm_sqr() / (2.0 * PI * f).powi(2))
             .sum()
     });
-    // E|X|^2 of a bin is the variance of white noise; a one-sided sum holds half of it.
+    // E|X|^2 of a bin is the variance of white noise; a one-sided sum contains half of it.
     (2.0 * power / n).sqrt()
 }
 
 impl RestRow {
-    /// Entry of a column, over the row's standard deviation.
+    /// Returns the entry of a column, over the row's standard deviation.
     pub fn entry(&self, of: &ColumnOf) -> f64 {
         let sum = match of {
             ColumnOf::Parameter(i) => self.acceleration_of(*i),
-            // A force that reads low by a share enters the balance with that share of its mean.
+            // A gain error of a force channel enters the balance as a share of the mean force.
             ColumnOf::Gain(c) => -(self.forces.iter())
                 .filter(|f| f.0 == *c)
                 .map(|f| f.1)
@@ -141,7 +141,7 @@ impl RestRow {
         sum / self.sigma
     }
 
-    /// Entry of a parameter that a change would bring, over the row's standard deviation.
+    /// Returns the entry of a parameter that a change would add, over the row's standard deviation.
     pub fn entry_of_change(&self, frame: &MotionFrame, change: &Change) -> f64 {
         match change {
             Change::Step(s) => s.gravity * step_share(frame, s) / self.sigma,
@@ -149,7 +149,7 @@ impl RestRow {
         }
     }
 
-    /// The right-hand side with held parameters taken off, over the row's standard deviation.
+    /// Returns the right-hand side minus the contribution of held parameters, over the row's standard deviation.
     pub fn target(&self, fixed: &[f64]) -> f64 {
         let force: f64 = self.forces.iter().map(|f| f.1).sum();
         let held: f64 = self
@@ -169,7 +169,7 @@ impl RestRow {
     }
 }
 
-/// Mean and number of the samples that are numbers.
+/// Returns the mean and number of the samples that are numbers.
 pub(super) fn finite_mean(x: &[f64]) -> Option<(f64, usize)> {
     let (sum, n) = x
         .iter()

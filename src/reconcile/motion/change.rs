@@ -40,7 +40,7 @@ pub enum Change {
         /// When, s of the record's time.
         at_s: f64,
     },
-    /// A channel went through a low-pass that the others did not.
+    /// A channel passed through a low-pass filter, and the other channels did not.
     Lag {
         /// The channel.
         channel: String,
@@ -79,7 +79,7 @@ pub struct ChangedVehicle {
     pub base: Vec<usize>,
 }
 
-/// The vehicle with all changes that concern it; changes of channels add nothing here, but for a swap.
+/// Returns the vehicle with all its changes. A change of a channel has no effect here, except for an exchange of channels.
 pub fn assemble(base: &Vehicle, changes: &[&Change]) -> ChangedVehicle {
     let mut vehicle = base.clone();
     let mut places: Vec<Vec<Place>> = Vec::new();
@@ -148,7 +148,7 @@ enum Place {
     Step(usize),
 }
 
-/// Corrections of a frame with that of one channel joined.
+/// Returns the corrections of a frame, joined with the correction of one channel.
 pub fn with_adjustment(list: &[Adjustment], more: Adjustment) -> Vec<Adjustment> {
     let mut out = list.to_vec();
     match out.iter_mut().find(|a| a.channel == more.channel) {
@@ -161,7 +161,7 @@ pub fn with_adjustment(list: &[Adjustment], more: Adjustment) -> Vec<Adjustment>
 impl Change {
     /// Returns shapes of the same kind with a slightly smaller and larger constant; empty if the shape has no constant to find.
     ///
-    /// `gravity` is the acceleration of gravity that a change of mass may bring into the balance.
+    /// `gravity` is the acceleration of gravity with which a change of mass enters the balance.
     pub fn neighbours(&self, step: f64, gravity: f64) -> Vec<Self> {
         /// Either side of the present constant.
         const SIDES: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
@@ -202,7 +202,8 @@ impl Change {
                 }
                 varied.then_some(Self::Terms { link: *link, terms })
             }),
-            // The band turns a step into a wave: its time has many near misses, so the first looks are dense.
+            // The band filter turns a step into a wave, so the residual has many local minima over the time of the step. The first trial times are
+            // therefore dense.
             Self::Step(m) if step > 0.05 => (-DENSE..=DENSE)
                 .flat_map(|i| {
                     let least = if step > 0.1 { 0.15 } else { 0.02 };
@@ -234,7 +235,7 @@ impl Change {
                 }
                 out
             }
-            // Filters of either order begin like a delay: only a fit tells them apart.
+            // Filters of both orders act like a delay at low frequency. Only a fit distinguishes them.
             Self::Lag { channel, order } if step > 0.1 => vec![Self::Lag {
                 channel: channel.clone(),
                 order: 3 - order,
@@ -249,7 +250,7 @@ impl Change {
         }
     }
 
-    /// The channel at fault; `None` for what is not a fault of one channel.
+    /// Returns the faulty channel; `None` if the change is not a fault of one channel.
     pub fn channel(&self) -> Option<&str> {
         match self {
             Self::Gain { channel }

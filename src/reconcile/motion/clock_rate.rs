@@ -1,4 +1,4 @@
-//! The rate of a clock that is far off, found on a beginning of the record that grows.
+//! Estimation of a large clock rate, on a beginning of the record that is extended step by step.
 
 use super::candidate::Candidate;
 use super::change::Change;
@@ -9,15 +9,16 @@ use super::noise::Background;
 use super::part::Part;
 use crate::series::channels::{Channel, Channels};
 
-/// The first stretch, s; each of the next is twice as long, up to the whole: the remaining error of a rate on one is small on the next.
+/// Length of the first stretch, s. Each further stretch is twice as long, up to the whole record. The error of a rate from one stretch is small
+/// enough as a start on the next one.
 const BEGIN_S: f64 = 15.0;
-/// Rates that the first begins with.
+/// Start rates for the first stretch.
 const RATES: [f64; 9] = [-8e-3, -6e-3, -4e-3, -2e-3, 0.0, 2e-3, 4e-3, 6e-3, 8e-3];
 
-/// The fit of a channel's clock alone.
+/// Fits the clock of one channel as the only effect.
 ///
-/// A step of least squares finds its way over a quarter of a wave. At 10 Hz, an axle's, a clock off by 3,000 millionths is nearly two waves late
-/// after a minute. Of the nine starts one is at most 1,000 off, 15 ms on the first stretch, a seventh of that wave.
+/// A step of least squares converges from up to a quarter of a wave. At the 10 Hz of an axle, a clock off by 3,000 millionths is nearly two waves
+/// late after a minute. One of the nine start rates is at most 1,000 millionths off. This is 15 ms on the first stretch, a seventh of such a wave.
 pub fn fit_of_clock(
     frame: &MotionFrame,
     candidates: &[Candidate],
@@ -52,7 +53,8 @@ pub fn fit_of_clock(
         if length >= n {
             return best;
         }
-        // Too short for the band, or no rate that a clock has: the next one tries for itself.
+        // Without a fit, the stretch is too short for the band, or the rate is not plausible for a clock. The next stretch then uses the same start
+        // rates.
         if let Some(f) = best {
             rates = f.parts.iter().map(|p| p.fault).collect();
         }
@@ -60,7 +62,7 @@ pub fn fit_of_clock(
     }
 }
 
-/// The first `n` samples.
+/// Returns the first `n` samples.
 fn truncate_record(record: &Channels, n: usize) -> Channels {
     let cut = |c: &Channel| Channel {
         name: c.name.clone(),

@@ -1,4 +1,4 @@
-//! Columns of the least squares: parameters, faults of channels, and what is declared to be uncertain.
+//! Columns of the least squares: parameters, faults of channels, and quantities with a declared uncertainty.
 
 use super::change::Change;
 use super::design::{Bins, Design};
@@ -36,7 +36,7 @@ fn channel_column(
     apply_responses(responses, channel, &signal)
 }
 
-/// The column of one channel's rate of change times a function of the record's time, s.
+/// Returns the column of one channel's rate of change times a function of the record's time, s.
 fn rate_column(
     design: &Design,
     responses: &[Vec<Vec<Complex64>>],
@@ -56,7 +56,7 @@ fn rate_column(
     Some(apply_responses(responses, channel, &window.bins(&shared)))
 }
 
-/// Cosine and sine of a line in one channel, of amplitude one in its readings.
+/// Returns the cosine and sine columns of a line in one channel, with amplitude one in the readings.
 fn line_columns(
     design: &Design,
     responses: &[Vec<Vec<Complex64>>],
@@ -76,7 +76,8 @@ fn line_columns(
         .into()
 }
 
-/// Columns of a fault of a channel per unit of its parameter (see [`Part::fault`]); two for a line, none for what is no such fault.
+/// Returns the columns of a channel fault per unit of its parameter (see [`Part::fault`]). A line has two columns. A change that is not such a fault
+/// has no column.
 pub fn fault_columns(
     design: &Design,
     responses: &[Vec<Vec<Complex64>>],
@@ -121,7 +122,7 @@ pub fn fault_columns(
     }
 }
 
-/// The column of a channel that is late by one second between two times.
+/// Returns the column of a channel that is late by one second between two times.
 pub fn late_between(
     design: &Design,
     responses: &[Vec<Vec<Complex64>>],
@@ -175,7 +176,7 @@ pub fn slices(column: &[Bins]) -> Vec<&[Complex64]> {
     column.iter().map(Vec::as_slice).collect()
 }
 
-/// The column of a parameter in every equation.
+/// Returns the column of a parameter in every equation.
 pub fn parameter_column(design: &Design, parameter: usize) -> Vec<&[Complex64]> {
     design
         .equations

@@ -65,13 +65,13 @@ pub struct Design {
     pub motion: Motion,
 }
 
-/// Samples a second that the thinned signals keep, as a multiple of the upper band edge: what folds back is below 1e-3.
+/// Sample rate of the thinned signals, as a multiple of the upper band edge. The aliased share is below 1e-3.
 const RATE_SHARE: f64 = 3.0;
 
-/// The design of a vehicle in a record, its channels corrected.
+/// Returns the design of a vehicle in a record, with corrected channels.
 ///
 /// # Errors
-/// As [`motion`].
+/// The errors of [`motion`].
 pub fn design(
     frame: &MotionFrame,
     vehicle: &Vehicle,
@@ -88,7 +88,7 @@ pub fn design(
         keep_every: keep,
         adjust: adjust.to_vec(),
         slow,
-        // One length for all sets, with nonlinear terms or without.
+        // All sets use the same length, with or without nonlinear terms.
         settle_s: Some(1.5 * frame.band.settling_s()),
     };
     let motion = motion(vehicle, record, &treatment)?;
@@ -98,7 +98,7 @@ pub fn design(
     Ok(out)
 }
 
-/// The design of a stretch of a motion.
+/// Returns the design of a stretch of a motion.
 fn of_motion(
     frame: &MotionFrame,
     vehicle: &Vehicle,
@@ -126,7 +126,7 @@ fn of_motion(
             motion: index,
         });
     }
-    // Noise is that of readings: a channel divided by its gain has its noise divided, too.
+    // The stated noise is the noise of the readings. If a channel is divided by its gain, its noise is divided as well.
     let gain = |channel: &str| -> f64 {
         let own = adjust.iter().filter(|a| a.channel == channel);
         own.map(|a| a.gain.abs()).product()
@@ -175,7 +175,7 @@ fn of_motion(
     })
 }
 
-/// Body and motion of an equation by its name.
+/// Returns the body and motion of an equation by its name.
 fn body_of(vehicle: &Vehicle, name: &str) -> Option<(usize, usize)> {
     vehicle.bodies.iter().enumerate().find_map(|(b, body)| {
         let letters = body.shape.letters();
@@ -211,7 +211,7 @@ impl Design {
         parts.collect::<Option<Vec<_>>>().unwrap_or_default()
     }
 
-    /// Returns the design with zeros in all bins within two and a half bins of the lines: the width over which a window spreads a line.
+    /// Returns the design with zeros in all bins within two and a half bins of the lines. A window spreads a line over this width.
     pub fn without_lines(&self, lines_hz: &[f64]) -> Self {
         const BINS: f64 = 2.5;
         let mut out = self.clone();
@@ -240,14 +240,14 @@ impl Design {
         self.motion.signal(&self.vehicle, channel)
     }
 
-    /// Mean over the compared stretch of a function of the record's time, s.
+    /// Returns the mean over the compared stretch of a function of the record's time, s.
     pub fn mean_done(&self, of: impl Fn(f64) -> f64) -> f64 {
         let n = self.motion.n_samples().max(1);
         let at = |i: usize| self.motion.start_s + i as f64 / self.motion.rate_hz;
         (0..n).map(|i| of(at(i))).sum::<f64>() / n as f64
     }
 
-    /// Begin and end of the compared stretch, s of the record's time.
+    /// Returns the begin and end of the compared stretch, s of the record's time.
     pub fn span_s(&self) -> [f64; 2] {
         let m = &self.motion;
         [m.start_s, m.start_s + m.n_samples() as f64 / m.rate_hz]
@@ -281,17 +281,17 @@ impl Design {
     }
 }
 
-/// Root of the mean power of a transform times its number of bins: comparable between signals of one design.
+/// Returns the root of the mean power of a transform times its number of bins. It is comparable between signals of one design.
 pub fn size(x: &[Complex64]) -> f64 {
     x.iter().map(|v| v.norm_sqr()).sum::<f64>().sqrt()
 }
 
-/// Size of the measured quantity of an equation.
+/// Returns the size of the measured quantity of an equation.
 pub fn reference(design: &Design, equation: usize, values: &[f64]) -> f64 {
     size(&measured_quantity(design, equation, values))
 }
 
-/// The measured quantity of an equation: its outside force, or mass times acceleration where none acts.
+/// Returns the measured quantity of an equation: its outside force, or mass times acceleration if no outside force acts.
 pub fn measured_quantity(design: &Design, equation: usize, values: &[f64]) -> Bins {
     let e = &design.equations[equation];
     if size(&e.target) > 0.0 {

@@ -9,10 +9,10 @@ use super::part::ColumnOf;
 use super::scorer::MotionScorer;
 use crate::estimate::columns::Basis;
 
-/// Returns sizes by candidate, in the library's order. A candidate of this size raises the log evidence to the level of a name, in the form that
-/// shows best, and exceeds what the declared tolerances allow of a channel.
+/// Returns the smallest detectable sizes by candidate, in the order of the library. A candidate of this size, in its most visible form, raises the
+/// log evidence enough to be named. It also exceeds the declared tolerances of its channel.
 ///
-/// An effect of size x whose column's coefficient has the standard deviation s gains (x / s)^2 / 2 less its price.
+/// An effect of size x whose column's coefficient has the standard deviation s gains (x / s)^2 / 2 minus its cost.
 pub fn smallest_sizes(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<MotionDetectionLimit> {
     let basis = Basis::from_columns(&null.columns);
     let tolerances = null
@@ -27,7 +27,7 @@ pub fn smallest_sizes(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Motion
         let Some(shape) = candidate.shapes.get(k) else {
             continue;
         };
-        // Of the two phases of a line the one that shows less.
+        // For a line, the phase with the smaller residual counts.
         let left = match (shape, columns.as_slice()) {
             (_, [column]) => basis.left_of(column),
             (Change::Line { .. }, [a, b]) => basis.left_of(a).min(basis.left_of(b)),

@@ -5,7 +5,7 @@ use super::frame::MotionFrame;
 use super::motion_fit::MotionFit;
 use crate::vehicle::term::Quantity;
 
-/// Unit of the first parameter of a change; relative to the reference mass where no force sets the scale.
+/// Returns the unit of the first parameter of a change. If no force sets the scale, the unit is relative to the reference mass.
 pub fn unit_of_change(frame: &MotionFrame, change: &Change, fit: &MotionFit) -> String {
     let quantity = match change {
         Change::Gain { .. } | Change::Flip { .. } | Change::Swap { .. } => return "-".to_owned(),

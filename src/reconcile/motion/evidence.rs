@@ -1,4 +1,4 @@
-//! Log evidence of a set of effects: likelihood of the channels, prior of sizes, price of freedom.
+//! Log evidence of a set of effects: likelihood of the channels, prior of sizes, cost of freedom.
 
 use super::candidate::Candidate;
 use super::change::Change;
@@ -6,8 +6,8 @@ use super::frame::MotionFrame;
 use super::motion_fit::MotionFit;
 use super::zeros::zeros;
 
-/// Returns the cost of an effect's freedom: half the log of the number of rows for each parameter (Schwarz), the log of the number of candidates, and
-/// the candidate's own handicap.
+/// Returns the cost of the freedom of an effect, in log evidence. Each parameter costs half the log of the number of rows (Schwarz). The log of the
+/// number of candidates and the handicap of the candidate are added.
 ///
 /// # Reference
 /// G. Schwarz, Estimating the dimension of a model, Ann. Statist. 6 (1978) 461.
@@ -15,18 +15,21 @@ pub fn cost(candidate: &Candidate, shape: &Change, n_candidates: usize, n_rows: 
     let n = match shape {
         Change::Terms { terms, .. } => terms.len(),
         Change::Links(links) => links.iter().map(|l| l.terms.len()).sum(),
-        // Amplitude, phase, frequency.
+        // A line has an amplitude, a phase and a frequency.
         Change::Line { .. } => 3,
         _ => 1,
     };
-    // A constant that is looked for among several forms is a parameter, too.
+    // A constant that is selected among several forms is a parameter as well.
     let constants = usize::from(candidate.shapes.len() > 4);
     let per = 0.5 * (n_rows.max(2) as f64).ln();
     per * (n + constants) as f64 + (n_candidates.max(1) as f64).ln() + candidate.handicap
 }
 
-/// Returns the log evidence of a fit: -1/2 (squared residual over its covariance, balance of weight included, squared nuisance over its tolerance,
-/// means of accelerometers) - log-determinants of the covariances (equations: relative to sensors alone), less prior and cost of the effects.
+/// Returns the log evidence of a fit. It is minus half of a sum of squares, minus the log-determinants of the covariances, minus prior and cost of
+/// the effects.
+///
+/// The squares are the residual over its covariance (with the balance of weight), the nuisance over its tolerance, and the means of accelerometers.
+/// The log-determinant of the equations is relative to the covariance of the sensors alone.
 pub fn evidence(frame: &MotionFrame, candidates: &[Candidate], fit: &MotionFit) -> f64 {
     let cost: f64 = fit
         .parts

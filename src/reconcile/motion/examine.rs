@@ -23,7 +23,7 @@ use crate::reconcile::search::{Breadth, ScoredSet, Scorer, search, search_near, 
 use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::motion::VehicleError;
 
-/// How far the search looks.
+/// Returns the limits of the breadth of the search.
 fn breadth(frame: &MotionFrame) -> Breadth {
     Breadth {
         largest: 3,
@@ -37,10 +37,10 @@ const ROUNDS: usize = 3;
 /// Fall of the background's power that makes another round worth while.
 const LOWERED: f64 = 0.7;
 
-/// Looks for the effects that part a record from its vehicle model; `only` limits the library to some ids.
+/// Searches for the effects that explain the difference between a record and its vehicle model; `only` limits the library to some ids.
 ///
 /// # Errors
-/// [`VehicleError`] when the record can't be fitted at all.
+/// [`VehicleError`] if the record cannot be fitted at all.
 pub fn examine(frame: &MotionFrame, only: &[String]) -> Result<MotionOutcome, VehicleError> {
     let broken = broken_channels(frame, &frame.data);
     let first = design(
@@ -100,7 +100,7 @@ fn search_effect_sets(
         best = Some(first.clone());
         all = found;
     } else if broken.is_empty() {
-        // A change of mass or a clock leaves room for more; without it nothing that is looked for near the empty set means anything.
+        // With a change of mass or a clock fault, further effects may be found. Without it, a search near the empty set has no meaning.
         let mut near = found;
         near.retain(|s| !s.set.is_empty() && !whole(s));
         near.truncate(breadth(scorer.frame).beam);
@@ -138,10 +138,11 @@ fn search_effect_sets(
     }
 }
 
-/// Exchanged or turned channels, a mass that changed, or a clock, where nearly nothing is explained without and nearly everything with one, best
-/// first; the empty set last.
+/// Returns sets with a dominant fault, best first, and the empty set last. A dominant fault is an exchange or reversed sign of channels, a changed
+/// mass, or a clock fault. Without it, the model explains almost none of the record, and with it almost the whole record.
 ///
-/// Channels differ in what turns with them: the balance of weight, the accelerometers' own means, the sign of masses and springs.
+/// Reversed signs of channels can be distinguished. They act differently on the balance of weight, the means of the accelerometers, and the signs of
+/// masses and springs.
 fn upheavals(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<ScoredSet<MotionFit>> {
     /// Fall of the squared residual that settles it.
     const FALL: f64 = 10.0;
@@ -171,7 +172,7 @@ fn upheavals(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<ScoredSet<Motio
                 Effort::Settled,
             )
         };
-        // Of a step the moments that were looked for: with its weight and without, which only a fit compares.
+        // For a step, the first two forms are the best moments with and without its weight. Only a fit can compare them.
         let starts = match candidate.shapes.first()? {
             Change::Step(_) => 2,
             _ => 1,
@@ -191,7 +192,7 @@ fn upheavals(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<ScoredSet<Motio
     let Some((_, best)) = found.first() else {
         return vec![];
     };
-    // All of them, and none, under the background of the one that leaves least.
+    // These sets and the empty set are scored under the background of the set with the smallest residual.
     scorer.background = of_fit(scorer.frame, best);
     let mut out: Vec<ScoredSet<MotionFit>> = found
         .iter()

@@ -1,4 +1,4 @@
-//! The best parameters of a vehicle with a set of effects in it, channels corrected, declared tolerances as priors.
+//! Best parameters of a vehicle with a set of effects, with corrected channels and declared tolerances as priors.
 
 use super::at_rest::rest_row;
 use super::candidate::Candidate;
@@ -66,12 +66,12 @@ pub fn held_parameters(
     out
 }
 
-/// The fit of a set of effects to a record, from a neighbour's values where given.
+/// Fits a set of effects to a record, starting from the values of a neighbouring set if given.
 ///
-/// Repeated least squares: the covariance of the equations follows from the parameters, corrections of channels and the slow stretch of
-/// nonlinear terms from the fit before.
+/// The least squares are repeated. Each round computes the covariance of the equations from the parameters of the previous round. Corrections of
+/// channels and the slow stretch of nonlinear terms are also from the previous round.
 ///
-/// `None` where a record or a set can't be fitted at all.
+/// `None` if the record or the set cannot be fitted.
 pub fn fit(
     frame: &MotionFrame,
     candidates: &[Candidate],
@@ -143,7 +143,7 @@ struct Problem {
     free: Vec<usize>,
     column_of: Vec<ColumnOf>,
     columns: Vec<PriorColumn>,
-    /// Columns behind those of the parameters, before whitening.
+    /// Columns after the parameter columns, before whitening.
     extra: Vec<Vec<Bins>>,
     rows: Vec<f64>,
 }
@@ -228,7 +228,7 @@ impl Problem {
         s.x.iter().all(|x| x.is_finite()).then_some((s, self))
     }
 
-    /// Parameters of the vehicle.
+    /// Returns the parameters of the vehicle.
     fn values(&self, s: &TargetSolution) -> Vec<f64> {
         let mut new: Vec<f64> = self.held.iter().map(|h| h.unwrap_or(f64::NAN)).collect();
         self.free.iter().zip(&s.x).for_each(|(&i, x)| new[i] = *x);
@@ -318,7 +318,8 @@ impl Problem {
 }
 
 impl Problem {
-    /// Joint covariance of the sizes of all parts: that of the columns, taken to the sizes by their derivatives. A turned sign has none.
+    /// Returns the joint covariance of the sizes of all parts: the covariance of the columns, transformed by the derivatives of the sizes. A reversed
+    /// sign has no covariance.
     fn covariance_of_sizes(
         &self,
         assembled: &ChangedVehicle,
@@ -333,7 +334,7 @@ impl Problem {
                 vec![first.map(|k| (k, d)).into_iter().collect()]
             };
             match &part.shape {
-                // The size is the gain, 1 / fault.
+                // The size of a gain fault is the gain, 1 / fault.
                 Change::Gain { .. } => fault(-1.0 / (part.fault * part.fault)),
                 Change::Delay { .. }
                 | Change::Clock { .. }
@@ -380,7 +381,7 @@ fn advance(parts: &mut [Part], problem: &Problem, s: &TargetSolution) -> f64 {
     let mut moved = 0.0f64;
     for (of, step) in problem.column_of.iter().zip(&s.x) {
         let ColumnOf::Fault(i) = of else { continue };
-        // A step beyond any sensible fault is cut; the next round goes on from there.
+        // A step larger than any plausible fault is limited, and the next round continues from there.
         let motion = &problem.design.motion;
         let length_s = (motion.n_samples() as f64 / motion.rate_hz).max(1.0);
         let (settled, most) = match parts[*i].shape {
@@ -397,7 +398,7 @@ fn advance(parts: &mut [Part], problem: &Problem, s: &TargetSolution) -> f64 {
     moved
 }
 
-/// Equal weights: an equation without outside force must not weigh more than one with, or all its parameters vanish.
+/// Returns equal weights. If an equation without outside force had more weight than an equation with one, all parameters would vanish.
 fn even(d: &Design) -> Vec<Vec<Complex64>> {
     let n = d.equations.len();
     let mut s = vec![Complex64::default(); n * n];
@@ -407,7 +408,7 @@ fn even(d: &Design) -> Vec<Vec<Complex64>> {
     vec![s; d.f_hz.len()]
 }
 
-/// Values of a neighbour for the parameters that both have; 0 for new ones.
+/// Returns the values of a neighbour for the parameters that both have; 0 for new parameters.
 fn inherit_values(assembled: &ChangedVehicle, parts: &[Part], from: &MotionFit) -> Vec<f64> {
     let mut out = vec![0.0; assembled.vehicle.parameters().len()];
     for (&to, &old) in assembled.base.iter().zip(&from.assembled.base) {

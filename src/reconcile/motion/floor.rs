@@ -28,8 +28,8 @@ impl Floor {
         (self.noise + self.tolerance).sqrt()
     }
 
-    /// Returns the largest residual of a complete model: noise wrong by its factor, tolerances as in one job of a hundred, and undeclared tolerances
-    /// of the same size.
+    /// Returns the largest residual of a complete model. It assumes noise wrong by the noise factor, tolerances as large as in one job of a hundred,
+    /// and undeclared tolerances of the same size.
     pub fn limit(&self, rules: &MotionRules) -> f64 {
         let noise = self.noise * rules.noise_factor * rules.noise_factor;
         (noise + rules.undeclared * self.tolerance_limit).sqrt()
@@ -47,7 +47,7 @@ impl Floor {
     }
 }
 
-/// Parameters by least squares without nuisance, all equations alike, over one or more designs of a vehicle.
+/// Fits the parameters by least squares without nuisance columns, with equal weights of all equations, over one or more designs of a vehicle.
 pub fn fit_without_nuisance(designs: &[&Design], free: &[usize], target: &[Vec<Bins>]) -> Vec<f64> {
     let stacked = |of: &dyn Fn(&Design, usize) -> Vec<f64>| -> Vec<f64> {
         designs
@@ -67,7 +67,7 @@ pub fn fit_without_nuisance(designs: &[&Design], free: &[usize], target: &[Vec<B
     solve_with_priors(&columns, &rows).x
 }
 
-/// Equal weights of all equations and bins.
+/// Returns equal weights of all equations and bins.
 fn even(d: &Design) -> Whitener {
     let n = d.equations.len();
     let mut s = vec![Complex64::default(); n * n];
@@ -77,12 +77,12 @@ fn even(d: &Design) -> Whitener {
     Whitener::from_covariance(&vec![s; d.f_hz.len()], n)
 }
 
-/// Floors by equation of a design `tested`, its parameters `values` found by [`fit_without_nuisance`] on the designs `fitted` in the `free` ones,
-/// effects `parts` in the model.
+/// Returns the expected residuals by equation of the design `tested`, for a model with the effects `parts`. Its parameters `values` are from
+/// [`fit_without_nuisance`] on the designs `fitted`, with the parameters `free`.
 ///
-/// A tolerance of one sd leaves column - A beta there, beta the parameters that take its column on the fitted designs: what the
-/// parameters take up is no gap. Several tolerances make a quadratic form of normal deviates; its quantile is that of the chi-square
-/// of equal mean and variance (Satterthwaite).
+/// A tolerance of one standard deviation leaves the residual column - A beta. beta are the parameters that fit the column of the tolerance on the
+/// designs `fitted`. The part that the parameters explain is not a gap. The squared residual of several tolerances is a quadratic form of normal
+/// deviates. Its quantile is taken from the chi-square distribution of equal mean and variance (Satterthwaite).
 ///
 /// # Reference
 /// F. E. Satterthwaite, An approximate distribution of estimates of variance components, Biometrics Bull. 2 (1946) 110.
@@ -175,7 +175,7 @@ fn left_by_tolerances(
         .collect()
 }
 
-/// Root of the mean over equations of squared residual over squared measured quantity.
+/// Returns the root of the mean over equations of squared residual over squared measured quantity.
 pub fn share(d: &Design, left: &[Bins], values: &[f64]) -> f64 {
     let sum: f64 = left
         .iter()

@@ -9,7 +9,7 @@ use crate::vehicle::layout::Vehicle;
 use crate::vehicle::term::UnitNames;
 use std::collections::BTreeMap;
 
-/// The analyst's vehicle, the records, and what is declared of their quality; job units throughout.
+/// The analyst's vehicle, the records, and the declared quality of the records. All quantities are in job units.
 #[derive(Clone, Debug)]
 pub struct MotionFrame {
     /// The analyst's model; bodies beyond those compared are witnesses (the other side of an axle).
@@ -22,7 +22,7 @@ pub struct MotionFrame {
     pub known: BTreeMap<String, f64>,
     /// The record that is fitted.
     pub data: Channels,
-    /// Held-out record that tests the result; `None` if the fitted record does.
+    /// Held-out record that tests the result; `None` if the fitted record tests it.
     pub hold_out: Option<Channels>,
     /// The band of every comparison.
     pub band: Band,
@@ -47,7 +47,7 @@ pub struct MotionFrame {
 }
 
 impl MotionFrame {
-    /// Channels of the compared bodies: accelerometers, then measured wheel forces.
+    /// Returns the channels of the compared bodies: accelerometers, then measured wheel forces.
     pub fn channels(&self) -> Vec<String> {
         let v = &self.vehicle;
         let own = |b: usize| self.bodies.contains(&b);
@@ -64,7 +64,7 @@ impl MotionFrame {
             .collect()
     }
 
-    /// Whether a channel is an accelerometer (or displacement sensor) of a compared body.
+    /// Returns whether a channel is an accelerometer (or displacement sensor) of a compared body.
     pub fn is_sensor(&self, channel: &str) -> bool {
         self.vehicle.sensors.iter().any(|s| s.channel == channel)
     }

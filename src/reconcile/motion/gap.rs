@@ -283,7 +283,8 @@ fn equation_gap(
     }
 }
 
-/// Returns the parameters of a fit's model with the smallest gap: least squares on `designs`, without nuisance, all equations weighted alike.
+/// Returns the parameters of a fit's model with the smallest gap. They are from least squares on `designs`, without nuisance columns, with equal
+/// weights of all equations.
 fn plain_values(frame: &MotionFrame, fit: &MotionFit, designs: &[&Design]) -> Vec<f64> {
     let held = held_parameters(frame, &fit.assembled.vehicle, &fit.design);
     let fixed: Vec<f64> = held.iter().map(|v| v.unwrap_or(0.0)).collect();

@@ -1,4 +1,4 @@
-//! The gap of an equation over time and over the size of what was measured: an effect that comes and goes, or grows.
+//! Gap of an equation over time and over the amplitude of the measured quantity. It shows effects that come and go, or that grow with amplitude.
 
 use super::design::Bins;
 use crate::estimate::rms;
@@ -45,7 +45,7 @@ pub fn gap_profile(
         for (cell, b) in input.iter_mut().skip(at).zip(bins) {
             *cell = *b;
         }
-        // A real signal has a real mean and, of even length, a real last bin.
+        // A real signal has a real mean and, if its length is even, a real last bin.
         if let Some(v) = input.first_mut() {
             *v = Complex64::default();
         }
@@ -104,7 +104,7 @@ mod tests {
         };
         let n = 8000;
         let mut window = WindowedTransform::new(n, RATE, band);
-        // A wave whose size swells and falls every 16 s.
+        // A wave whose amplitude varies with a period of 16 s.
         let wave = |i: usize| {
             let t = i as f64 / RATE;
             (1.0 - 0.8 * (TAU * t / 16.0).cos()) * (TAU * 3.0 * t).sin()
@@ -122,7 +122,7 @@ mod tests {
         let c = signals(|t, _| if t < 40.0 { 0.01 } else { 0.05 } * (TAU * 5.0 * t).sin());
         let (early, late) = (c.by_time[1][1], c.by_time[6][1]);
         assert!((late / early - 5.0).abs() < 0.25, "{early} {late}");
-        // RMS of the measured wave: half of 1 + 0.8^2 / 2, its root; of the residual 0.05 / root 2.
+        // RMS of the measured wave: root of half of (1 + 0.8^2 / 2). RMS of the residual: 0.05 / root 2.
         let expected = 0.05 / (1.0f64 + 0.32).sqrt();
         assert!((late / expected - 1.0).abs() < 0.05, "{late} {expected}");
     }
@@ -132,7 +132,7 @@ mod tests {
         let c = signals(|_, x| 0.02 * x * x * x);
         let classes: Vec<f64> = c.by_amplitude.iter().map(|a| a[1]).collect();
         assert!(classes.windows(2).all(|w| w[1] > w[0]), "{classes:?}");
-        // The class around 1.5 has twice the size of that around 0.75: eight times the residual.
+        // The amplitudes of the class around 1.5 are twice the amplitudes of the class around 0.75, so the residual is eight times as large.
         assert!(classes[4] > 8.0 * classes[1], "{classes:?}");
     }
 }

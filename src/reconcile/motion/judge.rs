@@ -1,4 +1,4 @@
-//! Verdict on the best set of a search: named, none, unknown or below what the record shows.
+//! Verdict on the best set of a search: named, none, unknown or below detectability.
 
 use super::change::Change;
 use super::channel_check::BrokenChannel;
@@ -26,7 +26,7 @@ use crate::vehicle::motion::VehicleError;
 struct Gaps {
     fitted: Option<RecordGap>,
     proof: Option<RecordGap>,
-    /// Squared residual by degree of freedom under sensor noise alone, tolerances at their estimate.
+    /// Squared residual by degree of freedom under sensor noise alone, with tolerances at their estimates.
     reduced_chi2: f64,
 }
 
@@ -68,7 +68,7 @@ fn refit_under_noise(scorer: &MotionScorer, old: &MotionFit) -> MotionFit {
     .unwrap_or_else(|| old.clone())
 }
 
-/// The verdict with everything that belongs to it.
+/// Returns the outcome: the verdict with its reasons, sizes and gaps.
 pub(super) fn conclude(
     scorer: &mut MotionScorer,
     found: RankedEffectSets,
@@ -127,7 +127,7 @@ pub(super) fn conclude(
             before.at_floor(rules, 0.0),
             hint,
         ),
-        // A channel that shows by itself that it can't be relied on.
+        // The record of the channel alone shows that the channel is not reliable.
         false => Verdict::Named,
     };
     if verdict == Verdict::Unknown && !best.set.is_empty() {
@@ -185,7 +185,7 @@ pub(super) fn conclude(
     })
 }
 
-/// Shares of the measured quantity left on the fitted record before and after, and the floor.
+/// Returns the residual shares of the measured quantity on the fitted record before and after, and the expected residual.
 pub(super) fn shares_left(before: &Option<RecordGap>, after: &Option<RecordGap>) -> [f64; 3] {
     let share = |g: &Option<RecordGap>, of: fn(&RecordGap) -> f64| g.as_ref().map_or(f64::NAN, of);
     [
@@ -216,10 +216,10 @@ pub(super) fn gap_of(before: &Option<RecordGap>, after: &Option<RecordGap>, by: 
     }
 }
 
-/// Returns the best set whose members may all be named; `best` if there is no such set. Each size exceeds its own scatter: a change of mass that
-/// is known only to hide the weight on the wheels makes any channel fit. Each channel fault exceeds its tolerance. Each vehicle effect
-/// reduces the squared gap by more than declared tolerances leave on average. Each member next to a vehicle effect reduces it by more than
-/// the error in the form of that effect leaves.
+/// Returns the best set whose members may all be named; `best` if there is no such set. Each size exceeds its own scatter, since a change of mass
+/// that only hides the weight on the wheels would make any channel fit. Each channel fault exceeds its tolerance. Each vehicle effect reduces the
+/// squared gap by more than declared tolerances leave on average. Each member next to a vehicle effect reduces it by more than the error in the form
+/// of that effect leaves.
 fn find_nameable_set(
     scorer: &MotionScorer,
     all: &[ScoredSet<MotionFit>],
@@ -240,7 +240,8 @@ fn find_nameable_set(
         s.set.iter().copied().all(|member| {
             let rest: Vec<usize> = s.set.iter().copied().filter(|m| *m != member).collect();
             let beside = rest.iter().any(of_vehicle);
-            // Two functions of the stretch of one spring are one law of force, and what the form of the first leaves looks like the second.
+            // Two nonlinear functions of the stretch of one spring are one force law. An error in the form of the first function looks like the
+            // second one.
             let spring = scorer.candidates[member].bends_spring();
             let one_law = spring.is_some_and(|l| {
                 let of_rest = |m: &usize| scorer.candidates[*m].bends_spring() == Some(l);
@@ -251,14 +252,14 @@ fn find_nameable_set(
             } else {
                 frame.rules.next_form
             };
-            // A channel is held against its tolerance by its size.
+            // Without a vehicle effect, a channel fault is tested by its size against its tolerance (`beyond_tolerance`).
             let tolerance = match (of_vehicle(&member), beside) {
                 (true, _) => own.floor.tolerance,
                 (false, true) => 0.0,
                 (false, false) => return true,
             };
             power(&rest).is_none_or(|without| {
-                // Of a single effect: of all that there is to take.
+                // For a single effect, the share refers to the whole squared gap without effects.
                 let others = power(&[]).map_or(0.0, |p| if beside { p - without } else { p });
                 let least = tolerance + share * others.max(0.0);
                 without - own.gap * own.gap > least

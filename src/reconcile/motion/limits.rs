@@ -10,15 +10,15 @@ use crate::reconcile::rules::MotionRules;
 use crate::vehicle::term::{Side, Term, share_done};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
-/// Returns the limit of a declared tolerance, standard deviations, that a channel exceeds in one healthy job of a hundred: the normal quantile of
-/// both tails, shared by `n` gains and delays.
+/// Returns the limit of a declared tolerance, in standard deviations. In one healthy job of a hundred, one channel exceeds it. It is the two-sided
+/// normal quantile with the probability divided by `n` gains and delays.
 pub fn tolerance_limit(rules: &MotionRules, n: usize) -> f64 {
     let tail = rules.false_rate / (2.0 * n.max(1) as f64);
     Normal::new(0.0, 1.0).map_or(3.0, |z| z.inverse_cdf(1.0 - tail))
 }
 
 /// Returns the solution with every nuisance within the limit of a healthy job ([`tolerance_limit`]). Priors of nuisances beyond the limit are
-/// narrowed until they are within. Without this limit, a model that fits badly loses its residual through channels that read nothing at all.
+/// narrowed until they are within. Without this limit, a model that fits badly would lose its residual through gains at which channels read nothing.
 pub fn within_tolerance(
     rules: &MotionRules,
     columns: &mut [PriorColumn],
@@ -47,7 +47,7 @@ pub fn within_tolerance(
         s = solve_with_priors(columns, target);
     }
     if columns.iter().zip(&declared).any(|(c, d)| c.prior != *d) {
-        // Sigmas are those of the declared tolerances: a narrowed prior knows nothing.
+        // The standard deviations use the declared tolerances, since a narrowed prior contains no information.
         let as_declared: Vec<PriorColumn> = columns
             .iter()
             .zip(&declared)
@@ -58,7 +58,7 @@ pub fn within_tolerance(
             .collect();
         s.covariance = solve_with_priors(&as_declared, target).covariance;
     }
-    // What was taken counts as the declared tolerance has it.
+    // The penalty uses the declared tolerances, not the narrowed priors.
     s.penalty = declared
         .iter()
         .zip(&s.x)
@@ -67,8 +67,8 @@ pub fn within_tolerance(
     s
 }
 
-/// Whether every gain and delay of a fit is beyond what a healthy channel has: the declared tolerance and what the tolerances of the other
-/// channels leave open of it (its sigma), together.
+/// Returns whether every gain and delay of a fit exceeds the limit of a healthy channel. This limit combines the declared tolerance with the standard
+/// deviation of the fitted value, which includes the tolerances of the other channels.
 pub fn beyond_tolerance(frame: &MotionFrame, fit: &MotionFit) -> bool {
     let tolerances = fit
         .column_of
@@ -117,17 +117,17 @@ pub fn beyond_tolerance(frame: &MotionFrame, fit: &MotionFit) -> bool {
 pub(super) fn late_on_average(shape: &Change, fit: &MotionFit) -> f64 {
     let [begin, end] = fit.design.span_s();
     match shape {
-        // Even from begin to end.
+        // The lateness grows evenly from begin to end.
         Change::Clock { .. } => (end - begin) / 12f64.sqrt(),
-        // Half a step to either side.
+        // The lateness differs from its mean by half a step in either direction.
         Change::Slip { .. } => 0.5,
         _ => 1.0,
     }
 }
 
-/// Returns whether several faults of a kind are within the scatter of `n` healthy channels. An error common to all channels shows in nothing, so the
-/// channels without a fault may be off too, the other way. The test takes the sum of squares about the mean of all, over the tolerance. Its limit is
-/// the chi-square of n - 1 degrees that one healthy job in a hundred exceeds.
+/// Returns whether several faults of a kind are within the scatter of `n` healthy channels. An error common to all channels is not observable, so the
+/// channels without a fault may be off in the opposite direction. The test uses the sum of squares about the mean of all channels, over the squared
+/// tolerance. The limit is the chi-square quantile of n - 1 degrees of freedom that one healthy job in a hundred exceeds.
 fn are_healthy(rules: &MotionRules, off: &[f64], n: usize, tolerance: f64) -> bool {
     if off.len() < 2 || n < 2 || tolerance <= 0.0 {
         return false;
@@ -140,7 +140,7 @@ fn are_healthy(rules: &MotionRules, off: &[f64], n: usize, tolerance: f64) -> bo
     most.is_ok_and(|most| chi2 < most)
 }
 
-/// Gains that a channel may have and still be the channel that was meant: beyond, it is another fault (unit, sensor, wire).
+/// Plausible gains of a channel with a gain fault. A gain outside this range has another cause (unit, sensor, wire).
 const GAINS: std::ops::Range<f64> = 0.5..2.0;
 /// Longest delay, s, that the search follows: a tenth of the period of the lowest frequencies that vehicles are compared at.
 const LONGEST_DELAY_S: f64 = 0.15;
@@ -148,7 +148,7 @@ const LONGEST_DELAY_S: f64 = 0.15;
 /// Rate by which a clock may be off and still be a clock, millionths.
 const MOST_CLOCK_PPM: f64 = 1e4;
 
-/// Whether every effect's size is one that nature allows.
+/// Returns whether the size of every effect is physically plausible.
 pub fn has_plausible_sizes(rules: &MotionRules, candidates: &[Candidate], fit: &MotionFit) -> bool {
     fit.parts.iter().zip(&fit.sizes).all(|(p, sizes)| {
         let Some([x, _]) = sizes.first() else {
@@ -164,7 +164,7 @@ pub fn has_plausible_sizes(rules: &MotionRules, candidates: &[Candidate], fit: &
             Change::Clock { .. } => x.abs() < MOST_CLOCK_PPM,
             Change::Line { .. } => x.is_finite(),
             Change::Flip { .. } | Change::Swap { .. } => is_upright(fit),
-            // What comes may be any mass; what leaves is less than what was there.
+            // An added mass may have any size. A removed mass is smaller than the mass that was present.
             Change::Step(s) => {
                 let m = fit.values[fit.assembled.vehicle.inertia_index(s.body, 0, 0)];
                 m > 0.0 && *x > -m && is_seen(fit, |t_s| s.share_at(t_s))
@@ -180,7 +180,7 @@ pub fn has_plausible_sizes(rules: &MotionRules, candidates: &[Candidate], fit: &
     })
 }
 
-/// Returns whether no mass and no spring of the analyst's is negative: a reversed channel gives the mirror image of a vehicle, not a vehicle.
+/// Returns whether no mass and no spring of the analyst's model is negative. A reversed channel leads to negative ones.
 fn is_upright(fit: &MotionFit) -> bool {
     let v = &fit.assembled.vehicle;
     let bodies: Vec<usize> = (0..v.bodies.len()).collect();
@@ -196,8 +196,8 @@ fn is_upright(fit: &MotionFit) -> bool {
         .all(|i| fit.values.get(i).is_none_or(|x| !(*x < 0.0)))
 }
 
-/// Returns whether every effect with a size exceeds its own scatter: three and a half standard deviations, which equal the evidence for naming, odds
-/// of 400.
+/// Returns whether every effect with a size exceeds its own scatter by three and a half standard deviations. This equals the evidence that a name
+/// requires, odds of 400.
 pub fn stands_out(rules: &MotionRules, fit: &MotionFit) -> bool {
     let least = (2.0 * rules.decisive).sqrt();
     fit.parts.iter().zip(&fit.sizes).all(|(p, sizes)| {
@@ -211,19 +211,19 @@ pub fn stands_out(rules: &MotionRules, fit: &MotionFit) -> bool {
     })
 }
 
-/// Share of the compared stretch at either end where nothing is looked for.
+/// Share of the compared stretch at either end in which no change is searched for.
 pub(super) const END: f64 = 0.1;
 
-/// Whether at least half of a change happens within the compared stretch, [`END`] of it from either end: what happens before or after is
-/// no change to this record.
+/// Returns whether at least half of a change happens within the compared stretch, excluding a share [`END`] at either end. Before or after it, the
+/// change is not visible in this record.
 fn is_seen(fit: &MotionFit, done: impl Fn(f64) -> f64) -> bool {
     let [begin, end] = fit.design.span_s();
     let margin = END * (end - begin);
     done(end - margin) - done(begin + margin) >= 0.5
 }
 
-/// Free play leaves next to nothing of the spring within its gap, an end stop a spring that works; a spring that changes keeps a positive
-/// stiffness.
+/// Returns whether the stiffness of a spring is plausible with the effect. Within free play, almost no stiffness may remain. An end stop leaves a
+/// spring that works. A spring that changes keeps a positive stiffness.
 fn stiffness_is_sensible(rules: &MotionRules, shape: &Change, size: f64, fit: &MotionFit) -> bool {
     let play = rules.play;
     let Change::Terms { link, terms } = shape else {

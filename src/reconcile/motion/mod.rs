@@ -1,11 +1,11 @@
-//! The acceleration path: a vehicle's equations of motion against a record.
+//! Reconciliation of a vehicle's equations of motion with an acceleration record.
 //!
-//! - [`frame`]: what is given; [`design`]: the equations as transforms within the band
+//! - [`frame`]: the inputs; [`design`]: the equations as transforms within the band
 //! - [`response`], [`noise`]: how sensor noise enters the equations
-//! - [`change`], [`candidate`], [`effect`]: the library; [`fit`]: a set of effects fitted; [`scorer`]: its evidence
-//! - [`unexplained_background`]: what nothing explains; [`gap`]: how much is left on other data; `examine`: the verdict
-//! - [`sits`]: where, when and at which size a gap is largest; `next`: what to measure next
-//! - [`simulation_gap`]: what was named, by simulation
+//! - [`change`], [`candidate`], [`effect`]: the library; [`fit`]: the fit of a set of effects; [`scorer`]: the evidence of the set
+//! - [`unexplained_background`]: the power that no effect explains; [`gap`]: the residual on other data; `examine`: the verdict
+//! - [`sits`]: the equation, time and amplitude at which a gap is largest; `next`: the next measurement
+//! - [`simulation_gap`]: the error of a simulation with the named effects
 
 pub mod alias;
 pub mod at_rest;

@@ -1,7 +1,7 @@
-//! When a body's mass changed: what a step at every moment of a record would take of a residual, all moments in one pass.
+//! Moment at which the mass of a body changed. The reduction of the residual by a step of mass is computed for all moments of a record in one pass.
 //!
-//! The band turns a step into a wave whose phase must fit: between moments a few hundredths of a second apart the residual rises and falls,
-//! and a coarse grid of moments misses the one that explains.
+//! The band filter turns a step into a wave whose phase must fit. The residual therefore varies between moments that are a few hundredths of a second
+//! apart. A coarse grid of moments would miss the right one.
 
 use super::columns::{parameter_column, slices};
 use super::design::{Bins, Design};
@@ -14,11 +14,11 @@ use crate::series::window::WindowedTransform;
 use crate::vehicle::layout::MassStep;
 use rustfft::num_complex::Complex64;
 
-/// For each body the steps of its mass that explain most of what the vehicle leaves of a record: one with its weight, one without; the better
-/// one first.
+/// Returns, for each body, the steps of its mass that explain most of the vehicle's residual. One step includes its weight and one does not. The
+/// better one is first.
 ///
-/// Equations and bins weigh alike, as at the start of every fit: the moment needs no parameter that was found without the step, and those may be
-/// far from any vehicle.
+/// Equations and bins have equal weights, as at the start of every fit. The moment then depends on no parameter that was fitted without the step.
+/// Such parameters may be implausible for a vehicle.
 pub fn best_steps(frame: &MotionFrame, d: &Design, bodies: &[usize]) -> Vec<Vec<MassStep>> {
     let fixed: Vec<Option<f64>> = held_parameters(frame, &d.vehicle, d);
     let bins = d.f_hz.len();
@@ -76,7 +76,7 @@ pub fn best_steps(frame: &MotionFrame, d: &Design, bodies: &[usize]) -> Vec<Vec<
     bodies.iter().map(of_body).collect()
 }
 
-/// Real and imaginary parts by equation and bin; zeros where an equation has none.
+/// Returns real and imaginary parts by equation and bin; zeros for an equation without values.
 fn rows(column: &[&[Complex64]], bins: usize) -> Vec<f64> {
     let mut out = Vec::with_capacity(2 * bins * column.len());
     for equation in column {
@@ -91,13 +91,18 @@ fn complex_from_rows(rows: &[f64]) -> Bins {
     pairs.map(|p| Complex64::new(p[0], p[1])).collect()
 }
 
-/// A step's column at every moment.
+/// Column of a step of mass at every moment.
 ///
-/// With the tapered acceleration u and the taper v the column of a step at sample t is A + g B in the bins,
-/// `A_k = G_k sum_{i >= t} u_i exp(-j w_k i)` and B the same of v. A product with bins p is then a sum over samples from t on,
-/// `Re sum_k conj(p_k) A_k = sum_{i >= t} u_i s_i` with `s_i = Re sum_k conj(p_k) G_k exp(-j w_k i)`, and going back a sample adds to
-/// `A . B = sum_{i, l >= t} u_i v_l h(i - l)`, `h(m) = sum_k G_k^2 cos(w_k m)`, what that sample has to do with those after it. Both are transforms
-/// of the record's length.
+/// Let u be the tapered acceleration and v the taper. The column of a step at sample t is A + g B in the bins. There,
+/// `A_k = G_k sum_{i >= t} u_i exp(-j w_k i)`, and B is computed likewise from v.
+///
+/// A product with bins p is a sum over the samples from t on: `Re sum_k conj(p_k) A_k = sum_{i >= t} u_i s_i` with
+/// `s_i = Re sum_k conj(p_k) G_k exp(-j w_k i)`.
+///
+/// The product of both parts is `A . B = sum_{i, l >= t} u_i v_l h(i - l)` with `h(m) = sum_k G_k^2 cos(w_k m)`. From one sample to the sample before
+/// it, this sum grows by the terms of the added sample with itself and with all later samples.
+///
+/// Both need only transforms of the length of the record.
 struct Look<'a> {
     /// Tapered acceleration, and the taper.
     signals: [Vec<f64>; 2],
@@ -135,8 +140,8 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// Returns the sample at which a step with `gravity` explains most of the first of `own` (r) given the others (q, orthonormal), and how much:
-    /// `(r . c)^2 / (c . c - sum (q . c)^2)`.
+    /// Returns the sample at which a step with `gravity` explains most of r, and the explained part. r is the first element of `own`, and the other
+    /// elements q are orthonormal columns. The explained part is `(r . c)^2 / (c . c - sum (q . c)^2)`.
     fn find_best_step(&self, own: &[Bins], gravity: f64) -> Option<(usize, f64)> {
         let n = self.products.len();
         let margin = (END * n as f64) as usize;
@@ -147,7 +152,7 @@ impl<'a> Look<'a> {
             let [aa, ab, bb] = self.products[i];
             let whole = aa + gravity * (2.0 * ab + gravity * bb);
             let own = whole - known.iter().map(|q| q[i] * q[i]).sum::<f64>();
-            // A column that the vehicle's own explain but for a thousandth says nothing; neither does one that is none.
+            // A step is skipped if the columns of the vehicle explain its column to within a thousandth, or if its column is zero.
             if !(own > 1e-3 * whole) {
                 continue;
             }
@@ -159,7 +164,7 @@ impl<'a> Look<'a> {
         best
     }
 
-    /// Product with the bins `p` at every moment.
+    /// Returns the product with the bins `p` at every moment.
     fn dots(&self, p: &[Complex64], gravity: f64) -> Vec<f64> {
         let weighed = p.iter().zip(self.gain).map(|(p, g)| p.conj() * g);
         let s = in_time(weighed, self.first, self.products.len());
@@ -173,7 +178,7 @@ impl<'a> Look<'a> {
     }
 }
 
-/// `Re sum_k p_k exp(-2 pi j k i / n)` for the samples i of n, of bins from `first` on.
+/// Returns `Re sum_k p_k exp(-2 pi j k i / n)` for the samples i of n, of bins from `first` on.
 fn in_time(p: impl Iterator<Item = Complex64>, first: usize, n: usize) -> Vec<f64> {
     let plan = inverse(n);
     let mut input = plan.make_input_vec();
@@ -181,16 +186,16 @@ fn in_time(p: impl Iterator<Item = Complex64>, first: usize, n: usize) -> Vec<f6
         *cell = 0.5 * p.conj();
     }
     let mut out = plan.make_output_vec();
-    // The lengths come from the plan itself, and bins lie between the constant and half the rate, so this can't fail.
+    // This cannot fail, since the plan provides the lengths, and all bins are between zero and half the sample rate.
     let done = plan.process(&mut input, &mut out);
     debug_assert!(done.is_ok());
     out
 }
 
-/// `sum_{l > i} x_l h(l - i)` for each sample i.
+/// Returns `sum_{l > i} x_l h(l - i)` for each sample i.
 fn those_after(x: &[f64], h: &[f64]) -> Vec<f64> {
     let n = x.len();
-    // Long enough that what comes round at the end meets zeros.
+    // This length avoids circular overlap, since the padding is zero.
     let length = (2 * n).next_power_of_two();
     let (there, back) = (forward(length), inverse(length));
     let transformed = |values: &mut dyn Iterator<Item = f64>| {
@@ -206,7 +211,7 @@ fn those_after(x: &[f64], h: &[f64]) -> Vec<f64> {
     for (x, h) in both.iter_mut().zip(&later) {
         *x *= h.conj() / length as f64;
     }
-    // Constant and half the rate are real, but for rounding.
+    // The bins at zero and at half the sample rate are real except for rounding.
     for end in [0, length / 2] {
         if let Some(cell) = both.get_mut(end) {
             cell.im = 0.0;
@@ -224,7 +229,7 @@ mod tests {
     use super::*;
     use std::f64::consts::PI;
 
-    /// Sums as they are written: a column by its transform at one moment, its products bin by bin.
+    /// Tests the fast sums against direct sums: a column from its transform at each moment, and its products bin by bin.
     #[test]
     fn all_moments_at_once_are_each_moment_alone() {
         let (n, first, gravity) = (60_usize, 3_usize, 9.81);
@@ -236,7 +241,7 @@ mod tests {
             let bin = |k: usize| Complex64::new(wave(k, s), wave(k + 9, s));
             (0..gain.len()).map(bin).collect()
         };
-        // Small ones, which leave most of the column its own.
+        // The second row is small, so it explains only a small part of the column.
         let own: Vec<Bins> = vec![row(0.9), row(1.7).iter().map(|c| c * 1e-2).collect()];
         let look = Look::new(&taper, &acceleration, &gain, first);
         let margin = (END * n as f64) as usize;

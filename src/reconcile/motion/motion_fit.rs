@@ -30,7 +30,7 @@ pub struct MotionFit {
     pub chi2: f64,
     /// Squared nuisance over its prior.
     pub penalty: f64,
-    /// Sum over bins of ln |S| - ln |S of sensors alone|: what the background costs a normal density of the channels.
+    /// Sum over bins of ln |S| - ln |S of sensors alone|: cost of the background in the normal density of the channels.
     pub log_det: f64,
     /// Data rows.
     pub n_rows: usize,
@@ -55,7 +55,7 @@ pub struct MotionFit {
 }
 
 impl MotionFit {
-    /// Returns the rows of a further column, `[equation][bin]` and its entry in the balance of weight, whitened as the fit's own.
+    /// Returns the rows of a further column, `[equation][bin]` and its entry in the balance of weight, whitened like the columns of the fit.
     pub fn rows(&self, bins: &[&[Complex64]], at_rest: f64) -> Vec<f64> {
         whiten_column(&self.whitener, self.rest.as_ref(), bins, at_rest)
     }

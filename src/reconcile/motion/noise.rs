@@ -5,10 +5,10 @@ use super::frame::MotionFrame;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// Noise of a channel without a declared noise, as a share of its root mean square: no weight is then divided by zero.
+/// Noise of a channel without a declared noise, as a share of its root mean square. It avoids a division by zero in the weights.
 pub(super) const UNDECLARED: f64 = 1e-4;
 
-/// Power of what no effect explains, by equation and band of frequencies, on top of sensor noise.
+/// Power that no effect explains, by equation and frequency band, in addition to sensor noise.
 #[derive(Clone, Debug, Default)]
 pub struct Background {
     /// `[equation][band]`; empty: none.
@@ -18,7 +18,7 @@ pub struct Background {
 /// Bands over which background is taken as even.
 pub const BANDS: usize = 10;
 
-/// Band of a frequency: even in its logarithm.
+/// Returns the band of a frequency. Bands are even in the logarithm of frequency.
 pub fn band_of(frame: &MotionFrame, f_hz: f64) -> usize {
     let low = frame.band.low_hz.max(1e-3 * frame.band.high_hz);
     let share = (f_hz / low).ln() / (frame.band.high_hz / low).ln();
@@ -32,7 +32,7 @@ pub struct Whitener {
     factors: Vec<Vec<Complex64>>,
 }
 
-/// Covariance of the equations at every bin: sum over channels of H H' S, plus background; rows of `n x n` values.
+/// Returns the covariance of the equations at every bin: sum over channels of H H' S, plus background; rows of `n x n` values.
 pub fn covariance(
     frame: &MotionFrame,
     design: &Design,
@@ -80,7 +80,7 @@ pub fn covariance(
                     .and_then(|p| p.get(band))
                     .copied()
                     .unwrap_or(0.0);
-                // The last share keeps a noise-free equation from dividing by zero.
+                // The last term avoids a division by zero for an equation without noise.
                 s[i * n + i] = s[i * n + i] * (1.0 + 1e-9) + extra + f64::MIN_POSITIVE;
             }
             s
@@ -88,11 +88,11 @@ pub fn covariance(
         .collect()
 }
 
-/// Sum over bins of ln |S| - ln |S0|, S the covariance and S0 that of sensor noise alone.
+/// Returns the sum over bins of ln |S| - ln |S0|, with S the covariance and S0 the covariance of sensor noise alone.
 ///
-/// With x the true channels, G x = b the equations (b the background, of covariance B) and y = x + n the readings, the density of y with
-/// b and the unseen part of x integrated out is exp(-r' S^-1 r) |S0| / |S| in every bin, with r = G y, S0 = G N G', S = S0 + B. So
-/// equations may be scaled at will: models that differ by a scale alone are alike.
+/// Let x be the true channels and y = x + n the readings. The equations are G x = b, with the background b of covariance B. If b and the unobserved
+/// part of x are integrated out, the density of y in every bin is `exp(-r' S^-1 r) |S0| / |S|`. Here r = G y, S0 = G N G' and S = S0 + B. The scale
+/// of the equations is therefore arbitrary, and models that differ only by a scale are indistinguishable.
 pub fn log_determinant(
     frame: &MotionFrame,
     design: &Design,
@@ -125,7 +125,7 @@ impl Whitener {
         }
     }
 
-    /// Real rows of unit variance from a residual or column `[equation][bin]` (empty equations are zero).
+    /// Returns real rows of unit variance from a residual or column `[equation][bin]` (empty equations are zero).
     pub fn rows(&self, x: &[&[Complex64]]) -> Vec<f64> {
         let n = self.n;
         let mut out = Vec::with_capacity(2 * n * self.factors.len());
@@ -137,7 +137,7 @@ impl Whitener {
                     v -= l[i * n + j] * y[j];
                 }
                 y[i] = v / l[i * n + i].re;
-                // Power is shared by real and imaginary part.
+                // Real and imaginary part share the power equally.
                 out.push(y[i].re * std::f64::consts::SQRT_2);
                 out.push(y[i].im * std::f64::consts::SQRT_2);
             }
@@ -147,7 +147,7 @@ impl Whitener {
 }
 
 impl Whitener {
-    /// Residuals `[equation][bin]` from unit-variance rows: the inverse of [`Whitener::rows`].
+    /// Returns residuals `[equation][bin]` from unit-variance rows: the inverse of [`Whitener::rows`].
     pub fn colour_rows(&self, rows: &[f64]) -> Vec<Bins> {
         let n = self.n;
         let mut out = vec![Vec::with_capacity(self.factors.len()); n];
@@ -165,7 +165,7 @@ impl Whitener {
     }
 }
 
-/// Lower factor of a Hermitian matrix; pivots below rounding are held at it.
+/// Returns the lower Cholesky factor of a Hermitian matrix. Pivots below rounding are set to the rounding level.
 fn cholesky(s: &[Complex64], n: usize) -> Vec<Complex64> {
     let mut l = vec![Complex64::default(); n * n];
     for i in 0..n {
@@ -185,7 +185,7 @@ fn cholesky(s: &[Complex64], n: usize) -> Vec<Complex64> {
     l
 }
 
-/// Background that a residual shows above the noise of sensors.
+/// Returns the background in a residual above the noise of the sensors.
 pub fn background(
     frame: &MotionFrame,
     design: &Design,

@@ -65,7 +65,7 @@ pub struct MotionOutcome {
     pub after: Option<RecordGap>,
     /// Squared residual over noise alone, by number of rows: analyst's model, best attempt.
     pub reduced_chi2: [f64; 2],
-    /// Share of the measured quantity left on the fitted record: analyst's model, best attempt, floor.
+    /// Residual share of the measured quantity on the fitted record: analyst's model, best attempt, expected residual.
     pub left: [f64; 3],
     /// Smallest sizes that the record would have shown.
     pub smallest: Vec<MotionDetectionLimit>,
@@ -76,7 +76,7 @@ pub struct MotionOutcome {
 }
 
 impl MotionOutcome {
-    /// Withdraws the effects: a wrong input explains the gap, and no effect is looked for on top of it.
+    /// Removes the effects. A wrong input explains the gap, and no further effect is searched for.
     pub fn refuse(&mut self, wrong: &Finding) {
         self.verdict = Verdict::Unknown;
         self.effects.clear();

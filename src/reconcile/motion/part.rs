@@ -9,8 +9,8 @@ pub struct Part {
     pub candidate: usize,
     /// Selected form of the effect.
     pub shape: Change,
-    /// 1 / gain of a gain fault, delay in s of a delay fault, rate of a clock, step in s of a slip, time constant in s of a low-pass; not used
-    /// otherwise.
+    /// Parameter of a channel fault. It is 1 / gain of a gain fault, the delay in s of a delay fault, or the rate of a clock. It is the step in s of
+    /// a slip, and the time constant in s of a low-pass. Other changes do not use it.
     pub fault: f64,
 }
 

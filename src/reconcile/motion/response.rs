@@ -1,4 +1,4 @@
-//! How each channel enters each equation: response of the residual to one unit in a channel.
+//! Response of the residual of each equation to one unit in each channel.
 
 use super::design::Design;
 use crate::linalg::tall::left_inverse;
@@ -6,7 +6,7 @@ use crate::vehicle::term::Term;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// `[equation][channel][bin]`, in the order of the design's equations and channels; nonlinear terms by their mean slope.
+/// Returns the responses `[equation][channel][bin]`, in the order of the design's equations and channels; nonlinear terms by their mean slope.
 pub fn responses(design: &Design, values: &[f64]) -> Vec<Vec<Vec<Complex64>>> {
     let v = &design.vehicle;
     let value = |i: usize| {
@@ -103,7 +103,7 @@ pub fn responses(design: &Design, values: &[f64]) -> Vec<Vec<Vec<Complex64>>> {
                                 .iter()
                                 .map(|(g, [k, c, b])| Complex64::new(b - k / (w * w), -c / w) * *g)
                                 .sum();
-                            // Signals of displacement sensors are accelerations by now.
+                            // Signals of displacement sensors were converted to accelerations before.
                             link + inertia
                         })
                         .collect()
@@ -126,7 +126,7 @@ fn changed_masses(design: &Design, values: &[f64]) -> Vec<f64> {
     out
 }
 
-/// Mean slope of each link's law over stretch, rate and acceleration of stretch.
+/// Returns the mean slope of each link's law over stretch, rate and acceleration of stretch.
 fn slopes(design: &Design, values: &[f64]) -> Vec<[f64; 3]> {
     let v = &design.vehicle;
     v.links

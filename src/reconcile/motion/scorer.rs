@@ -1,4 +1,4 @@
-//! The dynamic side of the search: evidence of sets of effects, and what to try next.
+//! Scorer of the search for acceleration records: evidence of sets of effects, and the next candidates.
 
 use super::candidate::Candidate;
 use super::change::{Change, assemble};
@@ -62,7 +62,7 @@ impl MotionScorer<'_> {
                 let most = 0.02 / self.frame.data.duration_s().max(1.0);
                 start.unwrap_or(0.0).clamp(-most, most)
             }
-            // A low-pass that starts at none has the column of a delay.
+            // A low-pass with the start value zero would have the column of a delay.
             Change::Lag { .. } => start.unwrap_or(0.0).clamp(0.001, 0.03),
             _ => 0.0,
         };
@@ -102,7 +102,7 @@ impl MotionScorer<'_> {
         best
     }
 
-    /// A set with the constants of its terms found with all members in it.
+    /// Returns a set whose constants of terms are estimated with all members in the set.
     pub fn with_own_constants(&self, of: ScoredSet<MotionFit>) -> ScoredSet<MotionFit> {
         let varies = |p: &Part| {
             let is_term = matches!(p.shape, Change::Terms { .. });
@@ -179,7 +179,7 @@ impl MotionScorer<'_> {
         best
     }
 
-    /// Falls of the squared residual that other moments of a slip bring, with everything else as it is.
+    /// Returns the falls of the squared residual at other moments of a slip, with all other parts unchanged.
     fn gains_of_slip(&self, now: &MotionFit, part: usize, varied: &[Change]) -> Option<Vec<f64>> {
         /// Share of the slip that the better moment must take up, and its inverse.
         const SAME: f64 = 0.3;
@@ -208,7 +208,7 @@ impl MotionScorer<'_> {
         Some(varied.iter().map(gain).collect())
     }
 
-    /// Falls of the squared residual that the present form of a part and others bring, with everything else as it is.
+    /// Returns the falls of the squared residual with the present form and with other forms of a part, with all other parts unchanged.
     fn gains_of(&self, now: &MotionFit, part: usize, varied: &[Change]) -> Option<(f64, Vec<f64>)> {
         if varied.is_empty() {
             return None;
@@ -235,7 +235,7 @@ impl MotionScorer<'_> {
         let slow = slow_stretches(&all.vehicle, &values, &self.frame.data, &adjust);
         let d = design(self.frame, &all.vehicle, &self.frame.data, &adjust, slow).ok()?;
         let n_parts = now.parts.len();
-        // Everything but the part in question, then each form in turn.
+        // The columns without the tested part, to which each form is added in turn.
         let own: Vec<usize> = all.own[part].clone();
         let old = &now.assembled.own[part];
         let skip: Vec<usize> = (0..now.free.len())
@@ -249,7 +249,7 @@ impl MotionScorer<'_> {
             .map(|(_, c)| c.clone())
             .collect();
         let basis = Basis::from_columns(&kept);
-        // The residual without the part: what it took is given back.
+        // Residual without the part: the contribution of its columns is added again.
         let mut residual = now.residual.to_vec();
         for &k in &skip {
             let x = now.values[now.free[k]];
@@ -275,7 +275,7 @@ impl MotionScorer<'_> {
         Some((present, gains.collect()))
     }
 
-    /// The design with all forms for the corrections of a fit.
+    /// Returns the design with all forms for the corrections of a fit.
     fn all_forms(&mut self, base: &MotionFit) -> Option<Arc<Forms>> {
         let adjust = adjustments(self.frame, &base.parts);
         let key: Vec<String> = base
@@ -321,7 +321,7 @@ impl MotionScorer<'_> {
         Some(forms)
     }
 
-    /// Whitened columns of every form that could join a fit: candidate, form, columns.
+    /// Returns the whitened columns of every form that could be added to a fit: candidate, form, columns.
     pub fn form_columns(&mut self, base: &MotionFit) -> Vec<(usize, usize, Vec<Vec<f64>>)> {
         let mut out = Vec::new();
         let set: Vec<usize> = base.parts.iter().map(|p| p.candidate).collect();
@@ -394,7 +394,8 @@ impl Scorer for MotionScorer<'_> {
         let anew = if lost { from_there(None) } else { None };
         let first = (from_there(start).into_iter().chain(anew))
             .min_by(|a, b| a.misfit().total_cmp(&b.misfit()))?;
-        // The same set anew stands before another background: constants that were found before a larger one are found anew.
+        // If the same set is scored again, its background has changed. Constants that were estimated with a larger background are then estimated
+        // again.
         let neighbour = from.map(|(f, _)| f).filter(|f| f.set != set);
         let before = neighbour.map_or(f64::INFINITY, |f| f.fit.chi2);
         let fit = if before - first.chi2 > WORTH_REFINING {
@@ -441,7 +442,8 @@ impl Scorer for MotionScorer<'_> {
 
     fn is_compatible_pair(&self, a: usize, b: usize) -> bool {
         let whole = |c: usize| self.candidates[c].is_upheaval();
-        // A filter is late by itself; with a delay of its own, of either sign, it would stand for filters that are not in the library.
+        // A low-pass filter already delays the channel. With an additional delay of either sign, it would represent filters that are not in the
+        // library.
         let filtered_and_late = |a: usize, b: usize| {
             let (a, b) = (&self.candidates[a], &self.candidates[b]);
             a.family() == "low_pass" && b.family() == "time_offset" && a.place == b.place

@@ -2,7 +2,7 @@
 //! there is one, tests them.
 //!
 //! The search compares equations, which are linear in their unknowns. A simulation has no measured motion on its right-hand side, so neither sensor
-//! noise in the regressors nor twice integrated stretch can hide an error. The analyst's model is treated alike.
+//! noise in the regressors nor twice integrated stretch can hide an error. The analyst's model is simulated in the same way.
 
 use super::frame::MotionFrame;
 use super::gap::{Proof, RecordGap};
@@ -49,7 +49,7 @@ pub struct SimulatedGap {
 /// Simulates both models, or returns the reason if that is impossible.
 ///
 /// # Errors
-/// A sentence: inertance and changes of mass are not simulated; a body's inertia may be unknown; motion may run away.
+/// A message if the model has inertance or a change of mass. Also if the inertia of a body is unknown, or if the motion diverges.
 pub fn simulated_gap(frame: &MotionFrame, outcome: &MotionOutcome) -> Result<SimulatedGap, String> {
     let (Some(before), Some(after)) = (&outcome.before, &outcome.after) else {
         return Err("there is no model to simulate".into());
@@ -85,7 +85,7 @@ struct SimulationFit {
     free: Vec<usize>,
 }
 
-/// A model fitted to the one record by simulation and held against the other.
+/// Fits a model to the fitted record by simulation and compares it with the other record.
 fn validate_by_simulation(
     frame: &MotionFrame,
     model: &RecordGap,

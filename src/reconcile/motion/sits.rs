@@ -43,7 +43,7 @@ pub fn gap_sits(gap: &RecordGap) -> Vec<GapSits> {
 
 fn sits(e: &EquationGap) -> GapSits {
     let times = &e.profile.by_time;
-    // Stretches of time are equally long; bands and sizes begin where the one before ends.
+    // Time intervals are equally long. Bands and amplitude classes begin where the previous one ends.
     let begin = match times.as_slice() {
         [a, b, ..] => a[0] - (b[0] - a[0]),
         _ => 0.0,

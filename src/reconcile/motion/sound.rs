@@ -16,8 +16,8 @@ use crate::series::channels::Channels;
 
 /// Returns the outcome of a record with dead channels, which are named; `None` if no channel is dead.
 ///
-/// A dead channel has no equation: parameters fitted to it are not from a vehicle, and a share of an unmeasured quantity is not a number. The gaps
-/// before and after are equal: both are over the equations without the channel; NaN if there are no such equations.
+/// A dead channel has no equation. Parameters fitted to it do not describe a vehicle, and a share of an unmeasured quantity is not a number. The gaps
+/// before and after are equal, since both use the equations without the channel. They are NaN if there are no such equations.
 pub(super) fn outcome_of_dead(
     frame: &MotionFrame,
     broken: &[BrokenChannel],

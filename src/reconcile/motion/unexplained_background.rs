@@ -1,4 +1,4 @@
-//! Residual of a generous model that no effect of the library explains, as background for every comparison.
+//! Residual that a joint fit of many effects does not explain. It is the background for every comparison.
 
 use super::frame::MotionFrame;
 use super::motion_fit::MotionFit;
@@ -15,12 +15,12 @@ const LEAST: f64 = 30.0;
 /// See `LEAST`.
 const SHARE: f64 = 0.01;
 
-/// Returns the power of the residual after a joint fit of the forms that help most, of whatever effect.
+/// Returns the power of the residual after a joint fit of the forms that reduce it most, of any effect.
 pub fn unexplained_background(scorer: &mut MotionScorer, null: &MotionFit) -> Background {
     let forms = scorer.form_columns(null);
     let mut columns: Vec<PriorColumn> = null.columns.to_vec();
     let n = null.n_rows;
-    // The target is what the fit left plus what its columns took; the residual alone serves as target for further columns.
+    // The target of the fit is its residual plus the part that its columns explain. For further columns, the residual alone is sufficient as target.
     let target: Vec<f64> = null.residual[..n].to_vec();
     let mut left = null.residual.to_vec();
     let mut used = vec![false; forms.len()];

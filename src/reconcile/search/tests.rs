@@ -1,7 +1,7 @@
 use super::*;
 use crate::stop::Stop;
 
-/// Five candidates of independent gains; asks to stop when so many sets were scored.
+/// Five candidates with independent gains. It requests a stop after this number of scored sets.
 struct CountingScorer {
     stop: Stop,
     last: usize,

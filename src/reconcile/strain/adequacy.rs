@@ -49,7 +49,7 @@ pub fn deviate_estimated(chi2: f64, n: f64, from: f64) -> f64 {
     if chance > f64::EPSILON {
         Normal::standard().inverse_cdf(1.0 - chance)
     } else {
-        // Far out the deviate z has a chance of about exp(-z^2 / 2).
+        // In the far tail, the probability beyond the deviate z is about exp(-z^2 / 2).
         (-2.0 * chance.max(LEAST).ln()).sqrt()
     }
 }
@@ -86,7 +86,7 @@ pub fn adequacy(
     let (held_chi2, n_held) = if proof_runs == fit_runs {
         (fit_chi2, 0.0)
     } else {
-        // Chain rule of Gaussians: what the held-out runs add, given the fit runs.
+        // Chain rule of Gaussian densities: chi^2 of the held-out runs given the fit runs is the difference.
         let all = Selection::of_runs(frame, &[fit_runs, proof_runs].concat());
         let total = chi2(
             &covariance(frame, members, &all, unknown),

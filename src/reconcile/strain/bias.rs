@@ -6,15 +6,15 @@ use crate::linalg::{Matrix, dense};
 
 /// Share of the squared gap that loads must explain.
 const SHARE: f64 = 0.95;
-/// Gauges over which the gap must be spread (participation number): fewer are faults of those gauges.
+/// Smallest number of gauges over which the gap must be spread (participation number). With fewer gauges, the cause is faults of these gauges.
 const GAUGES: f64 = 3.0;
 /// Runs beyond the number of loads.
 const SPARE_RUNS: usize = 3;
 
-/// Words for a gap of the analyst's own model that is linear in the loads at several gauges, run by run.
+/// Returns a message on a gap of the analyst's own model that is linear in the loads at several gauges, run by run.
 ///
-/// The residuals `R` (`runs x gauges`) are regressed on the loads `F` (`runs x loads`); the share is
-/// `1 - (|R - F B|^2 / (n - k)) / (|R|^2 / n)`, the participation number `(sum e_g)^2 / sum e_g^2` with `e_g` a gauge's squared gap.
+/// The residuals `R` (`runs x gauges`) are regressed on the loads `F` (`runs x loads`). The share of the gap that the loads explain is
+/// `1 - (|R - F B|^2 / (n - k)) / (|R|^2 / n)`. The participation number is `(sum e_g)^2 / sum e_g^2`, with `e_g` the squared gap of gauge g.
 pub fn model_bias(frame: &StrainFrame) -> Option<String> {
     let (n_r, n_g, n_l) = (frame.n_runs(), frame.n_gauges(), frame.n_loads());
     let carried = frame.payload.iter().any(|p| p[0] != 0.0);

@@ -10,10 +10,10 @@ use crate::sensitivity::Uncertainty;
 /// Gauges with their shares in the reading of a channel.
 pub(super) type Shares = Vec<(usize, f64)>;
 
-/// Returns the covariance of the readings of `selection` (run, gauge), `n x n` by rows, microstrain^2; `None` if S was not calibrated:
+/// Returns the covariance of the readings of `selection` (run, gauge), `n x n` by rows, microstrain^2. `None` if S was not calibrated.
 ///
-/// `Cov(y_rg, y_sh) = scale^2 (sum_jk f_rj f_sk Cov(S_gj, S_hk) + [r = s] q(f_r)^2 C_gh)`, with gauges as read under `members`. A channel with
-/// reversed polarity reverses the sign of its share.
+/// `Cov(y_rg, y_sh) = scale^2 (sum_jk f_rj f_sk Cov(S_gj, S_hk) + [r = s] q(f_r)^2 C_gh)`, with the gauge readings as `members` change them. A
+/// channel with reversed polarity reverses the sign of its share.
 pub(super) fn calibration_covariance(
     frame: &StrainFrame,
     members: &[Member<'_>],
@@ -66,8 +66,8 @@ pub(super) fn heavier_tail(frame: &StrainFrame, chi2: f64, n: usize) -> f64 {
     }
 }
 
-/// Returns the expected factor on the precision given a residual of `chi2`, `(v + n) / (v + chi^2)`: a multivariate Student's t is a Gaussian whose
-/// precision has an unknown factor. 1 where the covariance is stated.
+/// Returns the expected factor on the precision given a residual of `chi2`: `(v + n) / (v + chi^2)`. A multivariate Student's t is a Gaussian whose
+/// precision has an unknown factor. Returns 1 if the covariance is stated.
 pub(super) fn expected_precision(frame: &StrainFrame, chi2: f64, n: usize) -> f64 {
     match &frame.learnt {
         Some(u) if u.dof.is_finite() => {
@@ -77,7 +77,7 @@ pub(super) fn expected_precision(frame: &StrainFrame, chi2: f64, n: usize) -> f6
     }
 }
 
-/// Readings of a run: place of each in the selection, and the shares of gauges in it.
+/// Readings of a run: index of each reading in the selection, and the shares of the gauges in the reading.
 struct Run {
     run: usize,
     entries: Vec<(usize, Shares)>,
@@ -124,7 +124,7 @@ pub(super) fn shares(
     out
 }
 
-/// `sum_j f_j Cov(S_gj, S_hk)`, `n x n k` by rows.
+/// Returns `sum_j f_j Cov(S_gj, S_hk)`, `n x n k` by rows.
 fn contract_rows(uncertainty: &Uncertainty, n: usize, f: &[f64]) -> Vec<f64> {
     let width = n * f.len();
     let mut out = vec![0.0; n * width];
@@ -141,7 +141,7 @@ fn contract_rows(uncertainty: &Uncertainty, n: usize, f: &[f64]) -> Vec<f64> {
     out
 }
 
-/// `sum_k f_k half_g,hk`, `n x n` by rows.
+/// Returns `sum_k f_k half_g,hk`, `n x n` by rows.
 fn contract_columns(half: &[f64], n: usize, f: &[f64]) -> Vec<f64> {
     let k = f.len().max(1);
     let out: Vec<f64> = half.chunks_exact(k).map(|e| dot(e, f)).collect();

@@ -9,11 +9,11 @@ use crate::reconcile::effect::{Candidate, Discrepancy, full_id};
 use crate::reconcile::search::ScoredSet;
 use rayon::prelude::*;
 
-/// Returns `set` without effects that raise its log evidence by no more than the limit for indistinguishable causes, and a sentence on them;
-/// `None` where it requires every effect.
+/// Returns `set` without effects that raise its log evidence by no more than the limit for indistinguishable causes, and a sentence on the removed
+/// effects. `None` if it requires every effect.
 ///
-/// Each set is fitted under its own covariance. A set with one effect less may have noise in place of that effect: noise above the stated noise,
-/// or noise that is correlated from run to run. One effect always stays, and the checks of the set compare it with no effect.
+/// Each set is fitted under its own covariance. A set with one effect less may have noise in place of that effect. This noise exceeds the stated
+/// noise, or is correlated from run to run. One effect always stays, and the checks of the set compare it with no effect.
 pub(super) fn without_companions(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -52,7 +52,7 @@ pub(super) fn without_companions(
     (!reasons.is_empty()).then(|| (best, reasons.join("; ")))
 }
 
-/// Returns `set` of log evidence `level` without one effect, alone or with the form of noise that fits best in its place.
+/// Returns `set`, with the log evidence `level`, without one effect. Either no effect or the best form of noise takes the place of this effect.
 fn remove_effect(
     frame: &StrainFrame,
     candidates: &[Candidate],

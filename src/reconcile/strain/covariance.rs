@@ -16,7 +16,7 @@ impl Selection {
         Self(frame.observations.entries(runs))
     }
 
-    /// Number of readings.
+    /// Returns the number of readings.
     pub fn len(&self) -> usize {
         self.0.len()
     }
@@ -61,14 +61,20 @@ pub(super) fn patterns_read(
     read_patterns(frame, &members, patterns, 0)
 }
 
-/// Covariance of the residual of `selection`, `n x n` by rows, microstrain^2.
+/// Returns the covariance of the residual of `selection`, `n x n` by rows, microstrain^2.
 ///
-/// C = N (noise, by gauge and correlated if so stated) + load_noise^2 S S' (run by run: an error of a measured wheel force enters all gauges
-/// at once) + model_rel^2 m m' (gauge by gauge, all runs together: a wrong influence stays wrong) + sum over `scatter` of b b' (the same, with b
-/// the strain that an error of one standard deviation makes; a coefficient of S that errs by coefficient_rel adds such a b) + V (amplitudes
-/// unknown in every run, run by run, and their uncertainty), with S, m, b as read with `members` on, + the uncertainty of a calibrated S
-/// (`learnt`). Between runs of a gauge, and of any two gauges, the repeating part of V remains. Noise that wanders adds its variance times its
-/// correlation to the power of the runs between.
+/// C = N + load_noise^2 S S' + model_rel^2 m m' + sum over `scatter` of b b' + V + U, with S, m and b as the gauges read them under `members`.
+///
+/// The terms are:
+/// - N is the noise by gauge, correlated if so stated.
+/// - load_noise^2 S S' acts within each run, since an error of a measured wheel force enters all gauges.
+/// - model_rel^2 m m' acts within each gauge over all runs, since an influence error is the same in all runs.
+/// - b b' also acts within each gauge over all runs, with b the strain from an error of one standard deviation. A coefficient of S with the error
+///   coefficient_rel adds such a b.
+/// - V contains the amplitudes that are unknown in every run, and their uncertainty. Between different runs, only the repeating part of V remains.
+/// - U is the uncertainty of a calibrated S (`learnt`).
+///
+/// Noise with a correlation between runs adds, between runs that are k apart, its variance times the k-th power of its correlation.
 pub fn covariance(
     frame: &StrainFrame,
     members: &[Member<'_>],
@@ -86,10 +92,10 @@ pub fn covariance(
         read_all(frame, members, run, &mut row, Part::Linear);
         predicted.extend(row);
     }
-    // Of the strain, within a run: wheel forces, unknown amplitudes. Between runs: what repeats of the amplitudes.
+    // Covariance of the strain within a run (wheel forces, unknown amplitudes), and between runs (the repeating part of the amplitudes).
     let mut block = vec![0.0; n_g * n_g];
     let mut repeats = vec![0.0; n_g * n_g];
-    // Between runs that are n apart, the n-th power of the correlation times this.
+    // Between runs that are k apart, this matrix is multiplied by the k-th power of the correlation.
     let mut wander: Vec<(f64, Vec<f64>)> = Vec::new();
     for pattern in &columns {
         add_outer(&mut block, pattern, frame.load_noise * frame.load_noise);
@@ -108,7 +114,7 @@ pub fn covariance(
             wander.push((correlation, own));
         }
         for (pattern, &kind) in u.amplitudes.patterns.iter().zip(&u.amplitudes.kinds) {
-            // The model errs in these patterns as in all others.
+            // The model error applies to these patterns as to all others.
             let own: Vec<f64> = pattern
                 .iter()
                 .zip(&doubt)
@@ -134,7 +140,7 @@ pub fn covariance(
                 .map(|e| e[r * n_g + g] * e[s * n_g + g])
                 .sum::<f64>()
     };
-    // A contact that is open in a run reads none of what strains there.
+    // A channel whose contact is open in a run reads no strain in that run.
     let shares = shares_of_runs(frame, members, selection, n_g);
     let read = |of: &[f64], (r, g): (usize, usize), (s, h): (usize, usize)| -> f64 {
         let (Some(mine), Some(theirs)) = (shares[r].get(g), shares[s].get(h)) else {
@@ -169,7 +175,7 @@ pub fn covariance(
     out
 }
 
-/// By run of `selection` and channel: what each gauge's strain shares in it; nothing for other runs.
+/// Returns, by run of `selection` and channel, the share of each gauge's strain in the channel. Other runs have an empty list.
 fn shares_of_runs(
     frame: &StrainFrame,
     members: &[Member<'_>],
@@ -199,7 +205,7 @@ pub(super) fn add_outer(block: &mut [f64], pattern: &[f64], variance: f64) {
     }
 }
 
-/// Strain, `n_runs x n_gauges`, that each independent error of the influence makes, as read with `members` on.
+/// Returns the strain, `n_runs x n_gauges`, from each independent error of the influence, as the gauges read it under `members`.
 fn scatter_strains(
     frame: &StrainFrame,
     members: &[Member<'_>],

@@ -7,8 +7,8 @@ use crate::linalg::precision::Precision;
 use crate::reconcile::effect::{Candidate, Member, full_id};
 use crate::reconcile::outcome::DetectionLimit;
 
-/// Returns the sizes at which the expected gain of evidence covers the effect's prior weight, its width and the evidence for a name. Of effects at
-/// many overlapping places (stretches of a card, records of a run), only the effects of `also` are listed.
+/// Returns the sizes at which the expected gain of evidence covers the effect's prior weight, its width and the evidence for a name. If an effect has
+/// many overlapping places (ranges of a card, records of a run), only the effects of `also` are listed.
 pub fn find_detectable_sizes(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -28,14 +28,14 @@ pub fn find_detectable_sizes(
         }
         let effect = c.effect.as_ref();
         let overlaps = effect.gauges().len() > 1 || !effect.runs().is_empty();
-        // A form of an effect that scatters besides is seen as the plain one is.
+        // An effect that also scatters has the detection limit of its plain form.
         let scatters = !effect.parameters().is_empty() && effect.amplitudes(frame).is_some();
         if effect.discrepancy().is_some() || scatters || (overlaps && !also.contains(&number)) {
             continue;
         }
         let id = full_id(effect);
         if let Some(a) = effect.amplitudes(frame) {
-            // Amplitudes: expected gain of a size s times the usual one, patterns taken one by one.
+            // For amplitudes, the expected gain at s times the usual size, one pattern at a time.
             let read = &a.patterns;
             let mut strengths = Vec::new();
             for run in frame.observations.fit_runs() {
@@ -51,7 +51,7 @@ pub fn find_detectable_sizes(
                     strengths.push(precision.quadratic_sparse(&x));
                 }
             }
-            // In a family the patterns share what they explain: the strongest of each run stands for it.
+            // The patterns of a family explain overlapping parts of the residual, so the strongest pattern of each run represents the family.
             let per_run = read.len().max(1);
             let strongest: Vec<f64> = strengths
                 .chunks(per_run)
@@ -93,7 +93,7 @@ pub fn find_detectable_sizes(
     out
 }
 
-/// Bisection on the exact change of the prediction, on the side where less is needed.
+/// Finds the smallest detectable size by bisection on the exact change of the prediction, for the sign with the smaller size.
 #[allow(
     clippy::too_many_arguments,
     reason = "one call site, all of it the state of a loop"
@@ -139,7 +139,7 @@ fn smallest_detectable_size(
         .iter()
         .all(|p| p.starts == [p.neutral])
     {
-        // As good as linear in its size.
+        // The prediction is nearly linear in the size.
         return (2.0 * needed / curvature.max(f64::MIN_POSITIVE)).sqrt();
     }
     let mut size = step;

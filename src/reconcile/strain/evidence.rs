@@ -1,4 +1,4 @@
-//! Log evidence of a set: what its best parameters leave, less what their width and the prior weights cost.
+//! Log evidence of a set: log likelihood at its best parameters, minus the cost of their width and of the prior weights.
 
 use super::calibration_scatter::heavier_tail;
 use super::likelihood::{Fit, Likelihood};
@@ -66,7 +66,7 @@ impl Likelihood<'_> {
         }
         let runs = self.runs.len();
         for (_, s) in &sizes {
-            // Each size is a parameter, known to a factor from as many runs.
+            // Each size is a parameter whose logarithm is estimated from all runs.
             let n_sizes = s.iter().filter(|s| **s > 0.0).count();
             log_evidence -= 0.5 * (runs.max(1) as f64).ln() * n_sizes as f64;
         }

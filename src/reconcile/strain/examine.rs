@@ -117,11 +117,11 @@ fn examine_candidates(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome 
     let best = best.unwrap_or(empty);
     let proofs = Proofs::from_frame(frame);
     if is_unmodelled(candidates, &best.set).is_some() && !frame.stop.is_asked() {
-        // A general form is called upon only where no names come to the floor.
+        // A general form is used only if no set of named effects reaches the expected residual.
         let likelihood = Likelihood::new(frame, candidates, &fit_runs, &reference);
         let mut names = likelihood.names_only();
         let mut named = named_instead(&mut names, candidates, &all[..all.len().min(KEPT)]);
-        // What a form stood in for need not be near it: the names are looked through from the start as well.
+        // The effects that a general form replaced need not be near it in the search, so a second search begins with the empty set.
         named.extend(search(&mut names, breadth(frame)));
         named.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
         named.dedup_by(|a, b| a.set == b.set);
@@ -139,7 +139,7 @@ fn examine_candidates(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome 
     judged_beside_smooth(&proofs, candidates, all, best)
 }
 
-/// Judges `best`, or the smooth error of the model that explains as much.
+/// Tests `best`, or the smooth error of the model if it explains as much.
 fn judged_beside_smooth(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
@@ -161,7 +161,7 @@ fn judged_beside_smooth(
     }
 }
 
-/// The best sets of names alone, found from the best sets with general forms.
+/// Returns the best sets that contain only named effects, searched from the best sets with general forms.
 fn named_instead(
     likelihood: &mut Likelihood<'_>,
     candidates: &[Candidate],
@@ -183,8 +183,8 @@ fn named_instead(
     search_near(likelihood, breadth(likelihood.frame), &plain)
 }
 
-/// The set without noise that was stated too small, where it reaches the floor without. Noise that wanders stays: a constant that ten independent
-/// runs show may be none in ten that are correlated.
+/// Returns the set without the effects of understated noise, if it reaches the expected residual without them. Noise that is correlated between runs
+/// stays in the set. A constant offset that is significant in ten independent runs may not be significant in ten correlated runs.
 fn without_needless_noise(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -208,7 +208,8 @@ fn without_needless_noise(
         .unwrap_or(best)
 }
 
-/// The set without names that prove nothing: the other names reach the floor without them, and runs that it was not fitted on are predicted no worse.
+/// Returns the set without unnecessary effects. Without them, the other effects reach the expected residual, and the prediction of the proof runs is
+/// no worse.
 fn without_needless_names(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],

@@ -56,7 +56,7 @@ pub fn named_part(candidates: &[Candidate], set: &[usize]) -> Vec<usize> {
     set.iter().copied().filter(|c| !noise(c)).collect()
 }
 
-/// Returns the text of the general form in a set that no named effect describes; `None` if the set has no such form.
+/// Returns the description of the general form of discrepancy in a set; `None` if the set has no such form.
 pub fn is_unmodelled(candidates: &[Candidate], set: &[usize]) -> Option<&'static str> {
     set.iter().find_map(|&c| match discrepancy(candidates, c) {
         Some(Discrepancy::Form(words) | Discrepancy::Smooth(words)) => Some(words),

@@ -40,7 +40,7 @@ fn members<'a>(
     effects.iter().filter_map(member).collect()
 }
 
-/// Returns the readings with channel faults corrected, `n_runs x n_gauges`, and without the strain of masses that came aboard after the zero; `None`
+/// Returns the readings with channel faults corrected, `n_runs x n_gauges`, and without the strain of masses that were added after the zero. `None`
 /// if no effect requires a correction. Faults are corrected in the reverse of the order in which they act.
 pub fn corrected_readings(frame: &StrainFrame, effects: &[NamedEffect]) -> Option<Vec<f64>> {
     let at = |name: &str| frame.gauges.iter().position(|g| g.name == name);

@@ -139,12 +139,12 @@ pub struct StrainFrame {
     pub payload_weight: PayloadWeight,
     /// Source of the wheel forces.
     pub wheel_forces: WheelForces,
-    /// Forces and moments at the wheels that the model leaves out: (name `FY_LF`, microstrain per kN or kN m by gauge).
+    /// Forces and moments at the wheels that the model does not contain: (name `FY_LF`, microstrain per kN or kN m by gauge).
     pub other_loads: Vec<(String, Vec<f64>)>,
     /// Nuisance loads of the model. They are estimated separately in every run, for the gap before, the gap after and the noise floor.
     pub nuisance: Vec<NuisanceLoad>,
     /// Usual change of a wheel force by ground that is not flat; zero if the job has no such ground. The change is estimated separately in every run,
-    /// in the way of a nuisance load.
+    /// like a nuisance load.
     pub ground: f64,
     /// Microstrain per degree of a uniform temperature change, by gauge.
     pub thermal_uniform: Option<Vec<f64>>,
@@ -164,7 +164,8 @@ pub struct StrainFrame {
     pub model_rel: f64,
     /// Model uncertainty, 1 sd, relative to each influence coefficient, independent between coefficients and common to all runs.
     pub coefficient_rel: f64,
-    /// Influence on the analyst's own mesh, if `influence` comes from a finer one. The gap is tested on the analyst's mesh, effects on the finer one.
+    /// Influence on the analyst's own mesh, if `influence` is from a finer mesh. The gap is tested on the analyst's mesh, and effects are tested on
+    /// the finer mesh.
     pub as_modelled: Option<Vec<f64>>,
     /// Further errors of each gauge's influence: an angle, a place, an influence coefficient on the mesh. Each has one standard deviation
     /// (`n_gauges x n_columns`), is independent from gauge to gauge and common to all runs.
@@ -178,17 +179,17 @@ pub struct StrainFrame {
 }
 
 impl StrainFrame {
-    /// Number of gauges.
+    /// Returns the number of gauges.
     pub fn n_gauges(&self) -> usize {
         self.gauges.len()
     }
 
-    /// Number of runs.
+    /// Returns the number of runs.
     pub fn n_runs(&self) -> usize {
         self.observations.runs.len()
     }
 
-    /// Number of wheel loads.
+    /// Returns the number of wheel loads.
     pub fn n_loads(&self) -> usize {
         self.load_names.len()
     }
@@ -198,7 +199,7 @@ impl StrainFrame {
         self.moments.get(load).copied().unwrap_or(false)
     }
 
-    /// Number of columns of `influence`.
+    /// Returns the number of columns of `influence`.
     pub fn n_columns(&self) -> usize {
         self.load_names.len() + N_PAYLOAD_COLUMNS
     }
@@ -223,8 +224,8 @@ impl StrainFrame {
         if power > 0.0 { power.sqrt() } else { 1.0 }
     }
 
-    /// Returns the relative error by gauge, 1 sd, of the strain that an effect with amplitudes makes there. It combines the stated uncertainty,
-    /// `scatter` and the uncertainty of a calibrated S, over the wheel loads.
+    /// Returns the relative error by gauge, 1 sd, of the strain from an effect with amplitudes. It combines the stated uncertainty, `scatter` and the
+    /// uncertainty of a calibrated S, over the wheel loads.
     pub fn relative_doubt(&self) -> Vec<f64> {
         let (n_c, n_l) = (self.n_columns(), self.n_loads());
         let power = |m: &[f64], g: usize| -> f64 {

@@ -11,8 +11,8 @@ use crate::reconcile::checks::Fall;
 use crate::reconcile::effect::{Member, SizedAmplitudes};
 use crate::reconcile::outcome::{ChannelGap, Gap, GapBasis, GapNumbers};
 
-/// Unknowns of a run that are estimated from one half of its gauges (odd or even number in file order). The other half tests them, in the gap before,
-/// the gap after and the floor alike.
+/// Unknowns of a run that are estimated from one half of its gauges (odd or even number in file order). The other half tests them. The gap before,
+/// the gap after and the expected residual use the same unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FoundAnew {
     /// Amplitudes of the active effects and of the nuisance loads. The gap before has no effect amplitudes, since an effect of size zero has none.
@@ -405,7 +405,7 @@ impl ProofRun<'_> {
     }
 }
 
-/// Returns the residuals of the proof runs by the analyst's model and with `members`, and their floor.
+/// Returns the residuals of the proof runs by the analyst's model and with `members`, and their expected residual.
 ///
 /// Each tested reading j is predicted from the readings u of the other half of its run. K i_u is subtracted, with K = J_j V J_u' G_uu^-1. The
 /// innovation i is the residual less its mean given the fit runs. G is the covariance of i, and J V J' the part of G from the patterns. Given i_u, a

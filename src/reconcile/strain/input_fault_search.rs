@@ -1,4 +1,4 @@
-//! Recorded loads of a frame, as the search for wrong inputs takes them.
+//! Recorded loads of a frame, in the form that the search for wrong inputs needs.
 
 use super::frame::StrainFrame;
 use super::state::StrainState;
@@ -13,8 +13,8 @@ use crate::units::{KILO, Quantity, STANDARD_GRAVITY_M_S2};
 /// Name of the payload among the loads.
 const PAYLOAD: &str = "payload";
 
-/// Returns the findings on recorded loads and payloads of the other sign, in another unit, or exchanged; empty where an effect of the model
-/// may be looked for.
+/// Returns the findings on recorded loads and payloads with a reversed sign, in another unit, or exchanged. The list is empty if the search for
+/// effects of the model may continue.
 pub(super) fn wrong_records(frame: &StrainFrame) -> Vec<Finding> {
     let state = StrainState::from_nominal_model(frame);
     let [n_gauges, n_runs, n_columns] = state.shape;
@@ -70,8 +70,8 @@ pub(super) fn wrong_records(frame: &StrainFrame) -> Vec<Finding> {
         .collect()
 }
 
-/// Share of the readings, root mean squares, that gauges which are installed otherwise than stated leave unexplained at least: effects of a
-/// structure leave less.
+/// Smallest unexplained share of the readings (root mean squares) if gauges are installed differently from the statement. Effects of a structure have
+/// a smaller share.
 const FAR_OFF: f64 = 0.25;
 
 /// Returns the finding on gauges that are all on the other surface, or all have angles in radians. `alternatives` is only called if the recorded

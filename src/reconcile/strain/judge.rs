@@ -130,7 +130,7 @@ pub(super) fn judge(
         .map_or((None, None), |(set, words)| (Some(set), Some(words)));
     let best = fewer.as_ref().unwrap_or(best);
     let mut rivals = rival_sets(frame, candidates, all, best);
-    // As its rivals are.
+    // The best set is compared under its own covariance, as the alternative explanations are.
     let level = |s: &ScoredSet<Fit>| own_evidence(frame, candidates, s);
     let alike = ScoredSet {
         log_evidence: level(best),
@@ -238,8 +238,8 @@ pub(super) fn judge(
     }
 }
 
-/// Returns the covariance of the parameters of a set. It is empty for a set with a curve, whose single coefficients have no meaning:
-/// [`Outcome::smooth`] has their sum.
+/// Returns the covariance of the parameters of a set. It is empty for a set with a smooth error, whose single coefficients have no meaning.
+/// [`Outcome::smooth`] contains their sum.
 fn covariance_of(candidates: &[Candidate], set: &ScoredSet<Fit>) -> Vec<f64> {
     match set.set.iter().any(|c| is_smooth(candidates, *c)) {
         true => Vec::new(),
@@ -277,7 +277,8 @@ fn checks_of(set: &EffectSetChecks<'_>) -> [Check; 10] {
     [
         Check::unless(neighbours_that_fail(frame, set.attempt)),
         Check::unless(no_drift(frame, set.candidates, set.best).map(|n| n.words)),
-        // What explains the fitted runs that much better and runs to come no better is a form that is in no name.
+        // The removed effect explains the fitted runs that much better, but does not predict other runs better. The cause then has a form that the
+        // library lacks.
         Check::unless(set.taken_out.clone().filter(|_| set.lost > WORTH_NAMING)),
         Check::from_condition(wins as f64 >= rules.drawings * DRAWINGS as f64, || {
             set.standing.doubt.clone().unwrap_or_else(|| {
@@ -316,7 +317,7 @@ fn checks_of(set: &EffectSetChecks<'_>) -> [Check; 10] {
     ]
 }
 
-/// Returns the effects whose size is not plausible, with their sizes, in words.
+/// Returns the effects whose size is not plausible, with their sizes, as a message.
 fn list_implausible_sizes(attempt: &[NamedEffect]) -> String {
     let far = attempt.iter().filter(|e| !e.plausible);
     let words = far.map(|e| match e.size.first() {
@@ -351,7 +352,7 @@ fn agrees_without(
 }
 
 /// Returns the set without its zeros that do not drift, and a message on them. `None` if it has no such zero, or if the smaller set does not reach
-/// the floor or contains no identified effect.
+/// the expected residual or contains no identified effect.
 fn without_false_zeros(
     frame: &StrainFrame,
     candidates: &[Candidate],

@@ -36,10 +36,10 @@ pub struct Likelihood<'a> {
     pub(super) candidates: &'a [Candidate],
     pub(super) selection: Selection,
     readings: Vec<f64>,
-    /// The covariance is that of the prediction with these effects on.
+    /// Active effects of the prediction from which the covariance is computed.
     reference: &'a [(usize, Vec<f64>)],
     cache: BTreeMap<RoundedSizes, Option<Arc<Precision>>>,
-    /// Where a (run, gauge) sits in the selection, by run times gauges plus gauge.
+    /// Index of (run, gauge) in the selection, at the position run times number of gauges plus gauge.
     pub(super) index: Vec<Option<usize>>,
     /// Runs of the selection.
     pub(super) runs: Vec<usize>,
@@ -53,7 +53,7 @@ pub struct Likelihood<'a> {
 const SIZE_STEP: f64 = 0.35;
 
 impl<'a> Likelihood<'a> {
-    /// A likelihood over `runs` with the covariance of the prediction with `reference` (candidates with parameters) on.
+    /// Returns a likelihood over `runs`, with the covariance of the prediction under `reference` (candidates with parameters).
     pub fn new(
         frame: &'a StrainFrame,
         candidates: &'a [Candidate],
@@ -97,12 +97,12 @@ impl<'a> Likelihood<'a> {
         }
     }
 
-    /// The selection.
+    /// Returns the selection.
     pub fn selection(&self) -> &Selection {
         &self.selection
     }
 
-    /// Members of `set` with `parameters`.
+    /// Returns the members of `set` with `parameters`.
     pub fn members<'b>(&'b self, set: &[usize], parameters: &'b [Vec<f64>]) -> Vec<Member<'b>> {
         let member = |(&c, p): (&usize, &'b Vec<f64>)| {
             self.candidates.get(c).map(|c| Member {
@@ -124,7 +124,7 @@ impl<'a> Likelihood<'a> {
             .collect()
     }
 
-    /// Precision of the residual with amplitudes of these sizes unknown.
+    /// Returns the precision of the residual with unknown amplitudes of these sizes.
     pub fn precision(&mut self, sizes: &[(usize, Vec<f64>)]) -> Option<Arc<Precision>> {
         let rounded = |v: &f64| (v.max(f64::MIN_POSITIVE).ln() / SIZE_STEP).round() as i64;
         let key: RoundedSizes = sizes
@@ -174,7 +174,7 @@ impl<'a> Likelihood<'a> {
             .collect()
     }
 
-    /// Usual sizes of the amplitudes of the members that have some, refined by what `residual` shows.
+    /// Returns the usual sizes of the amplitudes of members with amplitudes, updated with `residual`.
     pub(super) fn sizes_from(
         &self,
         families: &[usize],
@@ -196,7 +196,7 @@ impl<'a> Likelihood<'a> {
         families.iter().copied().zip(sizes).collect()
     }
 
-    /// Amplitudes of candidates with their sizes, as `members` let the gauges read them.
+    /// Returns the amplitudes of candidates with their sizes, as the gauges read them under `members`.
     pub(super) fn sized_amplitudes(
         &self,
         sizes: &[(usize, Vec<f64>)],

@@ -1,17 +1,18 @@
-//! Gauges next to each other that fail together: a crack or a loose joint between them rather than as many bad gauges.
+//! Gauges next to each other that fail together. The probable cause is a crack or a loose joint between them, not as many bad gauges.
 
 use super::frame::StrainFrame;
 use crate::reconcile::effect::{Correction, Extension};
 use crate::reconcile::outcome::NamedEffect;
 
-/// Number of gauge and card faults from which card faults count too: one card next to one gauge is an amplifier fault and a gauge fault.
+/// Number of gauge and card faults from which card faults count too. Below this number, a card fault next to a gauge fault is an amplifier fault and
+/// a gauge fault.
 const WITH_CARDS: usize = 3;
 /// Range of gains that a changed path of the strain can cause too. Gains of wrongly wired bridges and amplifiers are outside this range.
 const GAIN: [f64; 2] = [0.5, 1.5];
 
-/// Returns the names of neighbouring gauges that read more or less than modelled, in words; `None` if there are fewer than two.
+/// Returns the names of neighbouring gauges that read more or less than modelled, as a message; `None` if there are fewer than two.
 ///
-/// If the stiffness of a small region changed, the residual from its unknown shape looks like such gauges too: then no gauge is named.
+/// If the stiffness of a small region changed, the residual from its unknown shape looks like such gauges too. Then no gauge is named.
 pub fn neighbours_that_fail(frame: &StrainFrame, effects: &[NamedEffect]) -> Option<String> {
     let region = (effects.iter()).find_map(|e| match &e.extension {
         Extension::LocalStiffness { place, .. } => Some(place),
@@ -39,7 +40,7 @@ pub fn neighbours_that_fail(frame: &StrainFrame, effects: &[NamedEffect]) -> Opt
     off.sort_unstable_by_key(|o| o.1);
     off.dedup_by_key(|o| o.1);
     let near = frame.rules.near * usual_distance(frame)?;
-    // A card alone is a card, however near its gauges lie to each other.
+    // Gauges of the same card do not count as neighbours, however near they are to each other.
     let close = |a: &(usize, usize), b: &(usize, usize)| {
         a.0 != b.0 && distance(frame, a.1, b.1).is_some_and(|d| d <= near)
     };

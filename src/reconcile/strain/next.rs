@@ -6,7 +6,7 @@ use super::frame::StrainFrame;
 use super::prediction::predict;
 use crate::linalg::precision::Precision;
 
-/// A run that could be made, in words and numbers.
+/// Possible additional run, as a description and as numbers.
 struct Design {
     words: String,
     loads: Vec<f64>,
@@ -53,7 +53,7 @@ fn designs(frame: &StrainFrame) -> Vec<Design> {
     out
 }
 
-/// An instruction; quantified where a run with other loads does it, else the first effect's own test.
+/// Returns the instruction. It is quantified if a run with other loads separates the effects, and otherwise the test of the first effect.
 pub fn next_measurement(
     frame: &StrainFrame,
     first: &Explanation<'_>,

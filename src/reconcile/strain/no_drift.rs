@@ -13,7 +13,7 @@ use crate::reconcile::search::ScoredSet;
 
 /// Probability that the F tests reject a zero that does drift.
 const CHANCE: f64 = 1e-3;
-/// Probability that a zero which only scatters about its former value is taken for one that moved.
+/// Probability that a zero which only scatters about its former value is identified as moved.
 const MOVED: f64 = 0.01;
 /// Limit of a slope, in standard deviations of the stated uncertainty of a gauge's influence. A model error exceeds it at one gauge in a thousand.
 const DOUBTS: f64 = 3.3;
@@ -28,8 +28,8 @@ pub(super) struct NoDrift {
 
 /// Returns the first zero of `scored` that is identified as drifting and scattering but fails a test, with the reason; `None` if all zeros pass.
 ///
-/// The reading less the contribution of the other effects is compared with `a + b p`, p the predicted strain of the gauge. The zero passes if F tests
-/// find no dependence on `p |p|` and no `b` beyond its scatter and the model uncertainty. A zero that moved also shows a constant, a line or a
+/// The reading minus the contribution of the other effects is compared with `a + b p`, with p the predicted strain of the gauge. The zero passes if F
+/// tests find no dependence on `p |p|` and no `b` beyond its scatter and the model uncertainty. A zero that moved also shows a constant, a line or a
 /// parabola beyond its scatter, over the runs in their order.
 pub(super) fn no_drift(
     frame: &StrainFrame,
@@ -66,7 +66,7 @@ pub(super) fn no_drift(
     })
 }
 
-/// Reading of a gauge, split into the contribution of the model with the other effects and the rest, by run.
+/// Reading of a gauge by run, split into the prediction with the other effects and the remaining reading.
 struct ReadingSplit {
     /// Run number over the number of runs.
     at: Vec<f64>,
@@ -76,7 +76,7 @@ struct ReadingSplit {
     rest: Vec<f64>,
 }
 
-/// Returns the reading of `gauge`, split into the prediction with all members except `but` and the rest.
+/// Returns the reading of `gauge`, split into the prediction with all members except `but` and the remaining reading.
 fn beside_others(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -148,7 +148,7 @@ fn of_amplitudes(
     let blocks = RunBlocks::from_selection(frame, &e.members, &selection);
     let mut read: Vec<usize> = selection.0.iter().map(|e| e.0).collect();
     read.dedup();
-    // By pattern: what the gauge reads of it, nothing of the zero itself.
+    // Reading of the gauge per unit amplitude by pattern; zero for the patterns of the tested effect `but`.
     let families = scored.fit.sizes.iter().zip(&unknown);
     let at_gauge = families.flat_map(|((c, _), u)| {
         let patterns = u.amplitudes.patterns.iter();

@@ -14,7 +14,7 @@ impl StrainFrame {
         if self.ground > 0.0 {
             let ground = ground_patterns(self);
             kinds.extend(ground.iter().map(|_| sizes.len()));
-            // A usual change of all of them together: roads differ along one of them sooner than along all alike.
+            // Usual size of all ground patterns together, since a road rarely changes all of them at once.
             sizes.push(self.ground * (ground.len() as f64).sqrt());
             patterns.extend(ground);
         }
@@ -49,7 +49,7 @@ fn constraints(frame: &StrainFrame) -> Vec<Vec<f64>> {
         .iter()
         .all(|name| name.starts_with(['L', 'R']))
     {
-        // Named by side, as LF and RF are: the moment about the long axis is all that is known.
+        // If the names only state the side (LF, RF), the only pattern is the moment about the longitudinal axis.
         out.push(
             frame
                 .load_names

@@ -1,4 +1,4 @@
-//! Parameters of a set that maximise its posterior, amplitudes integrated out.
+//! Parameters of a set that maximise its posterior, with amplitudes integrated out.
 
 use super::likelihood::{Fit, Likelihood};
 use crate::linalg::precision::Precision;
@@ -18,7 +18,7 @@ pub(super) struct Optimum {
 }
 
 impl Likelihood<'_> {
-    /// Parameters of `set` that maximise the posterior, by Gauss-Newton from `start` with step halving.
+    /// Computes the parameters of `set` that maximise the posterior, by Gauss-Newton from `start` with step halving.
     pub(super) fn optimise(
         &self,
         set: &[usize],
@@ -106,7 +106,7 @@ impl Likelihood<'_> {
         })
     }
 
-    /// Every combination of the starts of the members' parameters, at most a dozen.
+    /// Returns every combination of the starts of the members' parameters, at most a dozen.
     fn starts(&self, set: &[usize]) -> Vec<Vec<Vec<f64>>> {
         const MOST: usize = 12;
         let mut out: Vec<Vec<Vec<f64>>> = vec![Vec::new()];
@@ -130,7 +130,7 @@ impl Likelihood<'_> {
         out
     }
 
-    /// Parameters of `set` from a fit of a neighbour and of what is added; `None` where a member is in neither.
+    /// Returns start parameters of `set` from the fit of a neighbouring set and from an addition. `None` if a member is in neither.
     pub(super) fn start_near(
         &self,
         set: &[usize],

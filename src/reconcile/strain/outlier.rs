@@ -12,7 +12,7 @@ use crate::reconcile::search::ScoredSet;
 /// Returns a text on the fit-run reading without which `scored` reaches the noise floor, as `at_floor` tests it; `None` without such a reading.
 ///
 /// One spike in a few hundred readings is not an effect, nor evidence against one. The reading is `(P r)_i / sqrt(P_ii)` standard deviations off
-/// given all others, P the precision of the residual r. It is the one furthest off, and further off than a healthy gauge.
+/// given all other readings, with P the precision of the residual r. No other reading has a larger deviation, and a healthy gauge has a smaller one.
 pub(super) fn but_for_one(
     frame: &StrainFrame,
     candidates: &[Candidate],

@@ -1,8 +1,8 @@
 //! Evidence of a set under the covariance of the set's prediction.
 //!
-//! The gauges read the error of the model and of the loads with their faults: a channel with reversed sign also reverses its share of the covariance.
-//! Under the covariance of the model without effects, a channel fault therefore looks worse than a form that leaves the covariance alone, and
-//! amplitudes of the form win. Contenders are therefore compared each under its own covariance.
+//! Channel faults also act on the errors of the model and of the loads. A channel with reversed sign, for example, reverses the sign of its share of
+//! the covariance. The covariance of the model without effects therefore favours general forms, which do not change it, over channel faults. The
+//! compared sets are therefore each evaluated under their own covariance.
 
 use super::frame::StrainFrame;
 use super::likelihood::{Fit, Likelihood};

@@ -12,7 +12,7 @@ use crate::linalg::Matrix;
 use crate::reconcile::effect::{Member, SizedAmplitudes};
 use crate::reconcile::outcome::LoadShift;
 
-/// Wheel loads recovered from the strain of each proof run, by generalised least squares, without and with the effects.
+/// Returns the wheel loads recovered from the strain of each proof run, by generalised least squares, without and with the effects.
 pub fn loads_before_after(
     frame: &StrainFrame,
     members: &[Member<'_>],
@@ -41,7 +41,7 @@ pub fn loads_before_after(
     out
 }
 
-/// Loads of one run with their standard deviations.
+/// Recovers the loads of one run with their standard deviations.
 fn recover(
     frame: &StrainFrame,
     members: &[Member<'_>],
@@ -67,7 +67,8 @@ fn recover(
         .iter()
         .map(|&(k, g)| frame.observations.value(k, g) - rest[g])
         .collect();
-    // The loads are to be found: their measured values and noise stay out, and so does the ground, which is in them.
+    // The loads are unknown here, so their measured values and noise are left out. The ground is left out as well, since the recovered loads contain
+    // it.
     let mut free = frame.clone();
     free.load_noise = 0.0;
     free.ground = 0.0;

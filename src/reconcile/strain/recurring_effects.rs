@@ -95,7 +95,7 @@ impl Recurrence {
     }
 }
 
-/// Returns a message that the first set wins in few resampled run sets, with the sets that win in the rest.
+/// Returns a message that the first set wins in few resampled run sets, with the sets that win in the other run sets.
 fn seldom_ahead(candidates: &[Candidate], contest: &[&ScoredSet<Fit>], won: &[usize]) -> String {
     let mut sets = contest.iter().zip(won);
     let (names, first) = sets.next().map_or((String::new(), 0), |(s, w)| {

@@ -76,7 +76,7 @@ fn none_alone(reduced_chi2: f64, withheld: Option<&[String]>) -> String {
     }
 }
 
-/// Returns a text on the residual above the floor: its gauges, its runs and its growth with the load.
+/// Returns a text on the residual above the expected one: its gauges, its runs and its growth with the load.
 fn describe_excess_residual(
     frame: &StrainFrame,
     members: &[Member<'_>],

@@ -14,11 +14,12 @@ use crate::reconcile::search::ScoredSet;
 /// Number of resampled run sets. It determines a share of wins to five in a hundred.
 pub(super) const DRAWINGS: usize = 100;
 
-/// Returns, by set, the number of 100 resampled run sets in which it has the highest log evidence. Each contains as many runs as were fitted, drawn
-/// with replacement. A win counts for the first set if its densities and the winner's differ by less than odds of twenty to one over all runs. In
-/// the log evidence on a resampled run set, the log density of each run counts as often as the run is drawn. Parameters and sizes stay as fitted.
-/// Only the full evidence contains the correlation between runs. Runs that an effect of single runs changes are in every resampled run set, since
-/// no other run shows this effect.
+/// Returns, by set, the number of 100 resampled run sets in which it has the highest log evidence. Each run set contains as many runs as were fitted,
+/// drawn with replacement.
+///
+/// A win counts for the first set if its densities and the winner's differ by less than odds of twenty to one over all runs. In the log evidence on a
+/// resampled run set, the log density of each run counts as often as the run is drawn. Parameters and sizes stay as fitted. Only the full evidence
+/// contains the correlation between runs. Runs with an effect of single runs are in every resampled run set, since no other run shows this effect.
 pub(super) fn drawings_won(
     frame: &StrainFrame,
     candidates: &[Candidate],

@@ -45,7 +45,7 @@ pub(super) fn rival_sets(
     /// Number of sets tried: twice as many, since sets change their order under their own covariance.
     const TRIED: usize = 2 * MOST;
     let own = named_part(candidates, &best.set);
-    // Beside a curve, which can take many shapes, sets of any number of names stand.
+    // If the best set contains a smooth error, which can take many shapes, alternatives may have any number of effects.
     let curved = own.iter().any(|c| is_smooth(candidates, *c));
     let is_near = |s: &ScoredSet<Fit>| best.log_evidence - s.log_evidence < WORTH_NAMING;
     let other = |s: &&ScoredSet<Fit>| {
@@ -57,7 +57,7 @@ pub(super) fn rival_sets(
             && is_near(s)
     };
     let near: Vec<&ScoredSet<Fit>> = all.iter().filter(other).take(TRIED).collect();
-    // What the best set takes of noise stands for no name: a rival may take it, too.
+    // Noise effects of the best set are not names, so an alternative may contain them as well.
     let besides: Vec<usize> = (best.set.iter().copied())
         .filter(|c| !own.contains(c))
         .collect();

@@ -47,7 +47,7 @@ impl Scorer for Likelihood<'_> {
         if let [one] = c.effect.gauges().as_slice() {
             return *one;
         }
-        // One effect at many places that overlap: pairs of gauges, stretches of a card, runs.
+        // One effect at many overlapping places, such as pairs of gauges, channel ranges of a card, or runs.
         let same = |o: &Candidate| o.effect.id() == c.effect.id() && o.effect.gauges().len() != 1;
         let first = self.candidates.iter().position(same).unwrap_or(candidate);
         let places = !c.effect.gauges().is_empty() || !c.effect.runs().is_empty();
@@ -74,7 +74,7 @@ impl Scorer for Likelihood<'_> {
 }
 
 /// Returns whether other gauges distinguish a fault at the gauge of `one` from a fault at `many`, in file order, of `n` gauges in all. They do if
-/// `many` is all gauges, or a stretch that contains the gauge away from its ends. At an end, a shorter stretch explains as much.
+/// `many` is all gauges, or a range that contains the gauge away from its ends. At an end, a shorter range explains as much.
 fn is_distinguishable(one: &[usize], many: &[usize], n: usize) -> bool {
     let &[gauge] = one else {
         return false;

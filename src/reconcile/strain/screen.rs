@@ -91,7 +91,8 @@ impl Likelihood<'_> {
         out
     }
 
-    /// Noise that wanders from run to run, tried with the correlation between runs in: `-(r' P r - ln det P) / 2` less that of the base.
+    /// Returns the gain of noise that is correlated from run to run: the change of `-(r' P r - ln det P) / 2` from the base set. P includes the
+    /// correlation between runs.
     fn slow_noise(&mut self, base: &ScoredSet<Fit>, precision: &Precision) -> Vec<Addition> {
         let r = &base.fit.residual;
         let density = |p: &Precision| -0.5 * (dot(r, &p.apply(r)) + p.log_det());
@@ -115,7 +116,7 @@ impl Likelihood<'_> {
         out
     }
 
-    /// Change of the prediction of the selection by candidate `c`, at the readings that it touches.
+    /// Returns the change of the prediction of the selection by candidate `c`, at the readings that it changes.
     fn change(&self, c: usize, base: &Base<'_>, theta: &[f64]) -> Vec<(usize, f64)> {
         let Some(candidate) = self.candidates.get(c) else {
             return Vec::new();
@@ -138,7 +139,7 @@ impl Likelihood<'_> {
         let place = |run: usize, g: usize| self.index.get(run * n_g + g).copied().flatten();
         let mut out = Vec::new();
         if effect.stage() == Stage::Reading {
-            // Reading effects come last: they act on what is predicted.
+            // Effects on the reading act last, on the predicted readings.
             for &run in runs {
                 let Some(before) = base.predicted.get(run * n_g..(run + 1) * n_g) else {
                     continue;
@@ -158,7 +159,7 @@ impl Likelihood<'_> {
             effect,
             parameters: theta,
         });
-        // Members are read in the order of the set, as when it is fitted.
+        // Members act in the order of the set, as in a fit.
         let now = predict(self.frame, &members);
         for &run in runs {
             let at = |&g: &usize| {
@@ -172,7 +173,7 @@ impl Likelihood<'_> {
         out
     }
 
-    /// Approximate gain of log evidence by adding candidate `c`: one Newton step per parameter from each start.
+    /// Computes the approximate gain of log evidence by adding candidate `c`: one Newton step per parameter from each start.
     fn screen_parameters(&self, c: usize, base: &Base<'_>) -> (f64, Vec<f64>) {
         let Some(candidate) = self.candidates.get(c) else {
             return (f64::NEG_INFINITY, Vec::new());
@@ -192,8 +193,8 @@ impl Likelihood<'_> {
         }
     }
 
-    /// Gain and parameter of a candidate that is as good as linear in its only parameter, and its slope:
-    /// gain = (x' P r)^2 / (2 k) - ln(k s^2) / 2 with k = x' P x + 1 / s^2.
+    /// Returns gain and parameter of a candidate that is nearly linear in its only parameter, and the slope x of its prediction. The gain is
+    /// `(x' P r)^2 / (2 k) - ln(k s^2) / 2` with `k = x' P x + 1 / s^2`.
     fn linear_step(
         &self,
         c: usize,
@@ -265,9 +266,9 @@ impl Likelihood<'_> {
         best
     }
 
-    /// A candidate with one parameter and, besides, one pattern whose amplitude scatters from run to run: the parameter by its linear step
-    /// with the scatter in, then the scatter size of a few that gains most. With s = p' P r and h = p' P p of a run, scatter of variance v
-    /// gains the sum over runs of s^2 v / (2 (1 + v h)) - ln(1 + v h) / 2.
+    /// Screens a candidate with one parameter and one pattern whose amplitude scatters from run to run. For each of a few scatter sizes, the
+    /// parameter follows from a linear step with this scatter. The size with the largest gain is used. Let s = p' P r and h = p' P p in a run.
+    /// Scatter of variance v then gains the sum over runs of `s^2 v / (2 (1 + v h)) - ln(1 + v h) / 2`.
     fn screen_scattering(
         &self,
         c: usize,
@@ -295,7 +296,7 @@ impl Likelihood<'_> {
             change
         };
         let at: BTreeMap<usize, f64> = slope.into_iter().collect();
-        // By run, of the residual r and the parameter's slope x: p'Pr, p'Px, p'Pp, and x'Pr, x'Px.
+        // By run: p'Pr, p'Px, p'Pp, x'Pr and x'Px, with r the residual and x the slope of the parameter.
         let sums: Vec<[f64; 5]> = alone
             .iter()
             .map(|run| {
@@ -334,7 +335,8 @@ impl Likelihood<'_> {
         best
     }
 
-    /// Log likelihood with the amplitudes of `c` besides those of `base`, run by run, and their sizes.
+    /// Returns the run-by-run log likelihood with the amplitudes of `c` in addition to the amplitudes of `base`, and the sizes of all these
+    /// amplitudes.
     fn run_by_run(&self, c: usize, base: &Base<'_>) -> (f64, Vec<f64>) {
         let families = [base.families.as_slice(), &[c]].concat();
         let sizes = self.sizes_from(&families, &base.members, &base.scored.fit.residual);
@@ -344,7 +346,7 @@ impl Likelihood<'_> {
     }
 }
 
-/// x' P x and x' P y of few entries at the same places.
+/// Returns x' P x and x' P y for few entries at the same indices.
 fn products(precision: &Precision, x: &[(usize, f64)], y: &[(usize, f64)]) -> (f64, f64) {
     if x.len() < precision.n() / 3 {
         let (mut own, mut cross) = (0.0, 0.0);

@@ -1,5 +1,5 @@
-//! How large amplitudes that differ from run to run usually are, from a residual: run by run, gauges in one covariance; what repeats in
-//! all runs besides.
+//! Estimation of the usual size of amplitudes that differ from run to run, from a residual. Each run has one covariance over its gauges. The part of
+//! the amplitudes that repeats in all runs is estimated with it.
 
 use super::covariance::{Selection, add_outer, covariance};
 use super::frame::StrainFrame;
@@ -14,7 +14,7 @@ pub struct RunBlocks {
     doubt: Vec<f64>,
 }
 
-/// Readings of one run: their places in the selection, their gauges, their covariance.
+/// Readings of one run: their indices in the selection, their gauges, and their covariance.
 struct RunBlock {
     at: Vec<usize>,
     gauges: Vec<usize>,
@@ -130,7 +130,7 @@ fn patterns_of(unknown: &[SizedAmplitudes]) -> Vec<Pattern<'_>> {
         .collect()
 }
 
-/// Amplitudes that repeat in all runs, given the runs: their mean and covariance, and the log likelihood they gain.
+/// Amplitudes that repeat in all runs, given the runs: their mean and covariance, and their gain of log likelihood.
 struct RepeatedAmplitudes {
     /// Numbers of the patterns that repeat.
     which: Vec<usize>,
@@ -140,7 +140,8 @@ struct RepeatedAmplitudes {
     gain: f64,
 }
 
-/// m = (H + T^-1)^-1 sum of A' P r, H = sum of A' P A over runs; gain = (m' (H + T^-1) m - ln det(I + T H)) / 2.
+/// Returns the repeating amplitudes `m = (H + T^-1)^-1 sum of A' P r` over runs, with `H = sum of A' P A` over runs. Their gain is
+/// `(m' (H + T^-1) m - ln det(I + T H)) / 2`.
 fn estimate_steady_amplitudes(
     runs: &[RunPrecision<'_>],
     residual: &[f64],
@@ -196,8 +197,8 @@ fn estimate_steady_amplitudes(
     }
 }
 
-/// Sum over runs of the log density of `residual` with `unknown` amplitudes, less constants; of the correlation between runs, that of
-/// amplitudes that repeat.
+/// Returns the sum over runs of the log density of `residual` with `unknown` amplitudes, without constants. The only correlation between runs that it
+/// contains is from repeating amplitudes.
 pub fn run_by_run_log_likelihood(
     blocks: &RunBlocks,
     residual: &[f64],
@@ -244,7 +245,8 @@ impl Squares {
         }
     }
 
-    /// New sizes: all kinds of a family share one scale, and each has its own size in part, as side forces bring their moments along.
+    /// Returns the new sizes. All kinds of a family share one scale, since side forces also cause moments. In addition, each kind has a size of its
+    /// own in part.
     fn sizes(&self, usual: &[f64]) -> Vec<f64> {
         let known = |k: &usize| usual[*k] > 0.0;
         let logs: Vec<f64> = (0..usual.len())
@@ -267,7 +269,8 @@ impl Squares {
     }
 }
 
-/// Amplitudes of one run given its residual: by pattern the mean of the part that differs from run to run, and its remaining variance.
+/// Returns the amplitudes of one run given its residual. By pattern, these are the mean of the part that differs from run to run, and its remaining
+/// variance.
 fn estimate_scattered_amplitudes(
     run: &RunPrecision<'_>,
     residual: &[f64],
@@ -292,8 +295,8 @@ fn estimate_scattered_amplitudes(
     patterns.iter().map(one).collect()
 }
 
-/// Returns by run and pattern the amplitude that `residual` shows, with its variance: mean of what repeats and of what differs from run to run.
-/// Runs are those of `blocks`, without those whose precision does not exist.
+/// Returns, by run and pattern, the amplitude that `residual` shows, with its variance. The amplitude is the mean of the repeating part plus the mean
+/// of the part that differs from run to run. The runs are the runs of `blocks` whose precision exists.
 pub fn amplitudes_by_run(
     blocks: &RunBlocks,
     residual: &[f64],
@@ -316,14 +319,14 @@ pub fn amplitudes_by_run(
     runs.iter().map(of_run).collect()
 }
 
-/// Returns by family and kind the root mean square of the amplitudes that `residual` shows, over runs and patterns, with its standard deviation.
+/// Returns, by family and kind, the root mean square over runs and patterns of the amplitudes in `residual`, with its standard deviation.
 pub fn amplitudes_found(
     blocks: &RunBlocks,
     residual: &[f64],
     unknown: &[SizedAmplitudes],
 ) -> Vec<Vec<[f64; 2]>> {
     let patterns = patterns_of(unknown);
-    // Sum of squares, of squares times their variance, and number.
+    // By family and kind: sum of squares, sum of squares times their variance, and number of amplitudes.
     let empty = |u: &SizedAmplitudes| vec![[0.0; 3]; u.amplitudes.usual.len()];
     let mut sums: Vec<Vec<[f64; 3]>> = unknown.iter().map(empty).collect();
     for run in amplitudes_by_run(blocks, residual, unknown) {
@@ -342,10 +345,10 @@ pub fn amplitudes_found(
     sums.into_iter().map(of).collect()
 }
 
-/// By family: the sizes (see [`SizedAmplitudes::sizes`]) that explain `residual` best, drawn towards the usual ones.
+/// Returns, by family, the sizes (see [`SizedAmplitudes::sizes`]) that explain `residual` best, with the usual sizes as prior.
 ///
-/// Expectation maximisation: with a_r the amplitudes of run r and m what repeats of them, given the residuals,
-/// scatter_k^2 = (sum E[(a - m)^2] + nu usual_k^2) / (count + nu), and likewise for the steady part from E[m^2].
+/// The method is expectation maximisation. With a the amplitudes of a run and m their repeating part,
+/// `scatter_k^2 = (sum E[(a - m)^2] + nu usual_k^2) / (count + nu)`, given the residuals. The steady part follows likewise from `E[m^2]`.
 pub fn usual_sizes(blocks: &RunBlocks, residual: &[f64], families: &[Amplitudes]) -> Vec<Vec<f64>> {
     /// Steps; sizes move by less than a rounding step after a few tens.
     const STEPS: usize = 30;

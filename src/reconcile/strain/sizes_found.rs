@@ -11,7 +11,7 @@ use crate::reconcile::effect::{Candidate, Discrepancy, SizedAmplitudes, StrainEf
 use crate::reconcile::outcome::NamedEffect;
 use crate::reconcile::search::ScoredSet;
 
-/// The effects of a set with their sizes, noise left out.
+/// Returns the effects of a set with their sizes, without noise.
 pub(super) fn effects_with_sizes(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -42,7 +42,7 @@ pub(super) fn effects_with_sizes(
             .all(|(p, v)| (v - p.neutral).abs() <= p.plausible);
         let found = (scored.fit.sizes.iter().position(|s| s.0 == c)).and_then(|k| found.get(k));
         if let (Some(a), Some(found)) = (effect.amplitudes(frame), found) {
-            // Root mean square over the runs, what repeats and what scatters together.
+            // Root mean square over the runs, with the repeating and the scattering part together.
             plausible &= found
                 .iter()
                 .zip(&a.plausible)
@@ -64,7 +64,7 @@ pub(super) fn effects_with_sizes(
     out
 }
 
-/// By family of amplitudes of a set, in the order of its sizes, and kind: root mean square and standard deviation.
+/// Returns root mean square and standard deviation of the amplitudes of a set, by family (in the order of its sizes) and kind.
 fn found_amplitudes(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -85,7 +85,7 @@ fn found_amplitudes(
     amplitudes_found(&blocks, &scored.fit.residual, &unknown)
 }
 
-/// A smooth error with the root mean square of what its factors are off by, and of their deviations.
+/// Returns a smooth error with the root mean square of its factors minus one, and of their standard deviations.
 fn smooth_found(
     frame: &StrainFrame,
     candidates: &[Candidate],

@@ -1,4 +1,4 @@
-//! A smooth error of the model against the best set of names: alone, and in the place of some of them.
+//! Comparison of a smooth error of the model with the best set of effects. The smooth error replaces all or some of the effects.
 
 use super::explanation::{discrepancy, named_part};
 use super::frame::StrainFrame;
@@ -8,19 +8,20 @@ use crate::reconcile::effect::{Candidate, Discrepancy, Extension};
 use crate::reconcile::outcome::SmoothAt;
 use crate::reconcile::search::{Addition, ScoredSet, Scorer, settle};
 
-/// Number of best lengths and amplitudes that are tried with every part of the names.
+/// Number of best lengths and amplitudes that are tried with every part of the effects.
 const KEPT: usize = 2;
 
-/// Whether a candidate is a smooth error of the model.
+/// Returns whether a candidate is a smooth error of the model.
 pub(super) fn is_smooth(candidates: &[Candidate], c: usize) -> bool {
     matches!(discrepancy(candidates, c), Some(Discrepancy::Smooth(_)))
 }
 
-/// Returns the smooth error with as few of the names of `best` as it needs; `None` unless it leads the set without it and explains these runs as well
-/// as all the names. Its log evidence is then indistinguishable from theirs, or behind by less than the names that it saves must each raise.
+/// Returns the set of the smooth error and as few effects of `best` as it needs. `None` unless it is decisively ahead of the same set without the
+/// smooth error, and explains the runs as well as `best`. Its log evidence is then indistinguishable from the log evidence of `best`, or behind by
+/// less than the cost of the effects that it saves.
 ///
-/// `ln p(y | lengths, a) = -(r' C^-1 r + theta' theta / a^2) / 2 - ln det(C) / 2 - ln det(a^2 H) / 2`, H the Hessian at the best theta. A curve that
-/// can take many shapes costs as many data as it has shapes.
+/// `ln p(y | lengths, a) = -(r' C^-1 r + theta' theta / a^2) / 2 - ln det(C) / 2 - ln det(a^2 H) / 2`, with H the Hessian at the best theta. The
+/// determinants penalise a smooth error with many possible shapes.
 pub(super) fn smooth_instead(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -40,7 +41,7 @@ pub(super) fn smooth_instead(
     let mut tried: Vec<ScoredSet<Fit>> = Vec::new();
     let mut ranked = smooth.clone();
     for without in parts(&names) {
-        // All names away or one: every length and amplitude; what lies between: those that did best.
+        // If all effects or one effect are left out, every length and amplitude is tried. Otherwise only the best ones so far are tried.
         let whole = without.len() == names.len() || without.len() == 1;
         let some = if whole { smooth.len() } else { KEPT };
         for &s in ranked.iter().take(some) {
@@ -67,9 +68,9 @@ pub(super) fn smooth_instead(
         ranked.sort_by(|a, b| most(b).total_cmp(&most(a)));
     }
     let found = settle(&tried, frame.rules.decisive)?;
-    // Each under the covariance of its own prediction, as sets of names are compared.
+    // Each set is evaluated under its own covariance, as in the comparison of alternative explanations.
     let found = under_own_covariance(frame, candidates, &found.set, &found)?;
-    // A curve that leads nothing explains nothing, however near it comes to the names.
+    // The smooth error must decisively improve on the set without it, even if it explains nearly as much as the effects.
     let rest = found.set.iter().copied();
     let rest: Vec<usize> = rest.filter(|c| !is_smooth(candidates, *c)).collect();
     let without = under_own_covariance(frame, candidates, &rest, &found)?;
@@ -77,7 +78,7 @@ pub(super) fn smooth_instead(
         return None;
     }
     let saved = frame.rules.decisive * (best.set.len() as f64 - found.set.len() as f64);
-    // One factor for all gauges is a curve itself: another curve near it is no rival unless it explains more.
+    // One factor for all gauges is itself a smooth error, so another smooth error replaces it only if it explains more.
     let only_scale = (names.iter().filter(|c| !found.set.contains(c)))
         .filter_map(|&c| candidates.get(c))
         .all(|c| matches!(c.effect.extension(frame, &[]), Extension::Scale(_)));

@@ -2,9 +2,10 @@
 
 use super::frame::{Scatter, StrainFrame, Wiring};
 
-/// Returns the change of the influence for an angle error of `degrees` (one standard deviation, each gauge separately), to first order. With t the
-/// nominal angle, d(reading)/dt = gxy (cos^2 t - sin^2 t) - 2 (exx - eyy) sin t cos t for a quarter bridge, without the shear for a bending bridge.
-/// Gauges with unknown in-plane strain, and shear bridges (their reading is largest at their angle), have no change.
+/// Returns the change of the influence for an angle error of `degrees` (one standard deviation, each gauge separately), to first order.
+///
+/// With t the nominal angle of a quarter bridge, `d(reading)/dt = gxy (cos^2 t - sin^2 t) - 2 (exx - eyy) sin t cos t`. A bending bridge does not
+/// have the shear term. Gauges with unknown in-plane strain, and shear bridges (their reading is largest at their angle), have no change.
 pub fn angle_scatter(frame: &StrainFrame, degrees: f64) -> Scatter {
     let n_c = frame.n_columns();
     let mut out = vec![0.0; frame.n_gauges() * n_c];

@@ -18,7 +18,7 @@ pub(super) struct ProvenEffects {
     pub doubt: String,
 }
 
-/// Returns `best` without effects that do not reduce the gap ([`without_useless`]); `None` if no effect is removed or `best` has a general form.
+/// Returns `best` without effects that do not reduce the gap ([`without_useless`]); `None` if no effect is removed, or if `best` has a general form.
 pub(super) fn remove_unproven(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],

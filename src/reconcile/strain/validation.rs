@@ -92,7 +92,8 @@ fn refit_set(
 }
 
 /// Returns the gap over all gauges and by gauge, on held-out runs or, without held-out runs, on every run in turn. Effects of single runs (two
-/// exchanged, a wrong record) change only those runs. These runs are therefore tested in addition, each half of the gauges with a fit without it.
+/// exchanged, a wrong record) change only those runs. These runs are therefore tested in addition: each half of the gauges is tested with a fit
+/// without this half.
 pub fn validate_set(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],

@@ -52,7 +52,7 @@ impl Kernel {
     /// The samples `wanted`, from those up to the reach round them.
     fn block(&self, from: &[&[f64]], span: &Range<usize>, wanted: Range<usize>) -> Block {
         let begin = wanted.start - self.reach;
-        // Beyond the end of the stretch nothing that is wanted reaches.
+        // No wanted sample depends on readings beyond the end of the stretch, so the last reading is repeated.
         let last = span.end - 1;
         let spectra: Vec<Spectrum> = from
             .iter()
@@ -63,10 +63,10 @@ impl Kernel {
         let back = |bins: &[Complex<f64>], length: usize| time_history(bins, length, self.length);
         let kept = self.reach..self.reach + wanted.len();
         let whole = |bins: &Spectrum| back(bins, self.length)[kept.clone()].to_vec();
-        // A transform as short as the band allows.
+        // Use the shortest transform that contains the band.
         let short = (2 * self.bins.len()).next_power_of_two().min(self.length);
         let step = self.length / short;
-        // At least one, which may lie before the first that is wanted.
+        // The range contains at least one sample, which may be before the first wanted one.
         let first_told = self.reach / step;
         let told = first_told..kept.end.div_ceil(step);
         let thin = |bins: &[Complex<f64>]| back(bins, short)[told.clone()].to_vec();

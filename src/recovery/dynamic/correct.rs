@@ -77,7 +77,7 @@ pub fn readings_at_rest(
     let mut kernels = Vec::with_capacity(MOST_SETS);
     for (i, used) in stretches.sets.iter().take(MOST_SETS).enumerate() {
         let kernel = kernel_of(used);
-        // Gauges that tell too little leave their samples blank, as they do at rest; all together have to tell the loads.
+        // A set of gauges that does not determine the loads leaves its samples blank. The set of all gauges must determine them.
         kernels.push(if i == 0 { Some(kernel?) } else { kernel.ok() });
     }
     let whole = kernels.first().and_then(Option::as_ref);
@@ -135,7 +135,7 @@ impl Stretches {
         let reads = |i: usize| readings.iter().map(move |c| c[i].is_finite());
         let mut numbers: BTreeMap<Vec<bool>, usize> = BTreeMap::new();
         numbers.insert(vec![true; readings.len()], 0);
-        // The set of all gauges comes first, however seldom they all read.
+        // The set of all gauges comes first, even if all gauges rarely read together.
         let mut lengths = vec![usize::MAX];
         let mut list = Vec::new();
         let mut first = 0;
@@ -183,7 +183,7 @@ impl Squares {
         }
     }
 
-    /// Adds those of a block; of how many samples.
+    /// Adds the squares of a block and returns the number of its samples.
     fn add(&mut self, block: &Block) -> usize {
         let told = block.loads.first().map_or(0, Vec::len);
         self.told += told as f64;
@@ -195,7 +195,7 @@ impl Squares {
         told
     }
 
-    /// Mean squares of what loads are off by, and of the loads less their means.
+    /// Returns the mean squares of the motion errors of the loads, and of the loads less their means.
     fn means(&self) -> (Vec<f64>, Vec<f64>) {
         let load = self.load.iter().zip(&self.sum);
         let load = load.map(|(q, s)| (q / self.told - (s / self.told).powi(2)).max(0.0));

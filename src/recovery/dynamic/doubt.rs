@@ -61,7 +61,7 @@ impl Doubt {
         }
     }
 
-    /// Adds the noise of readings of the gauges `used`, less that of noise of the variance `share`.
+    /// Adds the noise covariance of readings of the gauges `used`, less white noise of the variance `share`.
     pub(super) fn add_noise(&mut self, used: &[usize], noise: &Matrix, share: f64) {
         let n = used.len();
         self.noise
@@ -88,7 +88,7 @@ impl Doubt {
         }
     }
 
-    /// Sums become means.
+    /// Converts sums to means.
     pub(super) fn settle(&mut self) {
         let size = triangle(self.n);
         let all: f64 = self.told.iter().sum();
@@ -112,7 +112,8 @@ impl Doubt {
         }
     }
 
-    /// Variance that motion gives to what `weights` make of the gauges `used`, at a sample; over the record where that is `None`.
+    /// Returns the variance of the motion error of the combination `weights` of the gauges `used`, at a sample. `None` as `sample` gives the mean
+    /// over the record.
     pub fn of_motion(&self, sample: Option<usize>, used: &[usize], weights: &[f64]) -> f64 {
         let part = sample.map_or(&*self.mean, |i| self.motion_at(i));
         let mut sum = 0.0;
@@ -125,8 +126,8 @@ impl Doubt {
         sum.max(0.0)
     }
 
-    /// The noise's part of readings of the gauges `used`, `n_used x n_used`: that of the gauges that read where these are all, else of the largest
-    /// set of gauges that holds them; nothing where none does.
+    /// Returns the noise part of the covariance of readings of the gauges `used`, `n_used x n_used`. It is from the stored set of these gauges, or
+    /// else from the largest set that contains them. It is zero if no set contains them.
     pub fn of_noise(&self, used: &[usize]) -> Matrix {
         let n = used.len();
         let own = self.noise.iter().find(|(set, _)| set == used);

@@ -1,13 +1,13 @@
-//! Frequencies and damping of the modes, estimated from the record that they are removed from.
+//! Frequencies and damping of the modes, estimated from the record whose dynamic strain they describe.
 //!
-//! More gauges than loads leave a residual `r(w) = B (1 - H G) eps`. A mode whose frequency or damping differs from the model adds, to first order,
-//! `B (1 - H G) psi_j da_j c_j' f` to it, with `f = G eps` and `da_j` the derivative of the response by the logarithm of the frequency or of the
-//! damping. Gauss and Newton's method finds the logarithms `x` that minimise the mean square of the residual over the record. The stated standard
+//! More gauges than loads leave a residual `r(w) = B (1 - H G) eps`. To first order, a mode whose frequency or damping differs from the model adds `B
+//! (1 - H G) psi_j da_j c_j' f` to the residual. Here `f = G eps`, and `da_j` is the derivative of the response by the logarithm of the frequency or
+//! damping. The Gauss-Newton method finds the logarithms `x` that minimise the mean square of the residual over the record. The stated standard
 //! deviations are the prior of `x`.
 //!
-//! Errors of the static S leave residuals in phase with the loads. They are projected out first: for every gauge, residual and derivatives are
-//! replaced by their parts that are orthogonal to all loads over the record (the theorem of Frisch and Waugh). The scatter of the gradient over
-//! parts of the record bounds the information from below (a sandwich estimate), because residuals of neighbouring samples are correlated.
+//! Errors of the static S leave residuals in phase with the loads. They are projected out first. For every gauge, residual and derivatives are
+//! replaced by their parts orthogonal to all loads over the record (Frisch-Waugh theorem). The scatter of the gradient over parts of the record
+//! bounds the information from below (sandwich estimate), because residuals of adjacent samples are correlated.
 
 use super::block::{Spectrum, spectrum, time_history};
 use super::correct::Stretches;
@@ -45,7 +45,8 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// Returns the deviation in units of the standard deviation that it has if the stated one is right; `None` if the record says nothing on it.
+    /// Returns the deviation over the standard deviation that it has if the stated standard deviation is right. `None` if the record contains no
+    /// information on it.
     ///
     /// The estimate shrinks towards 0. Under a prior of variance `p` and an estimate of variance `v` its variance is `p - v`.
     pub fn standardised(&self) -> Option<f64> {
@@ -70,8 +71,8 @@ pub struct EstimatedModes {
 /// Estimates frequencies and damping of the modes from a record. Arguments as in [`super::readings_at_rest`]; with `open_damping` the damping of
 /// `dynamics` is not used.
 ///
-/// Returns `None` where the record contains no information: no more gauges than loads, no mode in the band, or no stretch of the record with all
-/// gauges that is long enough.
+/// Returns `None` if the record contains no information. It needs more gauges than loads, a mode in the band, and a sufficiently long stretch of
+/// readings of all gauges.
 ///
 /// # Errors
 /// See [`Unfit`].
@@ -244,7 +245,7 @@ impl Problem<'_> {
             let mut improved = false;
             for _ in 0..3 {
                 let next = &x + &step;
-                // Parameters with which the gauges do not separate the loads are no improvement.
+                // Parameters with which the gauges do not separate the loads do not count as an improvement.
                 if let Ok(Some(there)) = self.normal(&next)
                     && self.objective(&next, &there, variance) < now
                 {
@@ -428,7 +429,7 @@ impl<'a> View<'a> {
             .map(|channel| spectrum(kernel.length, |i| channel[(begin + i).min(last)]))
             .collect();
         let loads = kernel.loads_of(&spectra);
-        // A transform as short as the band allows.
+        // Use the shortest transform that contains the band.
         let short = (2 * kernel.bins.len())
             .next_power_of_two()
             .min(kernel.length);
@@ -601,7 +602,7 @@ impl Normal {
 
     /// Returns the parameters' change that minimises the linearised residual, the shortest of all.
     fn step(&self) -> Vector {
-        // Scaled to a diagonal of 1; combinations that the residual does not contain stay as they are.
+        // Scale the matrix to a diagonal of 1. Combinations without effect on the residual do not change.
         let n = self.right.len();
         let scale = |i: usize| self.matrix[(i, i)].max(f64::MIN_POSITIVE).sqrt();
         let scaled = Matrix::from_fn(n, n, |i, j| self.matrix[(i, j)] / (scale(i) * scale(j)));
@@ -613,7 +614,7 @@ impl Normal {
         Vector::from_fn(n, |i, _| step[i] / scale(i))
     }
 
-    /// Returns the variance of one residual: of noise, or what the best linear step leaves if that is larger.
+    /// Returns the variance of one residual: the noise, or the residual after the best linear step if it is larger.
     fn variance(&self, noise: f64) -> f64 {
         let left = (self.squares - self.right.dot(&self.step())).max(0.0) / self.freedom;
         (noise * noise * self.band).max(left).max(f64::MIN_POSITIVE)

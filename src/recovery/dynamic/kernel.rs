@@ -7,7 +7,7 @@ use crate::linalg::{Complex, Matrix};
 use crate::series::plans::inverse;
 use rayon::prelude::*;
 
-/// Share of the filter's weight that may lie beyond its reach: an error of a thousandth of what the loads were there.
+/// Share of the filter weights that may be beyond the reach. It causes an error of a thousandth of the loads there.
 const BEYOND: f64 = 1e-3;
 /// Longest transform, samples.
 const LONGEST: usize = 1 << 20;
@@ -15,8 +15,8 @@ const LONGEST: usize = 1 << 20;
 const PERIODS: f64 = 16.0;
 /// Share of a transform that the reach may take at either side.
 const SIDE: usize = 8;
-/// Share of the variance that all modes make of a reading at some frequency, under which a mode is left out there: all that are left out come to
-/// less than a hundredth of a standard deviation where there are twenty.
+/// Least share of a mode in the variance of a reading due to all modes at a frequency. Below this share the mode is omitted at that frequency. Twenty
+/// omitted modes change the standard deviation by less than a hundredth.
 const WORTH_ITS_TIME: f64 = 1e-3;
 
 /// Frequencies whose noise is added up together.

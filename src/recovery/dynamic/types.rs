@@ -1,9 +1,9 @@
 //! Modes, band, and why there may be no answer.
 
-/// Where the band ends that is let through, over the frequency up to which loads are wanted: between the two it falls off as a cosine.
+/// End of the pass band over the highest frequency of the wanted loads. Between both frequencies the filter falls as a cosine.
 pub const BAND_END: f64 = 1.5;
 
-/// An elastic mode as gauges and loads meet it.
+/// Elastic mode with its strain at the gauges and the work of the loads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElasticMode {
     /// Frequency, Hz.
@@ -73,7 +73,7 @@ pub enum Unfit {
         /// Modes.
         modes: usize,
     },
-    /// The reach of a reading exceeds what is reckoned with.
+    /// The reach of a reading exceeds the supported range.
     #[error(
         "a quasi-static sample would depend on readings over more than {seconds:.4} s around it"
     )]

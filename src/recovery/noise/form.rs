@@ -134,8 +134,8 @@ impl Form {
         Some(spd::dot(&step, &score))
     }
 
-    /// Returns the fit by scoring with Levenberg's damping. `ln_sd_between` is the standard deviation, beforehand, of the logarithm of a gauge's
-    /// noise about the mean: without it the variance of a gauge with much leverage can be estimated as zero. `None` where numbers are not finite.
+    /// Returns the fit by scoring with Levenberg's damping. `ln_sd_between` is the prior standard deviation of the logarithm of the noise of a gauge
+    /// about the mean. Without this prior, the variance of a gauge with large leverage can be estimated as zero. `None` if numbers are not finite.
     pub fn fit(self, r: &Sample, ln_sd_between: f64) -> Option<Fit> {
         let n = r.t.ncols();
         let precision = match self.by_gauge {
@@ -171,7 +171,7 @@ impl Form {
                     }
                     if self.correlated {
                         let to = at.correlation + step[parameters - 1];
-                        // Halfway to full correlation in one step at most.
+                        // One step goes at most halfway to full correlation.
                         next.correlation = to.clamp(least, 0.5 * (1.0 + at.correlation));
                     }
                 }

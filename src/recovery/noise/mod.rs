@@ -1,8 +1,8 @@
-//! Noise by gauge and its correlation, estimated from residuals where they contradict equal and independent noise.
+//! Noise by gauge and its correlation, estimated from residuals that contradict equal and independent noise.
 //!
-//! Residuals `z = T y` are the part of readings that no load makes. Their mean and their part that depends linearly on the recovered loads,
-//! errors of S among it, are taken out first. The rest has the covariance `T N T'`. Three forms of `N` are fitted: one standard deviation with a
-//! correlation common to all pairs, one for each gauge, and both. The simplest form that the residuals do not contradict is used.
+//! Residuals `z = T y` are the part of the readings that no load causes. First their mean and the part that depends linearly on the recovered loads
+//! are subtracted. This part includes errors of S. The remainder has the covariance `T N T'`. Three forms of `N` are fitted: one standard deviation
+//! with a correlation common to all pairs, one for each gauge, and both. The simplest form that the residuals do not contradict is used.
 //!
 //! # Reference
 //! K. G. Jöreskog, Psychometrika 43 (1978) 443 (fit of structured covariances, likelihood ratio); M. W. Browne, Br. J. Math. Stat. Psychol. 37
@@ -28,9 +28,9 @@ pub const NOISE_ASSUMED: &str = "noise-assumed";
 
 /// Rules of the estimate of noise.
 struct Rules {
-    /// Standard deviation of a load over the one by stated noise up to which the stated noise is used: an interval of 95 % then contains 92.5 %.
+    /// Standard deviation of a load over its value by stated noise up to which the stated noise is used. An interval of 95 % then contains 92.5 %.
     too_narrow: f64,
-    /// Standard deviation of a load by stated noise over that of the best estimate up to which the stated noise is used.
+    /// Standard deviation of a load by stated noise over its value by the best estimate, up to which the stated noise is used.
     too_wide: f64,
     /// Effective runs for each dimension of the residuals from which they are tested: with fewer their covariance is nearly singular.
     runs_per_dimension: f64,
@@ -65,14 +65,15 @@ const RULES: Rules = Rules {
 pub(super) struct ShownNoise {
     /// Noise of all gauges of S; `None` where it is as stated.
     pub noise: Option<GaugeNoise>,
-    /// Finding that states it, or that it can't be determined.
+    /// Finding on the noise, or on noise that can't be determined.
     pub finding: Option<Finding>,
 }
 
-/// Returns the noise that samples without load show by S, a row a sample, strain by gauge of S, and a finding; `None` where it is as stated.
+/// Returns the noise from samples without load, with a finding. Each row is a sample of strain by gauge of S. `None` if the noise agrees with the
+/// stated noise.
 ///
-/// With `Rules::runs_per_gauge` effective samples it is their covariance itself. In the mean over the gauges it is never taken for smaller than
-/// stated: readings under load can have more noise than at rest.
+/// With at least `Rules::runs_per_gauge` effective samples it may be their covariance itself. The mean over the gauges is never below the stated
+/// noise, because readings under load can have more noise than at rest.
 pub fn noise_without_load(
     s: &Sensitivity,
     rows: &[Vec<f64>],
@@ -90,8 +91,8 @@ pub fn noise_without_load(
 
 /// Returns the noise that the residuals of `readings` show.
 ///
-/// An S with a scatter that repeats determined, and noise that is stated by gauge, stay as they are. In the mean over the gauges noise is never
-/// taken for smaller than stated.
+/// It does not replace scatter that repeated calibration runs determine, or noise that is stated by gauge. The mean over the gauges is never below
+/// the stated noise.
 pub(super) fn shown_noise(
     s: &Sensitivity,
     readings: &[Readings],
@@ -106,8 +107,8 @@ pub(super) fn shown_noise(
     shown.unwrap_or_default()
 }
 
-/// Returns the share of independent samples in samples of a record, by the correlation in time of the noise in their residuals. A steady drift,
-/// as of the zero of one gauge, is a fault and no noise.
+/// Returns the share of independent samples in samples of a record, by the correlation in time of the noise in their residuals. A steady drift, for
+/// example of the zero of one gauge, is a fault and not noise.
 pub(super) fn share_of_samples(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> f64 {
     let parts = Parts::from_readings(s, readings, errors);
     let noise = parts.and_then(|mut p| {
@@ -233,7 +234,7 @@ impl Parts {
             return None;
         }
         let z = Matrix::from_fn(runs, n, |i, g| rows[i][used[g]] / errors.noise);
-        // Their mean is the zero, and a drift of it is no noise.
+        // The mean of the samples is the zero. Neither the mean nor its drift is noise.
         let middle = 0.5 * (runs as f64 - 1.0);
         let with = Matrix::from_fn(runs, 2, |i, l| match l {
             0 => 1.0,
@@ -351,7 +352,7 @@ impl Residuals {
             let others = [&common, &own].into_iter().flatten();
             let gains = others.map(|o| fits.chance_of_gain(&white, o));
             let chance = gains.fold(fits.chance(&white), f64::min);
-            // Samples without load are too few then; readings under load are tested as well.
+            // If no form fits, samples without load give no finding, because the readings under load are tested as well.
             let is_wrong = !self.is_unloaded && chance < BEYOND_DOUBT && self.can_be_too_narrow();
             return is_wrong.then(|| ShownNoise {
                 noise: None,
@@ -399,17 +400,17 @@ impl Residuals {
         Some(off.any(|is_off| is_off))
     }
 
-    /// Whether the residuals of some direction are larger than stated noise makes them by so much that intervals can be too narrow.
+    /// Returns whether the residuals in some direction exceed the stated noise by so much that intervals can be too narrow.
     fn can_be_too_narrow(&self) -> bool {
         let m = self.sample.t.nrows();
         let values = spd::eigenvalues(self.sample.covariance.as_slice(), m);
-        // The largest eigenvalue of a sample covariance of independent noise (Marchenko and Pastur).
+        // Largest eigenvalue of a sample covariance of independent noise (Marchenko and Pastur).
         let by_chance = (1.0 + (m as f64 / self.sample.dof).sqrt()).powi(2);
         let largest = values.last().copied().unwrap_or(0.0);
         largest > RULES.too_narrow.powi(2) * by_chance
     }
 
-    /// Returns the noise of `n` gauges; those that do not read in most runs have the mean variance, independent of the others.
+    /// Returns the noise of `n` gauges. Gauges without readings in most runs have the mean variance, independent of the other gauges.
     fn of_all(&self, n: usize, noise: &GaugeNoise) -> GaugeNoise {
         let covariance = noise.covariance();
         let mean = covariance.diagonal().sum() / self.used.len().max(1) as f64;

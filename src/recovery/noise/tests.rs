@@ -146,7 +146,7 @@ fn intervals_hold_with_noise_that_residuals_show() {
         let ((held, least), width) = (trial.interval_coverage(&got), trial.width(&got));
         println!("held {held:.3}, least {least:.3}, width {width:.2}");
         assert_eq!(severity(&got), Some(Severity::Info), "{:?}", got.findings);
-        // Noise that is estimated below the stated one is taken as stated: intervals may be too wide by the error of the estimate.
+        // An estimate below the stated noise is replaced by the stated noise, so intervals may be too wide by the error of the estimate.
         assert!(held > 0.95 - slack(LOADS * RUNS) && held < 0.97, "{held}");
         assert!(least > 0.9, "{least}");
         assert!((0.95..1.1).contains(&width), "{width}");
@@ -167,7 +167,7 @@ fn noise_as_stated_changes_nothing() {
 
 #[test]
 fn noise_that_no_form_explains_is_an_error() {
-    // Correlated by place along a beam, and noise by gauge with too few runs for it.
+    // Two cases: noise correlated by position along a beam, and noise by gauge with too few runs to estimate it.
     let place = |g: usize| 8.0 * g as f64 / (GAUGES - 1) as f64;
     let beam = Matrix::from_fn(GAUGES, GAUGES, |g, h| (-(place(g) - place(h)).abs()).exp());
     for (runs, noise) in [(600, beam), (60, by_gauge(0.0))] {
@@ -189,7 +189,7 @@ fn a_zero_record_shows_noise_of_any_form() {
         let got = trial.recover();
         let (held, least) = trial.interval_coverage(&got);
         println!("held {held:.3}, least {least:.3}");
-        // Weights from 400 samples of 16 gauges: errors are 4 % larger than they say.
+        // With weights from 400 samples of 16 gauges, the true errors are 4 % larger than predicted.
         assert!((0.93..0.97).contains(&held), "{held}");
         assert!(least > 0.9, "{least}");
     }
@@ -270,7 +270,7 @@ fn shared_noise_of_two_cases_is_shown() {
         });
         let held: usize = held.sum();
         println!("{name}: {held} of 2400");
-        // 95 % and four standard deviations of a binomial number.
+        // Limits: 95 % and four standard deviations of a binomial count.
         assert!((2237..=2323).contains(&held), "{name}: {held}");
     }
 }
@@ -315,9 +315,9 @@ fn coloured_noise_names_no_gauge_more_often_than_white_noise() {
         }
     }
     println!("named {named:?} of {trials}");
-    // One right record in twenty is noted: no more than chance makes of that.
+    // A finding on a gauge occurs in one correct record in twenty. The limit allows for chance.
     let most = (0.05 * trials as f64 + 3.0 * (0.05 * trials as f64).sqrt()).ceil() as u64;
     assert!(named[..2].iter().all(|n| *n <= most), "{named:?}");
-    // At 0.05 Hz 15 s have fewer than five independent samples, from which their number is hardly known.
+    // At 0.05 Hz a record of 15 s has fewer than five independent samples. So few samples hardly determine their effective number.
     assert!(3 * named[2] <= trials.max(3), "{named:?}");
 }

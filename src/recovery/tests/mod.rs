@@ -83,7 +83,7 @@ const NOISE: ErrorModel = ErrorModel {
 fn nine_loads_of_the_ladder_frame_are_recovered_within_their_intervals() {
     let Some(frame) = frame(9) else { return };
     let got = recover(&frame.s, &frame.readings, NOISE);
-    // A gauge that stands out by chance, one job in twenty, is noted and widens the intervals: no more than that.
+    // In one job of twenty a gauge is suspect by chance. Such a finding only widens the intervals.
     let harmless = |f: &Finding| f.severity == Severity::Info && f.code == "gauge-suspect";
     assert!(got.findings.iter().all(harmless), "{:?}", got.findings);
     let (mut sum, mut covered, mut worst) = (0.0, 0, 0.0_f64);
@@ -279,7 +279,7 @@ fn a_nuisance_load_with_a_stated_size_lets_fewer_gauges_do() {
     let e = estimate(&s, &r, NOISE);
     assert_eq!(e.rank, 3);
     assert!((e.estimate.values[0] - 2.0).abs() < 1e-6 && (e.estimate.values[1] - 3.0).abs() < 1e-6);
-    // Variance of A: noise^2 / S^2, plus what the unknown N (1 sd = 1) puts into the gauge: (1e-5 / 1e-3)^2.
+    // The variance of A is noise^2 / S^2 plus the effect of the unknown N (1 sd = 1) on the gauge, (1e-5 / 1e-3)^2.
     assert!(
         (e.estimate.sigma(0) - (1e-6_f64 + 1e-4).sqrt()).abs() < 1e-6,
         "{}",

@@ -37,7 +37,7 @@ pub(super) fn many_nuisances() -> Sensitivity {
 fn a_streamed_record_gives_what_the_same_samples_give_as_runs() {
     let Some(frame) = frame(9) else { return };
     let got = recover(&frame.s, &frame.readings, NOISE);
-    // What the residuals of the runs widen is widened in the record alike.
+    // The record has the same widening by residuals as the runs.
     let (zero, widening) = (vec![0.0; 20], got.widening.clone());
     let filter = Filter::new(&frame.s, zero, NOISE, 1.0, &got.typical, widening).unwrap();
     let samples: Vec<f64> = frame
@@ -108,7 +108,8 @@ fn the_same_rows_as_runs_and_as_samples_have_the_same_sigma_nuisance_loads_of_st
 
 #[test]
 fn a_nuisance_load_with_a_stated_size_widens_the_interval_of_a_sample_as_that_of_a_run() {
-    // Two gauges, A and B on one each, N of 1 sd on both: sigma of A is (noise / S)^2 + (S_N / S)^2, by hand .01005 and not .00100.
+    // A and B each strain one of two gauges, and N of 1 sd strains both. The variance of A is (noise / S)^2 + (S_N / S)^2, so sigma is .01005 and not
+    // .00100.
     let loads = ["A", "B", "N"]
         .map(|n| Load {
             name: n.into(),
@@ -149,7 +150,7 @@ fn whole_blocks_give_what_single_samples_give_and_a_gap_spoils_its_sample_alone(
         Widening::none(),
     )
     .unwrap();
-    // Two whole blocks and a part of one; a reading is missing in the middle of the second.
+    // Two whole blocks and a part of a third. One reading is missing in the middle of the second block.
     let mut samples: Vec<f64> = (0..3 * 77)
         .map(|i| ((i * 37) % 101) as f64 - 50.0)
         .collect();
@@ -170,13 +171,13 @@ fn whole_blocks_give_what_single_samples_give_and_a_gap_spoils_its_sample_alone(
     for (a, b) in sums.residual.iter().zip(&together.residual) {
         assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
     }
-    // Two gauges left for two loads: solved by hand, y1 = S11 a + S12 b, y3 = S31 a + S32 b.
+    // Two gauges remain for two loads. Solution by hand: y1 = S11 a + S12 b, y3 = S31 a + S32 b.
     let y = [samples[120] * 1e-6 - 1e-5, samples[122] * 1e-6 + 1e-5];
     let det = 1e-3 * 7e-4 - 2e-4 * 5e-4;
     let a = (7e-4 * y[0] - 2e-4 * y[1]) / det;
     let b = (1e-3 * y[1] - 5e-4 * y[0]) / det;
     assert!((out.values[80] - a).abs() < 1e-9 && (out.values[81] - b).abs() < 1e-9);
-    // Wider than with all three.
+    // The intervals are wider than with all three gauges.
     let gain = out.gaps[0].1.as_ref().unwrap();
     let (with, without) = (filter.sigma(&[a, b]), filter.sigma_with(gain, &[a, b]));
     assert!(without[0] > with[0] && without[1] > with[1]);
@@ -253,7 +254,7 @@ fn the_typical_size_of_a_load_is_that_in_the_samples_that_tell_it() {
         for (found, truth) in got.typical.iter().zip([1.0, 2.0]) {
             assert!((found - truth).abs() < 1e-9, "{:?}", got.typical);
         }
-        // A gap is said of the record, not of the samples looked at.
+        // A gap is reported for the record, not for the examined samples.
         assert!(
             got.findings.iter().all(|f| f.code != NOT_SOLVABLE),
             "{:?}",
@@ -286,7 +287,8 @@ fn samples_whose_gauges_never_tell_a_load_leave_that_to_the_record_unless_no_gau
 fn by_a_calibrated_s_a_record_has_the_intervals_of_a_run_with_and_without_sums() {
     let values = Matrix::from_row_slice(4, 2, &[3e-6, 1e-6, 2e-6, -1e-6, -1e-6, 2e-6, 1e-6, 3e-6]);
     let mean_square = crate::sensitivity::mean_square(&values);
-    // Entries of S off by 2e-7 each and 1e-7 together, gauges that scatter by 3 % each and 2 % together; runs left out doubled all of it.
+    // Entries of S have separate errors of 2e-7 and a common error of 1e-7. Gauges have a separate scatter of 3 % and a common scatter of 2 %.
+    // Cross-validation doubles all of them.
     let alike = |each: f64, all: f64, order: usize| -> Vec<f64> {
         let entry = |i: usize| {
             if i / order == i % order {

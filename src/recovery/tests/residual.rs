@@ -60,8 +60,8 @@ fn right_jobs_whose_model_errs_alike_in_all_runs_are_not_flagged() {
         below += has("residual-below-stated-errors");
         stopped += i32::from(got.findings.iter().any(|f| f.severity == Severity::Error));
     }
-    // Nominal: .1 % above, one of a million below, .1 % stopped (docs/4-recovering-loads.md). Above 5, 1 and 5 of 1,000 chance has less
-    // than one in a thousand.
+    // Nominal rates are .1 % above, one in a million below, and .1 % stopped (docs/4-recovering-loads.md). Counts above 5, 1 and 5 in 1,000 jobs have
+    // a probability of less than one in a thousand.
     assert!(above <= 5, "{above} of {jobs} flagged above");
     assert!(below <= 1, "{below} of {jobs} flagged below");
     assert!(stopped <= 5, "{stopped} of {jobs} stopped");
@@ -69,7 +69,7 @@ fn right_jobs_whose_model_errs_alike_in_all_runs_are_not_flagged() {
 
 #[test]
 fn the_chi_square_of_right_jobs_is_that_of_its_degrees_of_freedom() {
-    // Mean and variance of chi2 - dof over 300 jobs: 0 and 2 dof.
+    // The mean and variance of chi2 - dof over 300 jobs are 0 and 2 dof.
     let (mut sum, mut square, mut dof) = (0.0, 0.0, 0);
     for seed in 0..300 {
         let (s, mut rng) = job(seed);
@@ -101,7 +101,7 @@ fn the_chi_square_of_right_jobs_is_that_of_its_degrees_of_freedom() {
     }
     assert_eq!(dof, 12 * 14);
     let (mean, variance) = (sum / 300.0, square / 300.0);
-    // The mean of 300 has a sd of sqrt(2 168 / 300) = 1.1, their variance one of 8 %.
+    // The mean of 300 jobs has a sd of sqrt(2 168 / 300) = 1.1. The variance has a sd of 8 %.
     assert!(mean.abs() < 4.0, "{mean}");
     assert!((variance / 336.0 - 1.0).abs() < 0.35, "{variance}");
 }
@@ -109,9 +109,9 @@ fn the_chi_square_of_right_jobs_is_that_of_its_degrees_of_freedom() {
 #[test]
 fn a_gauge_off_by_a_tenth_stops_the_job_or_leaves_intervals_that_cover() {
     let Some(frame) = frame(9) else { return };
-    // With a model uncertainty of 2 % a tenth is five of its sd, and shows less the more the gauge decides by itself. Most jobs with a gauge
-    // that matters are stopped, 92 of 100 with the worst one (leverage .73); those that are not cover 87 %: docs/4-recovering-loads.md
-    // has the numbers.
+    // With a model uncertainty of 2 %, an error of a tenth is five sd. The larger the leverage of the gauge, the smaller its residual. Most jobs with
+    // an influential gauge are stopped: 92 of 100 with the worst gauge (leverage .73). In the other jobs the intervals cover 87 %. The numbers are in
+    // docs/4-recovering-loads.md.
     let typical: Vec<f64> = (0..9)
         .map(|l| {
             let sum: f64 = frame.truth.iter().map(|f| (f[l] * KN).powi(2)).sum();
@@ -182,8 +182,8 @@ fn a_gauge_off_by_a_tenth_stops_the_job_or_leaves_intervals_that_cover() {
             }
         }
         assert!(worst.0 >= least, "model {model_rel}: {worst:?}");
-        // Of all jobs with that gauge, stopped or not, the intervals that mislead are those of right jobs: a twentieth. The intervals of a
-        // job share its model's errors: their share scatters by .085 from job to job (simulated), the mean over 12 by .025.
+        // Over all jobs with this gauge, stopped or not, the share of misleading intervals is a twentieth, as in correct jobs. The intervals of a job
+        // share its model errors, so the share scatters by .085 from job to job (simulated). The mean over 12 scatters by .025.
         let most = misled.iter().copied().fold(0.0, f64::max);
         let mean = misled.iter().sum::<f64>() / misled.len() as f64;
         assert!(
@@ -193,7 +193,8 @@ fn a_gauge_off_by_a_tenth_stops_the_job_or_leaves_intervals_that_cover() {
     }
 }
 
-/// A gauge of 0.7 of its gain: of what all gauges make of it, itself among them, it reads other than 30 % less; of what the others make of it 30 %.
+/// Tests a gauge with 0.7 of its gain. It reads 30 % less than the strain predicted from the other gauges. The deviation from the prediction of all
+/// gauges, which includes this gauge, is not 30 %.
 #[test]
 fn the_gain_that_is_stated_of_a_suspect_is_that_against_the_others_and_its_interval_covers() {
     for (noise, model_rel) in [(20e-6, 0.0), (20e-6, 0.01)] {
@@ -222,7 +223,7 @@ fn the_gain_that_is_stated_of_a_suspect_is_that_against_the_others_and_its_inter
             let said = got.findings.iter().find(|f| {
                 f.code == GAUGE_SUSPECT && f.subject == "G3" && f.message.contains("% (± ")
             });
-            // An error has an interval without zero, whichever gauge it is of.
+            // A finding of severity error has an interval without zero for every gauge.
             let errors = got.findings.iter().filter(|f| {
                 f.severity == Severity::Error && f.code == GAUGE_SUSPECT && f.subject != "all"
             });
@@ -234,7 +235,7 @@ fn the_gain_that_is_stated_of_a_suspect_is_that_against_the_others_and_its_inter
             covered += i32::from((size + 30.0).abs() <= half);
             of += 1;
         }
-        // Of 250 and more a share of .95 scatters by .014: by .03 one time in thirty.
+        // With at least 250 trials a share of .95 scatters by .014. It is off by .03 one time in thirty.
         assert!(of >= 250, "{of}");
         let share = f64::from(covered) / f64::from(of);
         assert!(

@@ -38,9 +38,9 @@ fn calibrated_uncertainty(one_by_one: bool) -> Uncertainty {
     }
 }
 
-/// Independent loads of equal sigma: the largest single load is nearest, and the squares of the other loads are the distance from it. For two further
-/// loads and 20 degrees of freedom `F = 9.95` has a chance of a thousandth (tables of F): `3.5^2 + 1.5^2` is within it, `4^2 + 3^2` is not. If their
-/// strains are at right angles and equal, the two nearest single loads are the two largest estimates.
+/// Tests independent loads of equal sigma. The largest single load is nearest, and the squares of the other loads are the distance from it. For two
+/// further loads and 20 degrees of freedom, `F = 9.95` has a probability of a thousandth (tables of F). `3.5^2 + 1.5^2` is within this limit, `4^2 +
+/// 3^2` is not. If the strains of the loads are at right angles and equal, the two nearest single loads are the two largest estimates.
 #[test]
 fn a_run_with_several_loads_is_widened_until_either_of_two_alone_is_a_sigma_away() {
     let within = run_with_loads("one", [10.0, 3.5, 1.5]);
@@ -53,7 +53,7 @@ fn a_run_with_several_loads_is_widened_until_either_of_two_alone_is_a_sigma_away
         .collect();
     assert_eq!(named, [("two", CODE, Severity::Warning)]);
     assert_eq!(runs[0].estimate.covariance, within.estimate.covariance);
-    // I, the outer square of (0, -4, 3), and that of (10, 0, 3).
+    // Sum of I, the outer product of (0, -4, 3) and the outer product of (10, 0, 3).
     let expected = [101.0, 0.0, 30.0, 0.0, 17.0, -12.0, 30.0, -12.0, 19.0];
     for (c, e) in runs[1].estimate.covariance.iter().zip(expected) {
         assert!((c - e).abs() < 1e-12, "{:?}", runs[1].estimate.covariance);

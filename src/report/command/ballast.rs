@@ -1,4 +1,4 @@
-//! Files and words of `ballast`.
+//! Report files and console output of `ballast`.
 
 use super::{Report, write_page};
 use crate::estimate::NORMAL_95;

@@ -1,4 +1,4 @@
-//! Files and words of `calibrate`.
+//! Report files and console output of `calibrate`.
 
 use super::sensitivity::columns;
 use super::{Report, mistake, write_page};

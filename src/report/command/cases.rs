@@ -1,4 +1,4 @@
-//! Files and words of `cases`.
+//! Report files and console output of `cases`.
 
 use super::{Report, write_page};
 use crate::host::fault::Faults;

@@ -1,4 +1,4 @@
-//! Files and words of `check`.
+//! Report files and console output of `check`.
 
 use super::{Report, write_page};
 use crate::host::fault::Faults;
@@ -41,7 +41,7 @@ impl Report for Outcome<CheckedFiles> {
         let all = jobs.chain(decks).chain(results).chain(records);
         let rows = all.flat_map(|text| {
             let row = |line: &str| {
-                // Lines after the first go on under its text.
+                // Further lines of a text are aligned below the first.
                 let kind = line.split_once(' ').filter(|_| !line.starts_with(' '));
                 let (kind, text) = kind.unwrap_or(("", line.trim_start()));
                 vec![kind.to_owned(), text.to_owned()]

@@ -1,4 +1,4 @@
-//! Files and words of `fleet`.
+//! Report files and console output of `fleet`.
 
 use super::fleet_page::page;
 use super::{Report, write_page};
@@ -133,7 +133,7 @@ impl Report for Outcome<Fleet> {
             "95 % interval",
             "unreliable",
         ];
-        // Most fleets have no day whose loads can't be relied on.
+        // The column `unreliable` is left out if it is empty, as in most fleets.
         let shown = match rows.iter().all(|r| r.last().is_none_or(String::is_empty)) {
             true => head.len() - 1,
             false => head.len(),
@@ -219,7 +219,7 @@ fn rainflow(fleet: &Fleet) -> String {
     let mut text = RAINFLOW.map(|f| f.0).join(",") + "\n";
     for (v, l) in fleet.rows() {
         for (apart, cycles) in &l.range_pairs {
-            // Ends in classes so far apart differ by no less than one class less and no more than one more.
+            // Two values whose classes are `apart` classes apart differ by `apart - 1` to `apart + 1` class widths.
             let (from, to) = ((f64::from(*apart) - 1.0).max(0.0), f64::from(*apart) + 1.0);
             let ends = [from * l.width, to * l.width].map(cell).join(",");
             let _ = writeln!(

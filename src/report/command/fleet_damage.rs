@@ -70,7 +70,7 @@ fn sort(rows: &mut [Row]) {
     rows.sort_by(|a, b| b.2[1].total_cmp(&a.2[1]));
 }
 
-/// The rows in their order, those of the vehicles in `found` in a trace of their own.
+/// Returns the rows in their order. Rows of the vehicles in `found` have a separate trace.
 fn mark_found_vehicles(rows: &[Row], found: &[&str]) -> Vec<Value> {
     let trace = |is_found: bool, name: &str| {
         let of_kind = rows
@@ -83,7 +83,7 @@ fn mark_found_vehicles(rows: &[Row], found: &[&str]) -> Vec<Value> {
         }
         (!of_kind.is_empty()).then_some(trace)
     };
-    // A trace without values states the order of the names.
+    // A trace without values sets the order of the names.
     let order: Vec<IntervalRow> = rows.iter().map(|r| (r.1.clone(), [f64::NAN; 3])).collect();
     let mut traces = vec![interval_trace(&order, "", Ends::Interval)];
     traces.extend(trace(false, "no finding"));
@@ -94,7 +94,7 @@ fn mark_found_vehicles(rows: &[Row], found: &[&str]) -> Vec<Value> {
     traces
 }
 
-/// Whether a warning or an error names the vehicle or one of its records, or its damage is in doubt.
+/// Whether a warning or an error names the vehicle or one of its records, or its damage is unreliable.
 fn has_finding(v: &VehicleAnswer, o: &Outcome<Fleet>) -> bool {
     let names = |f: &Finding| {
         f.subject.split(", ").any(|s| {
@@ -124,7 +124,7 @@ mod tests {
         assert_eq!(traces[2]["y"], json!(["B FZ"]));
         assert_eq!(traces[2]["marker"]["color"], "#c0392b");
         assert_eq!(traces[2]["name"], "with a finding");
-        // Without findings there is nothing to name.
+        // Without findings, the legend needs no names.
         assert_eq!(mark_found_vehicles(&rows, &[]).len(), 2);
         assert!(mark_found_vehicles(&rows, &[])[1]["name"].is_null());
     }

@@ -139,7 +139,8 @@ fn health(v: &VehicleAnswer) -> Section {
     Section::new(format!("Gauges of {} by day", v.name), blocks)
 }
 
-/// Where the numbers of [`health`] come from: of each gauge the record of the first day on which it was dead, of the first and of the last day.
+/// Returns links from the numbers of [`health`] to their records. For each gauge these are the first day on which it was dead, the first day and the
+/// last day.
 fn health_links(v: &VehicleAnswer) -> Vec<CellLink> {
     let mut links = Vec::new();
     for (row, g) in v.gauges.iter().enumerate() {

@@ -23,10 +23,10 @@ const SCHEMA: &str = "message fleet {
     required double damage_high;
 }";
 
-/// The file.
+/// Returns the bytes of the Parquet file.
 ///
 /// # Errors
-/// What the writer refuses.
+/// Errors of the writer.
 pub(super) fn bytes(fleet: &Fleet) -> Result<Vec<u8>, Faults> {
     encode_fleet(fleet).map_err(|e| mistake("fleet.parquet", &e).into())
 }

@@ -1,4 +1,4 @@
-//! Files and words of `identify`.
+//! Report files and console output of `identify`.
 
 use super::columns::declare_written;
 use super::{Report, write_page};

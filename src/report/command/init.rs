@@ -1,4 +1,4 @@
-//! Files and words of `init`.
+//! Report files and console output of `init`.
 
 use super::{Report, write_page};
 use crate::host::fault::Faults;

@@ -41,7 +41,7 @@ use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::{KeyNumber, Page};
 use std::path::Path;
 
-/// An outcome that has files and words.
+/// An outcome that has report files and console output.
 pub trait Report {
     /// Files that every outcome of its kind has. Before computation, the command checks whether they would overwrite files of the user.
     const FILES: &'static [&'static str] = &["result.json", "report.html"];

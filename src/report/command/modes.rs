@@ -1,4 +1,4 @@
-//! Files and words of `modes`.
+//! Report files and console output of `modes`.
 
 use super::{Report, write_page};
 use crate::host::fault::Faults;

@@ -60,7 +60,7 @@ where
     }
 }
 
-/// Returns the page that lists the result just computed and those of other commands, with a link to each report.
+/// Returns the page that lists the result just computed and the results of other commands, with a link to each report.
 fn index_of(page: &Page, command: &str, others: &[OtherResult]) -> Page {
     let newest = OtherResult {
         command: command.to_owned(),

@@ -1,4 +1,4 @@
-//! Files and words of `payload`.
+//! Report files and console output of `payload`.
 
 use super::{Report, write_page};
 use crate::estimate::NORMAL_95;
@@ -210,7 +210,7 @@ fn place_in_plan(place: [f64; 2]) -> String {
     match size.is_finite() && size > 0.0 {
         true => {
             let digits = (3 - size.log10().floor() as i32).clamp(0, 6) as usize;
-            // Zero has no sign.
+            // Adding 0 turns -0 into 0.
             let unit = 10f64.powi(digits as i32);
             let cell = |v: f64| format!("{:.digits$}", (v * unit).round() / unit + 0.0);
             place.map(cell).join(", ")
@@ -224,7 +224,7 @@ fn value_or_nan(x: Option<f64>) -> f64 {
 }
 
 fn line(p: &WeighedPayload) -> String {
-    // A known place has no spread.
+    // A known place has zero spread.
     let spread = p.position_sigma.unwrap_or([p.force.map(|_| 0.0); 2]);
     let numbers = [
         p.force,
@@ -278,7 +278,7 @@ fn page(found: &Outcome<WeighedPayloads>) -> Page {
 
 fn row(p: &WeighedPayload) -> Vec<String> {
     let (Some(force), Some(mass), [Some(x), Some(y)]) = (p.force, p.mass, p.position) else {
-        // What is refused has no numbers to sign for.
+        // A refused run shows no numbers.
         let nothing = std::iter::repeat_n(String::new(), 4);
         let cells = [p.run.clone(), "refused".into()].into_iter();
         return cells.chain(nothing).collect();

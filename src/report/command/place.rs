@@ -1,4 +1,4 @@
-//! Files and words of `place`.
+//! Report files and console output of `place`.
 
 use super::columns::declare_written;
 use super::{Report, write_book, write_page};
@@ -256,7 +256,7 @@ fn numbers(placed: &CertifiedLayout) -> Vec<(String, String)> {
     out
 }
 
-/// Load, sigma, sigma as glued, unit.
+/// Returns rows of load, sigma, sigma for the installed positions, and unit.
 fn load_sigma(placed: &CertifiedLayout) -> Vec<Vec<String>> {
     let row = |l: &LoadSigma| {
         let glued = l.sigma_as_glued.map(number).unwrap_or_default();

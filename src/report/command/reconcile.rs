@@ -1,4 +1,4 @@
-//! Files and words of `reconcile`.
+//! Report files and console output of `reconcile`.
 
 use super::reconcile_extended::write_extended;
 use super::reconcile_motion::{motion_page, write_motion};

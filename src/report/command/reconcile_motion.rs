@@ -236,7 +236,7 @@ fn added_section(outcome: &Outcome<Reconciliation>, found: &MotionPart) -> Secti
 
 /// The gap by equation, before and after.
 fn gap_section(outcome: &MotionOutcome) -> Section {
-    // Gap before, after, floor, percent.
+    // Gap before, gap after and noise floor, in percent.
     let gaps: Vec<(String, [f64; 3])> = equations(outcome)
         .map(|(e, after)| {
             let left = after.map_or(f64::NAN, |a| a.gap);

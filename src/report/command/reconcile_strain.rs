@@ -47,7 +47,7 @@ pub(super) fn strain_page(outcome: &Outcome<Reconciliation>, found: &StrainPart)
         m.note.push_str(&smooth_note(found, &m.name));
     }
     marks.extend(found.marked.iter().filter_map(mark_of_place));
-    // Where S is given there is no model to draw: the gauges alone.
+    // A job that gives S has no model: the scene then shows only the gauges.
     let nothing = Model::default();
     let fields = found.fields.as_ref();
     let scene = (!marks.is_empty()).then(|| Scene {

@@ -1,4 +1,4 @@
-//! Files and words of `respond`.
+//! Report files and console output of `respond`.
 
 use super::columns::declare_written;
 use super::respond_files::{arrays, histories};

@@ -1,4 +1,4 @@
-//! Files and words of `sensitivity`.
+//! Report files and console output of `sensitivity`.
 
 use super::{Report, write_page};
 use crate::host::fault::Faults;

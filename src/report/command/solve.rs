@@ -1,4 +1,4 @@
-//! Files and words of `solve`.
+//! Report files and console output of `solve`.
 
 use super::{Report, write_page};
 use crate::fe::Solution;
@@ -97,7 +97,7 @@ impl Report for Outcome<SolvedCases> {
     }
 }
 
-/// Blocks are made into words in parallel, a few at a time.
+/// Writes the OP2 file. Blocks are encoded in parallel, a few at a time.
 fn write_op2(
     model: &Model,
     solution: &Solution,

@@ -1,4 +1,4 @@
-//! Files and words of `strains`.
+//! Report files and console output of `strains`.
 
 use super::{Report, write_page};
 use crate::fe::CaseResult;

@@ -1,4 +1,4 @@
-//! Files and words of `study`.
+//! Report files and console output of `study`.
 
 use super::{Report, write_page};
 use crate::estimate::NORMAL_95;
@@ -100,7 +100,7 @@ impl Report for Outcome<LayoutStudy> {
             head,
             rows: self.study.iter().map(row).collect(),
         };
-        // Of the best and the worst layout, where the loads have no column each.
+        // Range from the best to the worst layout, used if the loads have no separate columns.
         let of_load = |load: &StudiedLoad| {
             let all = self.study.iter().flat_map(|r| &r.loads);
             let halves = all.filter(|l| l.name == load.name).map(half);
@@ -139,7 +139,8 @@ const COLUMNS: [&str; 5] = [
     "mean_relative_rms",
 ];
 
-/// Columns of layouts.csv: a row a gauge, the columns from `name` on as those of a gauge table; `L` is the job's length.
+/// Columns of `layouts.csv`, which has a row for each gauge. The columns from `name` on equal the columns of a gauge table. `L` is the job's length
+/// unit.
 const LAYOUT_COLUMNS: [(&str, &str); 14] = [
     ("layout", ""),
     ("gauges", ""),

@@ -1,4 +1,4 @@
-//! Files and words of `verify`.
+//! Report files and console output of `verify`.
 
 use super::{Report, write_page};
 use crate::host::fault::Faults;

@@ -86,7 +86,7 @@ fn limit_lines(all: Vec<FindingLines>, limit: usize, width: usize) -> Vec<Findin
     let (mut shown, mut left_out): (Vec<_>, Vec<_>) =
         all.into_iter().partition(|f| severity(f) >= mildest);
     if fits.is_none() {
-        // Even the errors are too many: the last of them and a line with the number of the others.
+        // Even the errors do not fit: show the last ones, and a line with the number of errors left out.
         let kept = limit.saturating_sub(1).max(1);
         let over = shown.len().saturating_sub(kept);
         left_out.extend(shown.drain(..over));

@@ -26,7 +26,7 @@ pub(super) fn least_lines(tables: &[ConsoleTable], width: usize) -> usize {
     (2..KEPT).find(fits).unwrap_or(KEPT)
 }
 
-/// Returns the lines of the first table that fits; if none fits, the first rows of the last table and the number of the others.
+/// Returns the lines of the first table that fits. If none fits, returns the first rows of the last table and the number of rows left out.
 pub(super) fn lines(console: &Console, width: usize, limit: Option<usize>) -> Vec<String> {
     let tables = || console.tables.iter().filter(|t| !t.rows.is_empty());
     let Some(last) = tables().next_back() else {
@@ -51,7 +51,7 @@ impl Columns {
             let all = cells(c).chain(table.head.get(c));
             all.map(|t| t.chars().count()).max().unwrap_or(0)
         };
-        // Values of a list of fields have nothing in common.
+        // The values of a list of fields differ in kind, so that no column is aligned as numbers.
         let is_list = table.head.is_empty();
         let is_number = |c: usize| c > 0 && !is_list && cells(c).all(|t| is_number(t));
         Self {
@@ -129,7 +129,7 @@ fn in_blocks(
     blocks: usize,
 ) -> Vec<String> {
     let height = rows.len().div_ceil(blocks);
-    // Fewer blocks where the last would be empty.
+    // Use fewer blocks if the last would be empty.
     let blocks = rows.len().div_ceil(height.max(1));
     let head = (!table.head.is_empty()).then(|| vec![columns.row(&table.head); blocks]);
     let line = |r: usize| -> Vec<String> {
@@ -177,7 +177,7 @@ fn wrapped_last(table: &ConsoleTable, columns: &Columns, width: usize) -> Option
     Some(lines)
 }
 
-/// The first rows of a table and the number of the others, in columns that are cut to the width.
+/// Formats the first rows of a table and the number of rows left out. Columns are cut to the width.
 fn format_first_rows(
     table: &ConsoleTable,
     file: Option<&str>,

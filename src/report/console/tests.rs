@@ -65,11 +65,11 @@ fn thirty_nine_loads_stand_side_by_side_in_a_terminal_with_many_findings() {
         assert!(text.contains(&format!("LOAD{i}.FZ ")), "{text}");
         assert!(text.contains(&format!("{i}.50 ± 0.36  kN")), "{text}");
     }
-    // The error is the last finding, and what is left out is counted.
+    // The error is the last finding, and a line counts the findings left out.
     let last = layout.findings.last().unwrap();
     assert_eq!(last.severity, Some(Severity::Error));
     assert!(text.contains("3 notes more: -v prints them"), "{text}");
-    // All of it without a limit.
+    // Without a limit, everything is printed.
     let all = lay_out(
         &console,
         &texts,
@@ -140,7 +140,7 @@ fn a_terminal_without_utf_8_shows_signs_in_ascii() {
     let text = all_lines(&lay_out(&console, &texts, &room)).join("\n");
     assert!(text.is_ascii() && text.contains("0.50 +- 0.36"), "{text}");
     assert!(text.contains("3 um/m"), "{text}");
-    // Every sign that a table or a message may have.
+    // Every character that a table or a message may contain.
     let signs = "± µε μm ∞ ° ² ³ × · ≥ − …";
     assert_eq!(ascii(signs), "+- ue um inf  deg ^2 ^3 x * >= - ...");
 }

@@ -1,6 +1,6 @@
 //! Text in lines of a given width.
 
-/// Returns a text in lines of at most `width` characters. Lines after the first begin with `indent` spaces; a word wider than a line is cut.
+/// Returns a text in lines of at most `width` characters. Lines after the first begin with `indent` spaces. A word wider than a line is cut.
 pub fn wrap_lines(text: &str, width: usize, indent: usize) -> Vec<String> {
     let indent = indent.min(width / 2);
     let mut lines: Vec<String> = Vec::new();

@@ -34,7 +34,7 @@ impl Sheet {
         row: 4.4,
         equal: 96.0,
     };
-    /// For a card or a phone, whose words are then as large.
+    /// For a card or a phone. Its text then has the same size as in a chart for A4.
     const CARD: Self = Self {
         width: 88.0,
         height: 44.0,
@@ -43,7 +43,7 @@ impl Sheet {
     };
 }
 
-/// Points of the edge of what is filled, each of which stands for several.
+/// Maximum number of points along the edge of a filled area. Each point represents several of the data.
 const MOST_EDGES: usize = 240;
 /// Width of a bar that spans a range, mm.
 const SPAN: f64 = 2.4;
@@ -93,7 +93,7 @@ impl Axis {
             return Self::Names(names, place);
         }
         let from_zero = layout[AXES[k]]["rangemode"] == "tozero";
-        // Both axes have the values of both where they are to be equal.
+        // Equal axes share one range, which covers the values of both.
         let axes = match layout["equal"] == true {
             true => 0..2,
             false => k..k + 1,
@@ -122,7 +122,7 @@ impl Axis {
         match self {
             Self::Names(names, [from, to]) => {
                 let n = names.len() as f64;
-                // Names of 7 points need 2.6 mm.
+                // A name in 7 point type needs 2.6 mm.
                 let each = (2.6 / ((to - from).abs() / n)).ceil().max(1.0) as usize;
                 let place = |i: usize| from + (to - from) * (i as f64 + 0.5) / n;
                 let named = names.iter().enumerate().step_by(each);
@@ -147,7 +147,7 @@ impl Axis {
 fn chart(traces: &[Value], layout: &Value, sheet: Sheet) -> Picture {
     let series = series_of(traces, &COLOURS);
     let (x_names, y_names) = (names_of(&series, 0), names_of(&series, 1));
-    // A few names share the height of curves, up to twice their own.
+    // A few rows share the height of a chart of curves. Each row has at most twice its normal height.
     let rows = y_names.as_ref().map(|n| {
         let n = n.len().max(1) as f64;
         n * (sheet.height / n).clamp(sheet.row, 2.0 * sheet.row)
@@ -249,7 +249,7 @@ fn fill(picture: &mut Picture, s: &Series, points: &[Option<[f64; 2]>], y: &Axis
     let step = points.len().div_ceil(MOST_EDGES).max(1);
     for part in edges.split(Option::is_none) {
         let known: Vec<(f64, f64, f64)> = part.iter().copied().flatten().collect();
-        // Values grow upwards, where millimetres fall.
+        // Values grow upwards, millimetres grow downwards.
         let widest = |c: &[(f64, f64, f64)]| {
             let x = c.iter().map(|e| e.0).sum::<f64>() / c.len() as f64;
             let head = c.iter().map(|e| e.1).fold(f64::INFINITY, f64::min);
@@ -298,7 +298,7 @@ fn draw(picture: &mut Picture, s: &Series, points: &[Option<[f64; 2]>], x: &Axis
     if s.kind == Kind::Lines {
         return;
     }
-    // Points that would cover each other are drawn once.
+    // Points that overlap are drawn once.
     let mut seen = std::collections::BTreeSet::new();
     for p in points.iter().flatten() {
         if !seen.insert(p.map(|v| (v * 3.0).round() as i64)) {
@@ -319,7 +319,7 @@ fn draw(picture: &mut Picture, s: &Series, points: &[Option<[f64; 2]>], x: &Axis
     }
 }
 
-/// Names of the series, and of the band if there is one, with their colours in lines at the top; returns where the space below begins.
+/// Draws the legend at the top: names and colours of the series, and of the band if there is one. Returns the height at which the space below begins.
 fn legend(
     picture: &mut Picture,
     series: &[Series],

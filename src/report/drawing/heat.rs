@@ -36,7 +36,7 @@ fn part(map: &Value, columns: &[String], rows: &[String], first: usize) -> Pictu
     let longest = |names: &[String]| names.iter().map(|n| n.chars().count()).max();
     let room = |names: &[String]| 4.0 + 1.3 * longest(names).unwrap_or(0).min(LONGEST) as f64;
     let (left, top) = (room(rows), room(columns));
-    // Few columns need not fill the page.
+    // A map of few columns does not fill the page width.
     let width = ((UPRIGHT - left) / columns.len() as f64).min(22.0);
     let mut picture = Picture {
         size: [UPRIGHT, top + ROW * rows.len() as f64 + 1.0],

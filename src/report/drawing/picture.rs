@@ -47,7 +47,7 @@ pub(in crate::report) enum Shape {
         /// Width of the pen.
         pen: f64,
     },
-    /// Words.
+    /// Text.
     Word(Word),
 }
 
@@ -71,14 +71,14 @@ pub(in crate::report) const FAINT: &str = "#9aa7b5";
 /// Nearly black.
 pub(in crate::report) const INK: &str = "#1c2530";
 
-/// Width of a drawing, mm: that of the text on A4 with margins of 18 mm.
+/// Width of a drawing, mm. It equals the text width of A4 with margins of 18 mm.
 pub(in crate::report) const UPRIGHT: f64 = 174.0;
 
 /// Characters of a name in a drawing.
 pub(in crate::report) const LONGEST: usize = 40;
 
 impl Picture {
-    /// Whether it shows a model: its words are names of gauges and the range of its colours, which the caption has too.
+    /// Whether the picture shows a model. Its texts are the names of gauges and the colour range, which the caption also contains.
     pub(in crate::report) fn is_model(&self) -> bool {
         let is_face = |s: &Shape| matches!(s, Shape::Face { .. });
         self.shapes.iter().any(is_face)

@@ -31,7 +31,7 @@ impl Scale {
         } else {
             (0.1 * low.abs()).max(1e-9)
         };
-        // A bar or a value that begins at nothing needs no room below.
+        // A bar that begins at zero needs no room below zero.
         let below = if low == 0.0 { 0.0 } else { room };
         Self {
             ends: [low - below, high + room],

@@ -64,7 +64,7 @@ pub(in crate::report) fn views(scene: &SceneView) -> Vec<Picture> {
         return Vec::new();
     };
     let side = bounds[1] - bounds[0];
-    // From above the longer side lies across the page.
+    // In the view from above, the longer side is horizontal.
     let turned = side.y > side.x;
     let mut chosen: Vec<&View> = VIEWS
         .iter()
@@ -83,7 +83,7 @@ pub(in crate::report) fn views(scene: &SceneView) -> Vec<Picture> {
         .map(|v| draw_view(scene, v, bounds))
         .collect();
     if out.is_empty() {
-        // Everything on one line.
+        // All points are on one line.
         let view = &VIEWS[usize::from(turned)];
         out.push(draw_view(scene, view, bounds));
     }
@@ -162,12 +162,12 @@ pub(in crate::report) struct Look<'a> {
     pub(in crate::report) turn: &'a dyn Fn(Vec3) -> [f64; 2],
 }
 
-/// Rectangles that are drawn on (left, top, right, bottom), by square cells of a lattice, so that a search is no slower for many gauges.
+/// Occupied rectangles (left, top, right, bottom), grouped by square cells of a lattice. The lattice keeps the search fast for many gauges.
 #[derive(Default)]
 struct OccupiedArea(HashMap<[i64; 2], Vec<[f64; 4]>>);
 
 impl OccupiedArea {
-    /// Width of a cell: some letters.
+    /// Width of a cell: a few letters.
     const CELL: f64 = 2.0;
 
     fn cells(area: [f64; 4]) -> impl Iterator<Item = [i64; 2]> {
@@ -193,7 +193,7 @@ pub(in crate::report) fn marks(picture: &mut Picture, marks: &[Mark], look: &Loo
     let Look { place, turn } = look;
     let most = marks.iter().filter_map(|m| m.gap).flatten();
     let most = most.filter(|v| v.is_finite()).fold(0.0, f64::max);
-    // Names keep clear of all gauges.
+    // Names must not cover any gauge.
     let mut taken = OccupiedArea::default();
     let mut keep = |p: [f64; 2], r: f64| taken.add([p[0] - r, p[1] - r, p[0] + r, p[1] + r]);
     for m in marks {
@@ -228,7 +228,7 @@ pub(in crate::report) fn marks(picture: &mut Picture, marks: &[Mark], look: &Loo
     }
 }
 
-/// The name where it covers nothing, with a line to its gauge where it is far; left out where there is no such place.
+/// Draws the name at a free place, with a line to its gauge if it is far. If there is no free place, the name is left out.
 fn name(picture: &mut Picture, name: &str, at: [f64; 2], taken: &mut OccupiedArea) {
     const SIZE: f64 = 6.0;
     let text = shorten_to(name, 16);
@@ -238,8 +238,7 @@ fn name(picture: &mut Picture, name: &str, at: [f64; 2], taken: &mut OccupiedAre
             let angle = f64::from(turn) * std::f64::consts::PI / 6.0;
             let (c, s) = (angle.cos(), -angle.sin());
             let near = [at[0] + far * c, at[1] + far * s];
-            // The side of the words that looks at the gauge stands there.
-            // Along the line, words begin, have their middle or end there.
+            // The side of the text that faces the gauge is at `near`. In the reading direction, the text begins, is centred or ends there.
             let along = match (1.0 - c) / 2.0 {
                 a if a < 0.25 => 0.0,
                 a if a > 0.75 => 1.0,

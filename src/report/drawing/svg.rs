@@ -81,7 +81,7 @@ fn format_shapes(group: &[Shape]) -> String {
             let d = path(&trails(lines.collect()));
             html! { path d=(d) stroke=(colour) stroke-width=(round_pen_width(*pen)) {} }
         }
-        // A pen of its own colour closes the seams between neighbours.
+        // A stroke in the fill colour closes the seams between neighbours.
         Shape::Face { colour, .. } => {
             let lines = group.iter().filter_map(|s| match s {
                 Shape::Face { corners, .. } => {
@@ -130,7 +130,7 @@ fn format_shapes(group: &[Shape]) -> String {
     element.into_string()
 }
 
-/// Lines from point to point: the first of each as it is, the others by steps.
+/// Path data of polylines. The first point of each line is absolute, all further points are relative steps.
 fn path(lines: &[Vec<[i64; 2]>]) -> String {
     let mut d = String::new();
     for line in lines {
@@ -151,7 +151,7 @@ fn path(lines: &[Vec<[i64; 2]>]) -> String {
 fn word(w: &Word) -> Markup {
     let size = w.size * POINT;
     let tall = CAPITAL * size;
-    // Which part of the words stands there, along the line and across it.
+    // Anchor of the text in the reading direction and across it.
     let (along, across) = match w.upwards {
         false => (w.anchor[0], w.anchor[1]),
         true => (1.0 - w.anchor[1], w.anchor[0]),

@@ -38,7 +38,7 @@ fn joined_lines_cover_what_they_were_made_of_and_a_mesh_takes_few() {
     let joined = trails(mesh.clone());
     assert_eq!(steps(&joined), steps(&mesh));
     let points: usize = joined.iter().map(Vec::len).sum();
-    // Of 10 rows and 13 columns each needs its two ends.
+    // Each of the 10 rows and 13 columns needs its two ends.
     assert!((23..100).contains(&points), "{points} points");
     // No step is drawn twice.
     let length: i64 = joined
@@ -69,7 +69,7 @@ fn a_drawing_keeps_its_places_and_its_words_are_no_markup() {
     // Two dots of one pen are one path, as wide as the dots.
     assert!(text.contains("d=\"M30 40h0M50 40h0\"") && text.contains("stroke-width=\"16\""));
     assert!(text.contains("height=\"0\""), "{text}");
-    // The foot of the words stands at the place; upwards their right side, and their end.
+    // Horizontal text has its baseline at the point. Upward text has its right side and its end there.
     assert!(text.contains("<text x=\"100\" y=\"100\""), "{text}");
     assert!(
         text.contains("text-anchor=\"end\" transform=\"rotate(-90 100 100)\""),
@@ -135,9 +135,9 @@ fn axes_of_a_scatter_plot_are_equal() {
         points: &[[0.0, 0.1], [100.0, 101.0], [50.0, 49.0]],
     };
     let picture = first_picture(&cross_plot(&[load]));
-    // The line of equality rises as far as it goes to the right.
+    // The line of equality rises at 45 degrees.
     let line = picture.shapes.iter().find_map(|s| match s {
-        // Thinner than in the legend.
+        // The line is thinner than in the legend.
         Shape::Strokes { lines, colour, pen } if colour == "#9aa7b5" && *pen < 0.5 => {
             lines.first().cloned()
         }
@@ -170,7 +170,7 @@ fn a_band_of_a_history_is_drawn_without_a_script() {
             _ => None,
         })
         .collect();
-    // The interval, then smallest to largest, both coarser than the samples.
+    // The interval, then the band from smallest to largest. Both have fewer points than the samples.
     assert_eq!(regions.len(), 2);
     assert!(regions.iter().all(|r| r.len() > 100 && r.len() <= 480));
 }

@@ -22,11 +22,11 @@ pub(in crate::report) enum Kind {
 pub(in crate::report) struct Series {
     /// Name; empty where it has none.
     pub(in crate::report) name: String,
-    /// How it is drawn.
+    /// Kind of drawing.
     pub(in crate::report) kind: Kind,
     /// `#rrggbb`.
     pub(in crate::report) colour: String,
-    /// The figure's word for a point.
+    /// Name of the point symbol in the figure.
     pub(in crate::report) symbol: String,
     /// Right and up: numbers or names.
     values: [Vec<Value>; 2],
@@ -34,7 +34,7 @@ pub(in crate::report) struct Series {
     errors: [Vec<Value>; 2],
     /// Whether these are the ends of a range instead of an interval.
     pub(in crate::report) is_span: bool,
-    /// Lower ends of what is filled.
+    /// Lower edge of a filled area.
     pub(in crate::report) foot: Vec<Option<f64>>,
 }
 
@@ -103,7 +103,7 @@ pub(in crate::report) fn series_of(traces: &[Value], colours: &[&str]) -> Vec<Se
     let mut out = Vec::new();
     for (i, t) in traces.iter().enumerate() {
         let is_filled = t["fill"] == "tonexty";
-        // Other lines of no width only bound what is filled.
+        // Other lines of zero width only bound a filled area.
         if t["line"]["width"] == 0 && !is_filled {
             continue;
         }

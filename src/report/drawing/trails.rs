@@ -1,4 +1,4 @@
-//! Many short lines joined to few long ones, which take fewer words to draw.
+//! Joins many short lines to few long ones, which make the SVG shorter.
 
 use std::collections::BTreeMap;
 
@@ -20,7 +20,7 @@ pub(super) fn trails(lines: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
             continue;
         }
         let mut trail = vec![a, b];
-        // Onward, and then from the beginning the other way.
+        // Extend the trail at its end, then at its beginning.
         for _ in 0..2 {
             while let [.., before, end] = trail[..]
                 && let Some((k, next)) = next_line(&ends, &at, &used, before, end)
@@ -38,7 +38,7 @@ pub(super) fn trails(lines: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
     out
 }
 
-/// A line not yet drawn that begins at `end`, and where it leads: straight on from `before` if there is one.
+/// Returns a line not yet used that begins at `end`, and its other end. A line straight on from `before` is preferred.
 fn next_line(
     ends: &[[Point; 2]],
     at: &BTreeMap<Point, Vec<usize>>,

@@ -19,7 +19,7 @@ pub struct LoadTrace {
     pub spans: Vec<[f64; 3]>,
 }
 
-/// Histories, one at a time: what lies between smallest and largest of each span, its 95 % interval around it, and the mean.
+/// Histories of loads, shown one at a time. Each span of time has a band from smallest to largest sample, the 95 % interval around it, and the mean.
 pub fn history(traces: &[LoadTrace]) -> Figure {
     let ends = traces
         .first()

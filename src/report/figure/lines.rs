@@ -4,7 +4,7 @@ use super::chart::Figure;
 use super::packed_numbers::round_numbers;
 use serde_json::{Value, json};
 
-/// Points drawn at most for one curve; longer ones are thinned evenly.
+/// Maximum number of points drawn for one curve. Longer curves are thinned evenly.
 const MOST_POINTS: usize = 4000;
 const COLOURS: [&str; 3] = ["#9aa7b5", "#1f618d", "#c0392b"];
 
@@ -28,7 +28,7 @@ pub enum Scale {
     LogY,
 }
 
-/// Groups of curves, one group at a time; in a group the first is drawn lowest.
+/// Groups of curves, shown one group at a time. In a group, the first curve is drawn first, below the others.
 pub fn lines(
     groups: &[(String, Vec<Line>)],
     x: &str,

@@ -1,4 +1,5 @@
-//! Figures of a page: plain numbers in, what the script of the page draws as SVG out. The script and its data are in the page: no network.
+//! Figures of a page. This module turns plain numbers into data that the script of the page draws as SVG. Script and data are part of the page, so
+//! that it needs no network.
 
 mod agreement;
 mod chart;

@@ -5,7 +5,7 @@ const CHART: &str = "data-figure=\"chart\"";
 const SCENE: &str = "data-figure=\"scene\"";
 const POINTING: &str = "data-pointing";
 
-/// Script elements for a page with this body; empty where nothing is to be drawn.
+/// Returns the script elements for a page with this body. The text is empty if the body has nothing to draw.
 pub fn scripts(body: &str) -> String {
     let needed = [
         (CHART, include_str!("../page/chart.js")),

@@ -5,11 +5,11 @@ use serde_json::json;
 
 #[test]
 fn packed_numbers_are_the_base64_of_their_steps_in_variable_length() {
-    // Rows of two, worked by hand: 1, 2, then 301 - 1 = 300 and 1 - 2 = -1. Steps 1, 2, 300, -1 count as 2, 4, 600, 1; 600 is 4 * 128 + 88, so
-    // the bytes are 02 04 d8 04 01; base64 by RFC 4648.
+    // Rows of two, worked by hand: 1, 2, then 301 - 1 = 300 and 1 - 2 = -1. Steps 1, 2, 300, -1 are encoded as 2, 4, 600, 1. 600 is 4 * 128 + 88, so
+    // the bytes are 02 04 d8 04 01. Base64 follows RFC 4648.
     assert_eq!(packed_deltas(&[1, 2, 301, 1], 2), json!("AgTYBAE="));
     assert_eq!(packed_deltas(&[], 3), json!(""));
-    // 2047 stands for the largest, -2048 for nothing.
+    // 2047 encodes the largest value, -2048 a missing one.
     assert_eq!(
         steps_of([f64::NAN, 2.0, -2.0, 0.0].into_iter(), 2.0),
         [-2048, 2047, -2047, 0]
@@ -30,7 +30,7 @@ fn a_page_has_the_scripts_that_it_needs_and_they_load_nothing() {
     assert!(!figure.contains("webgl2") && scene.contains("webgl2"));
     for text in [&figure, &scene] {
         assert!(!text.contains("src=") && !text.contains("import(") && !text.contains("fetch("));
-        // The one address is a name: that of SVG's elements.
+        // The only address is the namespace of SVG, which is never fetched.
         assert_eq!(
             text.matches("http").count(),
             text.matches("http://www.w3.org/2000/svg").count()
@@ -51,17 +51,17 @@ fn a_history_spans_the_extremes_with_their_interval_and_leaves_gaps_out() {
         spans: vec![[-3.0, 0.0, 4.0], [f64::NAN; 3], [1.0, 1.0, 1.0]],
     };
     let figure = history(&[trace]);
-    // The axis says what is drawn on it.
+    // The axis title contains the name and the unit of the load.
     assert_eq!(figure.choices[0].1[0]["ytitle"], "A<B, kN");
     let of = |k: usize| &figure.choices[0].1[k]["y"];
-    // Interval around the extremes, then the extremes, then the mean.
+    // Traces 0 and 1 bound the interval. The extremes follow, then the mean.
     assert_eq!(*of(0), json!([-4.0, null, 0.0]));
     assert_eq!(*of(1), json!([5.0, null, 2.0]));
     assert_eq!(*of(3), json!([4.0, null, 1.0]));
     assert_eq!(*of(4), json!([0.0, null, 1.0]));
-    // The middle of each span in its own time.
+    // Each time is the middle of its span.
     assert_eq!(figure.choices[0].1[4]["x"], json!([2.0, 6.0, 10.5]));
-    // Nothing in the data can end its script early.
+    // Text in the data cannot close the script element.
     let page = figure.render().into_string();
     assert!(page.contains("A\\u003cB") && page.matches("</script>").count() == 1);
 }
@@ -79,7 +79,7 @@ fn points_keep_their_run_where_readings_are_missing() {
         ["used", "held out"],
         [&runs, &[]],
     );
-    // All, then the worst first.
+    // All gauges first, then single gauges by decreasing residual.
     let names: Vec<&str> = figure.choices.iter().map(|c| c.0.as_str()).collect();
     assert_eq!(
         names,

@@ -1,6 +1,6 @@
-//! An outcome as a piece of a notebook: the blocks of its report without a script, in a style that holds for them alone.
+//! An outcome as HTML for a notebook: the blocks of its report without a script. The style applies only to these blocks.
 //!
-//! Figures are drawn as on paper. The model in three dimensions, long tables and what else would swell a notebook stay in `report.html`.
+//! Figures are drawn as on paper. The model in three dimensions, long tables and other large content stay in `report.html`.
 
 use super::command::{Report, words};
 use super::drawing::picture::Picture;
@@ -19,7 +19,7 @@ const MOST_PICTURES: usize = 4;
 /// Bytes of all pictures of a piece, so that a notebook with many stays light.
 const MOST_BYTES: usize = 160_000;
 
-/// HTML that needs nothing else: verdict, findings, sections. Of an outcome without a page its words.
+/// Returns self-contained HTML: verdict, findings, sections. An outcome without a page gives its console text.
 pub fn piece<A: Answer>(outcome: &Outcome<A>) -> String
 where
     Outcome<A>: Report,
@@ -71,7 +71,7 @@ impl Room {
             Block::Figure(f) => self.figure(f),
             Block::Scene(s) => self.scene(s),
             Block::Lines(text) => lines(text),
-            // There are no files beside a notebook.
+            // A notebook has no files next to it to link to.
             Block::Links(_) => html! {},
             Block::Cards(_) => block_html(b),
             Block::Folded { summary, blocks } => {

@@ -60,7 +60,7 @@ fn a_piece_has_verdict_findings_and_pictures_and_runs_nothing() {
     ] {
         assert!(!text.contains(word), "{word}");
     }
-    // Every element ends: SVG in a page has none that end by themselves.
+    // Every element has an end tag: SVG in a page has no self-closing elements.
     for tag in [
         "div", "svg", "path", "text", "p", "table", "tr", "td", "figure",
     ] {

@@ -68,7 +68,7 @@ impl Page {
         Self { first, ..self }
     }
 
-    /// The page as it lies in `folder`: paths of linked files lead from there.
+    /// Returns the page for a file in `folder`: paths of linked files are relative to `folder`.
     pub fn with_links_from(mut self, folder: &Path) -> Self {
         for block in self.sections.iter_mut().flat_map(|s| &mut s.blocks) {
             if let Block::Table(t) = block {
@@ -133,7 +133,7 @@ impl Section {
 pub enum Block {
     /// A paragraph.
     Text(String),
-    /// A paragraph that begins with stressed words.
+    /// A paragraph whose first part, the first string, is emphasized.
     Stressed(String, String),
     /// A paragraph in the background: explanation of the block above it.
     Note(String),
@@ -147,11 +147,11 @@ pub enum Block {
     Lines(String),
     /// Cards side by side; one alone is as wide as the page.
     Cards(Vec<Card>),
-    /// Links of a page to files next to it: words, path.
+    /// Links of a page to files next to it: link text, path.
     Links(Vec<(String, String)>),
     /// Content for some readers only: collapsed under `summary` on a screen, in full on paper.
     Folded {
-        /// Words to open it.
+        /// Heading that opens the content.
         summary: String,
         /// Content.
         blocks: Vec<Block>,
@@ -192,7 +192,7 @@ pub struct Card {
     pub text: String,
     /// Numbers with what they are.
     pub numbers: Vec<(String, String)>,
-    /// Words and paths of files.
+    /// Link texts and paths of files.
     pub links: Vec<(String, String)>,
     /// Whether the result cannot be relied on.
     pub is_bad: bool,
@@ -259,7 +259,7 @@ pub struct Table {
     pub links: Vec<CellLink>,
 }
 
-/// A cell that leads to a file; on paper its words alone.
+/// A table cell that links to a file. On paper it is plain text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CellLink {
     /// Row, from 0.

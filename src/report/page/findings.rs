@@ -1,4 +1,4 @@
-//! Findings of a page: by code, of those that are alike the first open, the others folded.
+//! Findings of a page, grouped by code. The first finding of a group is open, further findings are folded.
 
 use crate::finding::explain::{Code, codes};
 use crate::finding::{Finding, Severity};
@@ -16,7 +16,7 @@ pub(super) struct FindingsBySeverity<'a> {
 }
 
 impl<'a> FindingsBySeverity<'a> {
-    /// Sorts findings by severity; those of one severity keep their order.
+    /// Sorts findings by severity. Findings of one severity keep their order.
     pub(super) fn from_findings(findings: &'a [Finding]) -> Self {
         let of = |severity| findings.iter().filter(|f| f.severity == severity).collect();
         Self {
@@ -82,7 +82,7 @@ fn finding(f: &Finding) -> Markup {
     }
 }
 
-/// Names in the subject of a finding; `start.js` shows those of gauges in the pictures of the page.
+/// Names in the subject of a finding. `start.js` highlights the gauge names in the pictures of the page.
 fn subjects(subject: &str) -> Markup {
     html! {
         @for (i, name) in subject.split(", ").enumerate() {

@@ -13,7 +13,7 @@ use maud::{Markup, html};
 /// Rows that the table of a first screen has room for; the file and the sections below have all.
 const MOST_ROWS: usize = 14;
 
-/// Groups of errors shown open over the picture; the others follow below it.
+/// Groups of errors shown open above the picture. Further groups follow below it.
 const OPEN_ERRORS: usize = 2;
 
 /// The first screen as HTML.
@@ -56,7 +56,7 @@ pub(super) fn first_screen(page: &Page, findings: &FindingsBySeverity) -> Markup
     }
 }
 
-/// Class, sign and word of the mark before the summary.
+/// Returns CSS class, symbol and label of the mark before the summary.
 fn mark(findings: &FindingsBySeverity) -> (&'static str, &'static str, &'static str) {
     match (findings.errors.is_empty(), findings.warnings.is_empty()) {
         (false, _) => ("bad", "✕", "error"),
@@ -65,7 +65,7 @@ fn mark(findings: &FindingsBySeverity) -> (&'static str, &'static str, &'static 
     }
 }
 
-/// Findings of one severity, folded under their number and the words of their codes.
+/// Findings of one severity, folded under a heading with their number and their codes in plain words.
 fn fold_findings(what: &str, findings: &[&Finding]) -> Markup {
     let groups = groups_of(findings);
     html! {
@@ -180,7 +180,7 @@ fn first_picture(page: &Page) -> Option<FirstPicture> {
         }),
         _ => None,
     });
-    // A low figure of a few rows says little at this size.
+    // A low figure of a few rows shows little at this size.
     let tall = |f: &Figure| f.height >= TALL;
     let has_tall = blocks().any(|b| matches!(b.1, Block::Figure(f) if tall(f)));
     let figure = || {
@@ -202,5 +202,5 @@ fn first_picture(page: &Page) -> Option<FirstPicture> {
 /// Pixels of a figure that fills the space of a picture.
 const TALL: usize = 200;
 
-/// Words for the still picture of a model.
+/// Label of the still picture of a model.
 const MODEL: &str = "the model with its gauges and loads";

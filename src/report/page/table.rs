@@ -27,7 +27,7 @@ pub(super) fn table(t: &Table, caption: &str) -> Markup {
 
 /// A cell, as a link where it leads to a file.
 fn cell_html(t: &Table, row: usize, column: usize, cell: &str) -> Markup {
-    // Links stand in the order of their rows.
+    // Links are sorted by row.
     let first = t.links.partition_point(|l| l.row < row);
     let mut of_row = t.links.iter().skip(first).take_while(|l| l.row == row);
     match of_row.find(|l| l.column == column) {

@@ -5,8 +5,8 @@ use crate::report::page::Table;
 
 /// Width of the text on a sheet that is turned, mm.
 const ACROSS: f64 = 261.0;
-/// Millimetres per point of type and character: a little less than half the height of the type, as digits, small letters and the
-/// spaces between them take in the mean.
+/// Width of a character, in millimetres per point of type size. It is a little less than half of the type size, the mean of digits, small letters and
+/// spaces.
 const PER_CHARACTER: f64 = 0.44 * 25.4 / 72.0;
 /// Space next to a column, mm.
 const BESIDE: f64 = 3.0;
@@ -56,7 +56,7 @@ pub(super) fn fit_table(table: &Table) -> Vec<TableLayout> {
             ..whole(false, *size)
         }];
     }
-    // Small type is for what is wide even across.
+    // Small type is used only on landscape pages, for tables that are still too wide.
     let upright = SIZES.iter().filter(|s| **s > 7.5);
     let upright = upright.map(|s| (false, UPRIGHT, *s));
     let across = SIZES.iter().map(|s| (true, ACROSS, *s));

@@ -25,7 +25,7 @@ pub struct Origin<'a> {
 
 /// Longest word of running text that is not broken.
 const IN_TEXT: usize = 48;
-/// Cells of a table and lines of one text on paper; the rest is in the files.
+/// Maximum number of rows of a table and lines of a text on paper. The files contain all of them.
 const MOST_ROWS: usize = 2000;
 
 /// The page for the template.
@@ -76,7 +76,7 @@ fn finding(f: &Finding) -> Value {
     })
 }
 
-/// Sections by how the sheet lies: those that follow each other the same way share their sheets.
+/// Groups the sections by page orientation. Consecutive sections with one orientation share their pages.
 fn sheets(sections: &[Section]) -> Vec<Value> {
     let mut out: Vec<(bool, Vec<Value>)> = Vec::new();
     for s in sections {

@@ -19,8 +19,8 @@ pub(super) fn fonts() -> &'static [Font] {
     })
 }
 
-/// The text as it can be printed: a character without a font is written as its number, `[U+4E2D]`, and so is one that would be invisible or turn the
-/// direction of reading. Nobody signs for an empty box.
+/// Returns the text as it can be printed. A character without a font is written as its number, `[U+4E2D]`. So is a character that is invisible or
+/// reverses the reading direction. A signed document must not contain empty boxes.
 pub(super) fn make_printable(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -40,7 +40,7 @@ fn is_shown(c: char) -> bool {
     c.is_ascii() || !hidden && fonts().iter().any(|f| f.info().coverage.contains(c.into()))
 }
 
-/// Printable text in which words longer than `longest` characters may be broken.
+/// Returns printable text in which words longer than `longest` characters may be broken.
 pub(super) fn make_breakable(text: &str, longest: usize) -> String {
     let text = make_printable(text);
     let mut out = String::with_capacity(text.len());

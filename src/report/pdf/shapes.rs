@@ -4,7 +4,7 @@ use super::glyphs::short_printable;
 use crate::report::drawing::picture::{LONGEST, Picture, Shape};
 use serde_json::{Value, json};
 
-/// The drawing, every word printable.
+/// Returns the drawing as JSON. Every text in it is printable.
 pub(super) fn picture_json(picture: &Picture) -> Value {
     let shapes: Vec<Value> = picture.shapes.iter().map(shape).collect();
     json!({

@@ -28,7 +28,7 @@ fn write_sections(sections: Vec<Section>) -> Vec<u8> {
     write_pdf(&page(sections), &origin(&inputs, &units)).unwrap()
 }
 
-/// Pages of a PDF, from its page tree, which stands outside of compressed streams or not at all: then 0.
+/// Returns the number of pages of a PDF from its page tree. If the page tree is in a compressed stream, the number is 0.
 fn n_pages(pdf: &[u8]) -> usize {
     let text = String::from_utf8_lossy(pdf);
     let leaf = text.matches("/Type /Page").count() + text.matches("/Type/Page").count();
@@ -139,7 +139,7 @@ fn a_table_turns_the_sheet_before_it_is_cut_and_repeats_its_first_column_then() 
     let many = columns::fit_table(&table(90, "12345"));
     assert!(many.len() > 1);
     assert!(many.iter().all(|f| f.across && f.columns[0] == 0));
-    // Every column once, but for the first.
+    // Every column appears once, except for the first, which every part repeats.
     let mut shown: Vec<usize> = many.iter().flat_map(|f| f.columns[1..].to_vec()).collect();
     shown.sort_unstable();
     assert_eq!(shown, (1..90).collect::<Vec<_>>());
@@ -153,7 +153,7 @@ fn a_long_table_goes_over_several_pages() {
         &rows(500, 2, "x"),
         "",
     )]);
-    // 500 rows of at least 4 mm, and twice 253 mm of a page.
+    // 500 rows of at least 4 mm, and two columns of 253 mm on a page.
     assert!(n_pages(&pdf) >= 4, "{}", n_pages(&pdf));
 }
 

@@ -14,7 +14,7 @@ use typst_pdf::PdfOptions;
 
 const TEMPLATE: &str = include_str!("page.typ");
 
-/// Why a page can't be drawn: each is a mistake of the program.
+/// Reason why a page can't be drawn. Each is a bug in the program.
 #[derive(Debug, thiserror::Error)]
 pub enum PdfError {
     /// The name of a file of the template.
@@ -42,7 +42,7 @@ pub fn write_pdf(page: &Page, origin: &Origin) -> Result<Vec<u8>, PdfError> {
         ..PdfOptions::default()
     };
     let pdf = typst_pdf::pdf(&laid, &options).map_err(|e| PdfError::Write(sentences(&e)));
-    // What was remembered for a second layout of the same page is of no use.
+    // The cache would only help a second layout of the same page.
     typst::comemo::evict(0);
     pdf
 }

@@ -54,7 +54,7 @@ fn switches(scene: &Scene, parts: &[Part]) -> Markup {
     let options = |names: Vec<&str>| {
         html! { @for (i, name) in names.iter().enumerate() { option value=(i) { (name) } } }
     };
-    // Circles of a gap are seen best on plain grey; where an effect lies, its colour comes first.
+    // Circles of a gap are best visible on plain grey. Colours that show the places of an effect take precedence.
     let shows_places = matches!(
         scene.fields.first().map(|f| &f.values),
         Some(FieldValues::Magnitudes(_))

@@ -1,4 +1,4 @@
-//! Fewer triangles for the eye: grids that lie close together become one. What is computed never passes here.
+//! Coarser mesh for pictures: grids close together are merged into one. Computed results never depend on it.
 
 use super::part::{Part, PartMesh};
 use crate::model::{Model, Vec3};
@@ -9,7 +9,8 @@ const STEPS: usize = 9;
 /// Two unit vectors of a border's grid add up to this where the border turns by 29 degrees: a corner.
 const TURN: f64 = 0.5;
 
-/// The part with `most` triangles or fewer (never none): whole where it can be, else with its grids gathered in cubes as small as will do.
+/// Returns the mesh of a part with at most `most` triangles, and at least one. If the part has more, its grids are merged in cubes, as small as
+/// possible.
 pub(super) fn coarsen(model: &Model, part: &Part, most: usize) -> PartMesh {
     let whole = PartMesh {
         vertex_of: (0..part.grids.len() as u32).collect(),
@@ -31,7 +32,7 @@ pub(super) fn coarsen(model: &Model, part: &Part, most: usize) -> PartMesh {
         hi = hi.sup(x);
     }
     let size = (hi - lo).norm();
-    // Widths by powers: from a thousandth of the part to a quarter of it.
+    // Widths of the cubes are in geometric progression, from a thousandth to a quarter of the part.
     let width = |s: f64| size * 0.001 * 250_f64.powf(s);
     let (mut fine, mut wide) = (0.0, 1.0);
     let rank = ranks(part, &at);
@@ -49,7 +50,8 @@ pub(super) fn coarsen(model: &Model, part: &Part, most: usize) -> PartMesh {
     best
 }
 
-/// By grid: 0 inside, 1 on the border of the part (a side that is not shared by two faces), 2 at a corner of the border.
+/// Returns the rank of each grid: 0 inside, 1 on the border of the part, 2 at a corner of the border. A border is a side that is not shared by two
+/// faces.
 fn ranks(part: &Part, at: &[Vec3]) -> Vec<u8> {
     let mut sides: HashMap<[u32; 2], usize> = HashMap::new();
     for (_, f) in &part.faces {
@@ -81,8 +83,10 @@ fn ranks(part: &Part, at: &[Vec3]) -> Vec<u8> {
     along.iter().map(rank).collect()
 }
 
-/// Grids in cubes of width `h`. The one nearest to the middle of its cube's grids of the highest rank represents all: borders keep their places, so
-/// that parts that meet are not torn apart.
+/// Merges the grids in each cube of width `h` into one.
+///
+/// Of the grids of the highest rank in a cube, the one nearest to their mean represents all grids of the cube. Borders therefore keep their places,
+/// and no gaps open between parts that meet.
 fn merge_grids_in_cubes(part: &Part, at: &[Vec3], rank: &[u8], lo: Vec3, h: f64) -> PartMesh {
     let cube = |x: &Vec3| ((x - lo) / h).map(|v| v.floor() as i64);
     let mut cubes: BTreeMap<[i64; 3], (Vec3, usize, u8)> = BTreeMap::new();

@@ -3,7 +3,7 @@
 use crate::model::{GridIx, Model, Vec3};
 use std::collections::BTreeMap;
 
-/// Edges drawn at most; more are thinned evenly.
+/// Maximum number of edges drawn. If there are more, they are thinned evenly.
 const MOST_EDGES: usize = 12_000;
 /// Elements up to which every edge of the mesh is drawn.
 const SMALL: usize = 3_000;
@@ -29,7 +29,7 @@ pub(super) fn outline(model: &Model, faces: impl Iterator<Item = [GridIx; 4]>) -
                 .entry([p.min(q), p.max(q)])
                 .or_insert((0, normal, false));
             e.0 += 1;
-            // A fold of more than 30 degrees shows.
+            // A fold of more than 30 degrees is drawn.
             e.2 |= e.1.dot(&normal).abs() < 0.866;
         }
     }

@@ -9,12 +9,13 @@ use crate::model::{Model, Vec3};
 use crate::report::figure::{STEPS, packed_deltas, round_number, round_numbers, steps_of};
 use serde_json::{Value, json};
 
-/// Steps along the longest side of what is drawn: a millionth of it is finer than a pixel, and than a hand glues.
+/// Raster steps along the longest side of the drawn model. A millionth of it is finer than a pixel, and finer than the accuracy of gluing by hand.
 const GRAIN: f64 = 1_048_576.0;
-/// Steps of the raster in one of the middles of shells that are picked but not drawn one by one: a sixteen thousandth of the longest side.
+/// Raster steps in one step of the centres of shells, which is 1/16,384 of the longest side. Centres are needed for shells that can be picked but are
+/// not drawn one by one.
 const MIDDLE: f64 = 64.0;
 
-/// Where points are counted from, and in what steps.
+/// Origin and step size of the packed coordinates.
 struct Raster {
     origin: Vec3,
     step: f64,
@@ -116,7 +117,8 @@ fn part(scene: &Scene, p: &Part, raster: &Raster) -> Value {
     out
 }
 
-/// Where the faces of a part are that is drawn coarser: the drawn vertex nearest to the middle, and the way from there in steps.
+/// Returns the centres of the faces of a part that is drawn coarser. A row has the drawn vertex nearest to the centre, and the offset from it in
+/// steps.
 fn middles(model: &Model, p: &Part, step: f64) -> Value {
     let at = |grid: u32| {
         let grid = model.grids.get(p.grids[grid as usize].us());

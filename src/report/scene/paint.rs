@@ -1,4 +1,4 @@
-//! Strain and stress as numbers at the vertices that are drawn.
+//! Strain and stress values at the drawn vertices.
 
 use super::part::{Owner, Part};
 use super::types::FieldValues;
@@ -51,8 +51,8 @@ impl Values {
         }
     }
 
-    /// At the vertices of a part, bottom and top: the mean of the elements around each grid, and of the grids that a vertex represents the one with
-    /// the largest magnitude.
+    /// Returns the strain at the vertices of a part, bottom and top. The value at a grid is the mean of its elements. A vertex takes, from the grids
+    /// that it represents, the value with the largest magnitude.
     pub(super) fn strain_at_vertices(&self, part: &Part) -> [Vec<f64>; 2] {
         [0, 1].map(|side| {
             let mut sums = vec![(0.0, 0_u32); part.grids.len()];

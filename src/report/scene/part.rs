@@ -1,4 +1,4 @@
-//! Faces of one property, and what is drawn of them.
+//! Faces of one property, and their drawn geometry.
 
 use crate::model::GridIx;
 

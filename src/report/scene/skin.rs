@@ -1,4 +1,4 @@
-//! The surface that is drawn: shells and the outside of solids, by property.
+//! The drawn surface: shells and the outer faces of solids, by property.
 
 use super::mesh_coarsening::coarsen;
 use super::part::{Owner, Part};
@@ -7,7 +7,8 @@ use crate::model::{GridIx, Model};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// Triangles drawn at most, and with many fields to choose from: each of them has its own numbers in the page.
+/// Maximum number of triangles drawn, with a few fields and with many. Each field has its own numbers in the page, so that many fields need a coarser
+/// mesh.
 const MOST_TRIANGLES: usize = 120_000;
 const LEAST_TRIANGLES: usize = 40_000;
 /// Fields up to which the picture is as fine as it gets.
@@ -87,10 +88,10 @@ fn collect_faces(model: &Model) -> Vec<(String, Vec<RawFace>)> {
     by_kind.into_iter().map(|(k, f)| (word(k), f)).collect()
 }
 
-/// Numbers the grids of every part; the smallest beyond [`MOST_PARTS`] become one of shells and one of the rest.
+/// Numbers the grids of every part. The smallest parts beyond [`MOST_PARTS`] are merged into one part of shells and one part of all other elements.
 fn merge_small_parts(mut list: Vec<(String, Vec<RawFace>)>) -> Vec<Part> {
     if list.len() > MOST_PARTS {
-        // Shells stand apart from the rest: an element of a part of shells is a face.
+        // Shells stay separate from other elements: in a part of shells, each element is one face.
         let mut order: Vec<usize> = (0..list.len()).collect();
         order.sort_by_key(|i| (Reverse(list[*i].1.len()), *i));
         let largest: HashSet<usize> = order.into_iter().take(MOST_PARTS - 2).collect();

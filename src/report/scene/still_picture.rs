@@ -27,7 +27,7 @@ const VALUES: f64 = 12.0;
 const LIGHTS: f64 = 4.0;
 /// Colour without a field.
 const GREY: [f64; 3] = [201.0, 209.0, 217.0];
-/// Share of the values that the colours cover: the few largest do not wash out the rest.
+/// Share of the values that the colour range covers. The few largest values would otherwise make all others look pale.
 const COVERED: f64 = 0.99;
 /// Longest arrow, share of the width of the picture.
 const ARROW: f64 = 0.1;
@@ -231,7 +231,7 @@ fn legend(picture: &mut Picture, field: &Field, most: [f64; 2]) {
     picture.word([0.0, y - 1.2], [0.0, 1.0], &field.name);
 }
 
-/// Where the flat picture lies on the paper.
+/// Position and scale of the flat picture on the paper.
 struct Frame {
     low: [f64; 2],
     scale: f64,

@@ -22,7 +22,7 @@ fn grid(id: u32, x: [f64; 3]) -> Grid {
     }
 }
 
-/// `n` x `n` unit squares; the first `of_one` belong to property 0, the others to property 1.
+/// Returns a plate of `n` x `n` unit squares. The first `of_one` squares belong to property 0, all further ones to property 1.
 fn plate(n: u32, of_one: usize) -> Model {
     let mut m = Model::default();
     for j in 0..=n {
@@ -100,7 +100,7 @@ fn a_small_model_is_drawn_whole_with_a_part_a_property() {
     let parts = skin(&model, 1, Finest::FewFields);
     let names: Vec<&str> = parts.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(names, ["shells 7", "shells 8"]);
-    // Six squares and ten.
+    // The parts have six and ten squares.
     assert_eq!(area(&model, &parts[0]), 6.0);
     assert_eq!(area(&model, &parts[1]), 10.0);
 }
@@ -159,7 +159,7 @@ fn a_large_model_is_drawn_coarser_and_its_small_parts_stay_whole() {
     let triangles: usize = parts.iter().map(|p| p.drawn.triangles.len()).sum();
     assert!(triangles <= 120_000 && triangles > 40_000, "{triangles}");
     assert_eq!(area(&model, &parts[0]), 100.0);
-    // Borders stay where they are: beside the strip's end, a corner that stands twice in one cube, not a square is lost.
+    // Borders keep their places, and no square is lost. The one exception is at the end of the strip, where one cube contains two corners.
     let large = area(&model, &parts[1]);
     let whole = 560.0 * 560.0 - 100.0;
     assert!((large - whole).abs() < 9.0, "{large}");
@@ -179,7 +179,8 @@ fn a_vertex_takes_the_mean_around_its_grid_and_of_its_grids_the_largest() {
     assert_eq!((bottom[at(5)], top[at(5)]), (1.5, -1.5));
     assert_eq!(bottom[at(1)], 0.0);
     assert_eq!(bottom[at(9)], 3.0);
-    // A single hot element is not lost where 313,600 become a few ten thousand: it keeps the mean of the four around its grid.
+    // A single element of high strain stays visible when 313,600 elements become a few ten thousand. The vertex keeps the mean of the four elements
+    // around its grid.
     let model = plate(560, 0);
     let hot = Values::from_case(
         &model,
@@ -200,7 +201,7 @@ fn numbers_of_shells_reach_the_vertices_without_a_strain() {
     let given = [2.0, 4.0, 6.0, 8.0].map(|v| [v, f64::NAN]);
     let values = Values::of_field(&model, &FieldValues::Magnitudes(given.to_vec()));
     let [bottom, top] = values.strain_at_vertices(&parts[0]);
-    // Nine grids in rows of three: a corner has its element's number, a side the mean of two, the middle that of four.
+    // Nine grids in rows of three. A corner has the value of its element, a side the mean of two elements, the middle the mean of four.
     let at = |id: u32| {
         let local = parts[0].grids.iter().position(|g| g.0 + 1 == id).unwrap();
         bottom[parts[0].drawn.vertex_of[local] as usize]

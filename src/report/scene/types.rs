@@ -101,7 +101,7 @@ pub struct Mark {
     pub surface: Option<Surface>,
     /// Further text shown when the gauge is picked.
     pub note: String,
-    /// Gap at it, before and after; drawn as the area of circles.
+    /// Gap at the mark, before and after, shown as the area of circles.
     pub gap: Option<[f64; 2]>,
 }
 

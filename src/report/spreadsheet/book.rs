@@ -87,10 +87,10 @@ const MOST_TEXT: usize = 32_767;
 /// Widest column that is fitted to its text, pixels.
 const WIDEST: u32 = 520;
 
-/// The bytes of a workbook: the sheets, then `Units`, then `Findings`.
+/// Returns the bytes of a workbook: the sheets, then `Units`, then `Findings`.
 ///
 /// # Errors
-/// What the writing library refuses, such as two sheets of one name.
+/// Errors of the writing library, for example two sheets with one name.
 pub fn spreadsheet(sheets: &[Sheet], about: &WorkbookDescription) -> Result<Vec<u8>, XlsxError> {
     let mut book = Workbook::new();
     book.set_properties(
@@ -126,7 +126,7 @@ fn fill(out: &mut Worksheet, sheet: &Sheet) -> Result<(), XlsxError> {
         }
     }
     out.set_freeze_panes(1, 1)?;
-    // To print: on its side, as wide as the page, the header on every page.
+    // Print setup: landscape, fitted to the page width, header row on every page.
     out.set_landscape();
     out.set_print_fit_to_pages(1, 0);
     out.set_repeat_rows(0, 0)?;

@@ -1,4 +1,4 @@
-//! The gauge plan: where each gauge goes, what the technician takes along, and what it reads.
+//! The gauge plan: place of each gauge, material for the technician, and expected readings.
 
 use super::book::{Cell, Sheet};
 use crate::model::Model;

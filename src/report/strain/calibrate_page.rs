@@ -10,7 +10,7 @@ use crate::workflow::calibrate::{
     LeftOutSummary, LoadResidual, NextRunSummary,
 };
 
-/// The page of `calibrate`: what was learnt, left-out runs against what is known, each gauge's model and calibrated row.
+/// Returns the page of `calibrate`: result of the calibration, errors of left-out runs, and the model row and calibrated row of each gauge.
 pub fn calibrate_page(title: &str, answer: &CalibratedSensitivity, findings: &[Finding]) -> Page {
     let mut sections = vec![summary(answer)];
     sections.extend(errors_of_left_out(answer));

@@ -310,7 +310,7 @@ fn verdict(outcome: &Outcome) -> Vec<Block> {
     out
 }
 
-/// The gap before and after, made alike.
+/// Returns the sentence on the gap before and after, both computed in the same way.
 fn gap_words(outcome: &Outcome) -> String {
     let g = &outcome.gap;
     let percent = |v: f64| format!("{:.2} %", 100.0 * v);

@@ -1,4 +1,4 @@
-//! The gluing sheet to print: a card a gauge, with a sketch of its place and the words of a fitter.
+//! The gluing sheet to print: a card for each gauge, with a sketch of its place and instructions in workshop terms.
 
 use super::tables::corner_distances;
 use crate::model::{Model, Shell, Vec3};
@@ -13,7 +13,7 @@ use crate::workflow::place::PlacedGauge;
 const SKETCH: [f64; 2] = [84.0, 46.0];
 /// Half the width of what a sketch shows, in sizes of the element.
 const AROUND: f64 = 5.0;
-/// Cosine from which an element faces the same way as that of the gauge.
+/// Minimum cosine between two normals: the element then faces the same way as the element of the gauge.
 const SAME_FACE: f64 = 0.7;
 
 /// `gluing_sheet.html`: the model with all gauges, then a card each. The sketch looks at the gauge from outside.
@@ -114,7 +114,7 @@ struct View {
 impl View {
     fn from_gauge(p: &PlacedGauge) -> Self {
         let out = p.gauge.outward();
-        // On a level face y is up.
+        // On a horizontal face, the y axis points up in the view.
         let upright = match out.z.abs() > 0.9 {
             true => Vec3::new(0.0, 1.0, 0.0),
             false => Vec3::new(0.0, 0.0, 1.0),
@@ -126,7 +126,7 @@ impl View {
         }
     }
 
-    /// The axis of a gauge as it is seen, with what the right and the top of the view are.
+    /// Describes the axis of a gauge in the view, by the basic axes that point right and up.
     fn axis_in_words(&self, axis: Vec3) -> String {
         let degrees = axis.dot(&self.up).atan2(axis.dot(&self.right)).to_degrees();
         let degrees = (degrees + 180.0).rem_euclid(180.0);
@@ -190,7 +190,7 @@ fn place_in_words(model: &Model, p: &PlacedGauge, length: &str) -> String {
         "" => String::new(),
         unit => format!(" {unit}"),
     };
-    // Across a thin part there is nothing to measure from.
+    // A direction in which the part is thin gives no useful distance from an end.
     let ways = (0..3).filter(|&k| high[k] - low[k] > 0.02 * largest && out[k].abs() < SAME_FACE);
     let ways = ways.map(|k| {
         let (from_low, from_high) = (g.position[k] - low[k], high[k] - g.position[k]);

@@ -89,7 +89,7 @@ fn row(p: &PlacedGauge) -> Vec<String> {
     let from = p.reference.as_ref().map_or(String::new(), |(id, v)| {
         format!("{id}: {:+.1} {:+.1} {:+.1}", v[0], v[1], v[2])
     });
-    // Nothing is written as -0.
+    // Adding 0 turns -0 into 0.
     let plain = |v: f64, d: usize| {
         let ten = 10f64.powi(d as i32);
         format!("{:.d$}", (v * ten).round() / ten + 0.0)

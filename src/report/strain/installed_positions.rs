@@ -113,7 +113,7 @@ fn on_bar(job: &Job, name: &str, gain: f64) -> [String; 16] {
     cells
 }
 
-/// `along` to `told`.
+/// Returns the cells of the sizes from `along` on, and the list of the sizes that the data determine.
 fn sizes(found: &AsGluedSummary) -> Vec<String> {
     let named = [
         ("along", found.along),

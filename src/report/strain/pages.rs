@@ -166,7 +166,7 @@ pub struct RecoveryPage<'a> {
     pub is_cut: bool,
 }
 
-/// Runs whose loads are drawn; all are in `loads.csv`.
+/// Maximum number of runs whose loads are drawn. `loads.csv` contains all runs.
 const MOST_RUNS: usize = 200;
 
 /// The page of `recover`.

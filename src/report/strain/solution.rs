@@ -6,8 +6,8 @@ use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::report::scene::{Scene, scene_section};
 use crate::units::{Quantity, UnitSystem};
 
-/// Page of a solution: size of the model and its factor, resultants of applied and inertia loads, first elastic modes. `system` is that of the
-/// model, where a job states it.
+/// Returns the page of a solution: size of the model and its factor, resultants of applied and inertia loads, first elastic modes. `system` is the
+/// unit system of the model, if a job states it.
 pub fn solution_page(
     title: &str,
     system: Option<UnitSystem>,
@@ -65,7 +65,7 @@ pub fn solution_page(
     Page::new(title, "Solution of the built-in solver", findings, sections)
 }
 
-/// Grids shown of a support: `result.json` contains the others.
+/// Maximum number of grids shown for a support. `result.json` contains all of them.
 const GRIDS_SHOWN: usize = 12;
 
 /// Resultants of what acts and of the reactions, and the grids that carry most.
@@ -101,7 +101,7 @@ fn reactions_section(all: &[Reactions], units: &Units) -> Section {
     )
 }
 
-/// Units of the model's numbers in words.
+/// Names of the model's units.
 struct Units {
     mass: String,
     length: String,

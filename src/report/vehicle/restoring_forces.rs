@@ -8,7 +8,8 @@ use crate::vehicle::loads::link_forces;
 use crate::vehicle::motion::Motion;
 use crate::vehicle::term::UnitNames;
 
-/// Returns `-m a` of the body that only link `l` carries, one value for each sample; `None` if other links carry it too, or if it turns.
+/// Returns `-m a` of the body that only link `l` carries, one value for each sample. The result is `None` if other links carry the body too, or if it
+/// turns.
 pub fn asked_force(found: &Identification, motion: &Motion, l: usize) -> Option<Vec<f64>> {
     let v = &found.vehicle;
     let link = v.links.get(l)?;
@@ -34,7 +35,8 @@ pub(super) fn links_told(found: &Identification) -> impl Iterator<Item = usize> 
     (0..v.links.len()).filter(all_told)
 }
 
-/// Returns the mean force of every link that the record determines, by bins of its stretch: from the model, and from `asked_force` if it is known.
+/// Returns the mean force of every link that the record determines, by bins of its stretch. The force is from the model, and from [`asked_force`] if
+/// known.
 pub fn restoring_curves(found: &Identification, motion: &Motion) -> Vec<Curve> {
     const BINS: usize = 41;
     let forces = link_forces(&found.vehicle, &found.values, motion);
@@ -44,7 +46,7 @@ pub fn restoring_curves(found: &Identification, motion: &Motion) -> Vec<Curve> {
         let d = &motion.stretch[l];
         let asked = asked_force(found, motion, l);
         let largest = d.iter().fold(0.0f64, |a, b| a.max(b.abs()));
-        // Force of the model, force asked for, samples.
+        // Force from the model, force from `asked_force`, number of samples.
         let mut sums = vec![(0.0, 0.0, 0usize); BINS];
         for (t, (d, f)) in d.iter().zip(&forces[l]).enumerate() {
             if f.is_finite() {

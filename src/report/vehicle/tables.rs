@@ -69,8 +69,8 @@ pub fn write_wheel_forces(
     out
 }
 
-/// `restoring_force.csv`: mean link force by bins of stretch and its rate, from the model and as the motion of the body asks
-/// for it (where a single link carries the body), with the number of samples.
+/// Returns `restoring_force.csv`: mean link force and number of samples by bins of stretch and its rate. The force is from the model and, if a single
+/// link carries the body, from the motion of the body.
 pub fn write_restoring_force(found: &Identification, motion: &Motion) -> String {
     const BINS: usize = 15;
     let mut out = String::from("link,stretch,rate,force_model,force_measured,samples\n");
@@ -115,9 +115,11 @@ pub fn write_restoring_force(found: &Identification, motion: &Motion) -> String 
     out
 }
 
-/// `chassis_forces.csv`: time, then of each sprung body the force by mass and by springs, of each spring its force on the chassis, and of a
-/// leaf spring those at hanger and shackle (vertical) and along the frame; in the band, about their means, upwards. Then the ends of the 95 %
-/// interval of the force on each body by mass, and of each spring.
+/// Returns `chassis_forces.csv` with a column for time and columns for forces, limited to the band, about their means, positive upwards.
+///
+/// - Each sprung body has its force from mass and from springs.
+/// - Each spring has its force on the chassis. A leaf spring also has its vertical forces at hanger and shackle, and its force along the frame.
+/// - The ends of the 95 % interval follow, of the force on each body from mass, and of each spring.
 pub fn write_chassis_forces(
     forces: &[ChassisForce],
     leaves: &BTreeMap<String, LeafSeat>,

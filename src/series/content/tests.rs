@@ -31,7 +31,7 @@ fn sines(n: usize, rate: f64, parts: &[(f64, f64)]) -> Vec<f64> {
 fn the_highest_of_two_sines_is_found_and_one_of_a_thousandth_of_the_power_is_not() {
     let bin = 200.0 / 4096.0;
     let x = sines(20_000, 200.0, &[(1.3, 10.0), (7.0, 2.0)]);
-    // Three lines of the spectrum.
+    // The limit is three lines of the spectrum.
     let f = content_hz(&[x], 200.0, 0.0).unwrap();
     assert!((f - 7.0).abs() < 3.0 * bin, "{f}");
     let x = sines(20_000, 200.0, &[(1.3, 10.0), (7.0, 0.3)]);
@@ -45,10 +45,10 @@ fn white_noise_does_not_count_as_content() {
     x.iter_mut()
         .zip(noise(40_000))
         .for_each(|(x, e)| *x += 0.5 * e);
-    // Four lines of 200 / 4096 Hz.
+    // The limit is four lines of 200 / 4096 Hz.
     let f = content_hz(&[x], 200.0, 0.0).unwrap();
     assert!((f - 2.0).abs() < 0.2, "{f}");
-    // Of noise alone, of the density declared, nothing is left: variance 1 over 0 to 100 Hz.
+    // Pure noise of the declared density has no content. Its variance is 1 over 0 to 100 Hz.
     assert_eq!(content_hz(&[noise(40_000)], 200.0, 0.01), None);
 }
 
@@ -58,7 +58,7 @@ fn pieces_of_a_record_count_together_and_short_ones_say_nothing() {
         sines(8000, 100.0, &[(1.0, 1.0)]),
         sines(8000, 100.0, &[(11.0, 1.0)]),
     );
-    // Four lines of 100 / 4096 Hz.
+    // The limit is four lines of 100 / 4096 Hz.
     let f = content_hz(&[a, b], 100.0, 0.0).unwrap();
     assert!((f - 11.0).abs() < 0.1, "{f}");
     assert_eq!(content_hz(&[vec![1.0, 2.0, 1.0]], 100.0, 0.0), None);

@@ -44,7 +44,7 @@ impl Bias {
         let ratio = second / first;
         let at = sharpness(ratio);
         let of_first = share(at);
-        // How the share of the first step moves with the ratio of the steps; not at all where the search ends.
+        // Derivative of the share of the first step by the ratio of the steps. It is zero at the ends of the search.
         let h = 0.01;
         let turn = (ratio_of(at + h) - ratio_of(at - h)) / (2.0 * h);
         let within = at > ENDS[0] + h && at < ENDS[1] - h;
@@ -52,7 +52,7 @@ impl Bias {
             true => (share(at + h) - share(at - h)) / (2.0 * h) / turn,
             false => 0.0,
         };
-        // The added noise is one and the same but for its size, sqrt(3) and sqrt(8) of that there is.
+        // The added noise differs only in size: sqrt(3) and sqrt(8) times the present noise.
         let added = [3.0, 8.0].map(f64::sqrt);
         Self {
             taken: first * of_first,
@@ -99,7 +99,8 @@ fn sharpness(ratio: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Drawn: 60,000 to four million parabolas at a random place between samples (seeded splitmix64 and Box and Muller), good to three digits.
+    /// Reference values from random simulation, accurate to three digits. Each comes from 60,000 to four million parabolas at a random place between
+    /// samples (seeded splitmix64 and Box and Muller).
     const DRAWN: [(f64, f64); 6] = [
         (0.125, 0.0158),
         (0.5, 0.2076),

@@ -127,7 +127,7 @@ impl<T> Rainflow<T> {
         if point.value == latest.value {
             return;
         }
-        // The last open reversal is where the present rise or fall began.
+        // The present rise or fall began at the last open reversal.
         let began = self.open.last().map_or(latest.value, |r| r.point.value);
         if (point.value > latest.value) != (latest.value > began) && latest.value != began {
             let tag = listener.tag(latest);
@@ -149,8 +149,8 @@ impl<T> Rainflow<T> {
         let began = self.open.last().map(|r| r.point.value);
         let under_way = self.latest.zip(began).filter(|(l, b)| l.value != *b);
         let (latest, began) = under_way.unwrap_or((Point { at: 0, value: 0.0 }, 0.0));
-        // Where every sample rises or falls, the one before a change of that was a reversal. They are listed first, without a jump that
-        // depends on the samples, which no processor can foresee.
+        // If every sample rises or falls, a reversal is the sample before a change of direction. The reversals are listed first, in code without
+        // branches that depend on the samples, because a processor cannot predict these.
         let (mut n, mut rising, mut before) = (0, latest.value > began, latest.value);
         let mut moves = under_way.is_some();
         for (i, &value) in (0..).zip(values) {
@@ -203,7 +203,7 @@ impl<T> Rainflow<T> {
     fn reversal(&mut self, d: Reversal<T>, listener: &mut impl Listener<T>) {
         while let [.., a, b, c] = self.open.as_slice() {
             let [av, bv, cv, dv] = [a, b, c, &d].map(|r| r.point.value);
-            // Equal values: the later is the higher.
+            // If values are equal, the later value counts as higher.
             let rise = (cv >= av) & (dv >= bv);
             let fall = (cv < av) & (dv < bv);
             if !(if bv > av { rise } else { fall }) {
@@ -228,7 +228,7 @@ impl<T: Clone> Rainflow<T> {
             let before = |_: Point| latest.clone().unwrap_or_else(|| r.tag.clone());
             let changed = count.latest.is_none_or(|l| l.value != r.point.value);
             count.push_tagged(r.point, &mut FunctionListener(before, &mut *counted));
-            // A sample that repeats the latest is not taken, and what belongs to it neither.
+            // A sample that repeats the latest value is skipped, together with its tag.
             if changed && r.point.value.is_finite() {
                 latest = Some(r.tag.clone());
             }

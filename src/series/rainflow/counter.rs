@@ -330,7 +330,7 @@ fn widen_extremes(
     /// Folded side by side, none waiting for the one before.
     const LANES: usize = 16;
     let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
-    // What is not a number is neither less nor greater than anything.
+    // NaN compares neither less nor greater, so that the fold skips it.
     for values in values.chunks(LANES) {
         for ((low, high), v) in low.iter_mut().zip(&mut high).zip(values) {
             *low = if *v < *low { *v } else { *low };
@@ -375,7 +375,7 @@ fn rises(
     for (c, v) in classes.iter_mut().zip(values) {
         *c = class(*v, width);
     }
-    // Changes are listed first, without a jump that depends on the samples.
+    // Changes are listed first, in code without branches that depend on the samples.
     let classes = classes.get(..values.len()).unwrap_or_default();
     let (mut n, mut before) = (0, began.or(classes.first().copied()).unwrap_or(0));
     for (i, &here) in (0..).zip(classes) {
@@ -392,8 +392,8 @@ fn rises(
     }
 }
 
-/// A number of mean 0 and variance 1 that belongs to a sample by its loads: the sum of four even ones, much like a normal one up to three standard
-/// deviations. The result does not depend on the cuts of a record or on the samples before it.
+/// Returns pseudo-random noise of mean 0 and variance 1 for a sample, seeded by its loads. The sum of four uniform numbers is close to normal up to
+/// three standard deviations. The result depends neither on the cuts of a record nor on the samples before it.
 #[inline(always)]
 fn white_noise(mark: u64) -> f64 {
     let bits = mix_bits(mark);

@@ -1,4 +1,4 @@
-//! Counts by class: those met lately in a small table, the others in an ordered one.
+//! Counts by class. Recent classes are in a small table, all further classes in an ordered map.
 
 use std::collections::BTreeMap;
 
@@ -27,7 +27,7 @@ impl Key for (i32, i32) {
     }
 }
 
-/// How often each class was met. A load stays among few classes for a while: they are found in the small table.
+/// Number of occurrences of each class. A load stays in a few classes for a while, which the small table finds fast.
 pub(super) struct Counts<K> {
     lately: Vec<Option<(K, u64)>>,
     all: BTreeMap<K, u64>,

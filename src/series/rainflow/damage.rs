@@ -17,8 +17,8 @@ pub struct Bin {
     pub damage: f64,
 }
 
-/// `sum of n R^m` over the cycles: the damage of a part whose life falls with the power `m` of the range, but for a factor that
-/// belongs to the part. Ratios of two records are what it is for.
+/// Pseudo-damage `sum of n R^m` over the cycles. It is proportional to the damage of a part whose life falls with the power `m` of the range. The
+/// factor depends on the part, so that only ratios of two records are meaningful.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Damage {
     /// The power m.

@@ -85,10 +85,12 @@ impl DamageParts {
     /// Computes the parts of a tally. `scale` is the covariance of the errors of this load's row of the gain, `f = (1 + C) f_true`. It is row-major,
     /// `n_loads x n_loads`. `noise` is the standard deviation of a sample.
     ///
-    /// Counts with more noise give the bias (`Bias`). Its error is at most the distance to the straight line through the first two counts, and
-    /// at least `OFF` of the bias. The subtracted bias was compared with counts without noise, on sines of 16 to 200 samples a period and on
-    /// Gaussian loads, slopes 3 to 9. Both agree within a fifth (a third at slope 3) up to a noise of 2 % of the range. At 5 %, where noise makes up
-    /// to four times the damage, they agree within two fifths.
+    /// Counts with more noise give the bias (`Bias`). Its error is at most the distance to the straight line through the first two counts, and at
+    /// least `OFF` of the bias.
+    ///
+    /// The subtracted bias was compared with counts without noise, on sines of 16 to 200 samples a period and on Gaussian loads, slopes 3 to 9. Both
+    /// agree within a fifth (a third at slope 3) up to a noise of 2 % of the range. At 5 %, noise makes up to four times the damage, and they agree
+    /// within two fifths.
     pub fn from_tally(tally: &Tally, scale: &[f64], noise: f64) -> Self {
         let sums = tally.sums_with_residue();
         let [once, ..] = sums.damage;
@@ -142,7 +144,8 @@ impl DamageParts {
         product(&self.by_load, &self.by_load, c).max(0.0)
     }
 
-    /// With its interval, whose ends are those of the logarithm: errors of scale multiply the damage.
+    /// Returns the damage with its 95 % interval. The interval is computed for the logarithm of the damage, because errors of scale multiply the
+    /// damage.
     pub fn interval(&self) -> DamageInterval {
         let (value, of_s) = (self.value, self.of_s());
         let mut out = DamageInterval {
@@ -161,7 +164,8 @@ impl DamageParts {
             out.low = value / factor;
             out.high = value * factor;
         } else {
-            // Noise makes all of it: no more is known than that it is less than was counted, but for the error of scale.
+            // Noise explains all of the counted damage. The true damage is then only known to be below the counted damage, increased by the error of
+            // scale.
             let share = if self.counted > 0.0 {
                 of_s.sqrt() / self.counted
             } else {
@@ -172,12 +176,17 @@ impl DamageParts {
         out
     }
 
-    /// This damage over another. With `a = by_load / value` of each, C the covariances of S and X the smaller of the two, entry by entry, the
-    /// logarithm of the ratio has the variance
-    /// `a_1' C_1 a_1 + a_2' C_2 a_2 - 2 w a_1' X a_2 + n_1 / d_1^2 + n_2 / d_2^2 - 2 n_2 / (d_1 d_2) + (b_1 / d_1 - b_2 / d_2)^2`,
-    /// w the share that has the same S; n the variances of noise, of which the last counts where the second is a part of the first; b the sigmas of
-    /// the bias of noise, which is the same in both. (Of two estimates by least squares the one from more gauges has the smaller variance, which
-    /// is their covariance: Hausman.) `None` where noise makes all of one.
+    /// Returns the ratio of this damage to another. The result is `None` if noise explains all of one damage.
+    ///
+    /// The logarithm of the ratio has the variance
+    /// `a_1' C_1 a_1 + a_2' C_2 a_2 - 2 w a_1' X a_2 + n_1 / d_1^2 + n_2 / d_2^2 - 2 n_2 / (d_1 d_2) + (b_1 / d_1 - b_2 / d_2)^2`.
+    ///
+    /// - `a = by_load / value` of each damage.
+    /// - C are the covariances of S. X is the smaller of the two, entry by entry. Of two least-squares estimates, the one from more gauges has the
+    ///   smaller variance, which is their covariance (Hausman).
+    /// - w is the share of the first damage whose errors of S are also errors of the second (`SharedErrors::scale`).
+    /// - n are the variances of noise. Their last term counts only if the first damage includes the cycles of the second.
+    /// - b are the sigmas of the noise bias, which is fully correlated between both.
     ///
     /// # Reference
     /// J.A. Hausman, Specification tests in econometrics, Econometrica 46 (1978) 1251-1271, lemma 2.1.

@@ -1,13 +1,13 @@
-//! Rainflow cycles and the pseudo-damage they make.
+//! Rainflow cycles and their pseudo-damage.
 //!
 //! - [`nullable_numbers`]: numbers that are not finite, kept in JSON
-//! - `bias`: what noise adds to damage, from counts with more of it
-//! - [`count`]: the four-point count, whose residues join; with the residue as half cycles it is the count of ASTM E1049
-//! - `counter`: a tally under way, `counts` its cycles and rises by class
+//! - `bias`: damage that noise adds, from counts with more noise
+//! - [`count`]: the four-point count, whose residues can be joined. With the residue as half cycles it equals the count of ASTM E1049
+//! - `counter`: a tally in progress; `counts`: cycles and rises by class
 //! - `marks`: a number for each sample, which seeds the noise of the counts with more noise
-//! - [`law`]: the harm of a cycle, by the slope and knee of an S-N line
-//! - [`tally`]: cycles by class, levels, extremes and sums of a load over a time; tallies of days join to that of the year
-//! - [`interval`]: damage with what is known of its errors
+//! - [`law`]: the damage of a cycle, by the slope and knee of an S-N line
+//! - [`tally`]: cycles by class, levels, extremes and sums of a load over a time. Tallies of days join to the tally of a year
+//! - [`interval`]: damage with its 95 % interval
 //! - `damage`: damage of one record, range by range
 
 mod bias;

@@ -1,4 +1,4 @@
-//! Numbers that JSON has no word for: what is not finite is written as null and read back here.
+//! Numbers that JSON can't represent. A number that is not finite is written as null and read back by this module.
 
 use serde::{Deserialize, Deserializer};
 

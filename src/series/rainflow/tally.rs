@@ -79,7 +79,7 @@ impl Sums {
         self.scatter += 2.0 * slope * slope;
         for ((sum, from), to) in self.by_load.iter_mut().zip(from).zip(to) {
             let of_load = to - from;
-            // A load that is not known then adds no error that could be known.
+            // A load without a value at these times adds no known error.
             *sum += slope * change.signum() * if of_load.is_finite() { of_load } else { 0.0 };
         }
     }
@@ -229,7 +229,7 @@ impl Tally {
         out.into_iter().collect()
     }
 
-    /// Cycles, those of the residue as half ones.
+    /// Number of cycles. Cycles of the residue count as half cycles.
     pub fn n_cycles(&self) -> f64 {
         let closed: u64 = self.cycles.iter().map(|c| c.2).sum();
         let open = self
@@ -271,6 +271,6 @@ pub(super) fn extremes(max: &mut Option<Extreme>, min: &mut Option<Extreme>, p: 
 
 /// The borders that a rise from one class to another goes through, by the class above.
 pub(super) fn risen_borders(from: i32, to: i32) -> impl Iterator<Item = i32> {
-    // A step through more borders than this is no load.
+    // A step through more borders than this is not a real load.
     (from.saturating_add(1)..=to).take(1 << 20)
 }

@@ -26,10 +26,10 @@ const FIG_6: [f64; 9] = [-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0];
 
 #[test]
 fn the_worked_example_of_astm_e1049_fig_6_gives_its_table() {
-    // Range: cycle counts, from the table beside Fig. 6: 10: 0, 9: 0.5, 8: 1.0, 7: 0, 6: 0.5, 5: 0, 4: 1.5, 3: 0.5, 2: 0, 1: 0.
+    // Cycle counts by range, from the table next to Fig. 6: 10: 0, 9: 0.5, 8: 1.0, 7: 0, 6: 0.5, 5: 0, 4: 1.5, 3: 0.5, 2: 0, 1: 0.
     let expected = [0.0, 0.0, 0.0, 0.5, 1.5, 0.0, 0.5, 0.0, 1.0, 0.5, 0.0];
     assert_eq!(table(&FIG_6), expected);
-    // In the text: the only full cycle is E-F.
+    // The text states that the only full cycle is E-F.
     let whole: Vec<Cycle> = cycles_of(&FIG_6)
         .into_iter()
         .filter(|c| c.count == 1.0)
@@ -61,7 +61,7 @@ fn a_sine_is_one_cycle_a_period_and_a_constant_none() {
         .filter(|c| (c.range() - 6.0).abs() < 1e-9)
         .map(|c| c.count)
         .sum();
-    // Ten periods that begin and end at zero: nine and a half from peak to valley, and the two ends.
+    // Ten periods that begin and end at zero contain nine and a half cycles from peak to valley, and the two ends.
     assert!((counted - 9.5).abs() < 1e-12, "{counted}");
     assert!(cycles_of(&[2.0; 50]).is_empty());
     assert!(cycles_of(&[]).is_empty());
@@ -69,7 +69,7 @@ fn a_sine_is_one_cycle_a_period_and_a_constant_none() {
 
 #[test]
 fn every_range_of_the_record_is_counted_once() {
-    // Half cycles at both ends of each count add up to the way the signal goes up and down.
+    // The ranges of all half cycles add up to the total path of the signal up and down.
     let mut seed = 3_u64;
     let history: Vec<f64> = (0..5000)
         .map(|_| {

@@ -1,4 +1,5 @@
-//! Schemas of Arrow: the columns of a Feather file with their types, and those of a Parquet file that are durations, a type that Parquet lacks.
+//! Arrow schemas: the columns of a Feather file with their types. A Parquet file also contains such a schema, which marks durations, a type that
+//! Parquet lacks.
 
 use super::flat_buffer::Buffer;
 use super::typed_columns::Meaning;
@@ -8,7 +9,7 @@ use std::collections::HashMap;
 
 /// The key under which Arrow keeps its schema in a Parquet file.
 const KEY: &str = "ARROW:schema";
-/// First word of a message, before its length; old messages begin with the length.
+/// First four bytes of a message, before its length. Old messages begin with the length.
 const CONTINUED: u32 = u32::MAX;
 /// Field of a message: what it contains.
 const HEADER: usize = 2;
@@ -42,7 +43,7 @@ pub(super) struct Field {
     /// Unit that the notes on the column state; empty where they state none.
     pub unit: String,
     pub stored: ColumnStorage,
-    /// Number of its buffers in a batch, without those of its children; of views the fixed ones.
+    /// Number of buffers of the column in a batch, without the buffers of its children. For views it counts only the fixed buffers.
     pub buffers: usize,
     /// Whether it has as many more buffers as each batch states.
     pub is_view: bool,
@@ -62,9 +63,10 @@ pub(super) struct Notes {
     pub units: HashMap<String, String>,
 }
 
-/// Returns the notes of a Parquet file on its columns; none of a schema that can't be read.
+/// Returns the notes of a Parquet file on its columns. A schema that can't be read gives no notes.
 ///
-/// Units are in the notes of a column, key `unit` or `units`, or in those of the file, key `unit of` with the name, as `recover` writes them.
+/// Units are in the notes of a column, under the key `unit` or `units`. They may also be in the notes of the file, under the key `unit of` with the
+/// column name, as `recover` writes them.
 ///
 /// # Reference
 /// Apache Arrow, Columnar format 1.5: Schema.fbs, Message.fbs.
@@ -148,7 +150,7 @@ fn field(buffer: Buffer<'_>, at: usize, depth: usize) -> Option<Field> {
         stored,
         buffers: match kind {
             NULL | RUN_ENDS => 0,
-            // Types, and offsets of the dense form.
+            // A buffer of types and, for the dense form, a buffer of offsets.
             UNION => 1 + usize::from(half(buffer, details, 0, 0)? == 1),
             STRUCT | FIXED_LIST => 1,
             BINARY | UTF8 | LARGE_BINARY | LARGE_UTF8 | LIST_VIEW | LARGE_LIST_VIEW => 3,
@@ -179,7 +181,7 @@ fn field(buffer: Buffer<'_>, at: usize, depth: usize) -> Option<Field> {
     })
 }
 
-// Numbers of the types.
+// Type codes of the Arrow schema.
 const NULL: u8 = 1;
 const INT: u8 = 2;
 const REAL: u8 = 3;
@@ -221,7 +223,7 @@ fn read_storage(buffer: Buffer<'_>, kind: u8, details: usize) -> Option<ColumnSt
         at.map_or(Some(otherwise), |at| buffer.word(at))
     };
     let bytes = |bits: u32| matches!(bits, 8 | 16 | 32 | 64).then_some(bits as usize / 8);
-    // Timestamps count in s, times and durations in ms, where no unit is stated.
+    // Without a stated unit, timestamps count in s, times and durations in ms.
     let unit = |otherwise: u16| match half(buffer, details, 0, otherwise)? {
         0 => Some(1.0),
         1 => Some(1e-3),
@@ -270,7 +272,7 @@ pub(super) fn from_base64(text: &str) -> Option<Vec<u8>> {
         for c in four {
             bits = bits << 6 | u32::from(digit(*c)?);
         }
-        // Two, three or four digits are one, two or three bytes.
+        // Two, three or four digits encode one, two or three bytes.
         bits <<= 6 * (4 - four.len()) + 8;
         let bytes = bits.to_be_bytes();
         out.extend(bytes.iter().take(four.len() * 6 / 8));
@@ -287,7 +289,7 @@ mod tests {
     /// Schema by pyarrow 19 of a column `time` of durations in nanoseconds and a column `G0 [um/m]` of reals.
     const NANOSECONDS: &str = "/////6gAAAAQAAAAAAAKAAwABgAFAAgACgAAAAABBAAMAAAACAAIAAAABAAIAAAABAAAAAIAAABIAAAABAAAAND///8AAAEDEAAAABwAAAAEAAAAAAAAAAkAAABHMCBbdW0vbV0AAADG////AAACABAAFAAIAAYABwAMAAAAEAAQAAAAAAABEhAAAAAcAAAABAAAAAAAAAAEAAAAdGltZQAABgAIAAYABgAAAAAAAwA=";
 
-    /// Schema by pyarrow 19 of the columns `time`, `P` with the note unit = kN, `G1` with the notes Units = mm/m and note = x, and `n`.
+    /// Schema written by pyarrow 19. Its columns are `time`, `P` (note unit = kN), `G1` (notes Units = mm/m and note = x), and `n`.
     const UNITS: &str = "/////6ABAAAQAAAAAAAKAAwABgAFAAgACgAAAAABBAAMAAAACAAIAAAABAAIAAAABAAAAAQAAABAAQAA0AAAADwAAAAEAAAA4P7//wAAAQIQAAAAHAAAAAQAAAAAAAAAAQAAAG4AAAAIAAwACAAHAAgAAAAAAAABQAAAAIL///8AAAEDFAAAAGwAAAAIAAAAEAAAAAAAAAACAAAARzEAAAIAAAAoAAAABAAAAHT///8QAAAABAAAAAEAAAB4AAAABAAAAG5vdGUAAAAAlP///xQAAAAEAAAABAAAAG1tL20AAAAABQAAAFVuaXRzAAYABgAEAAYAAAABABIAGAAIAAYABwAMAAAAEAAUABIAAAAAAAEDFAAAAEgAAAAIAAAAEAAAAAAAAAABAAAAUAAAAAEAAAAMAAAACAAMAAQACAAIAAAAEAAAAAQAAAACAAAAa04AAAQAAAB1bml0AAAAAMb///8AAAIAEAAUAAgABgAHAAwAAAAQABAAAAAAAAEDEAAAABwAAAAEAAAAAAAAAAQAAAB0aW1lAAAGAAgABgAGAAAAAAACAA==";
 
     #[test]

@@ -37,7 +37,7 @@ pub struct RateChange {
 }
 
 impl RateChange {
-    /// Returns the time of the change and both rates in words.
+    /// Describes the time of the change and both rates.
     pub fn words(&self) -> String {
         let rounded = |x: f64, parts: f64| (x * parts).round() / parts;
         let [from, to] = self.rates_hz.map(|r| rounded(r, 1e4));
@@ -241,7 +241,7 @@ fn read_stored_clock(
         let clock = join_spans(&spans, scale, declared_hz)?;
         return Ok((clock, Steps { spans, scale }));
     };
-    // Held against the steps of all rates.
+    // Compare the steps with the typical steps of all rates.
     let change = RateChange::from_stretch(stretch, start, scale.usual);
     let scale = scale.with_rates(spans.iter().filter_map(|s| s.others).flatten());
     let (spans, _) = spans_of(reader, Some(scale))?;
@@ -326,7 +326,7 @@ fn join_spans(
     let step = (sum + all.steps.0) / (number + all.steps.1).max(1) as f64;
     let start = spans.iter().find(|s| s.rows > 0).map_or(0.0, |s| s.first);
     let end = last.unwrap_or(start);
-    // A stretch at a far lower rate asks for as many samples as a hole.
+    // A stretch at a far lower rate needs as many added samples as a gap.
     let between = match scale.longest > typical {
         true => (end - start) / step - rows as f64,
         false => 0.0,
@@ -340,7 +340,7 @@ fn join_spans(
             missing: added as u64,
         });
     }
-    // Rounding may hide that steps differ, not that rates do.
+    // Rounding can hide that steps differ, but not that rates differ.
     let differ = largest.0.max(scale.longest - typical);
     let evenness = if differ <= EVEN * typical {
         Evenness::Even
@@ -352,7 +352,7 @@ fn join_spans(
     };
     let samples = match evenness {
         Evenness::Even => rows + missing as usize,
-        // The last stored time is reached but for what rounding moved it.
+        // The last sample is at the last stored time, within rounding.
         Evenness::Resampled { .. } => ((end - start) / step + 1e-6).floor() as usize + 1,
     };
     let rate_hz = declared_or(1.0 / step, declared_hz)?;

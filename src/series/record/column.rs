@@ -80,7 +80,7 @@ impl Header {
         !is_label && (!sizes(&self.bracket).is_empty() || is_other_unit(&self.bracket))
     }
 
-    /// Whether both are written alike but for the kind of bracket and the blanks before it: `SG1(left)` and `SG1 (left)`.
+    /// Whether both headers differ only in the kind of bracket and the blanks before it, as `SG1(left)` and `SG1 (left)`.
     pub fn is_like(&self, other: &Self) -> bool {
         self.name == other.name && self.bracket == other.bracket
     }
@@ -122,10 +122,10 @@ impl Column {
         }
     }
 
-    /// The column in a file all of whose numbers are in one unit: what is no unit in brackets is part of a name, `SG1 (left)`.
+    /// Returns the column for a file whose numbers are all in one unit. Text in brackets that is not a unit is part of the name, as in `SG1 (left)`.
     pub(super) fn in_file_of(mut self, unit: &str) -> Self {
         if self.header.is_unit() {
-            // A unit of strain beside the name is that of its numbers, whatever the name is.
+            // A unit of strain after the name is the unit of the numbers, whatever the name is.
             self.stated = match microstrain_in(&self.header.bracket) {
                 Some(_) => self.header.bracket.clone(),
                 None => unit.to_owned(),
@@ -140,7 +140,7 @@ impl Column {
         self
     }
 
-    /// Whether this column, the first of its file or not, is that of time.
+    /// Whether this column contains the times. `first` states whether it is the first column of its file.
     pub fn is_time(&self, first: bool) -> bool {
         is_time(&self.name, first)
             || self.clash() == Some(Clash::Size) && is_time(&self.header.name, first)
@@ -232,7 +232,7 @@ fn likeness(a: &str, b: &str) -> Likeness {
     let mut likeness = Likeness::None;
     for ((quantity, x), (other, y)) in pairs {
         if quantity == other {
-            // Sizes are products of exact numbers: they agree but for the last digits.
+            // Sizes are products of exact numbers. Equal sizes agree except for the last digits.
             if (x - y).abs() <= 1e-12 * x.abs() {
                 return Likeness::Same;
             }
@@ -284,7 +284,7 @@ pub(super) fn unit_of_time_name(name: &str) -> Option<&'static str> {
     ["ms", "us", "ns", "min"].into_iter().find(|u| *u == unit)
 }
 
-/// Whether a column of this name, the first of its file or not, is that of time.
+/// Whether a column of this name contains the times. `first` states whether it is the first column of its file.
 pub fn is_time(name: &str, first: bool) -> bool {
     let word = name.trim().to_lowercase();
     match word.as_str() {
@@ -292,7 +292,7 @@ pub fn is_time(name: &str, first: bool) -> bool {
         "t_s" | "time_s" | "zeit" | "timestamp" | "datetime" | "date_time" | "date time"
         | "date/time" | "datum" | "date" => true,
         _ if unit_of_time_name(&word).is_some() => true,
-        // Measuring programs add the name of the clock: `Time  1 - default sample rate`.
+        // Measuring programs append the name of the clock: `Time  1 - default sample rate`.
         _ => {
             first
                 && (name == "T"

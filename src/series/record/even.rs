@@ -26,8 +26,8 @@ enum Extent {
 }
 
 impl Record {
-    /// The record of a reader after a pass over its times. Its rate, Hz, and the seconds in one of its times are those stated elsewhere: the
-    /// second counts where the file states no unit of time.
+    /// Returns the record of a reader after a pass over its times. The job may declare its rate, Hz, and the seconds in one unit of its times. The
+    /// declared unit applies if the file states no unit of time.
     ///
     /// # Errors
     /// No samples, no rate, a rate other than the declared one, times that are missing or do not ascend, a hole longer than the
@@ -121,7 +121,7 @@ impl Record {
     /// `columns` (`None`: NaN) as stored.
     ///
     /// # Errors
-    /// What can't be decoded, with its place.
+    /// Data that can't be decoded, with its place.
     pub fn read(
         &self,
         piece: usize,
@@ -134,7 +134,7 @@ impl Record {
     /// Decodes the first block of a piece alone, as [`Record::read`] gives it.
     ///
     /// # Errors
-    /// As [`Record::read`].
+    /// Errors of [`Record::read`].
     pub fn head(
         &self,
         piece: usize,
@@ -249,7 +249,7 @@ impl Record {
             while next < end {
                 let t = self.clock.time_s(next);
                 let share = ((t - ta) / (tb - ta)).max(0.0);
-                // The end of the record may lie a rounding error before its last sample's time.
+                // The last row may be a rounding error before the time of the last sample.
                 if share > 1.0 + 1e-6 {
                     break;
                 }
@@ -279,7 +279,7 @@ impl Record {
             }
             ControlFlow::Continue(())
         })?;
-        // Up to the first row of the next piece that has one.
+        // Continue up to the first row of the next piece that has rows.
         let following =
             (piece + 1..self.n_pieces()).find(|p| steps.spans.get(*p).is_some_and(|s| s.rows > 0));
         if let Some(p) = following.filter(|_| !stopped) {
@@ -347,7 +347,7 @@ impl Rows {
 fn starts_of_times(clock: &Clock, steps: &Steps) -> Vec<usize> {
     let mut starts = Vec::with_capacity(steps.spans.len() + 1);
     if let Evenness::Resampled { .. } = clock.evenness {
-        // A piece has the steps from its first time to that of the next piece.
+        // A piece contains the steps from its first time to the first time of the next piece.
         for (i, s) in steps.spans.iter().enumerate() {
             let at = if i == 0 || s.rows == 0 {
                 starts.last().copied().unwrap_or(0)

@@ -194,7 +194,7 @@ fn mdf(_: Bytes, _: &[String]) -> Result<Box<dyn RecordReader>, SeriesError> {
 /// A whole record in memory.
 ///
 /// # Errors
-/// As [`open_record`] and [`Record::read`].
+/// Errors of [`open_record`] and [`Record::read`].
 pub fn read_channels(record: &Record) -> Result<Channels, SeriesError> {
     let k = record.columns().len();
     let picks: Vec<Option<usize>> = (0..k).map(Some).collect();

@@ -1,4 +1,4 @@
-//! Pages of a Parquet column, looked at before they are decoded: what the library takes for granted of a page is not so in a damaged file.
+//! Pages of a Parquet column, checked before they are decoded. The Parquet library relies on properties of a page that a damaged file may lack.
 
 use parquet::basic::{Encoding, Type as Kind};
 use parquet::column::page::{Page, PageMetadata, PageReader};
@@ -31,7 +31,7 @@ impl<P: PageReader> Pages<P> {
             level_bits: (u16::BITS - levels.leading_zeros()) as usize,
             width: match column.physical_type() {
                 Kind::INT64 | Kind::DOUBLE => 8,
-                // Reals of 16 bits.
+                // Reals of 16 bits have two bytes.
                 Kind::FIXED_LEN_BYTE_ARRAY => 2,
                 _ => 4,
             },
@@ -229,7 +229,7 @@ mod tests {
 
     #[test]
     fn a_damaged_byte_anywhere_is_an_answer_or_an_error() {
-        // The second with dictionaries, whose places may be negative in a damaged file.
+        // The second file has dictionaries, whose indices may be negative in a damaged file.
         for whole in [split(60), write_samples(60, WriterProperties::builder())] {
             for at in 0..whole.len() {
                 for flip in [0x01, 0x10, 0xff] {

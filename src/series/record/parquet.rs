@@ -77,7 +77,7 @@ impl Parquet {
         let schema = metadata.file_metadata().schema_descr();
         let notes = notes(metadata.file_metadata());
         let columns = schema.columns().iter().enumerate();
-        // The name of a nested leaf is its last word; groups other than the root are no tables of channels.
+        // A nested leaf is named by the last part of its path. Groups other than the root are not tables of channels.
         let typed = TypedChannels::from_columns(columns.filter_map(|(leaf, c)| {
             let meaning = column_meaning(c).filter(|_| c.max_rep_level() == 0)?;
             let is_outermost = c.path().parts().len() == 1;
@@ -255,7 +255,7 @@ impl RecordReader for Parquet {
             let done = self.decode(*pick, (unit.group, unit.from, unit.rows), strip);
             done.is_ok()
         });
-        // Where the rows of the other piece are damaged, those of this one need not be.
+        // If the rows of the other piece are damaged, the rows of this piece may still be readable.
         let Some(strips) = decoded else {
             return self.read_alone(part, picks, sink);
         };
@@ -288,7 +288,7 @@ impl Parquet {
         Ok(())
     }
 
-    /// The leaf of what is picked, the worth of a stored unit and what is taken off it; `None` where there is nothing to decode.
+    /// Returns the leaf of a pick, the value of a stored unit, and the subtracted offset. The result is `None` if there is nothing to decode.
     fn leaf_of_pick(&self, pick: Pick) -> Option<(usize, f64, f64)> {
         match pick {
             Pick::Nothing => None,
@@ -297,7 +297,7 @@ impl Parquet {
         }
     }
 
-    /// Decodes rows of what is picked, a page at a time: row group, first row in it, rows.
+    /// Decodes rows of a pick, a page at a time. The tuple contains the row group, the first row in it, and the number of rows.
     fn decode(
         &self,
         pick: Pick,

@@ -6,7 +6,7 @@ use parquet::errors::ParquetError;
 use parquet::file::reader::{ChunkReader, Length};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The bytes of the file as this library asks for them: of a file in memory a page is a part of it, not a copy.
+/// Bytes of the file for the Parquet library. For a file in memory, a page is a part of it, not a copy.
 pub(super) struct ParquetBytes {
     source: Source,
     shared: bytes::Bytes,

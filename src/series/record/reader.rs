@@ -97,15 +97,15 @@ pub trait RecordReader: Send + Sync {
     fn times(&self) -> Times;
     /// How many pieces it is read in.
     fn n_pieces(&self) -> usize;
-    /// Decodes what is picked of a piece, a block at a time.
+    /// Decodes the picks of a piece, a block at a time.
     ///
     /// # Errors
-    /// What can't be decoded, with its place.
+    /// Data that can't be decoded, with its place.
     fn read(&self, piece: usize, picks: &[Pick], sink: &mut Sink) -> Result<(), SeriesError>;
-    /// Decodes what is picked of the first rows of a piece: one block.
+    /// Decodes the picks of the first rows of a piece, as one block.
     ///
     /// # Errors
-    /// As [`RecordReader::read`].
+    /// Errors of [`RecordReader::read`].
     fn head(&self, piece: usize, picks: &[Pick], sink: &mut Sink) -> Result<(), SeriesError> {
         self.read(piece, picks, &mut |block| {
             let _ = sink(block);
@@ -116,11 +116,11 @@ pub trait RecordReader: Send + Sync {
     fn left_out(&self) -> Option<usize> {
         None
     }
-    /// Returns the seconds in one of the unit of time that the file states in words; `None` if it states none.
+    /// Returns the length in seconds of the unit of time that the file states, or `None` if the file states no unit.
     fn stated_time_unit_s(&self) -> Option<f64> {
         None
     }
-    /// Whether its times are those of a day, which begin again at midnight.
+    /// Whether the times are times of day, which restart at midnight.
     fn are_times_of_day(&self) -> bool {
         false
     }

@@ -1,5 +1,5 @@
-//! Rows of a Parquet file that two pieces decode together: a page on their border, and what comes before it, is decoded once, and the columns by
-//! whichever of the two threads is free.
+//! Rows of a Parquet file that two pieces decode together. A page on their border, and the data before it, is decoded once. Whichever of the two
+//! threads is free decodes the next column.
 
 use super::reader::Pick;
 use super::strip::{Buffers, Strip};
@@ -52,7 +52,7 @@ impl SharedRows {
         }
         let mut strips = self.spare();
         strips.resize_with(picks.len(), Strip::default);
-        // Of no columns all are decoded.
+        // If no columns are picked, there is nothing to decode.
         let decoded = picks.is_empty().then(Arc::default);
         let new = Arc::new(Rows {
             unit,
@@ -68,7 +68,7 @@ impl SharedRows {
             turn: Condvar::new(),
         });
         all.push(new.clone());
-        // A reader that has enough leaves rows which nobody asks for again.
+        // A reader that stops early leaves rows that no other piece needs.
         if all.len() > most.max(1) {
             all.remove(0);
         }

@@ -15,8 +15,8 @@ const MOST_NUMBERS: usize = 20_000_000;
 /// The column that names the runs.
 const RUN: &str = "run";
 
-/// Returns the table of a Parquet or Feather file that has a column `run` in upper or lower case, as CSV with the names of the file; `None` for
-/// any other file.
+/// Returns the table of a Parquet or Feather file as CSV with the column names of the file. The file must have a column `run` in upper or lower case.
+/// The result is `None` for any other file.
 ///
 /// # Errors
 /// A file that is damaged, or larger than tables are.
@@ -178,7 +178,7 @@ mod tests {
                 other[i] ^= bit;
                 let _ = runs_as_csv(Arc::new(other));
             }
-            // A file that begins with fewer bytes is no Parquet file.
+            // A file that begins with fewer bytes is not a Parquet file.
             let cut = runs_as_csv(Arc::new(bytes[..i].to_vec()));
             assert!(i < 4 || cut.is_err());
         }

@@ -11,7 +11,7 @@ pub trait Parts: Send + Sync {
     /// Fills `out` with the bytes from number `from` on.
     ///
     /// # Errors
-    /// Those of the system; [`std::io::ErrorKind::UnexpectedEof`] where it is shorter.
+    /// Errors of the system, or [`std::io::ErrorKind::UnexpectedEof`] if the file is too short.
     fn read_at(&self, from: u64, out: &mut [u8]) -> std::io::Result<()>;
 }
 
@@ -20,7 +20,7 @@ pub trait Parts: Send + Sync {
 pub enum Source {
     /// All of them in memory.
     Memory(Bytes),
-    /// In a file: what is decoded is read, and nothing kept.
+    /// In a file. Bytes are read when they are decoded, and are not kept.
     File(Arc<dyn Parts>),
 }
 
@@ -36,7 +36,7 @@ impl Source {
     /// All bytes, in memory.
     ///
     /// # Errors
-    /// Those of the system.
+    /// Errors of the system.
     pub fn read_all(self) -> std::io::Result<Bytes> {
         match self {
             Self::Memory(bytes) => Ok(bytes),

@@ -4,9 +4,11 @@ use super::reader::{Pick, RecordReader};
 use crate::series::error::SeriesError;
 use std::ops::ControlFlow;
 
-/// Largest departure of a step from the typical one that still counts as even. Of a sine with `m` samples a period, jitter `e` moves a
-/// reading by `2 pi e / m` of the amplitude at most, and linear interpolation between samples cuts off up to `(2 pi / m)^2 / 8`: below
-/// `e = pi / (4 m)`, .02 for 40 samples, the stored samples are nearer to the truth than interpolated ones.
+/// Largest departure of a step from the typical step that still counts as even.
+///
+/// Consider a sine with `m` samples a period. Jitter `e` moves a reading by at most `2 pi e / m` of the amplitude. Linear interpolation between
+/// samples cuts off up to `(2 pi / m)^2 / 8`. Below `e = pi / (4 m)`, .02 for 40 samples, the stored samples are nearer to the truth than
+/// interpolated ones.
 pub const EVEN: f64 = 0.02;
 /// A step longer than this many typical ones is a gap: at least one sample is missing.
 pub(super) const GAP: f64 = 1.5;
@@ -36,7 +38,7 @@ impl Stretch {
     pub(super) fn join_pieces(mut list: impl Iterator<Item = Self>) -> Option<Self> {
         let mut first = list.next()?;
         for next in list {
-            // The rest of a piece may not fill a window.
+            // The last rows of a piece may not fill a window.
             if next.from_s - first.to_s > 2.0 * WINDOW as f64 * next.step_s {
                 break;
             }
@@ -126,8 +128,8 @@ pub(super) struct Span {
     pub others: Option<[f64; 2]>,
 }
 
-/// The median step of the first rows, and that of [`WINDOW`] steps as most of a quarter of them have it (where two rates share the first
-/// rows, that of one of them); `None` with fewer than two.
+/// Returns two typical steps of the first rows: the median of single steps, and the lower quartile of the mean steps over [`WINDOW`] rows. If two
+/// rates share the first rows, the quartile belongs to one of them. The result is `None` with fewer than two rows.
 pub(super) fn typical_steps(
     reader: &dyn RecordReader,
     rounding: f64,
@@ -203,7 +205,7 @@ pub(super) struct Walk {
     pub largest: (f64, usize),
     pub stretch: Option<Stretch>,
     pub others: Option<[f64; 2]>,
-    /// The times seen last: those of a window that is full, and of the one that is being filled.
+    /// The latest times: those in the last full window and in the window that is being filled.
     times: Vec<f64>,
     /// Steps in the window that is being filled.
     filled: usize,
@@ -225,7 +227,7 @@ impl Walk {
         }
     }
 
-    /// Notes where the steps of a window are those of another rate.
+    /// Records a window whose steps have another rate.
     fn note_rate(&mut self, a: f64, b: f64) {
         if self.times.is_empty() {
             self.times.push(a);
@@ -262,7 +264,7 @@ impl Walk {
         let step = |w: &[f64]| w.last().zip(w.first()).map_or(0.0, |(b, a)| b - a);
         let alike = (ALIKE * mean).max(EVEN * mean + 2.0 * rounding);
         let is_alike = |w: &[f64]| (step(w) - mean).abs() <= alike;
-        // Of each mean both ends are rounded.
+        // Both ends of each mean are rounded.
         let off = OTHER * usual + 4.0 * rounding / WINDOW as f64;
         if (mean - usual).abs() <= off || !window.windows(2).all(is_alike) {
             return None;
@@ -286,7 +288,7 @@ impl Walk {
         let whole = if self.scale.is_gap(step) {
             (step / typical).round()
         } else {
-            // The rate is that of the typical steps alone.
+            // Only typical steps contribute to the rate.
             if step <= GAP * typical {
                 self.steps.0 += step;
                 self.steps.1 += 1;
@@ -305,7 +307,8 @@ impl Walk {
                 });
             }
         }
-        // Both ends of a step are rounded. A gap of many steps is held against the typical one, whose own error grows with them.
+        // Both ends of a step are rounded. A gap of many steps is compared with a multiple of the typical step, whose error grows with the number of
+        // steps.
         let off = (step - whole * typical).abs() - 2.0 * rounding;
         let off = if whole > 1.0 { off / whole } else { off };
         if off > self.largest.0 {

@@ -182,7 +182,8 @@ where
         if records == 0 {
             return Ok(());
         }
-        // From the last on, each known value moves to its row: never before the place that it stands in.
+        // Move each known value to its row, from the last to the first. A value never moves towards the start, so that no unmoved value is
+        // overwritten.
         let mut known = out.len();
         out.resize(first + records, blank);
         if known == out.len() {

@@ -45,7 +45,7 @@ fn tables_as_loggers_write_them_are_one_record() {
     let low_first: Vec<u8> = bare.iter().flat_map(|u| u.to_le_bytes()).collect();
     let high_first: Vec<u8> = bare.iter().flat_map(|u| u.to_be_bytes()).collect();
     let texts: [&[u8]; 16] = [
-        // As it should be; with byte order mark and CRLF; quoted, as pandas writes with QUOTE_ALL; a decimal comma and tabs.
+        // Plain CSV; byte order mark and CRLF; quoted, as pandas writes with QUOTE_ALL; decimal comma and tabs.
         b"time,P01 [um/m],P02\n0.0,1.5,-2\n0.1,2.5,NaN\n0.2,3.5,4\n",
         b"\xef\xbb\xbfTime,P01 [um/m],P02\r\n0.0,1.5,-2\r\n0.1,2.5,\r\n0.2,3.5,4\r\n",
         b"\"time\",\"P01 [um/m]\",\"P02\"\n\"0.0\",\"1.5\",\"-2\"\n\"0.1\",\"2.5\",\"\"\n\"0.2\",\"3.5\",\"4\"\n",
@@ -54,12 +54,12 @@ fn tables_as_loggers_write_them_are_one_record() {
         b"Time;P01;P02\ns;um/m;\n0,0;1,5;-2\n0,1;2,5;\n0,2;3,5;4\n",
         b"Measured by 7\nRate: 10 Hz\n\nTime  1 - default sample rate [s]\tP01 [um/m]\tP02\n0.0\t1.5\t-2\n0.1\t2.5\t\n0.2\t3.5\t4\n",
         b"time;P01 [um/m];P02;\n0,0;1,5;-2;\n0,1;2,5;;\n0,2;3,5;4;\n",
-        // Milliseconds that say so; a date, below no name as pandas writes its index; UTF-16.
+        // Milliseconds stated as the unit; a date in a column without a name, as pandas writes its index; UTF-16.
         b"time [ms],P01 [um/m],P02\n0,1.5,-2\n100,2.5,n/a\n200,3.5,4\n",
         b",P01 [um/m],P02\n2026-05-01 12:00:00.0,1.5,-2\n2026-05-01 12:00:00.1,2.5,\n2026-05-01 12:00:00.2,3.5,4\n",
         &utf16,
-        // UTF-16 that doesn't say so; date and time in two columns, across midnight; time of day, of twelve hours too; a date whose day can't be a
-        // month.
+        // UTF-16 without a byte order mark. Date and time in two columns, across midnight. Time of day, also with twelve hours. A date whose day
+        // can't be a month.
         &low_first,
         &high_first,
         b"Date,Time,P01 [um/m],P02\n2026-05-01,23:59:59.9,1.5,-2\n2026-05-02,00:00:00.0,2.5,\n2026-05-02,00:00:00.1,3.5,4\n",
@@ -109,20 +109,20 @@ fn what_is_no_unit_in_brackets_is_part_of_the_name() {
         let list = record.columns().iter();
         list.map(|c| [c.name.clone(), c.unit.clone()]).collect()
     };
-    // A row of units below: a label stays in the name; a unit of the same quantity beside the name goes first.
+    // With a row of units below the header, a label stays in the name. A unit of the same quantity in the header takes precedence.
     let below = |header: &str, unit: &str| {
         columns(&format!("time,{header}\ns,{unit}\n0,0.5\n0.1,0.5\n")).remove(0)
     };
     assert_eq!(below("SG1 (left)", "mm/m"), ["SG1 (left)", "mm/m"]);
     assert_eq!(below("SG1 (t)", "[mm/m]"), ["SG1 (t)", "mm/m"]);
-    // The same unit; another one is a contradiction, and the column is called by neither.
+    // An equal unit is no problem. Another unit is a contradiction, and the header stays unchanged as the name.
     assert_eq!(below("SG1 [m/m]", "strain"), ["SG1", "m/m"]);
     assert_eq!(below("SG1 [m/m]", "um/m"), ["SG1 [m/m]", "um/m"]);
     assert_eq!(below("F [MN]", "mN"), ["F [MN]", "mN"]);
     assert_eq!(below("SG1 (left)", "-"), ["SG1", "left"]);
     assert_eq!(below("SG1", "mm/m"), ["SG1", "mm/m"]);
     assert_eq!(below("SG1 [-]", "mm/m"), ["SG1", "mm/m"]);
-    // What such a row is called, where the times stand.
+    // Labels of a row of units in the column of times.
     for first in ["unit", "Units", "[-]", "-", ""] {
         let text = format!("time,a\n{first},um/m\n0,1\n0.1,2\n");
         assert_eq!(
@@ -140,7 +140,7 @@ fn the_unit_of_a_binary_record_is_that_of_a_name_with_a_label() {
         ("SG2 [m/m]", "SG2", "m/m"),
         ("SG3", "SG3", "mm/m"),
         ("SG3 [-]", "SG3", "mm/m"),
-        // The top, middle, side, hind, inner one: no tonnes, metres, seconds, hours.
+        // Labels such as top, middle, side, hind: not tonnes, metres, seconds, hours.
         ("SG4 (t)", "SG4 (t)", "mm/m"),
         ("SG4 (m)", "SG4 (m)", "mm/m"),
         ("SG4 (s)", "SG4 (s)", "mm/m"),
@@ -196,12 +196,12 @@ fn faults_of_a_table_name_their_line() {
         | SeriesError::NoTime { line } => line,
         other => panic!("{text}: {other}"),
     };
-    // Out of order, repeated, missing: comments and empty lines count.
+    // Times out of order, repeated, missing. Line numbers include comments and empty lines.
     assert_eq!(line("time,a\n0,1\n# pause\n2,1\n\n1,1\n3,1\n"), 6);
     assert_eq!(line("time,a\n0,1\n1,1\n1,1\n2,1\n"), 4);
     assert_eq!(line("time,a\n0,1\n,1\n2,1\n"), 3);
     assert_eq!(line("time,a\n0,1\nabc,1\n2,1\n"), 3);
-    // What a row holds beside its time is read later.
+    // Fields other than the time are read later.
     for (text, wrong) in [
         ("time,a\n0,1\n1,x\n2,1\n", 3),
         ("time,a,b\n0,1,2\n1,2\n2,1,2\n", 3),
@@ -213,7 +213,7 @@ fn faults_of_a_table_name_their_line() {
             "{text}"
         );
     }
-    // A time of day that goes back by less than midnight; day and month that could be exchanged; line ends of old Macintosh programs.
+    // A time of day that goes back, but not across midnight. A date whose day and month could be exchanged. Line ends of old Macintosh programs.
     assert_eq!(line("time,a\n13:59:59,1\n13:00:00,1\n13:00:01,1\n"), 3);
     assert_eq!(
         line("time,a\n5/1/2026 1:00:00 PM,1\n5/1/2026 1:00:01 PM,1\n"),
@@ -221,7 +221,7 @@ fn faults_of_a_table_name_their_line() {
     );
     let returns = open("time,a\r0,1\r1,1\r").err().map(|e| e.to_string());
     assert!(returns.is_some_and(|e| e.contains("carriage return")));
-    // One sample has no rate, and has a time.
+    // One sample has a time but no rate.
     assert_eq!(line("time,a\n0,1\n"), 2);
     for text in ["time,a\n", "time,a", ""] {
         assert!(open(text).is_err(), "{text}");
@@ -254,9 +254,9 @@ fn steps_within_a_fiftieth_are_even_and_those_beyond_are_resampled_and_said() {
     let Evenness::Resampled { largest, .. } = uneven.clock.evenness else {
         panic!("5 % is not even")
     };
-    // Steps of .95 and 1.05; the median is one of them.
+    // Steps are .95 and 1.05, and the median is one of the two.
     assert!((0.04..0.12).contains(&largest), "{largest}");
-    // A straight line stays one: twice the time of every even step.
+    // A straight line stays a straight line: each value is twice its time.
     for (i, row) in rows(&uneven).iter().enumerate() {
         let expected = 2.0 * uneven.clock.time_s(i);
         assert!((row[0] - expected).abs() < 1e-9, "{i} {}", row[0]);
@@ -295,14 +295,14 @@ fn missing_samples_are_gaps_and_not_invented() {
             "{i}"
         );
     }
-    // A time that jumps by years is no gap but a wrong time.
+    // A time that jumps by years is not a gap but a wrong time.
     let far = open("time,a\n0.00,1\n0.01,1\n0.02,1\n900000000.03,1\n");
     assert!(matches!(far.err(), Some(SeriesError::Hole { .. })));
 }
 
 #[test]
 fn a_rate_that_changes_is_told_with_its_time_and_no_sample_is_called_missing() {
-    // So many rows at the first rate, then at the second.
+    // Opens a record with `rows[0]` rows at the first rate, then `rows[1]` at the second.
     let open_two = |rows: [usize; 2], hz: [f64; 2], digits: usize| {
         let end = rows[0] as f64 / hz[0];
         let time = |i: usize| match i.checked_sub(rows[0]) {
@@ -322,12 +322,12 @@ fn a_rate_that_changes_is_told_with_its_time_and_no_sample_is_called_missing() {
         let (record, at, end) = open_two(rows_of, hz, digits);
         let clock = &record.clock;
         let change = clock.change.unwrap_or_else(|| panic!("{hz:?}"));
-        // Found in steps of 20 samples.
+        // The change is located to 20 samples.
         assert!((change.at_s - at).abs() < 20.0 / hz[0] + 1e-9, "{change:?}");
         for (found, given) in change.rates_hz.iter().zip(hz) {
             assert!((found / given - 1.0).abs() < 0.02, "{change:?}");
         }
-        // Who takes samples as they are stored alone says why not.
+        // A caller that needs stored samples refuses the record with the reason.
         let refused = crate::series::even_record::check_even(&record).err();
         let said = refused.map_or_else(String::new, |e| e.parts().0);
         assert!(said.starts_with("the sample rate changes at"), "{said}");
@@ -342,14 +342,14 @@ fn a_rate_that_changes_is_told_with_its_time_and_no_sample_is_called_missing() {
             (clock.duration_s() - end).abs() < 2.0 / fast + 1e-3 * end,
             "{hz:?}"
         );
-        // Times are rounded to these digits, and the channel is twice the time.
+        // Times are rounded to `digits`, and the channel is twice the time.
         let rounding = 10f64.powi(-(digits as i32));
         for (i, row) in rows(&record).iter().enumerate() {
             let off = (row[0] - 2.0 * clock.time_s(i)).abs();
             assert!(off < 2.0 * rounding, "{i}: {row:?} {off}");
         }
     }
-    // Every second of 15 samples lost is a gap, and a clock of one rate has no change.
+    // Losing every second sample over 15 samples makes gaps, and is not a change of rate.
     let kept = |i: usize| {
         i as f64
             + if i < 300 {
@@ -385,7 +385,7 @@ fn pieces_join_without_a_seam() {
             r[0]
         );
     }
-    // A line out of order behind the first piece is found by its number.
+    // A line out of order after the first piece is reported with its line number.
     let mut lines: Vec<&str> = even.lines().collect();
     lines.swap(350_000, 350_001);
     let wrong = open(&lines.join("\n")).err();
@@ -402,7 +402,7 @@ fn a_wide_table_takes_time_in_proportion_to_its_size() {
         let zeros = ",0".repeat(n);
         format!("time{names}\n0{zeros}\n1{zeros}\n2{zeros}\n")
     };
-    // A search through all columns for each of them would take hours.
+    // Searching all columns for each column would take hours.
     let record = open(&table(500_000)).unwrap();
     assert_eq!(rows(&record).len(), 3);
 }

@@ -46,7 +46,7 @@ impl Tile {
         self.values.get_mut(at..at + rows).unwrap_or_default()
     }
 
-    /// Lays out what is there into `values`, `k` a row.
+    /// Copies the stored columns into `values`, which has `k` numbers a row.
     pub(super) fn lay_out(&mut self, values: &mut [f64], k: usize) {
         let from = &self.values;
         let rows = values.chunks_exact_mut(k.max(1)).take(self.rows);

@@ -66,7 +66,7 @@ pub(super) fn with_times_in_seconds(
             (first, unit.seconds(), Some(unit))
         }
     };
-    // Numbers of 64 bits are good to half of their last bit.
+    // 64-bit numbers are accurate to half of their last bit.
     let digits = 0.5 * f64::EPSILON * origin.abs();
     let times = Times::Stored {
         rounding_s: (rounding_s + digits) * second,
@@ -304,7 +304,7 @@ mod tests {
         };
         assert!((record(text, &options).clock.rate_hz - 100.0).abs() < 1e-9);
         assert!((record(text, &Options::default()).clock.rate_hz - 0.1).abs() < 1e-12);
-        // The file states another one.
+        // The file states another unit.
         let stated = text.replace("time", "time [s]");
         assert!(open_record(Arc::new(stated.into_bytes()), &options).is_err());
     }
@@ -320,7 +320,7 @@ mod tests {
         assert_eq!(record.clock.samples, 40);
         assert!((record.clock.rate_hz - 1.0).abs() < 1e-12);
         assert_eq!(record.clock.n_gaps, 0);
-        // An hour back is no midnight.
+        // A step back by an hour is not midnight.
         let back = "time,P01\n12:00:00,1\n12:00:01,2\n11:00:02,3\n";
         assert!(open_record(Arc::new(back.as_bytes().to_vec()), &Options::default()).is_err());
     }

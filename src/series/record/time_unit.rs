@@ -37,7 +37,7 @@ impl TimeUnit {
         let within = |x: f64, [from, to]: [f64; 2]| (from..=to).contains(&x);
         if within(first, SERIAL_DAYS) {
             let seconds = step * DAY;
-            // The same numbers as seconds would be the times of a far faster logger.
+            // Interpreted as seconds, these numbers would imply a far faster logger.
             let slow = SLOW_S.iter().any(|s| (seconds / s - 1.0).abs() < 1e-3);
             return (is_usual(1.0 / seconds) || slow).then_some(Self::SerialDays);
         }
@@ -85,7 +85,7 @@ impl TimeUnit {
     }
 }
 
-/// Returns the rounding, s, of times in reals of 32 bits, of which one counts `second` seconds: 2^-24 of the last time of a day's record.
+/// Returns the rounding, s, of times stored as 32-bit reals in units of `second` seconds. It is 2^-24 of the last time of a day's record.
 pub(super) fn single_rounding_s(second: f64) -> f64 {
     DAY * 6e-8 * second.abs()
 }
@@ -109,7 +109,7 @@ mod tests {
             (46_143.5, 0.01 / DAY, Some(T::SerialDays)),
             (46_143.5, 1.0 / DAY, Some(T::SerialDays)),
             (46_143.5, 60.0 / DAY, Some(T::SerialDays)),
-            // A second record of a long measurement.
+            // A later record of a long measurement, with times in seconds.
             (46_143.5, 0.001, None),
             (46_143.5, 0.01, None),
             (noon, 0.01, Some(T::EpochSeconds)),

@@ -47,9 +47,11 @@ impl Meaning {
 }
 
 impl TypedChannels {
-    /// Returns the channels and the column of time of columns that have a number in the file, a name, a meaning and a unit that the file states
-    /// apart from the name, or a blank. A column of time (`time`, `t`, `timestamp`) gives the times; else the first column of timestamps or
-    /// durations, such as the index that pandas writes.
+    /// Returns the channels and the time column of a list of columns. Each entry has the number of the column in the file, its name, its meaning, and
+    /// its unit. The unit is blank if the file states it only in the name.
+    ///
+    /// A column named `time`, `t` or `timestamp` gives the times. Otherwise the first column of timestamps or durations does, such as the index that
+    /// pandas writes.
     pub(super) fn from_columns<'a>(
         list: impl Iterator<Item = (usize, &'a str, Meaning, &'a str)>,
     ) -> Self {
@@ -74,7 +76,7 @@ impl TypedChannels {
         let of_time = time.as_ref().map(|t| t.at);
         let channels = found
             .into_iter()
-            // A row number that pandas or others left over is no channel.
+            // A row number left by pandas or other programs is not a channel.
             .filter(|(at, _, c)| Some(*at) != of_time && !c.name.starts_with("__index_level_"))
             .map(|(at, meaning, c)| ((at, meaning.unit_factor()), c));
         Self {
@@ -111,8 +113,8 @@ impl TimeColumn {
     pub(super) fn times(&self, precision: Precision, factor: f64, epoch: f64) -> Times {
         let is_instant = self.is_instant();
         Times::Stored {
-            // A stored unit is rounded to a half; seconds since 1970 in 64 bits are good to a quarter of a microsecond; a real of 32
-            // bits to 2^-24 of itself, of which the end of a day's record is taken.
+            // An integer is accurate to half a stored unit, and seconds since 1970 in 64 bits to a quarter of a microsecond. A 32-bit real is
+            // accurate to 2^-24 of its value, for which the end of a day's record is taken.
             rounding_s: match (is_instant, precision) {
                 (true, _) => 0.5 * factor + 2.5e-7,
                 (false, Precision::Integer) => 0.5 * factor,

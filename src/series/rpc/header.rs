@@ -9,7 +9,7 @@ pub(super) const RECORD: usize = 128;
 pub(super) const KEY: usize = 32;
 /// Bytes of a block.
 pub(super) const BLOCK: usize = 512;
-/// Blocks of a header at most: four times what the format allows, as some programs write.
+/// Maximum number of blocks of a header. It is four times the limit of the format, because some programs exceed that limit.
 const MOST_BLOCKS: usize = 1024;
 
 /// One channel.
@@ -223,7 +223,7 @@ fn of_params(params: &Params, start: usize, length: usize) -> Result<Header, Rpc
     if file_type != "TIME_HISTORY" {
         return Err(kind("FILE_TYPE", Some(file_type)));
     }
-    // Half a frame more at the end: how it lies there is not told by any file at hand.
+    // Half a frame more at the end is refused: no available file shows its layout.
     if params.real_number("HALF_FRAMES").is_some_and(|n| n != 0.0) {
         return Err(kind("HALF_FRAMES", params.get("HALF_FRAMES")));
     }
@@ -262,7 +262,7 @@ fn of_params(params: &Params, start: usize, length: usize) -> Result<Header, Rpc
         .and_then(|points| points.checked_mul(numbers.width()))
         .and_then(|bytes| bytes.checked_add(start))
         .ok_or_else(|| params.value_error("FRAMES", "fewer"))?;
-    // A header that lists few channels can't name many: refuse before room is made for them.
+    // Refuse a count of channels that exceeds the keys of the header, before memory is allocated for them.
     if expected > length || n > length {
         return Err(RpcError::Cut {
             found: length,

@@ -54,7 +54,7 @@ fn value(b: &[u8], numbers: Numbers, big_endian: bool) -> f64 {
 /// The whole record.
 ///
 /// # Errors
-/// As [`read_header`].
+/// Errors of [`read_header`].
 pub fn read_rpc(bytes: &[u8]) -> Result<Channels, RpcError> {
     let h = read_header(bytes)?;
     let list = h.channels.iter().enumerate().map(|(c, channel)| {

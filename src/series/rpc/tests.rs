@@ -35,7 +35,7 @@ fn what_is_written_reads_back_to_half_a_count() {
     assert!((record.rate_hz - 500.0).abs() < 1e-6);
     assert_eq!(record.list[0].name, "LF.FZ");
     assert_eq!(record.list[1].unit, "kN m");
-    // The scale is printed with ten digits: the error of its last one at full scale is far below a count.
+    // The scale is printed with ten digits. At full scale, an error of the last digit is far below one count.
     let half = 0.5 * 5.0 / 32_752.0 * (1.0 + 1e-4);
     for i in 0..N {
         assert!(
@@ -146,7 +146,7 @@ fn cut_and_mutated_files_are_refused_or_read_but_never_panic() {
 #[test]
 fn a_file_with_half_a_frame_more_is_refused_by_name() {
     let mut bytes = file();
-    // The last of the 128-byte records of the header that holds a key: its key gives way.
+    // Replace the key of the last 128-byte record of the header that contains one.
     let records = read_header(&bytes).unwrap().start / 128;
     let free = (0..records).rev().find(|i| bytes[128 * i] != 0).unwrap();
     let record = &mut bytes[128 * free..128 * (free + 1)];

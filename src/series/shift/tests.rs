@@ -18,7 +18,7 @@ fn signals(start_s: f64, rate_hz: f64, n: usize) -> Vec<Vec<f32>> {
 fn a_shift_of_a_fraction_of_a_sample_is_found_at_two_rates() {
     for (rate, shift) in [(100.0, 3.7_f64), (128.0, -2.3456), (100.0, 0.0)] {
         let fixed = signals(5.0, 100.0, 6000);
-        // Sample i of the moving signals was taken at 5 + i / rate, which their clock calls that less the shift.
+        // Sample i of the moving signals was taken at 5 + i / rate. Their clock shows this time minus the shift.
         let moving = signals(5.0, rate, 6000);
         let found = estimate_shift(
             SampledSignals {
@@ -34,7 +34,7 @@ fn a_shift_of_a_fraction_of_a_sample_is_found_at_two_rates() {
             &ShiftRules::default(),
         )
         .unwrap();
-        // The cubic errs by 3/128 (2 pi f / rate)^4 of a sine, 2e-5 of the fastest one here: 1e-5 s of its slope.
+        // The error of cubic interpolation is 3/128 (2 pi f / rate)^4 of a sine. For the fastest sine here it is 2e-5, or 1e-5 s at its slope.
         assert!((found.seconds - shift).abs() < 2e-5, "{found:?} {shift}");
         assert!(
             found.half_width_s < 1e-4 && found.correlation > 0.99,

@@ -35,7 +35,7 @@ fn rear_record(r: &Readings) -> Channels {
     ])
 }
 
-/// 64 s at 11 m/s to fit, 24 s on another road at 16 m/s to judge; noise 0.05 m/s2 and 100 N.
+/// Returns 64 s at 11 m/s for the fit and 24 s on another road at 16 m/s for the test. Noise is 0.05 m/s2 and 100 N.
 fn drives() -> &'static (Readings, Readings) {
     static DRIVES: OnceLock<(Readings, Readings)> = OnceLock::new();
     DRIVES.get_or_init(|| {
@@ -135,7 +135,7 @@ fn full_task(terms: &[&str], high: f64) -> IdentifyTask {
 #[test]
 fn the_full_model_gives_every_wheel_force_within_two_per_cent_on_another_road_and_speed() {
     let (fitted, other) = drives();
-    // The friction's memory (Dahl) is in no model; friction without memory is.
+    // No model contains the memory of the friction (Dahl). The second model contains friction without memory.
     for terms in [&[][..], &["k", "c", "coulomb_friction"]] {
         let q = full_task(terms, 10.0);
         let id = identify(

@@ -35,7 +35,8 @@ fn coloured_noise(n: usize, seed: u64) -> Vec<f64> {
         .collect()
 }
 
-/// Returns the channels of a quarter truck that follows its model exactly: stretch is given, all else follows by band-limited calculus.
+/// Returns the channels of a quarter truck that follows its model exactly. Stretch is given, all other channels follow by band-limited
+/// differentiation and integration.
 pub(super) fn quarter(n: usize, seed: u64, values: [f64; 4]) -> Channels {
     quarter_at(500.0, n, seed, values)
 }
@@ -100,7 +101,7 @@ fn intervals_hold_the_truth_in_95_of_100_records_with_coloured_residuals() {
             driven: true,
         }];
         let f = fit(&equations, &[ParameterRange::Free, ParameterRange::Free]);
-        // Correlation falls to 1/e in 20 samples: blocks of 100.
+        // Correlation falls to 1/e in 20 samples. Blocks have 100 samples.
         let s = spread(&equations, &f, 100.0, 1.0);
         for (k, truth) in [(0, 2.0), (1, -3.0)] {
             held += usize::from(
@@ -259,7 +260,7 @@ fn the_masses_of_the_thesis_fail_against_its_mean_wheel_forces() {
     assert!(check_mass_closure(4000.0, 20.0, 3.0, 9.81).is_none());
 }
 
-/// (m_b + m_f) g; a mass that comes on the way leaves no one static load, and none to be weighed against.
+/// The static load is (m_b + m_f) g. With a mass added during the record there is no single static load, and no comparison with the weight.
 #[test]
 fn the_static_load_of_a_wheel_is_the_weight_of_masses_that_stay() {
     let record = quarter(20_000, 11, TRUCK);

@@ -12,8 +12,8 @@ const K1: f64 = 20_500.0;
 const K2: f64 = 20_500.0;
 const RATE_HZ: f64 = 1000.0;
 
-/// Sines of 5, 8, 15 and 30 Hz for 8 s each; bearing friction 0.1 N at each mass, damping 2 N s/m between the masses and to
-/// ground; noise 0.02 m/s2 and 0.02 N.
+/// Simulates the rig under sines of 5, 8, 15 and 30 Hz for 8 s each. Bearing friction is 0.1 N at each mass, damping is 2 N s/m between the masses
+/// and to ground. Noise is 0.02 m/s2 and 0.02 N.
 fn rig(seed: u64) -> Channels {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
     let mut gauss = || (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0;
@@ -82,7 +82,7 @@ fn the_rig_of_chapter_4_gives_all_four_parameters_within_one_per_cent() {
             assert!((v / truth - 1.0).abs() < 0.01, "{name} {v}");
         }
         assert!(id.unidentifiable.is_empty(), "{:?}", id.unidentifiable);
-        // Spring 2 hangs the rig on the ground: the masses say nothing of the mean of the force.
+        // Spring 2 ties the rig to the ground, so that the masses do not determine the mean force.
         assert!(static_loads(&id, 9.81, "rig").names.is_empty());
     }
 }

@@ -154,7 +154,7 @@ fn declared_tolerances_widen_the_intervals() {
         sync_tolerance_s: 4e-4,
         ..q
     };
-    // One per cent on the body channel and on the force channel each move m_b by one per cent.
+    // An error of one per cent on the body channel or on the force channel moves m_b by one per cent.
     assert!(
         tight < 1e-3 && (0.008..0.03).contains(&sigma(&loose, "m_b")),
         "{tight} {}",

@@ -6,7 +6,7 @@ use crate::series::detrend::rms;
 use crate::vehicle::refine::{OPEN, comparison, refine};
 
 const RATE_HZ: f64 = 610.35;
-/// Samples used to identify; the rest judges.
+/// Number of samples used to identify. The remaining samples test the result.
 const FITTED: usize = 20_000;
 
 fn record() -> Option<(Channels, Channels)> {
@@ -23,7 +23,7 @@ fn record() -> Option<(Channels, Channels)> {
     Some((part(0, FITTED), part(FITTED, all.n_samples())))
 }
 
-/// Simulation error on the rest in mV, its first 200 samples (start from rest) left out.
+/// Returns the simulation error on the held-out samples in mV. The first 200 samples are left out, because the simulation starts at rest.
 fn held_out_mv(terms: &[&str], fitted: &Channels, rest: &Channels) -> f64 {
     let q = task("oscillator", terms, (3.0, 200.0));
     let start = identify(&q, fitted, None).unwrap();

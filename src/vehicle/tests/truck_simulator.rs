@@ -1,8 +1,10 @@
-//! Independent simulation of a three-axle truck: shares no code with the vehicle models.
+//! Independent simulation of a three-axle truck, which shares no code with the vehicle models.
 //!
-//! Rigid body with heave, pitch and roll; beam axles with heave and roll, the rear two hung from the frame near a common trunnion;
-//! springs inboard of the wheels with friction that has a memory (Dahl); tyres that can only push; a road of random waves, left and
-//! right tracks alike where waves are long.
+//! - The rigid body has heave, pitch and roll.
+//! - Beam axles have heave and roll. The rear two are attached to the frame near a common trunnion.
+//! - Springs are inboard of the wheels and have friction with memory (Dahl).
+//! - Tyres can only push.
+//! - The road has random waves. Left and right tracks are equal in long waves.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -83,11 +85,11 @@ fn road(length_m: f64, dx: f64, roughness: f64, seed: u64) -> [Vec<f64>; 2] {
     let (mut common, mut own) = (0.0, [0.0; 2]);
     let mut smooth = [0.0; 2];
     for _ in 0..n {
-        // Long waves common to both tracks (leak over 30 m), short ones of each track (leak over 2.5 m).
+        // Long waves are common to both tracks (leak over 30 m), short waves differ by track (leak over 2.5 m).
         common += -common * dx / 30.0 + roughness * dx.sqrt() * g.next();
         for s in 0..2 {
             own[s] += -own[s] * dx / 2.5 + 0.3 * roughness * dx.sqrt() * g.next();
-            // The tyre's footprint evens out 0.2 m.
+            // The tyre's footprint averages over 0.2 m.
             smooth[s] += (common + own[s] - smooth[s]) * dx / 0.2;
             tracks[s].push(smooth[s]);
         }
@@ -119,7 +121,7 @@ pub(super) fn drive(
     let n = 3 + 2 * n_axles;
     let corners = 2 * n_axles;
     let h = 1.0 / (RATE_HZ * SUBSTEPS as f64);
-    // Start: settled on the level of the road's start.
+    // The truck starts at rest on the level of the road's start.
     let mut y: State = vec![0.0; 2 * n + corners];
     let statics = static_forces(truck);
     let mut out = Readings {
@@ -166,7 +168,7 @@ pub(super) fn drive(
 
 /// Static wheel forces (each side of each axle): least change of spring stretch that balances weight and pitch.
 fn static_forces(truck: &Truck) -> Vec<f64> {
-    // Body settles by s0 + s1 x: 2 k (s0 + s1 x) summed = m g, moment about the centre of mass = 0.
+    // The body settles by s0 + s1 x. The sum of 2 k (s0 + s1 x) is m g, and the moment about the centre of mass is 0.
     let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
     for axle in &truck.axles {
         a += 2.0 * axle.k;
@@ -224,7 +226,7 @@ fn rates(
             let rate = y[n] + axle.seat * y[n + 1] + side * axle.half_spring * y[n + 2]
                 - y[n + z]
                 - side * axle.half_spring * y[n + zr];
-            // Dahl friction: full after about 2 mm of travel.
+            // Dahl friction reaches its full value after about 2 mm of travel.
             let q = y[2 * n + corner];
             out[2 * n + corner] = (rate - rate.abs() * q) / 0.002;
             let pull = axle.k * stretch + axle.c * rate + axle.friction * q;

@@ -144,7 +144,7 @@ fn finds(task: &IdentifyTask, r: &Channels, code: &str, subject: &str, described
 #[test]
 fn a_reversed_channel_is_found_in_quarter_half_and_full_trucks() {
     for (task, r) in tasks().iter().zip(&records()) {
-        // Of the full truck one channel of each kind: it has twelve.
+        // The full truck has twelve channels: test one of each kind.
         let every = if r.list.len() > 6 { 5 } else { 1 };
         for channel in r.list.iter().step_by(every) {
             let name = &channel.name;
@@ -234,7 +234,7 @@ fn the_unit_of_all_accelerations_or_forces_is_found_by_the_masses() {
 fn a_record_that_confirms_no_unit_is_a_warning_that_states_the_assumed_one() {
     let [task, ..] = tasks();
     let [mut r, ..] = records();
-    // No static force either.
+    // Remove the static force as well.
     let mean = crate::series::detrend::mean(&r.list[2].samples);
     r.list[2].samples.iter_mut().for_each(|v| *v -= mean);
     let wrong = identify(&task, &r, None).unwrap().wrong_input().unwrap();

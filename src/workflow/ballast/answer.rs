@@ -68,7 +68,7 @@ impl Answer for BallastAnswer {
     }
 }
 
-/// One lumped mass, with what the data leave each number when the others are adjusted (95 %).
+/// A lumped mass. Each number has its 95 % interval with the other numbers adjusted to the data.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HungMass {
     /// Mass.
@@ -201,8 +201,8 @@ fn missing_mass_resultant(task: &Task, sized: &BallastSizing) -> TotalMass {
     }
 }
 
-/// Weight of the masses over that of the model from which a unit is wrong: the lightest structures carry some tens of times what they
-/// weigh, and a unit that is mistaken for another makes a thousand.
+/// Ratio of the weight of the masses to the weight of the model above which a unit is wrong. The lightest structures carry some tens of times their
+/// own weight. A mistaken unit gives a factor of a thousand.
 const FAR_BEYOND: f64 = 100.0;
 
 /// Density of steel, kg/m^3: of what carries a ballast, the heaviest that is common.

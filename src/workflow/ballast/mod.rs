@@ -25,7 +25,7 @@ use crate::units::{Quantity, number};
 use nastran::bdf::{Edits, write_edited};
 use task::{Task, force};
 
-/// Noise of a measured reaction where the job states none, of the mean reaction.
+/// Noise of a measured reaction over the mean reaction, if the job states no noise.
 const ASSUMED_NOISE: f64 = 0.01;
 
 /// Finds lumped masses that match the model's reactions to the measured ones. Returns them with the completed deck, which is read back and
@@ -142,7 +142,7 @@ fn ballast_section(job: &Job) -> Result<&Ballast, Faults> {
     })
 }
 
-/// Checks what the job asks for and reads its deck; findings of the deck go to the work.
+/// Checks the sections of the job and reads its deck. Findings on the deck are added to the work.
 fn read_asked(work: &mut Work, job: &Job) -> Result<DeckModel, Faults> {
     ballast_section(job)?;
     let files = job.model.as_ref().ok_or_else(|| {

@@ -7,9 +7,9 @@ use crate::finding::{Finding, Severity, list_few};
 use crate::units::number;
 use crate::workflow::recover::ListedLoads;
 
-/// Chance of so few check loads within their intervals, where these are right, up to which they are reported.
+/// Probability of so few correct check loads within their intervals, up to which they are reported.
 const SELDOM: f64 = 0.05;
-/// Half widths by which a check load is off beyond chance: four standard deviations.
+/// Half widths by which a check load exceeds any chance deviation: four standard deviations.
 const FAR: f64 = 2.0;
 
 /// Loads of the check runs, and combinations, report units. The interval of the comparison includes the error of the applied load.
@@ -53,7 +53,7 @@ pub(super) fn finding(checks: &[CheckLoad], loads: &[String]) -> Option<Finding>
     let worst = outside
         .iter()
         .max_by(|a, b| deviation(a).total_cmp(&deviation(b)))?;
-    // A combination errs with its loads.
+    // The error of a combination follows from its loads, so combinations are not counted.
     let alone = || checks.iter().filter(|c| loads.contains(&c.load));
     let (inside, of) = (alone().filter(|c| c.inside).count(), alone().count());
     let chance = chance_of_so_few(inside, of);

@@ -1,4 +1,4 @@
-//! Rows of S for gauges a little way off their drawing.
+//! Rows of S for gauges whose installed position differs slightly from the nominal position.
 
 use super::outcome::{AsGluedSummary, CalibratedGauge, GlueSummary, GluedGauge};
 use crate::calibrate::{AsGlued, GlueTolerance, MoveKind, OffDrawing};
@@ -131,10 +131,11 @@ impl<'a> Sites<'a> {
     }
 }
 
-/// How the rows change where gauges are not glued as drawn; `None` where S is given, or all gauges sit on bars.
+/// Returns the change of the rows of S with the installed angle and position of each gauge. Returns `None` if S is given or if all gauges are on
+/// bars.
 ///
 /// # Errors
-/// As [`Sites::from_job`].
+/// The errors of [`Sites::from_job`].
 pub(super) fn off_drawing(
     job: &Job,
     prepared: &JobSensitivity,
@@ -176,7 +177,8 @@ pub(super) fn off_drawing(
             );
             Some(b.iter().zip(&a).map(|(b, a)| b - a).collect())
         };
-        // A reading is c + a cos(2x) + b sin(2x) of the angle x: 45 degrees either way give its derivative 2 b exactly.
+        // The reading at the angle x is c + a cos(2x) + b sin(2x). The difference of the readings at +45 and -45 degrees is exactly the derivative 2
+        // b.
         let turns = [between(-FRAC_PI_4, FRAC_PI_4), between(0.0, FRAC_PI_2)];
         let [Some(turned), Some(crossed)] = turns else {
             continue;

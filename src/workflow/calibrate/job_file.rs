@@ -54,7 +54,7 @@ pub fn calibrated_job(answer: &CalibratedSensitivity, out: &Path) -> Result<Stri
     let strain = range.strain.iter().map(|r| r.map(|v| v / MICROSTRAIN));
     s.insert("strain_range".into(), ranges(gauges.zip(strain)));
     table.insert("sensitivity".into(), Value::Table(s));
-    // Which runs taught S stays known: `recover` does not compare these with their recorded loads.
+    // The list of calibration runs is kept, because `recover` does not compare these runs with their recorded loads.
     let mut only = match table.remove("calibration") {
         Some(Value::Table(keys)) => keys,
         _ => Table::new(),
@@ -69,7 +69,7 @@ pub fn calibrated_job(answer: &CalibratedSensitivity, out: &Path) -> Result<Stri
     if !only.is_empty() {
         table.insert("calibration".into(), Value::Table(only));
     }
-    // How gauges are turned is in the rows of S now.
+    // The rows of S now contain the angle corrections.
     if let Some(Value::Array(list)) = table.get_mut("correction") {
         for c in list.iter_mut().filter_map(Value::as_table_mut) {
             c.remove("angle_deg");

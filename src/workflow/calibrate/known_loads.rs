@@ -150,7 +150,7 @@ pub(super) fn read_known(
         };
         let alike = match cells(&repeats) {
             _ if repeats.is_empty() => known.mean.iter().map(|f| format!("{f:.6e}")).collect(),
-            // Nothing is said of it: like no other.
+            // A run without an entry repeats no other run.
             blank if blank.iter().all(String::is_empty) => vec![String::new(), run.clone()],
             stated => stated,
         };
@@ -172,7 +172,7 @@ pub(super) fn read_known(
     faults.extend(none);
     Faults::check(faults)?;
     work.findings.extend(partly_known(&table.file, &partly));
-    // Rows of a second file of held-out runs are not in this one.
+    // Runs of a separate hold-out file are not in this strain file.
     let whole = !matches!(measured.hold_out, HoldOut::File(_));
     let lacking = whole.then(|| without_strain(&table, key, &stated, strain));
     work.findings.extend(lacking.flatten());
@@ -342,7 +342,7 @@ fn find_load_columns(
             name: name.to_owned(),
             terms,
             value,
-            // In the unit of what it is the sd of, unless it states its own.
+            // The unit of the standard deviation is the unit of the quantity, unless its own column states a unit.
             sd: sd.map(|c| {
                 let unit = if c.is_stated { c.unit } else { unit };
                 (c.at, of(unit), unit.map_or(1.0, |u| u.si))
@@ -355,7 +355,7 @@ fn find_load_columns(
     out
 }
 
-/// Value and sd of a quantity in a row, job units; `None` where it is blank.
+/// Returns value and standard deviation of a quantity in a row, job units; `None` if its cell is blank.
 fn cell(table: &Table, row: usize, s: &RunQuantity) -> Result<Option<(f64, f64)>, Fault> {
     let Some(value) = table.size(row, s.value, s.size)? else {
         return Ok(None);
@@ -386,10 +386,11 @@ fn largest_known(
     vec![if largest > 0.0 { largest } else { 1.0 }; n_loads]
 }
 
-/// Loads of one run, unknown ones wide, conditioned on the sums that are known; `None` where a wanted load is in nothing that is known.
+/// Returns the loads of one run, conditioned on the known sums. Unknown loads have a wide distribution. Returns `None` if nothing is known, or if a
+/// wanted load has neither a value nor a known sum.
 ///
 /// # Errors
-/// A sum that is not that of its loads.
+/// A sum that contradicts its loads.
 fn loads_of(
     (table, row): (&Table, usize),
     stated: &[RunQuantity],
@@ -458,7 +459,8 @@ const ROUNDED: f64 = 0.01;
 /// Standard deviations from which a sum contradicts its loads: once in two million sums that are right.
 const CONTRADICTS: f64 = 5.0;
 
-/// Gaussian loads given that a sum of them is `value` to within `sd`; how far it was from what they made before, and the variance of that.
+/// Conditions Gaussian loads on a sum of them that is `value` with the standard deviation `sd`. Returns the difference of `value` from the sum before
+/// conditioning, and the variance of this difference.
 fn condition(
     mean: &mut [f64],
     covariance: &mut [f64],

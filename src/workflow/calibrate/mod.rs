@@ -1,4 +1,5 @@
-//! `calibrate`: S from runs of known load, fused with the model's where there is one; the job that the other workflows run with it.
+//! `calibrate`: S from runs of known load, combined with the S of the model if there is one. It writes the job with which the other workflows use
+//! this S.
 
 mod checks;
 mod installed_positions;
@@ -212,10 +213,10 @@ pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
     read(work, job, (measured, runs), &zeroed, &s, [0.0; 2]).map(|_| ())
 }
 
-/// Runs of strain less their zero.
+/// Returns the strain of the runs minus their zero.
 ///
 /// # Errors
-/// Those of the file; a record.
+/// The faults of the strain file, and a record instead of runs.
 fn strain_of_runs(work: &mut Work, job: &Job, measured: &Measured) -> Result<ZeroedTable, Faults> {
     let zeroed = read_zeroed(work, job, measured, &measured.strain)?;
     zeroed.runs()?;
@@ -243,7 +244,7 @@ fn read(
     Ok((known, strain))
 }
 
-/// Place in plan, m, of the grid where the payload acts; zeros without a model.
+/// Returns the place in plan, m, of the grid at which the payload acts; zeros without a model.
 fn payload_place(job: &Job, prepared: &JobSensitivity) -> [f64; 2] {
     let model = prepared.fields.as_ref().map(|f| f.model());
     let grid = model.zip(job.payload_grid()).and_then(|(model, id)| {
@@ -321,8 +322,8 @@ fn prior(
     Ok((prepared, None))
 }
 
-/// Gauges and loads that the job states, gauges of the strain file where it states none; S is not known. Of a gauge that the file has no column
-/// of nothing can be learnt.
+/// Returns an S of zeros with the gauges and loads of the job. If the job states no gauges, they are the gauges of the strain file. A gauge without a
+/// column in the file is left out, because it can't be calibrated.
 fn stated_alone(job: &Job, table: &StrainTable) -> Sensitivity {
     let mut gauges = stated_readings(job);
     match gauges.is_empty() {
@@ -372,7 +373,8 @@ fn check_readings(
     }
 }
 
-/// Coefficients of the job's combinations; where it names none, the sum of all wanted loads, whose interval is to hold all the same.
+/// Returns the coefficients of the job's combinations. Without combinations, returns the sum of all wanted loads, whose interval must also be
+/// correct.
 fn sums(job: &Job, loads: &[Load]) -> Vec<Vec<f64>> {
     let of = |terms: &[(String, f64)]| -> Vec<f64> {
         let factor = |l: &Load| terms.iter().filter(|t| t.0 == l.name).map(|t| t.1).sum();

@@ -20,7 +20,7 @@ pub struct CalibratedSensitivity {
     /// S with its covariance.
     #[serde(skip)]
     pub sensitivity: Sensitivity,
-    /// The model's S, where there is one.
+    /// S of the model, if there is one.
     #[serde(skip)]
     pub model: Option<Matrix>,
     /// Gauges at their installed positions, `None` for gauges on bars; empty if `[calibration]` states no tolerance.
@@ -67,7 +67,7 @@ pub struct CalibrationSummary {
     pub prior: &'static str,
     /// By gauge.
     pub gauges: Vec<CalibratedGauge>,
-    /// Scatter between repeats over the strain; null where noise explains everything.
+    /// Scatter between repeats over the strain; null if noise explains all scatter.
     pub repeat_scatter_rel: Option<f64>,
     /// Noise over the strain.
     pub noise_rel: f64,
@@ -79,9 +79,9 @@ pub struct CalibrationSummary {
     pub coverage: CoverageSummary,
     /// Terms of the model of the strain: `linear`, `intercept`.
     pub terms: &'static str,
-    /// Tests of the linear model against further terms; empty where runs are too few.
+    /// Tests of the linear model against further terms; empty if there are too few runs.
     pub lack_of_fit: Vec<LackOfFitSummary>,
-    /// Errors of left-out runs by least squares with either terms; null where runs are too few.
+    /// Errors of left-out runs by least squares with either set of terms; null if there are too few runs.
     pub held_out_error: Option<HeldOutSummary>,
     /// Residual of the runs by load.
     pub residuals: Vec<LoadResidual>,
@@ -93,7 +93,7 @@ pub struct CalibrationSummary {
     pub model_error: Option<ModelErrorSummary>,
     /// Left-out runs with their loads predicted from the other runs.
     pub left_out: Vec<LeftOutSummary>,
-    /// Runs that were not used because they contradict the others.
+    /// Runs that were not used because they contradict the other runs.
     pub refused: Vec<String>,
     /// Combinations of loads that no run determines.
     pub undetermined: Vec<BTreeMap<String, f64>>,
@@ -198,7 +198,7 @@ pub struct ModelErrorSummary {
 pub struct LeftOutSummary {
     /// Name of the run.
     pub run: String,
-    /// Distance from what is known, sigmas, root mean square over loads.
+    /// Distance from the known loads, root mean square over the loads, in standard deviations.
     pub distance: f64,
     /// By load, then by combination.
     pub loads: Vec<LeftOutLoad>,
@@ -209,7 +209,7 @@ pub struct LeftOutSummary {
 #[allow(missing_docs)]
 pub struct LeftOutLoad {
     pub name: String,
-    /// Known load of the runs table; `None` where it does not.
+    /// Known load of the runs table; `None` if the table does not contain it.
     pub known: Option<f64>,
     pub value: f64,
     pub sigma: f64,
@@ -250,7 +250,7 @@ pub struct HeldOutSummary {
     pub linear_percent: f64,
     /// With one.
     pub intercept_percent: f64,
-    /// `linear`, or `intercept` where its error is clearly smaller.
+    /// `linear`, or `intercept` if the error with an intercept is clearly smaller.
     pub recommended: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! Weighed payloads as known loads: mass and place of the runs file make the columns of the payload's loads.
+//! Payloads of known weight as known loads. Mass and place in the runs file give the columns of the payload loads.
 
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
@@ -33,15 +33,15 @@ pub(super) struct Payloads {
 struct WeightLoad {
     /// Number of the load.
     load: usize,
-    /// By row of the table: the arm, where an sd of the weight is stated.
+    /// By row of the table: the arm, if the standard deviation of the weight is stated.
     arms: Vec<Option<f64>>,
 }
 
-/// Adds a column for each load that is the payload's and has none: `W = m g` at its place, `W dx` and `W dy` from the nominal one, which is
-/// `origin` (m) where the job states none. A blank place is the nominal one.
+/// Adds a column for each payload load that has no column. The columns are `W = m g`, and `W dx` and `W dy` with the distance from the nominal place.
+/// If the job states no nominal place, it is `origin` (m). A blank place is the nominal place.
 ///
 /// # Errors
-/// Fields that are no numbers or no mass, force or place.
+/// Fields that are not numbers, or not a mass, force or place.
 pub(super) fn add_columns(
     work: &mut Work,
     (job, runs): (&Job, &Runs),
@@ -173,8 +173,8 @@ fn weight_sd(
 }
 
 impl Payloads {
-    /// Puts into the covariance of a row's `k` known loads, so far that of independent ones, that those made of one weight share its error:
-    /// `Cov(W a, W b) = sd_W^2 a b`.
+    /// Adds the common error to the covariance of the `k` known loads of a row, which are independent before. Loads that are computed from one weight
+    /// share its error: `Cov(W a, W b) = sd_W^2 a b`.
     pub fn share_error(&self, row: usize, covariance: &mut [f64], k: usize) {
         let arm = |m: &WeightLoad| Some((m.load, m.arms.get(row).copied()??));
         let made: Vec<(usize, f64)> = self.made.iter().filter_map(arm).collect();
@@ -186,7 +186,8 @@ impl Payloads {
         }
     }
 
-    /// A fault where runs that teach carry a payload whose strain no load of the job makes: it would be taken for that of the others.
+    /// Returns a fault if a calibration run carries a payload and the job has no load for it. The strain of the payload would be attributed to the
+    /// other loads.
     pub fn find_unaccounted_payload(
         &self,
         job: &Job,

@@ -9,7 +9,7 @@ use crate::series::record::Column;
 
 /// Rows that the job asks for.
 pub(super) struct RunSelection {
-    /// Rows of the runs that `[calibration] runs` names; `None` where it names none.
+    /// Rows of the runs in `[calibration] runs`; `None` if the list is missing.
     pub asked: Option<Vec<usize>>,
     /// Rows of the check runs.
     pub checks: Vec<usize>,

@@ -9,11 +9,11 @@ use crate::units::{MICROSTRAIN, number};
 use crate::workflow::recover::ListedLoads;
 use std::collections::BTreeMap;
 
-/// Chance under which a dependence is worth a word.
+/// Probability by chance below which a dependence is reported.
 const SIGNIFICANT: f64 = 0.01;
 
 impl DependenceSummary {
-    /// A finding where the dependence is no chance.
+    /// Returns a finding if the dependence is significant.
     pub(super) fn finding(&self) -> Option<Finding> {
         (self.chance < SIGNIFICANT).then(|| {
             let message = format!(
@@ -35,7 +35,7 @@ impl DependenceSummary {
     }
 }
 
-/// The largest known load of each unit, where there is no model that its strain could be held against.
+/// Returns the finding with the largest known load of each unit, if there is no model to compare its strain with.
 pub(super) fn report_unchecked_loads(task: &Task, listed: &ListedLoads) -> Option<Finding> {
     if task.model.is_some() {
         return None;
@@ -77,10 +77,10 @@ pub(super) fn report_unchecked_loads(task: &Task, listed: &ListedLoads) -> Optio
     })
 }
 
-/// How many times less strain than another load of its unit a load may make: the largest strain of vertical, lateral and longitudinal wheel
-/// forces on the frames of nine trucks differs by 8 to 20 times; units that are mixed up (kN and N) by 1,000.
+/// Largest ratio between the strains of two loads with the same unit. On the frames of nine trucks, the largest strains of vertical, lateral and
+/// longitudinal wheel forces differ by factors of 8 to 20. Mixed units (kN and N) give a factor of 1,000.
 const UNEVEN: f64 = 300.0;
-/// In units of the noise: less strain than this is no sign of a load.
+/// Ratio of strain to noise below which the strain does not show a load.
 const CLEAR: f64 = 6.0;
 
 /// The largest known size of a load; 0 of one that no run has.

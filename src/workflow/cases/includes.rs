@@ -172,7 +172,7 @@ fn normalize_path(p: &Path) -> PathBuf {
     out
 }
 
-/// A path from a folder to a file, with forward slashes; absolute where there is no relative one.
+/// Returns the path from a folder to a file, with forward slashes. The path is absolute if there is no relative path.
 pub(crate) fn from_folder(folder: &Path, file: &Path) -> String {
     let full = |p: &Path| {
         std::path::absolute(p)

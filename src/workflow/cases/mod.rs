@@ -24,7 +24,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Case control statements that would load, hold or restrict the unit-load run, or ask for other strain.
+/// Case control statements that would load, support or restrict the unit-load run, or request other strain.
 const UNWANTED: [&str; 22] = [
     "LOAD",
     "LOADSET",
@@ -53,7 +53,7 @@ const UNWANTED: [&str; 22] = [
 /// A deck with one unit-load subcase a load.
 #[derive(Serialize)]
 pub struct UnitLoadDeck {
-    /// Support of the structure, in words.
+    /// Description of the support of the structure.
     pub support: String,
     /// By load: its subcase and the applied load.
     pub subcases: Vec<Value>,
@@ -148,7 +148,7 @@ pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
             "name the loads, one [[load]] each",
         ));
     }
-    // Those of the deck that is written here come of a run that is still to be made.
+    // Results of the deck that is written here do not exist yet.
     check_named(&work, job, MissingResults::ToCome)?;
     let read = work.stage("read deck", |s| read_deck(s, job, files))?;
     refuse_repeated_subcases(&read)?;
@@ -252,7 +252,7 @@ pub fn load_card(model: Option<&Model>, load: &Force, component: Component) -> S
     }
 }
 
-/// The edits that make the deck one of unit loads, and the subcases they write.
+/// Returns the edits that turn the deck into a deck of unit loads, and the subcases that they write.
 fn edits_of(
     work: &mut Work,
     job: &Job,
@@ -310,7 +310,7 @@ fn relief_cards(model: &Model, support: Support) -> String {
     }
 }
 
-/// Takes out the deck's subcases and what its case control asks for besides, and makes its solution static.
+/// Removes the subcases and the other requests of case control from the deck, and makes its solution static.
 fn drop_unwanted(edits: &mut Edits, deck: &Deck) {
     edits.remove_subcases(deck);
     edits.remove_case_lines(deck, |l| {
@@ -349,8 +349,8 @@ fn drop_relief(edits: &mut Edits, job: &Job, deck: &Deck) -> Result<usize, Fault
     Ok(deck.cards.suports.len())
 }
 
-/// Selects MPC, SPC and NSM sets and the temperatures of materials above all subcases: the deck's subcases are left out, and what they select
-/// of the structure itself remains.
+/// Selects MPC, SPC and NSM sets and the temperatures of materials above all subcases. The subcases of the deck are left out, but their selections
+/// for the structure itself remain.
 fn select_structure(
     case: &mut String,
     work: &mut Work,

@@ -18,13 +18,13 @@ pub struct CheckedFiles {
     pub results: Vec<ResultEntry>,
     /// Records and tables.
     pub records: Vec<RecordEntry>,
-    /// Every fault; where there is one, the files are bad input.
+    /// Every fault. If there is a fault, the files are bad input.
     #[serde(serialize_with = "as_lines")]
     pub faults: FaultList,
     /// Next command of a user with the last job.
     #[serde(skip)]
     pub(super) next: Option<String>,
-    /// Jobs in words.
+    /// Descriptions of the jobs.
     #[serde(skip)]
     pub jobs: Vec<String>,
     /// Candidates that the last job allows.

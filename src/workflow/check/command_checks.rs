@@ -19,7 +19,7 @@ const MOST_GRIDS: usize = 10_000;
 pub(super) fn ask(work: &mut Work, job: &Job, grids: usize) -> Result<(), Faults> {
     let measured = job.measured.as_ref().filter(|_| recovers(job));
     let placed = job.sensitivity.is_none() && job.gauges.is_empty();
-    // S that is given needs a model for responses alone; masses that are missing are what `ballast` finds.
+    // With a given S, only responses need a model. The model of a `ballast` job still lacks masses, so it is not solved.
     let of_model = match placed {
         true => job.ballast.is_none(),
         false => job.sensitivity.is_none() || has_covariance(job),
@@ -35,7 +35,7 @@ pub(super) fn ask(work: &mut Work, job: &Job, grids: usize) -> Result<(), Faults
             recover::judged_alone(work, job, measured, &prepared)
         }
         _ if !solves => Ok(()),
-        // A job that asks for no places may be one for `solve` alone.
+        // A job without places may be meant for `solve` alone.
         _ if placed && job.candidates.line == 0 && job.placement.line == 0 => {
             read_fields(work, job, WantedAt::Anywhere).map(|_| ())
         }

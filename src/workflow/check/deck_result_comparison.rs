@@ -10,7 +10,7 @@ use crate::strain_chain::deck::model_of_op2;
 use nastran::op2::Op2;
 use nastran::results::ResultsFile;
 
-/// Warnings of subcases that results hold more than once. Of several files of a job the job may state which one it means.
+/// Returns warnings on subcases that results contain more than once. If a job has several files, it may state which one it uses.
 fn find_ambiguous_subcases(found: &CheckedFiles) -> Vec<Finding> {
     let all = found.results.iter();
     let (of_jobs, others): (Vec<_>, Vec<_>) = all.partition(|r| r.is_of_job);

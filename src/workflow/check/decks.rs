@@ -1,4 +1,4 @@
-//! Decks in `result.json` and in words.
+//! Decks in `result.json` and as text.
 
 use crate::fe::{check_shapes, contradictions, held_dependents};
 use crate::finding::Finding;
@@ -69,7 +69,7 @@ pub(super) fn look(
     bytes: &[u8],
 ) -> (DeckEntry, FaultList) {
     let mut read = model_of_deck(&mut work.inputs, base, given, bytes);
-    // The warning `card-not-solved` names these cards; the commands that need them refuse the deck.
+    // The warning `card-not-solved` lists these cards. The commands that need them refuse the deck.
     let not_carried = std::mem::take(&mut read.not_carried);
     let named: HashSet<String> = not_carried.iter().map(ToString::to_string).collect();
     if !named.is_empty() {
@@ -93,7 +93,7 @@ pub(super) fn look(
     (DeckEntry::from_deck(read), faults)
 }
 
-/// SPC sets that case control selects; all of the deck where it selects none.
+/// Returns the SPC sets that case control selects, or all SPC sets of the deck if it selects none.
 fn supports(read: &DeckModel) -> BTreeSet<u32> {
     let case_control = &read.deck.case_control;
     let all = std::iter::once(&case_control.global).chain(&case_control.subcases);
@@ -104,7 +104,7 @@ fn supports(read: &DeckModel) -> BTreeSet<u32> {
     }
 }
 
-/// SPC and MPC sets that act together: those of the subcases; each SPC set of the deck where case control selects none.
+/// Returns the pairs of SPC and MPC sets of the subcases. If case control selects no SPC set, each SPC set of the deck counts.
 fn sets(read: &DeckModel) -> BTreeSet<(Option<u32>, Option<u32>)> {
     let subcases = read.deck.case_control.effective_subcases();
     let selected: BTreeSet<_> = subcases.iter().map(|s| (s.spc, s.mpc)).collect();
@@ -123,7 +123,7 @@ fn without_influence(
     cards: &BTreeMap<String, usize>,
     model: &Model,
 ) -> BTreeMap<&'static str, usize> {
-    // `MDLPRM OFFDEF`: the name of the card comes first
+    // The name of the card is the first word, as in `MDLPRM OFFDEF`.
     let acting = |name: &str| {
         let of_name = |u: &&UnsupportedCard| u.card.split(' ').next() == Some(name);
         let acting = model.unsupported_cards.iter().filter(of_name);
@@ -166,7 +166,7 @@ impl DeckEntry {
         Self {
             path: d.given,
             grids: m.grids.iter().filter(|g| !g.is_scalar()).count(),
-            // Where the mesh came from an OP2 there are no cards to count.
+            // A mesh from an OP2 file has no cards to count.
             elements: if cards.is_empty() { in_mesh } else { counted },
             without_influence: without_influence(&cards, &d.model),
             cards,
@@ -201,7 +201,7 @@ impl DeckEntry {
         });
     }
 
-    /// Mass and centre of gravity in words.
+    /// Returns mass and centre of gravity as text.
     fn weight(&self) -> String {
         // The mass must be finite in kilogrammes, too.
         let scale = self.shown.map_or(1.0, |u| u.system.mass_kg());
@@ -246,7 +246,7 @@ impl DeckEntry {
         self.model.as_ref()
     }
 
-    /// The line about cards without influence; empty where there are none.
+    /// Returns the line about cards without influence; empty if there are no such cards.
     fn describe_idle_cards(&self) -> String {
         let counted = self.without_influence.iter();
         let parts: Vec<String> = counted.map(|(why, n)| format!("{why} {n}")).collect();
@@ -261,7 +261,7 @@ impl DeckEntry {
         [self.grids, self.elements]
     }
 
-    /// Returns its content in words.
+    /// Returns the content of the deck as text.
     pub fn text(&self) -> String {
         let cards: Vec<String> = self.cards.iter().map(|(k, n)| format!("{k} {n}")).collect();
         let solution = self

@@ -1,4 +1,4 @@
-//! A job: its own faults, the files it names, and what the commands read of them, by their own readers.
+//! Jobs: their own faults, and the contents of the files that they name, read by the readers of the commands.
 
 use super::checked_files::CheckedFiles;
 use super::command_checks::{ask, recovers};
@@ -90,7 +90,7 @@ pub(super) fn look(
         let grids = deck.map_or(0, |m| m.grids.len());
         collect_faults(ask(work, &job, grids), &mut faults);
     }
-    // Two commands say the same of one file.
+    // Two commands can report the same fault or finding of a file. It is kept once.
     each_once(&mut faults, ToString::to_string);
     each_once(&mut work.findings, |f| {
         format!("{} {} {}", f.code, f.subject, f.message)
@@ -143,7 +143,7 @@ fn check_measured_strain(
         uncertainty: None,
         noise: None,
     });
-    // Where not even the names can be had, that is a fault already.
+    // If the gauge names can't be read, a fault is already reported.
     let mut faults = match gauges.is_empty() {
         true => FaultList::new(),
         false => recover::look(work, job, m, s),

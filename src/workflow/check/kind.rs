@@ -36,7 +36,7 @@ pub(super) fn kind_of(name: &str, bytes: &[u8]) -> Kind {
         return Kind::Table;
     }
     if let Some(kind) = binary_kind(bytes) {
-        // Tables may be text of two bytes a character.
+        // Text tables may have two bytes a character, and then look like binary files.
         return match ends(TABLES) {
             true => Kind::Table,
             false => Kind::Other(kind),

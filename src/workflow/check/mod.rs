@@ -1,7 +1,7 @@
-//! `check`: what is in the files, every fault, and whether deck and results belong together.
+//! `check`: content of files, every fault, and whether deck and results belong together.
 //!
-//! `kind` finds the kind of a file; `checked` is the answer; `decks`, `results` and `records` describe them; `jobs` follows a job to
-//! the files it names, and `asked` asks what commands make of them; `together` compares.
+//! `kind` finds the kind of a file. `checked_files` is the answer. `decks`, `results` and `records` describe files. `jobs` follows a job to its
+//! files, and `command_checks` runs the checks of the commands. `deck_result_comparison` compares a deck with results.
 
 mod checked_files;
 mod command_checks;

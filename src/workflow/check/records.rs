@@ -40,7 +40,7 @@ struct ChannelEntry {
     group: String,
 }
 
-/// A channel that is not read together with the others.
+/// A channel that is read separately from the other channels.
 #[derive(Serialize)]
 struct OtherEntry {
     #[serde(flatten)]

@@ -1,4 +1,4 @@
-//! Result files in `result.json` and in words. Every block is decoded, so that damage shows.
+//! Result files in `result.json` and as text. Every block is decoded to find damage.
 
 use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, FaultList};
@@ -68,7 +68,7 @@ impl ResultEntry {
             "results `{}`: {}{}",
             self.path,
             self.solver,
-            // A text file has no words of bytes.
+            // A text file has no word size.
             match self.word_bytes {
                 0 => String::new(),
                 n => format!(", {n} bytes a word"),

@@ -41,7 +41,7 @@ fn gauges_with_readings(day: &Day) -> BTreeSet<String> {
 }
 
 impl Reference {
-    /// The reference, where it is among the files that count.
+    /// Returns the reference, if it is among the files that count.
     pub fn among(
         wanted: &ReferenceDay,
         kept: &KeptDays,
@@ -67,8 +67,8 @@ impl Reference {
         })
     }
 
-    /// Damage an hour of a load of a vehicle over that of the reference. `days` are its days with their damage by that load: where other gauges
-    /// read than on the reference day, neither set within the other, the errors of S count as independent.
+    /// Returns the damage per hour of a load of a vehicle over the damage per hour of the reference. `days` are the days of the vehicle with their
+    /// damage by this load. If the gauge sets of a day and of the reference day are not nested, the errors of S count as independent on this day.
     pub fn damage_ratio(
         &self,
         vehicle: &str,

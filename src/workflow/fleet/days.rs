@@ -38,7 +38,7 @@ struct Date {
     year: u32,
     /// First and second number before the year.
     two: [u32; 2],
-    /// Whether the name determines the order of day and month: points between the numbers, or the month as a word. The day is then first.
+    /// Whether the name determines the order of day and month, by points between the numbers or by the name of the month. The day is then first.
     is_told: bool,
     /// Whether the year has two digits, which may also be the number of a section or a version.
     is_short: bool,
@@ -48,7 +48,7 @@ impl DayOrder {
     /// Returns the order of days with these names.
     ///
     /// # Errors
-    /// Dates whose day and month could be exchanged with a change of order; dates that contradict each other; a mix of dates and other names.
+    /// Dates that contradict each other. Dates whose day and month could be exchanged with a change of order. A mix of dates and other names.
     pub fn from_names<'a>(names: impl Iterator<Item = &'a str>) -> Result<Self, AmbiguousDays> {
         let names: BTreeSet<&str> = names.collect();
         let dates: Vec<(&str, Option<Date>)> = names.iter().map(|n| (*n, date(n))).collect();
@@ -63,7 +63,7 @@ impl DayOrder {
             .iter()
             .find(|d| d.1.is_none() && year_first(d.0).is_none());
         if let Some((other, _)) = other {
-            // `12.11.10` beside `12.11.9` is no date.
+            // Names such as `12.11.10` and `12.11.9` are numbers, not dates.
             if of_year_last.iter().all(|(_, d)| d.is_short) {
                 return Ok(Self::Numbers);
             }
@@ -144,7 +144,7 @@ struct Word<'a> {
     mark: &'a str,
 }
 
-/// The words of a name: runs of digits and of letters.
+/// Returns the words of a name: runs of digits and runs of letters.
 fn words(name: &str) -> Vec<Word<'_>> {
     let kind = |c: char| match c {
         c if c.is_ascii_digit() => 1,
@@ -282,7 +282,7 @@ fn of_one(word: &Word) -> Option<NameDate> {
     (fits(&d) != [false, false]).then_some(NameDate::YearLast(d))
 }
 
-/// Runs of digits by their number, the rest as text (`day9` before `day10`).
+/// Compares runs of digits by their number and other characters as text (`day9` before `day10`).
 fn by_numbers(a: &str, b: &str) -> Ordering {
     let (mut x, mut y) = (a.as_bytes(), b.as_bytes());
     loop {
@@ -325,7 +325,7 @@ mod tests {
     #[test]
     fn days_are_ordered_by_the_calendar_or_by_their_numbers() {
         for days in [
-            // By numbers.
+            // Ordered by numbers.
             &[
                 "1",
                 "02",
@@ -339,7 +339,7 @@ mod tests {
             &["2026-05-01_2", "2026-05-01_10", "2026-05-02_1"],
             &["w22", "w23"],
             &["12.11.9", "12.11.10"],
-            // Day first, as points, words or a day beyond twelve tell.
+            // Day first: points, month names or a day beyond twelve determine the order.
             &["31.12.2025", "02.01.2026", "01.02.2026"],
             &["30.4.2026 10.15", "30.4.2026 9.15", "1.5.2026"],
             &["31.12.25", "02.01.26", "01.02.26"],
@@ -351,9 +351,9 @@ mod tests {
             // Month first.
             &["11-30-2025", "01-02-2026", "02-01-2026"],
             &["2026-Feb-11", "2026-Mar-01"],
-            // Either way the same.
+            // Both orders give the same result.
             &["01-01-2026", "02-02-2026", "03-03-2026"],
-            // Dates of both kinds that tell.
+            // Dates in both notations with a known order.
             &["31.12.2025", "2026-01-01", "01.02.2026"],
         ] {
             let mut expected: Vec<String> = days.iter().map(|d| (*d).to_owned()).collect();

@@ -47,7 +47,7 @@ pub(super) fn blank_of(dead: &[DeadPart]) -> Vec<(usize, Range<usize>)> {
         .collect()
 }
 
-/// Findings of the record, one a part, noted with the gauges as well.
+/// Returns one finding for each dead part of the record, and adds the parts to the gauges.
 pub(super) fn told_dead(dead: &[DeadPart], gauges: &mut [GaugeDay], clock: &Clock) -> Vec<Finding> {
     let mut out = Vec::new();
     for (g, gives, span) in dead {

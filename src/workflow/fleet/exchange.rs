@@ -6,11 +6,12 @@ use crate::linalg::dense::svd;
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
 
-/// How close the residual of exchanged readings must come, rms, to that with both gauges left out.
+/// Largest ratio of the residual of exchanged readings to the residual without both gauges, rms.
 const AS_GOOD: f64 = 1.5;
-/// How far the residual of exchanged readings must fall, rms, below that of the readings as they are and below that of any other exchange.
+/// Ratio of residuals (rms) that identifies an exchange. The residual of the readings as they are, and of any other exchange, must be larger by this
+/// factor.
 const BETTER: f64 = 4.0;
-/// Gauges that are tried: those that contradict the others most.
+/// Largest number of gauges that are tried: the gauges that contradict the other gauges most.
 const TRIED: usize = 12;
 
 /// Two gauges whose readings explain each other.
@@ -65,7 +66,7 @@ pub(super) fn find_exchange<'a>(
             }
         }
     }
-    // Columns of S in units of their own, so that none counts as nothing.
+    // The columns of S are scaled to unit norm, so that their units do not matter.
     let size = |l: usize| (0..n).map(|g| s.values[(g, l)].powi(2)).sum::<f64>().sqrt();
     let sizes: Vec<f64> = (0..k).map(size).collect();
     if rows == 0.0 || sizes.iter().any(|v| !(*v > 0.0)) {

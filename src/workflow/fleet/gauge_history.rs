@@ -1,4 +1,4 @@
-//! A gauge of a vehicle over its days: where it was dead, and a gain that changed.
+//! A gauge of a vehicle over its days: parts in which it was dead, and changes of its gain.
 
 use super::day::GaugeDay;
 use crate::estimate::median;
@@ -90,7 +90,7 @@ impl GaugeHistory {
         let typical = typical_reading(days);
         let finite = |x: f64| x.is_finite().then_some(x);
         let is_dead = |(d, moves): (&GaugeDay, &bool)| {
-            // Where spikes make the typical day, a gauge that follows the others is not dead.
+            // If spikes dominate the typical day, a gauge that follows the other gauges is not dead.
             let follows = d.gain.abs() > OFF;
             let quiet = *moves && d.sd <= DEAD * typical && !follows;
             !d.sd.is_finite() || quiet || !d.dead.is_empty()
@@ -122,7 +122,7 @@ impl GaugeHistory {
         }
     }
 
-    /// From which hour on it was dead on a day; `None` where it was all day, or not at all.
+    /// Returns the hour from which the gauge was dead on a day; `None` if it was dead all day, or not at all.
     pub fn dead_from(&self, day: &str) -> Option<f64> {
         let part = self.dead_parts.iter().find(|p| p.day == day);
         part.map(|p| p.from)
@@ -160,8 +160,8 @@ impl GaugeHistory {
             .filter_map(|(i, x)| Some((i, (*x)?)))
             .collect();
         let median = |list: &[(usize, f64)]| median(list.iter().map(|x| x.1).collect());
-        // The day that leaves least: medians jump alike wherever most of the days stand on their own side. Two days before and two after, so that one
-        // odd day is no change.
+        // The cut is at the day with the smallest sum of deviations from the medians before and after. The jump of the medians alone is equal for all
+        // cuts with most days on the correct side. At least two days are on each side, so that one odd day is not a change.
         let left = |list: &[(usize, f64)]| -> f64 {
             let middle = median(list).unwrap_or(0.0);
             list.iter().map(|x| (x.1 - middle).abs()).sum()
@@ -195,7 +195,7 @@ impl GaugeHistory {
     }
 }
 
-/// Whether the findings of a record name a cause that makes gains and zeros of its day what they are not.
+/// Returns whether a finding of a record identifies a cause that makes gains and zeros of its day invalid.
 pub(super) fn is_misread(findings: &[Finding]) -> bool {
     findings.iter().any(|f| CAUSES.contains(&f.code))
 }

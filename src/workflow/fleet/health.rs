@@ -58,7 +58,7 @@ impl Health {
         let n = self.sums.len().max(1);
         let together = TOGETHER * S::F64_LANES;
         for (sums, first) in self.sums.chunks_mut(together).zip((0..).step_by(together)) {
-            // The last few stand in vectors with those before them.
+            // The last block starts earlier, so that the remaining gauges fill whole vectors.
             let begin = n.checked_sub(together).map(|last| first.min(last));
             let all = begin.and_then(|begin| Some((begin, sum_readings(simd, strain, n, begin)?)));
             let Some((begin, [sum, squares, seconds])) = all else {
@@ -140,8 +140,8 @@ impl pulp::WithSimd for Add<'_> {
     }
 }
 
-/// Sums, sums of squares and of squared second differences of the gauges from number `first` on, of `n` in a row, as many as the vectors hold;
-/// `None` where a reading is missing or too large to be strain.
+/// Returns sums, sums of squares and sums of squared second differences of gauges in rows of `n`. The gauges start at number `first` and fill the
+/// vectors. Returns `None` if a reading is missing or too large for strain.
 #[inline(always)]
 fn sum_readings<S: pulp::Simd>(
     simd: S,
@@ -157,7 +157,7 @@ fn sum_readings<S: pulp::Simd>(
     };
     let zero = [simd.splat_f64s(0.0); TOGETHER];
     let (mut sum, mut squares, mut seconds) = (zero, zero, zero);
-    // The reading before, and what it had risen by.
+    // The previous reading, and its increase over the reading before it.
     let (mut before, mut rise) = (zero, zero);
     for (i, row) in strain.chunks_exact(n).enumerate() {
         let y = vectors(row)?;
@@ -209,7 +209,7 @@ impl Sums {
         let variance = (self.squares / n - mean * mean).max(0.0);
         let [m, y, r, yy, yr, rr] = self.thinned;
         let (yy, yr, rr0) = (yy - y * y / m, yr - y * r / m, rr - r * r / m);
-        // Without this gauge its residual is larger by 1 / (1 - h), and its prediction what is left.
+        // Predicted without this gauge, its residual is larger by 1 / (1 - h). The prediction is the reading minus this residual.
         let out = 1.0 / (1.0 - leverage).max(1e-3);
         let (with, own) = (yy - out * yr, yy - 2.0 * out * yr + out * out * rr0);
         GaugeDay {
@@ -233,7 +233,7 @@ mod tests {
 
     #[test]
     fn mean_scatter_noise_and_missing_readings_are_those_of_each_gauge() {
-        // Eleven gauges: eight together and three apart. Gauge g reads g, plus g + 1 up and down in turn.
+        // Eleven gauges: eight in vectors and three separate. Gauge g reads g plus and minus (g + 1) in turn.
         let (n, rows) = (11, 96);
         let swing =
             |g: usize, i: usize| (g + 1) as f64 * if i.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -257,7 +257,7 @@ mod tests {
                 assert_eq!(day.missing, if gap == Some(g) { 2 } else { 0 });
                 close(day.mean, g as f64);
                 close(day.sd, (g + 1) as f64);
-                // Second differences of a swing of one up and down are four.
+                // The second differences of an alternating reading of +1 and -1 are 4 in size.
                 close(day.noise, 4.0 * (g + 1) as f64 / 6.0_f64.sqrt());
             }
         }

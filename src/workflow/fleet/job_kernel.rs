@@ -41,7 +41,7 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
     let s = &prepared.sensitivity;
     work.findings.extend(check_separability(s));
     let (mut zero, effective) = zero_of(work, job, measured, &s.gauges)?;
-    // Every record would lack that gauge.
+    // A gauge without a zero reading would be missing in every record.
     let wanted = |g: &usize| !channel_of(&job.corrections, &s.gauges[*g]).ignore;
     let blank = (0..zero.len()).filter(wanted).find(|g| zero[*g].is_nan());
     if let (Some(named), Some(g)) = (&measured.zero, blank) {

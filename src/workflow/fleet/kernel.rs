@@ -1,4 +1,4 @@
-//! One record to what is kept of it: no file, no printing; as many threads as the pool it runs in.
+//! Evaluation of one record, without files or messages, on the threads of the current pool.
 
 use super::day::{Day, GaugeDay, LoadDay};
 use super::dead_parts::{blank_of, dead_parts, told_dead};
@@ -94,7 +94,7 @@ impl Kernel {
         let dead = dead_parts(record, &r, &pass.judged, self.errors, self.noise_factor)?;
         r.blank = blank_of(&dead);
         if !r.blank.is_empty() {
-            // Once more, without the readings of gauges where they are dead.
+            // The second pass leaves out the readings of gauges where they are dead.
             pass = self.pass(record, &r)?;
         }
         let gaps = check_gaps("samples", &r.sensitivity, &pass.missing);
@@ -106,7 +106,7 @@ impl Kernel {
         if noise.is_some()
             && let Some(filter) = widened.take()
         {
-            // Once more, with the weights of the noise that the record shows.
+            // Another pass uses the weights for the noise that the record shows.
             r.filter = filter;
             pass = self.pass(record, &r)?;
             ends = pass.judged.ends();
@@ -126,7 +126,7 @@ impl Kernel {
                 tally: c.finish(),
             });
         let leverage = &r.filter.gain_of_all_gauges().leverage;
-        // A time without readings does no damage that is counted.
+        // Time without readings adds no counted damage.
         let missing = &pass.missing;
         let known = missing.whole + missing.known_in_gaps.iter().max().copied().unwrap_or(0);
         let mut gauges = pass.health.days(&r.sensitivity.gauges, leverage);
@@ -165,7 +165,7 @@ impl Kernel {
         let here = self.under_way.begin();
         let mut pieces = 0..record.n_pieces();
         let mut parts: Vec<Part> = Vec::new();
-        // While some pieces are decoded, the ones before them are counted.
+        // Pieces are counted while the next pieces are decoded.
         while !pieces.is_empty() {
             let group: Vec<usize> = pieces.by_ref().take(here.pieces()).collect();
             let decode = || group.par_iter().map(|p| r.part(record, *p, &marks));
@@ -282,7 +282,7 @@ impl Kernel {
         let mut alive = Vec::new();
         let mut looked = ColumnContents::new(n);
         looked.look(&sampled);
-        // What one gives in a part alone is told by those who read there.
+        // Columns are classified over the whole record. `dead_parts` reports gauges that fail in a part of it.
         let columns: Vec<Option<usize>> = found.iter().map(|f| Some(f.1)).collect();
         let given = looked.columns_in_record(record, &columns);
         let mut given = given.map_err(|e| record_fault("record", &e))?;
@@ -395,7 +395,8 @@ impl Kernel {
             let remedy = "repair the other gauges";
             return Err(Fault::new("record", "gauge", wrong, remedy));
         }
-        // Typical loads weigh the model's error: those of the job, so that the loads of a sample do not depend on where its record is cut.
+        // Typical loads determine the weight of the model's error. The expected loads of the job are used, so that the loads of a sample do not
+        // depend on where its record is cut.
         let scaled: Vec<f64> = sampled.to_vec();
         let (mut loads, mut sums) = (SampleLoads::default(), Sums::new(used.len(), k));
         plain.apply(&scaled, 1.0, &mut loads, &mut sums);
@@ -433,7 +434,7 @@ impl Kernel {
         filter.combine(&self.listed.sums);
         let factors: Vec<f64> = self.listed.units.iter().map(|u| u.factor).collect();
         let row = |g: usize| factors.iter().enumerate().map(move |(l, f)| (g, l, *f));
-        // Sums strain nothing beyond their loads.
+        // Sums of loads cause no strain in addition to their loads.
         let values = |(g, l, f)| if l < k { s.values[(g, l)] / f } else { 0.0 };
         let values = |g: usize| row(g).map(values).collect();
         let by_row = (0..used.len()).map(values).collect();

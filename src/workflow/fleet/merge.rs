@@ -24,7 +24,7 @@ pub enum Status {
 }
 
 impl Status {
-    /// The word of `fleet.csv` and `result.json`.
+    /// Returns the status as a word in `fleet.csv` and `result.json`.
     pub fn word(&self) -> &'static str {
         match self {
             Self::Done => "done",
@@ -33,7 +33,7 @@ impl Status {
         }
     }
 
-    /// Why, where there is a why.
+    /// Reason of the status; empty for a complete result.
     pub fn message(&self) -> &str {
         match self {
             Self::Done => "",
@@ -104,7 +104,7 @@ pub struct Vehicle {
     pub loads: Vec<VehicleLoad>,
     /// Whether the loads of a day can't be relied on.
     pub doubtful: Vec<bool>,
-    /// Whether the record of a day names a cause that makes gains and zeros of that day what they are not.
+    /// Whether the record of a day has a finding whose cause makes gains and zeros of that day invalid.
     pub misread: Vec<bool>,
     /// Readings of each gauge, a day each, in order.
     pub gauges: Vec<(String, Vec<GaugeDay>)>,
@@ -160,7 +160,7 @@ pub fn sort_files(
     (days, status)
 }
 
-/// The errors of all days together: where they differ (a gauge that died), by the share of damage that each day did.
+/// Returns the errors of all days together. If they differ (a gauge that failed), the days are weighted by their share of damage.
 fn errors(days: &[(&FileHead, &Day, &LoadDay)], first: &LoadDay) -> LoadDay {
     let weight = |d: &LoadDay| d.tally.sums.damage.first().copied().unwrap_or(0.0);
     let total: f64 = days.iter().map(|(.., d)| weight(d)).sum();
@@ -210,7 +210,7 @@ pub(super) fn vehicle(
     list: &[(&FileHead, Day)],
     reference: Option<&Reference>,
 ) -> Vehicle {
-    // Loads of the first day; a job that has changed has other results, so they are those of every day.
+    // All days have the loads of the first day, because the results of a changed job are stored separately.
     let first = list
         .first()
         .map(|f| f.1.loads.as_slice())

@@ -152,7 +152,7 @@ impl KindSums {
 }
 
 impl MissionSums {
-    /// Nothing yet; `None` where the job has no mission.
+    /// Returns the sums of a mission without days; `None` if the job has no mission.
     pub fn from_keys(keys: &FleetKeys) -> Option<Self> {
         let kinds = keys.mission.iter().map(|key| KindSums {
             key: key.clone(),

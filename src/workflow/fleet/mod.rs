@@ -1,7 +1,7 @@
 //! `fleet`: records of many vehicles and days, one small result a file, merged by vehicle.
 //!
-//! [`kernel`] turns a record into a [`day::Day`], by any number of threads and without a file; [`stored_results`] keeps it by the digest of what it
-//! depends on, so that a second run processes only new records and many machines can share one folder; [`merge`] joins the days of a vehicle exactly.
+//! [`kernel`] turns a record into a [`day::Day`] on any number of threads and without a file. [`stored_results`] stores the day by the digest of its
+//! inputs. A second run therefore processes only new records, and many machines can share one folder. [`merge`] joins the days of a vehicle exactly.
 
 mod calibration_range;
 mod damage_references;
@@ -131,7 +131,7 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
         files: records::records_of(&spec.files, &form)?,
         ..spec.clone()
     };
-    // Before hours of work come to nothing.
+    // The order of the days is checked first, because a fault would waste hours of work.
     let asked = spec.files.iter();
     let asked: Vec<name::VehicleDay> = asked
         .filter_map(|p| form.read(&p.display().to_string()))
@@ -185,10 +185,10 @@ struct MergedVehicles {
     compared: DamageReferences,
 }
 
-/// Vehicles by name, the status of every file, and what damage is held against. The days of one vehicle are in memory at a time.
+/// Returns the vehicles by name, the status of every file, and the references for damage. The days of one vehicle are in memory at a time.
 ///
 /// # Errors
-/// A kept result that is gone; a day of two kinds of the mission; one fault where the work is stopped.
+/// A stored result that is gone, a day of two kinds of the mission, or one fault if the work is stopped.
 fn merge_vehicles(
     work: &mut Work,
     kept: &KeptDays,
@@ -297,7 +297,7 @@ fn read_stored_results(
     Ok((held.files, n))
 }
 
-/// The results of the asked files: kept ones, and the others done now.
+/// Returns the results of the requested files: stored results, and results that are computed now.
 fn evaluate_files(
     work: &mut Work,
     kernel: &Kernel,
@@ -348,7 +348,7 @@ fn evaluate_files(
         files.push(file);
     }
     work.findings.extend(told_replaced(&replaced));
-    // Of a part, the others are still to come.
+    // A shard keeps the request, because other parts of the records are still missing.
     if spec.shard.is_none() && files.iter().all(|f| kept.holds(f)) {
         let _ = std::fs::remove_file(asked);
     }
@@ -394,7 +394,7 @@ fn evaluate_file(
     path: &str,
     source: &dyn Files,
 ) -> Result<(FileHead, Came), Fault> {
-    // Before it is read: what changes it afterwards changes this too.
+    // The stamp is read before the file, so that a later change of the file also changes the stamp.
     let stamp = source.stamp(Path::new(path)).ok();
     let opened = source.open(Path::new(path));
     let named = form.read(path);
@@ -422,7 +422,7 @@ fn evaluate_file(
             (opened.sha256(), Some(Err(wrong.to_owned())))
         }
         (Some(_), Some(_)) => (opened.sha256(), None),
-        // Nothing is kept of it, so that it is done whatever its digest is: while that is formed.
+        // No result of this file is stored, so the record is evaluated while its digest is computed.
         (Some(_), None) => {
             let (hash, day) = rayon::join(
                 || opened.sha256(),
@@ -435,7 +435,7 @@ fn evaluate_file(
         Ok(hash) => file.sha256 = hash,
         Err(e) => return unread(file, &e),
     }
-    // What failed is tried again: a build that reads more formats may be at it now.
+    // A failed record is evaluated again, because this build may read more formats.
     let came = match before.filter(|_| named.is_some()) {
         Some(before) if before.sha256 != file.sha256 => Came::Replacing,
         Some(before) if before.result.is_ok() => return Ok((before, Came::Kept)),
@@ -445,12 +445,13 @@ fn evaluate_file(
     if named.is_none() {
         return Ok((file.into(), Came::New));
     }
-    // Whatever was read of a file that changed meanwhile, or could not be read to its end, is worth nothing and not kept: it is tried again.
+    // A file that changed while it was read, or that can't be read to its end, has no valid result. Nothing is stored, so that a later run tries
+    // again.
     if let Err(e) = opened.check() {
         return unread(file, &e);
     }
     kept.store_result(&file).map_err(|e| not_kept(path, &e))?;
-    // What is read back is what a later run would read, to the last digit: a merge of kept results has the same bytes.
+    // The stored result is read back as a later run reads it. A merge of stored results then has the same bytes.
     Ok((
         kept.head(path, &file.sha256).unwrap_or_else(|| file.into()),
         came,
@@ -462,7 +463,7 @@ fn not_kept(path: &str, e: &std::io::Error) -> Fault {
     Fault::new(path, "output", wrong, "choose another folder with --out")
 }
 
-/// Returns why a record comes to nothing in words: every fault with its line, its field and its remedy.
+/// Returns why a record has no result, as text: every fault with its line, its field and its remedy.
 fn reason(faults: Faults) -> String {
     let words = |f: Fault| {
         let line = f.line.map_or(String::new(), |l| format!("line {l}: "));

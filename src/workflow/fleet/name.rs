@@ -25,10 +25,10 @@ pub struct VehicleDay {
 }
 
 impl NameForm {
-    /// The form that a text states; what is wrong with it otherwise.
+    /// Parses the form of a file name.
     ///
     /// # Errors
-    /// A place that is unknown, missing, given twice or not divided from the next by text.
+    /// The reason, if a placeholder is unknown, missing, given twice or not separated from the next one by text.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut parts = Vec::new();
         let mut rest = text;
@@ -68,8 +68,8 @@ impl NameForm {
         Ok(Self { parts })
     }
 
-    /// Vehicle and day of a file; `None` where its path has another form. A place takes as little as it can, the last all that is left; none
-    /// goes beyond a folder.
+    /// Returns vehicle and day of a file; `None` if its path has another form. A placeholder takes the shortest possible text, and the last one takes
+    /// the remaining text. No placeholder extends over a folder.
     pub fn read(&self, file: &str) -> Option<VehicleDay> {
         let path = file.replace('\\', "/");
         let folders = (self.parts.iter())
@@ -92,7 +92,7 @@ impl NameForm {
                 continue;
             }
             let taken = match parts.peek() {
-                // The last text is the end of the name, wherever else it may stand.
+                // The last text must be at the end of the name, even if it also occurs earlier.
                 Some(Part::Text(text))
                     if self.parts.last() == Some(&Part::Text(text.clone()))
                         && self.ends_at(part) =>
@@ -167,7 +167,7 @@ mod tests {
             (named.vehicle.as_str(), named.day.as_str()),
             ("T7", "2026-05-01")
         );
-        // The day is what is left, points and all.
+        // The day is the remaining text, points included.
         assert_eq!(form.read("T7_1.5.parquet").unwrap().day, "1.5");
         assert_eq!(form.read("T7_a_b.parquet").unwrap().day, "a_b");
         for other in ["T7.parquet", "T7_1.csv", "_1.parquet", "T7_.parquet"] {

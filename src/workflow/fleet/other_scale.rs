@@ -1,5 +1,5 @@
-//! Days on which the noise of all gauges is the same factor of what it is on the vehicle's other days: a bridge factor, a gain or a range that
-//! changed for all channels, by which the readings are wrong as well.
+//! Days on which the noise of all gauges differs from the vehicle's other days by the same factor. A bridge factor, a gain or a range changed for all
+//! channels, so the readings are wrong by the same factor.
 
 use super::other_unit;
 use super::outcome::VehicleAnswer;
@@ -25,7 +25,7 @@ const OF_STATED: f64 = 1.5;
 /// Largest ratio between the changes of scatter and noise on a day. The manoeuvres of a vehicle change its scatter.
 const DRIVEN: f64 = 2.0;
 
-/// By gauge and day the natural log of a number over its median; `None` where one of them is missing.
+/// Returns the natural log of each number over its median, by gauge and day. Returns `None` for a missing number.
 fn logs<'a>(of: impl Iterator<Item = &'a Vec<Option<f64>>>) -> Vec<Vec<Option<f64>>> {
     let of_gauge = |days: &Vec<Option<f64>>| {
         let usual = median(days.iter().flatten().copied().collect());
@@ -35,7 +35,7 @@ fn logs<'a>(of: impl Iterator<Item = &'a Vec<Option<f64>>>) -> Vec<Vec<Option<f6
     of.map(of_gauge).collect()
 }
 
-/// The factor of a day's noise, where nearly all gauges have it.
+/// Returns the factor of a day's noise, if nearly all gauges have the same factor.
 fn common_factor(logs: &[Vec<Option<f64>>], day: usize) -> Option<f64> {
     let known: Vec<f64> = logs.iter().filter_map(|g| *g.get(day)?).collect();
     let middle = median(known.clone())?;
@@ -60,7 +60,7 @@ pub(super) fn in_other_scale(v: &VehicleAnswer, errors: &ErrorModel) -> Option<F
     let factors: Vec<Option<f64>> = (0..v.days.len())
         .map(|day| common_factor(&noise, day))
         .collect();
-    // On most days the noise is what it usually is.
+    // On most days the noise must have its usual size.
     let quiet = factors
         .iter()
         .flatten()
@@ -70,7 +70,7 @@ pub(super) fn in_other_scale(v: &VehicleAnswer, errors: &ErrorModel) -> Option<F
         return None;
     }
     let odd = |(day, factor): (usize, &Option<f64>)| {
-        // Beyond, it is another unit, which has a name of its own.
+        // A larger factor means another unit, which has its own finding.
         let factor = factor.filter(|f| f.abs() > FROM.ln() && f.abs() < other_unit::TIMES.ln())?;
         let own = median(scatter.iter().filter_map(|g| *g.get(day)?).collect())?;
         ((own - factor).abs() < DRIVEN.ln()).then_some((v.days.get(day)?, factor.exp()))

@@ -7,9 +7,10 @@ use crate::recovery::ErrorModel;
 use crate::units::MICROSTRAIN;
 use std::collections::BTreeMap;
 
-/// How many times larger or smaller. What a vehicle does changes the scatter of its readings as much; their noise is that of the electronics.
+/// Smallest factor that indicates another unit. The use of a vehicle changes the scatter of its readings as much, but not their noise, which comes
+/// from the electronics.
 pub(super) const TIMES: f64 = 100.0;
-/// How many times the change of the noise may be that of the scatter, or the other way round.
+/// Largest ratio between the changes of noise and scatter, in either direction.
 const ALIKE: f64 = 5.0;
 /// Share of the stated noise below which no reading's noise falls.
 const OF_STATED: f64 = 0.3;
@@ -53,7 +54,7 @@ pub(super) fn in_other_units(vehicles: &[VehicleAnswer], errors: &ErrorModel) ->
     vehicles.iter().filter_map(of_vehicle).collect()
 }
 
-/// How many times larger than typical the readings of a day are, where their unit must be another one.
+/// Returns the ratio of the readings of a day to typical readings, if it indicates another unit.
 fn factor(
     v: &VehicleAnswer,
     day: usize,

@@ -40,7 +40,7 @@ pub struct VehicleLoadAnswer {
     pub min_at: Option<SampleOf>,
     /// Cycles; cycles of the residue count half.
     pub cycles: f64,
-    /// Damage, the bias of noise taken off.
+    /// Damage, with the bias of noise subtracted.
     pub damage: f64,
     /// Lower end of its 95 % interval.
     pub damage_low: f64,
@@ -117,7 +117,7 @@ pub struct FileAnswer {
     pub day: String,
     /// `done`, `failed` or `copy`.
     pub status: &'static str,
-    /// Why, where it does not count.
+    /// Reason, if the record does not count.
     pub message: String,
     /// Hours of it.
     pub hours: Option<f64>,
@@ -156,7 +156,7 @@ pub struct Fleet {
     pub slope: f64,
     /// Vehicles by name.
     pub vehicles: Vec<VehicleAnswer>,
-    /// The day whose damage an hour is 1, where the job names one that is there.
+    /// The reference day, whose damage per hour is 1, if the job names a day that exists.
     pub reference: Option<ReferenceAnswer>,
     /// Damage of the mission that the job mixes.
     pub mission: Option<MissionAnswer>,
@@ -365,7 +365,7 @@ impl Fleet {
                     "fleet-copy-of-another",
                     "correct the vehicle in the name of one of them, or leave one out",
                 ),
-                // Its hours and damage were asked for, and are missing.
+                // The hours and damage of this file were requested, and are missing.
                 Status::Second(_) => (
                     Severity::Error,
                     "fleet-day-twice",

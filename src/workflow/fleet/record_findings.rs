@@ -42,7 +42,7 @@ struct FindingGroup<'a> {
     vehicles: BTreeSet<&'a str>,
 }
 
-/// Returns one finding for all records with the same code and subject: one for each vehicle, or one for the fleet if all vehicles share the cause.
+/// Returns one finding for all records with the same code and subject. Each vehicle has its own finding, unless all vehicles share the cause.
 pub(super) fn of_records(files: &[FileHead], status: &[Status], days_in: DayOrder) -> Vec<Finding> {
     let mut records: BTreeMap<&str, usize> = BTreeMap::new();
     let mut grouped: BTreeMap<(&str, &str, &str), FindingGroup> = BTreeMap::new();
@@ -54,7 +54,7 @@ pub(super) fn of_records(files: &[FileHead], status: &[Status], days_in: DayOrde
         for vehicle in ["", file.vehicle.as_str()] {
             *records.entry(vehicle).or_insert(0) += 1;
         }
-        // The gauges' histories tell of dead ones.
+        // The histories of the gauges report dead gauges.
         for f in day.findings.iter().filter(|f| f.code != "gauge-silent") {
             let is_of = |list: &[&str]| list.contains(&f.code);
             let vehicle = if is_of(&OF_ALL) { "" } else { &file.vehicle };
@@ -71,7 +71,7 @@ pub(super) fn of_records(files: &[FileHead], status: &[Status], days_in: DayOrde
                     vehicles: BTreeSet::new(),
                 });
             alike.vehicles.insert(&file.vehicle);
-            // Of one vehicle the first is that of the first day, on which it began.
+            // For one vehicle, the example is the finding of its first day, on which the fault began.
             if !vehicle.is_empty() && days_in.compare(&file.day, alike.day).is_lt() {
                 (alike.day, alike.path, alike.first) = (&file.day, &file.path, f);
             }
@@ -83,7 +83,7 @@ pub(super) fn of_records(files: &[FileHead], status: &[Status], days_in: DayOrde
     grouped
         .into_iter()
         .filter_map(|((_, vehicle, subject), alike)| {
-            // What one vehicle alone has is that vehicle's.
+            // A finding in the records of a single vehicle belongs to that vehicle.
             let vehicle = match alike.vehicles.first() {
                 Some(one) if alike.vehicles.len() == 1 => one,
                 _ => vehicle,
@@ -94,12 +94,12 @@ pub(super) fn of_records(files: &[FileHead], status: &[Status], days_in: DayOrde
         .collect()
 }
 
-/// Returns whether a finding is reported that `alike.n` of `of` records have, out of `all` records of the fleet. A fleet of correct records gives an
+/// Returns whether a finding is reported. `alike.n` of `of` records have it, and the fleet has `all` records. A fleet of correct records gives an
 /// alarm with the same probability as one correct record, for any number of vehicles.
 fn is_told(alike: &FindingGroup, of: usize, all: usize) -> bool {
     let is_of = |list: &[&str]| list.contains(&alike.first.code);
     if is_of(&BY_CHANCE) && !alike.certain {
-        // Many that say it, or one that says it louder than chance makes the loudest of all.
+        // A finding is reported if too many records have it, or if one record has it with a probability too small for the whole fleet.
         let groups = all as f64 / of.max(1) as f64;
         let many = by_chance(alike.n, of) * groups;
         let loudest = alike.chance * all as f64;
@@ -172,11 +172,11 @@ mod tests {
     fn a_suspect_on_a_few_of_many_days_is_chance_and_on_more_is_told() {
         let told = |n, certain, chance, of| is_told_of(n, certain, chance, [of, of]);
         assert!(told(1, false, 1.0, 1));
-        // 1.8 are expected of 365.
+        // By chance, 1.8 of 365 records have such a finding.
         assert!(!told(4, false, 1.0, 365));
         assert!(told(10, false, 1.0, 365));
         assert!(told(1, true, 1.0, 365));
-        // One day on which it is off by ten sigmas, and one by less than four.
+        // One day with a deviation of nearly ten sigmas, and one with less than four.
         assert!(told(1, false, 1e-20, 365));
         assert!(!told(1, false, 1e-4, 365));
     }
@@ -195,10 +195,10 @@ mod tests {
                 chance <= ALARM * (1.0 + 1e-9),
                 "{vehicles} {days}: {chance}"
             );
-            // One vehicle whose gauge is off on most days is told among a thousand.
+            // A vehicle whose gauge is off on most days is reported among a thousand vehicles.
             assert!(days < 20 || told(&days), "{vehicles} {days}");
         }
-        // A chance that one record in a hundred thousand has, seen once in twenty thousand.
+        // Among 20,000 records, one record with a probability of 3e-5 is no alarm, and one with 1e-8 is an alarm.
         assert!(!is_told_of(1, false, 3e-5, [20, 20_000]));
         assert!(is_told_of(1, false, 1e-8, [20, 20_000]));
     }

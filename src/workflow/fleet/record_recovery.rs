@@ -33,8 +33,9 @@ impl UnderWay {
 }
 
 impl ActiveRecordGuard<'_> {
-    /// How many pieces of the record may be in memory at a time: as many as threads for one alone, its share of them among others. So what all
-    /// records hold together goes with the number of threads, not with its square. What comes out does not depend on it.
+    /// Returns the number of pieces of the record that may be in memory at a time. A single record may have as many pieces as there are threads.
+    /// Several records share this number. The memory of all records therefore grows with the number of threads, not with its square. The results do
+    /// not depend on it.
     pub fn pieces(&self) -> usize {
         let records = self.0.load(Ordering::Relaxed).max(1);
         rayon::current_num_threads().div_ceil(records).max(1)
@@ -52,7 +53,7 @@ pub(super) struct RecordRecovery {
     pub filter: Filter,
     /// S of the used gauges.
     pub sensitivity: Sensitivity,
-    /// Loads at which the model's error is weighed.
+    /// Loads at which the model's error is evaluated.
     pub typical: Vec<f64>,
     /// Gauges that give nothing, or one and the same value.
     pub silent: Vec<String>,
@@ -156,7 +157,8 @@ impl RecordRecovery {
     }
 }
 
-/// Counts what pieces that follow each other give: a thread some of the loads, samples in runs that stay in its cache for all of them.
+/// Adds consecutive pieces to the counters. Each thread counts some of the loads. It takes the samples in runs that stay in its cache for all of
+/// these loads.
 pub(super) fn count_pieces(counters: &mut [Counter], parts: &[Part]) {
     /// Samples of a run.
     const RUN: usize = 1024;

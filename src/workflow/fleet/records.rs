@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// Returns the paths of a list: one a line, without blank lines.
 ///
 /// # Errors
-/// A list that names no record: an empty one is a mistake of whoever wrote it, and not the question to merge what is kept.
+/// A list without a record. An empty list is a mistake of its author, not a request to merge stored results.
 pub fn paths_of_list(shown: &str, text: &str) -> Result<Vec<PathBuf>, Fault> {
     let lines = text.strip_prefix('\u{feff}').unwrap_or(text).lines();
     let paths: Vec<PathBuf> = (lines.map(str::trim).filter(|l| !l.is_empty()))
@@ -27,8 +27,8 @@ pub fn paths_of_list(shown: &str, text: &str) -> Result<Vec<PathBuf>, Fault> {
     }
 }
 
-/// Returns the records asked for, each once and in order: of a folder the files below it whose path has the form, of a pattern (`*`, `?`,
-/// `[0-9]`, `**` for any folders) those that match. A path that exists is taken as it is, whatever signs are in it.
+/// Returns the requested records, each once and in order. A folder gives the files below it whose path has the form. A pattern (`*`, `?`, `[0-9]`,
+/// `**` for any folders) gives the files that match. A path that exists is used as it is, even if it contains such characters.
 ///
 /// # Errors
 /// A fault for each folder without such a file, each invalid pattern or pattern without a match, and each folder that can't be read.
@@ -167,11 +167,11 @@ mod tests {
             records_of(&asked, &form).map(|f| names(&folder, &f))
         };
         assert_eq!(found(&["a"]).unwrap(), ["a/T1_1.csv", "a/b/T1_2.csv"]);
-        // What is asked for twice is one record.
+        // A record that is requested twice is read once.
         assert_eq!(found(&["a", "a/T1_1.csv"]).unwrap(), found(&["a"]).unwrap());
         assert_eq!(found(&["*/*.csv"]).unwrap(), ["a/T1_1.csv"]);
         assert_eq!(found(&["**/*_2.csv"]).unwrap(), ["a/b/T1_2.csv"]);
-        // A name that is there is no pattern; one that is missing is for the record's own reading to say.
+        // The name of an existing file is not a pattern. A missing file is reported when the record is read.
         assert_eq!(found(&["[a]_1.csv"]).unwrap(), ["[a]_1.csv"]);
         assert_eq!(found(&["a/T9_9.csv"]).unwrap(), ["a/T9_9.csv"]);
         let wrong = found(&["*.mf4", "a/b/*.txt"]).unwrap_err().into_list();

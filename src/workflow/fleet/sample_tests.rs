@@ -1,5 +1,5 @@
-//! Samples of a record on which recovery tests whether the loads explain the strain. Some are spread evenly over the record. Others are the extremes
-//! of each load: they determine the range to the power of the S-N slope, and a single wrong sample makes an extreme.
+//! Samples of a record on which recovery tests whether the loads explain the strain. Some samples are spread evenly over the record. Others are the
+//! extremes of each load, which determine the range to the power of the S-N slope. A single wrong sample can be an extreme.
 
 use crate::finding::{Finding, Severity, list_few};
 use crate::recovery::{
@@ -90,7 +90,7 @@ impl TestedSamples {
         }
     }
 
-    /// Adds what the part of the record that follows gave.
+    /// Adds the samples of the next part of the record.
     pub fn merge(&mut self, next: Self) {
         self.spread.extend(next.spread);
         for (a, b) in self.extremes.iter_mut().zip(next.extremes) {
@@ -161,7 +161,7 @@ impl TestedSamples {
     }
 }
 
-/// Findings of the record: those on all samples, and what the extremes alone add.
+/// Returns the findings on the record: findings on all samples, and additional findings on the extremes.
 pub fn findings_of(recoveries: Vec<Recovery>) -> Vec<Finding> {
     let mut out: Vec<Finding> = Vec::new();
     for recovery in recoveries {
@@ -191,7 +191,7 @@ fn findings_of_one(recovery: Recovery) -> Vec<Finding> {
         if f.severity == Severity::Info {
             continue;
         }
-        // One a sample where they are of single samples.
+        // Findings on single samples with the same code become one finding.
         let of_sample = f.code == uncalibrated_strain::CODE || f.code == NOT_SOLVABLE;
         if of_sample {
             let list = subjects.entry(f.code).or_default();

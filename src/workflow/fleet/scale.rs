@@ -1,4 +1,4 @@
-//! Errors of the loads of a record by the gauges that read in it: those of all where all read, larger ones where some gave nothing.
+//! Errors of the loads of a record by the gauges that read in it. The errors are larger in samples in which some gauges give nothing.
 
 use super::record_recovery::RecordRecovery;
 use crate::recovery::Gain;
@@ -11,7 +11,8 @@ const SETS: usize = 16;
 /// Factor on the size of a load that makes noise negligible.
 const FAR: f64 = 1e6;
 
-/// Standard deviation of the noise in a sample, by load, report unit: root mean square over the record, dead parts of gauges by the gauges left.
+/// Returns the standard deviation of the noise in a sample by load, report unit, as root mean square over the record. In dead parts, the noise is
+/// that with the remaining gauges.
 pub(super) fn noise_of(r: &RecordRecovery) -> Vec<f64> {
     let zeros = vec![0.0; r.factors.len()];
     let all = r.filter.sigma(&zeros);
@@ -21,7 +22,7 @@ pub(super) fn noise_of(r: &RecordRecovery) -> Vec<f64> {
         let share = stretch.len() as f64 / samples;
         let of_part = r.filter.sigma_with(&gain, &zeros);
         for ((sum, s), all) in squares.iter_mut().zip(of_part).zip(&all) {
-            // A load that is not told there has no noise either.
+            // A load that the gauges do not determine in this part adds no noise.
             if s.is_finite() {
                 *sum += share * (s * s - all * all);
             }
@@ -31,8 +32,8 @@ pub(super) fn noise_of(r: &RecordRecovery) -> Vec<f64> {
     factors.map(|(s, f)| s.max(0.0).sqrt() * f).collect()
 }
 
-/// Covariance of the errors of scale of each load with every load, `n_loads x n_loads` a load: the mean over the samples of the record, of which
-/// `whole` have all gauges and `by_gauges` those named.
+/// Returns the covariance of the scale errors of each load with every load, `n_loads x n_loads` a load. It is the mean over the samples of the
+/// record. `whole` is the number of samples with all gauges, and `by_gauges` is the number with each other set of gauges.
 pub(super) fn scales(
     r: &RecordRecovery,
     filter: &Filter,
@@ -59,7 +60,7 @@ pub(super) fn scales(
         .collect();
     (0..k)
         .map(|l| {
-            // Samples that don't tell the load do no damage by it.
+            // Samples that do not determine the load add no damage of it.
             let told = others.iter().filter(|o| o.0.is_seen(l));
             let n = told.clone().map(|o| o.1).sum::<f64>() + whole as f64;
             let entry = |i: usize| {
@@ -132,13 +133,13 @@ mod tests {
 
     #[test]
     fn a_sum_of_loads_has_what_their_errors_have_in_common() {
-        // One error of 2 % on both loads, and their sum; kN and kN, of N.
+        // Both loads and their sum have one error of 2 %. The loads are in N, the covariances in kN.
         let common = |of: [f64; 2]| move |f: &[f64]| 0.02 * (of[0] * f[0] + of[1] * f[1]);
         let errors = [common([1.0, 0.0]), common([0.0, 1.0]), common([1.0, 1.0])];
         let sigma = |f: &[f64]| errors.iter().map(|e| e(f).hypot(3.0)).collect();
         let out = covariances(&[2e4, 5e3], &[1e-3; 3], sigma);
         let is_close = |of: &[f64], expected: [f64; 9]| {
-            // Noise of 3 beside loads of 1e9 and more.
+            // The noise of 3 is negligible at loads of 1e9 and more.
             let both = of.iter().zip(expected);
             both.for_each(|(a, b)| assert!((a - b).abs() < 1e-12, "{of:?}"));
         };

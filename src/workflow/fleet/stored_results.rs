@@ -80,7 +80,7 @@ fn append_digest(mut json: Vec<u8>) -> Vec<u8> {
     json
 }
 
-/// The bytes, where their digest is that of what was written.
+/// Returns the bytes if they match the digest that was stored with them.
 fn verify_digest(bytes: &[u8]) -> Option<&[u8]> {
     let body = bytes.len().checked_sub(SEAL.len() + 64 + 2)?;
     let (body, seal) = bytes.split_at_checked(body)?;
@@ -107,7 +107,7 @@ pub fn digest(parts: &[&str]) -> String {
 /// The first line without this form.
 pub fn digests_of(text: &str) -> Result<BTreeMap<String, String>, String> {
     let line = |(i, line): (usize, &str)| {
-        // A name with a backslash is written with two, and a backslash before the digest says so.
+        // A backslash in a name is doubled, and the line then starts with a backslash.
         let unescaped = line.strip_prefix('\\').map(|l| l.replace("\\\\", "\\"));
         let line = unescaped.as_deref().unwrap_or(line);
         let parts = line.split_once([' ']).and_then(|(digest, rest)| {
@@ -194,10 +194,10 @@ impl KeptDays {
             .map_or(StoredFileKind::Damaged, StoredFileKind::Own)
     }
 
-    /// Keeps the result of a file; another run may do the same at the same time, the file is whole at any moment.
+    /// Stores the result of a file. Another run may store it at the same time, because the file is complete at any moment.
     ///
     /// # Errors
-    /// Those of the system.
+    /// The errors of the file system.
     pub fn store_result(&self, file: &FileResult) -> std::io::Result<()> {
         let kept = StoredResult {
             form: FORM,
@@ -217,7 +217,7 @@ impl KeptDays {
 
     fn write(&self, place: &Path, bytes: &[u8]) -> std::io::Result<()> {
         std::fs::create_dir_all(&self.folder)?;
-        // Processes of other machines and containers that share the folder may have this one's number.
+        // Processes of other machines and containers that share the folder may have the same process number.
         let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
         let nanos = now.map_or(0, |t| t.as_nanos());
         let part = place.with_extension(format!("{}-{nanos}.part", std::process::id()));
@@ -226,7 +226,7 @@ impl KeptDays {
         drop(out);
         let kept = written.and_then(|()| std::fs::rename(&part, place));
         if kept.is_err() {
-            // A disk that is full has no room for halves.
+            // A partial file is removed, because the disk may be full.
             let _ = std::fs::remove_file(&part);
         }
         kept
@@ -235,7 +235,7 @@ impl KeptDays {
     /// Stores the request of a run before it begins, so that a merge can report missing results. Returns the path.
     ///
     /// # Errors
-    /// Those of the system.
+    /// The errors of the file system.
     pub fn put_asked(&self, files: &[String], parts: usize) -> std::io::Result<PathBuf> {
         let asked = RequestedRecords {
             job: self.job.clone(),
@@ -247,7 +247,7 @@ impl KeptDays {
         let name = hex(&Sha256::digest(&bytes));
         let name = format!("{}.{ASKED}", name.get(..32).unwrap_or(&name));
         let place = self.folder.join(name);
-        // All parts of a whole are asked for the same.
+        // All shards of a request write the same file.
         match std::fs::read(&place) {
             Ok(there) if there == bytes => {}
             _ => self.write(&place, &bytes)?,
@@ -258,14 +258,14 @@ impl KeptDays {
         Ok(place)
     }
 
-    /// Removes what earlier runs of this job were asked for, where `asked` holds all of it.
+    /// Removes the requests of earlier runs of this job that `asked` contains completely.
     fn remove_contained(&self, asked: &RequestedRecords, place: &Path) -> std::io::Result<()> {
         for entry in std::fs::read_dir(&self.folder)? {
             let path = entry?.path();
             if path == place || path.extension().is_none_or(|e| e != ASKED) {
                 continue;
             }
-            // One that another run has removed meanwhile is gone as it should be.
+            // Another run may already have removed the file.
             let bytes = std::fs::read(&path).unwrap_or_default();
             if serde_json::from_slice(&bytes).is_ok_and(|a: RequestedRecords| asked.holds(&a)) {
                 let _ = std::fs::remove_file(path);
@@ -279,10 +279,10 @@ impl KeptDays {
         !file.sha256.is_empty() && self.place(&file.path).is_file()
     }
 
-    /// All that the folder holds of this job, without the days themselves.
+    /// Reads all files of this job in the folder, without the days themselves.
     ///
     /// # Errors
-    /// Those of the system.
+    /// The errors of the file system.
     pub fn read_all(&self) -> std::io::Result<ResultFolderContent> {
         let mut held = ResultFolderContent::default();
         let entries = match std::fs::read_dir(&self.folder) {
@@ -338,7 +338,7 @@ mod tests {
 
     #[test]
     fn lines_of_sha256sum_are_read_and_others_refused() {
-        // FIPS 180-4: of nothing, and of `abc`.
+        // FIPS 180-4: digests of the empty text and of `abc`.
         let (nothing, abc) = (
             "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855",
             "BA7816BF8F01CFEA414140DE5DAE2223B00361A396177A9CB410FF61F20015AD",

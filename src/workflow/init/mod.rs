@@ -61,7 +61,7 @@ pub struct Proposal {
     /// Path of the proposed job.
     #[serde(skip)]
     pub path: PathBuf,
-    /// The command that it is written for, where that is not `place`.
+    /// Command for which the job is written, if it is not `place`.
     #[serde(skip)]
     pub purpose: Option<&'static str>,
 }
@@ -291,7 +291,7 @@ fn read_strained(
         if let Some(cut) = deck.cut_beside(&solution.findings) {
             return Err(cut.into());
         }
-        // What a file lacks is said by the job, which leaves it out then.
+        // The job reports results that a file lacks, and leaves them out.
         let findings = solution.findings.iter();
         let said =
             findings.filter(|f| f.code != "no-static-results" && f.code != "no-strain-output");

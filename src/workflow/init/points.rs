@@ -1,4 +1,4 @@
-//! Grids where loads are likely to enter a structure of which nothing else is known.
+//! Grids at which loads are likely to enter a structure, if nothing but its deck is known.
 
 use super::plain_name::plain_name;
 use crate::model::{GridIx, Model, RigidKind, Vec3};
@@ -34,7 +34,7 @@ pub(super) struct LoadPoint {
     pub rank: Rank,
 }
 
-/// Returns the points, each grid once, the likeliest first; grids of the mesh only where there is no other point.
+/// Returns the points, each grid once, the likeliest first. Grids of the mesh are used only if there is no other point.
 pub(super) fn load_points(deck: &DeckModel) -> Vec<LoadPoint> {
     let m = &deck.model;
     let held: BTreeSet<GridIx> = m
@@ -92,7 +92,7 @@ fn grid_names(deck: &DeckModel) -> BTreeMap<u32, String> {
     named.map(|l| (l.id, l.name.clone())).collect()
 }
 
-/// Returns the name for the loads of a named grid, and whether the name is that of a wheel: `wheel LF` is `LF`.
+/// Returns the name for the loads of a named grid, and whether the grid is a wheel: `wheel LF` gives `LF`.
 fn wheel_name(name: &str) -> (String, bool) {
     const WHEEL: [&str; 6] = ["wheel", "hub", "tyre", "tire", "spindle", "rad"];
     let is_wheel = |w: &str| WHEEL.contains(&w.to_lowercase().as_str());
@@ -152,7 +152,7 @@ fn far_grids(m: &Model, held: &BTreeSet<GridIx>) -> Vec<GridIx> {
         .collect();
     let mut taken: Vec<Vec3> = held.iter().filter_map(|g| place(*g)).collect();
     if taken.is_empty() {
-        // Free: from the middle outward.
+        // A free structure starts from the middle outward.
         let sum = near.iter().fold(Vec3::zeros(), |s, n| s + n.1);
         taken.push(sum / near.len().max(1) as f64);
     }

@@ -9,7 +9,7 @@ use crate::strain_chain::deck::DeckModel;
 use crate::units::{Quantity, UnitSystem, is_unit_load, typical_load};
 use std::collections::BTreeMap;
 
-/// Loads proposed at most where nothing but grids is known.
+/// Largest number of proposed loads if only grids are known.
 const MOST_GRIDS: usize = 24;
 
 /// A load that the job proposes.
@@ -48,7 +48,7 @@ pub(super) struct Proposal {
     pub loads: Vec<ProposedLoad>,
     pub left_out: Vec<LeftOutLoad>,
     pub from: StrainFrom,
-    /// Whether the loads are those of the user's files, all of which a job must have.
+    /// Whether the loads come from the user's files. A job must then have all of them.
     pub stated: bool,
 }
 
@@ -81,7 +81,7 @@ pub(super) fn proposals(
     ];
     all.retain(|p| !p.loads.is_empty());
     if let Some(first) = all.first() {
-        // The same loads by the built-in solver, where results do not serve.
+        // The proposals with the same loads from the built-in solver remain, in case the results can't be used.
         let names: Vec<String> = first.loads.iter().map(|l| l.name.clone()).collect();
         all.retain(|p| p.loads.iter().map(|l| &l.name).eq(names.iter()));
         return all;
@@ -322,7 +322,7 @@ fn of_set(
     }
 }
 
-/// How many times a load set of several loads is expected: as often as makes forces of unit size a typical load, else once.
+/// Returns the factor from a load set to its expected size: for a set of unit size the factor to a typical load, else 1.
 fn times_of_set(model: &Model, sid: u32, system: Option<UnitSystem>) -> f64 {
     let system = system.unwrap_or(UnitSystem::MKgS);
     let loads = model.load_sets.iter().filter(|s| s.sid == sid);
@@ -338,7 +338,7 @@ fn times_of_set(model: &Model, sid: u32, system: Option<UnitSystem>) -> f64 {
     }
     let of = usize::from(total[0] == 0.0);
     let quantity = [Quantity::Force, Quantity::Moment][of];
-    // Forces of 1 N, and those that sum to 1 N.
+    // Forces of 1 N, and sets of forces with a sum of 1 N.
     let is_unit = [total[of], largest[of]]
         .into_iter()
         .any(|s| is_unit_load(system, quantity, s));

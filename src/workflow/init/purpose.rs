@@ -112,7 +112,7 @@ noise_microstrain = 1.0               # check: of a reading, 1 sd
 "#;
 
 impl Purpose {
-    /// All of them, with the words of the command.
+    /// All purposes with their names on the command line.
     pub const ALL: [(&'static str, Self); 4] = [
         ("payload", Self::Payload),
         ("identify", Self::Identify),
@@ -142,7 +142,7 @@ impl Purpose {
         [head, &sections.concat(), &zones].concat()
     }
 
-    /// A whole job, where the purpose needs no deck.
+    /// Returns a complete job, if the purpose needs no deck.
     fn job_without_deck(self) -> Option<String> {
         match self {
             Self::Identify => Some(IDENTIFY.to_owned()),

@@ -1,12 +1,12 @@
 //! Numbers that people read: one, two or five times a power of ten.
 
-/// The nearest of 1, 2, 5, 10 .. by ratio; what is not above 0 stays as it is.
+/// Rounds to the nearest of 1, 2, 5, 10 .. by ratio. A number that is not positive and finite is returned as it is.
 pub(super) fn round(x: f64) -> f64 {
     if !(x > 0.0 && x.is_finite()) {
         return x;
     }
     let exponent = x.log10().floor() as i32;
-    // Written by a digit and an exponent, so that 0.2 is 0.2 and not 0.2 and a rounding error.
+    // The number is parsed from a digit and an exponent, so that 0.2 has no additional rounding error.
     let number = |digit: u32, exponent: i32| format!("{digit}e{exponent}").parse().unwrap_or(x);
     let steps = [
         number(1, exponent),

@@ -12,9 +12,9 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// Where the sections begin that are written once gauges are glued.
+/// Heading of the sections that are filled in once gauges are installed.
 pub(super) const LATER: &str = "\n# Once gauges are glued and read:\n";
-/// Properties listed at most: a longer list is shorter as "all", which leaving it out means.
+/// Largest number of listed properties. A longer list is left out, which means all properties.
 const MOST_PROPERTIES: usize = 60;
 
 /// The file of a proposed job.
@@ -126,7 +126,7 @@ impl JobPlan<'_> {
             t.push_str("\n[[load]]\nname = \"LF.FZ\"\ngrid = 1                              # fill in: the grid where it acts\ncomponent = \"FZ\"\nexpected = 10000.0\n");
         }
         for of_one in self.left_out.chunk_by(|a, b| a.why == b.why) {
-            /// Sections that are written for one reason at most; the others are listed by name.
+            /// Largest number of sections that are written for one reason. Further sections are listed by name.
             const MOST: usize = 24;
             let _ = writeln!(t, "\n# Left out: {}.", of_one[0].why);
             for (i, l) in of_one.iter().enumerate() {
@@ -205,7 +205,7 @@ impl JobPlan<'_> {
 
     fn placement(&self) -> String {
         let (n, more) = (self.loads.len().max(1), 2 * self.loads.len().max(1));
-        // What a technician keeps with a rule is 2 mm; on a small part less.
+        // A technician positions a gauge with a ruler within 2 mm. On a small part the tolerance is smaller.
         let rule = self.system.map_or(f64::INFINITY, |s| 2e-3 / s.length_m());
         let shift = round(rule.min(extent(&self.deck.model) / 500.0));
         format!(

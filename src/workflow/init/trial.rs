@@ -53,7 +53,7 @@ pub(super) fn first_that_places(cx: &Context, plan: &JobPlan, proposals: &[Propo
             ..Verdict::from_plan(plan)
         };
     }
-    // Solutions are kept for the length of the trials, and for `place` afterwards where the caller keeps them.
+    // Solutions are stored for the time of the trials. If the caller has a store, `place` uses them afterwards.
     let cx = match cx.store {
         Some(_) => cx.clone(),
         None => cx.clone().store(&Memory::default()),
@@ -128,7 +128,7 @@ fn trials<'a>(
 /// Whether `place` answers; else why not.
 fn try_place(cx: &Context, trial: &JobPlan) -> Result<(), String> {
     let path = trial.folder.join(JOB);
-    // Whether loads can be told apart shows with four angles a place; the certificate of many is for `place`.
+    // Four angles a place show whether the gauges separate the loads. `place` proves the layout with more angles.
     let trial = JobPlan {
         angle_step_deg: 45,
         ..trial.clone()
@@ -181,7 +181,7 @@ impl Files for WithJob<'_> {
         if path == self.path {
             Ok(FileBytes::from(self.text.clone().into_bytes()))
         } else {
-            // A folder that isn't made yet has no `..`.
+            // A folder that does not exist yet has no `..`.
             self.inner.load(&without_dots(path))
         }
     }

@@ -71,7 +71,7 @@ impl Answer for WeighedPayloads {
     }
 }
 
-/// One payload. What is refused has no numbers.
+/// One payload. A refused payload has no numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WeighedPayload {
     /// The run.
@@ -92,7 +92,7 @@ pub struct WeighedPayload {
     pub position: [Option<f64>; 2],
     /// Standard deviations of the position; `None` where the place is known.
     pub position_sigma: Option<[Option<f64>; 2]>,
-    /// Where it lies with 95 %; `None` where the place is known.
+    /// Region that contains the payload with a probability of 95 %; `None` if the place is known.
     pub region: Option<Ellipse>,
     /// Why there is no answer.
     pub refused: Option<String>,
@@ -156,7 +156,8 @@ fn accepted_value(r: &WeighedRun, v: f64) -> Option<f64> {
     }
 }
 
-/// Standard deviation of a gauge alone over that of the answer from which it carries less than a thousandth of it.
+/// Ratio of the standard deviation of a single gauge to the standard deviation of the answer. Above it, the gauge contributes less than a thousandth
+/// of the answer.
 const CARRIES: f64 = 32.0;
 
 /// The answer.
@@ -179,7 +180,7 @@ pub(super) fn report_payload(
             let verdict = weighing.gauges.iter().find(|v| v.name == *name);
             let estimate = r.estimates.get(g).copied().unwrap_or(f64::NAN);
             let sigma = r.estimate_sigma.get(g).copied().unwrap_or(f64::NAN);
-            // Shares in a mean are those of 1 / sigma^2.
+            // The share of a gauge in the mean is proportional to 1 / sigma^2.
             let carries = !(sigma > CARRIES * r.sigma);
             by_gauge.push(SingleGauge {
                 run: r.run.clone(),

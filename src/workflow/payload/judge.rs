@@ -1,4 +1,4 @@
-//! Findings of `payload`: refusals, wheels that lift off, undetermined places, gauges that are not used.
+//! Findings of `payload`: refusals, wheels without contact, undetermined places, and gauges that are not used.
 
 use super::model::Parts;
 use super::stated_payload::REFUTED;
@@ -67,7 +67,7 @@ fn refusal_finding(task: &Task, run: &str, refusal: &Refusal) -> Finding {
 
 /// Wheels that structure and payload together leave without load.
 fn lift_off(work: &mut Work, task: &Task, parts: &Parts, run: &PayloadRun, r: &WeighedRun) {
-    // Wheels under structure and payload together.
+    // Wheel forces from structure and payload together.
     let total: Vec<f64> = match (&parts.model.floor, run.reactions.is_empty()) {
         (Some(floor), true) => {
             let p = [r.force, r.force * r.shift[0], r.force * r.shift[1]];
@@ -170,7 +170,7 @@ pub(super) fn readings(work: &mut Work, task: &Task, parts: &Parts, runs: &mut [
         return;
     };
     let noise = measured.noise_microstrain * MICROSTRAIN;
-    // A run's noise is common to its gauges in that judgement: their mean.
+    // This test uses one noise factor for a run: the mean over its gauges.
     let noise_factor = |r: &PayloadRun| {
         let factors = r.sigma.iter().map(|s| (s / noise).powi(2));
         let (sum, n) = factors
@@ -255,7 +255,7 @@ pub(super) fn findings(
         .map(|v| v.name.as_str())
         .collect();
     if !rejected.is_empty() {
-        // With most of the gauges left out the answer is that of a few which agree by chance.
+        // With most of the gauges left out, the answer comes from a few gauges that agree by chance.
         let most = 2 * rejected.len() > weighing.gauges.len();
         work.findings.push(
             Finding::new(

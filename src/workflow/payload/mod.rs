@@ -118,7 +118,7 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<WeighedPayloads>, Faul
     ))
 }
 
-/// Weight at the nominal place that makes the gauge which the payload strains most read the largest of all readings; 1 where nothing does.
+/// Returns the weight at the nominal place for which the most strained gauge gives the largest of all readings. Returns 1 if there is no such weight.
 fn by_strongest(model: &PayloadModel, runs: &[PayloadRun]) -> f64 {
     let readings = runs.iter().flat_map(|r| &r.strain).map(|e| e.abs());
     let largest = readings.filter(|e| e.is_finite()).fold(0.0, f64::max);
@@ -135,8 +135,9 @@ fn by_strongest(model: &PayloadModel, runs: &[PayloadRun]) -> f64 {
 /// Largest weight that is searched, over the weight that makes the largest reading. Readings, not the mass of the model, limit a payload.
 const FAR: f64 = 1.0e3;
 
-/// Error of the strain coefficients, 1 sd, of each and of the whole: as stated, or what the covariance of a calibrated S leaves. Few repeats
-/// know their own scatter badly: Student's factor over that of the normal distribution comes on top.
+/// Returns the relative error of each strain coefficient and of all of them together, 1 sd. It combines the stated error with the error from the
+/// covariance of a calibrated S. Few repeats determine their own scatter poorly. The ratio of Student's factor to the factor of the normal
+/// distribution therefore widens the error.
 fn model_rel(job: &Job, s: Option<&Sensitivity>) -> f64 {
     let measured = job.measured.as_ref();
     let stated = measured.map_or(0.0, |m| m.model_uncertainty_rel);
@@ -161,7 +162,7 @@ fn spec_of(task: &Task, parts: &Parts, runs: &[PayloadRun]) -> WeighSpec {
         [x, y, ..] => Some([x, y].map(|v| v.map(|v| v * task.length))),
         _ => None,
     });
-    // Without a region: between the wheels.
+    // Without a stated region, the region is between the wheels.
     let between = model.arms.as_ref().map(|arms| {
         [0, 1].map(|k| {
             arms.iter()

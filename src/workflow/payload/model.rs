@@ -22,7 +22,7 @@ use crate::strain_chain::job_deck::read_deck;
 use crate::strain_chain::{Fields, JobSensitivity, has_covariance, take_out_beside};
 use crate::units::MICROSTRAIN;
 
-/// The model of the payload with what the report draws.
+/// The payload model, together with the data that the report plots.
 pub(super) struct Parts {
     /// In report units of force and length.
     pub model: PayloadModel,
@@ -39,7 +39,7 @@ pub(super) fn model_of(
     task: &mut Task,
     use_strain: bool,
 ) -> Result<Parts, Faults> {
-    // A calibrated S stands beside its model, which has the payload's signature.
+    // A calibrated S can be used together with the model, which contains the signature of the payload.
     let beside_model = has_covariance(task.job) && task.job.model.is_some();
     if task.job.sensitivity.is_some() && !beside_model {
         return read_model_tables(work, task, use_strain);
@@ -119,7 +119,7 @@ impl Place {
         [self.axis, (self.axis + 1) % 3, (self.axis + 2) % 3]
     }
 
-    /// Force and moment: along the axis, about each of the others.
+    /// Returns force and moment of three unit loads: a force along the axis, and a moment about each other axis.
     fn parts(self) -> [(Vec3, Vec3); 3] {
         let [a, b, c] = self.axes();
         let unit = |axis: usize| {
@@ -155,7 +155,7 @@ fn own_columns(job: &Job, model: &Model, place: Place) -> [Option<usize>; 3] {
     })
 }
 
-/// Strain of the payload's parts by gauge: the job's own column where it has one, else the solution `others` made for it.
+/// Returns the strain of the payload's parts by gauge: the job's own column, or the solution in `others` if the job has no column.
 fn payload_strain(
     (job, model): (&Job, &Model),
     p: &JobSensitivity,
@@ -198,12 +198,12 @@ fn calibrated_uncertainty(
         .as_ref()
         .filter(|_| has_covariance(task.job))?;
     let per = report_units(task);
-    // A column that there is not has no strain, and none that is uncertain.
+    // A missing column has no strain and no uncertainty.
     let one = |k: usize| columns[k].map_or((0, 0.0), |(l, sign)| (l, sign * per[k]));
     Some(known.of_loads(&[one(0), one(1), one(2)]))
 }
 
-/// From the deck of a structure on supports: they carry the payload, strain alone weighs it.
+/// Builds the payload model from the deck of a structure on supports. The supports carry the payload, so only strain measures its weight.
 fn build_supported_model(
     work: &mut Work,
     task: &mut Task,
@@ -213,7 +213,7 @@ fn build_supported_model(
 ) -> Result<PayloadModel, Faults> {
     let job = task.job;
     let (grid, id) = payload_grid(task, fields.model())?;
-    // The weight acts along the job's own force at that grid, else along z.
+    // The weight acts along the job's own force at that grid, or along z if there is no such force.
     let own = job.loads.iter().find_map(|l| match l.acts {
         LoadActs::AtGrid {
             grid,
@@ -256,7 +256,7 @@ fn build_supported_model(
     for (k, l) in own.iter().enumerate() {
         calibrated_columns[SHIFT_OF[k]] = l.map(|l| (l, SIGNS[k]));
     }
-    // With a column of the model among them the covariance is not that of all.
+    // If a column comes from the model, the calibrated covariance does not cover all columns.
     let all_own = own.iter().all(Option::is_some);
     Ok(PayloadModel {
         calibrated: calibrated_uncertainty(task, &prepared.sensitivity, calibrated_columns)
@@ -270,7 +270,7 @@ fn build_supported_model(
     })
 }
 
-/// From the deck: unit loads at wheels and payload on the free structure, and the floor.
+/// Builds the payload model from the deck: unit loads at wheels and payload on the free structure, and the floor.
 fn build_model_on_wheels(
     work: &mut Work,
     task: &mut Task,
@@ -390,7 +390,7 @@ fn read_model_tables(work: &mut Work, task: &mut Task, use_strain: bool) -> Resu
             (None, Some(own)) => {
                 payload = in_report_units(task, &columns_of(s, own));
                 known = calibrated_uncertainty(task, s, own);
-                // Runs of known payload taught all that it does to the structure, wheels included.
+                // A calibration with known payload includes all effects of the payload on the structure, also through the wheels.
                 on_wheels = !vertical.is_empty();
             }
             (None, None) => {
@@ -469,7 +469,7 @@ fn signature(
     let key = table.column(&["gauge", "name"]).unwrap_or(0);
     note_unread(&mut work.inputs, &table, key);
     let mut faults: FaultList = table.rows_named_twice(key, "gauge");
-    // Microstrain per mass (and length) of the table to strain per report force (and length).
+    // The factors convert microstrain per mass (and length) of the table to strain per report force (and length).
     let mass = job.report_units.mass.si / tables.per.mass.si;
     let length = job.report_units.length.si / tables.per.length.si;
     for (g, name) in s.gauges.iter().enumerate() {

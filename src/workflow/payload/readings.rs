@@ -19,7 +19,7 @@ use crate::recovery::net::{Net, WEAK, mean_of, net};
 use crate::units::MICROSTRAIN;
 use serde::Serialize;
 
-/// Noise of a wheel force where the job states none, of the largest.
+/// Noise of a wheel force over the largest wheel force, if the job states no noise.
 pub(super) const ASSUMED_NOISE: f64 = 0.01;
 
 /// Net reading of a gauge in a run: reading less zero.
@@ -45,10 +45,10 @@ pub(super) struct Readings {
     pub net: Vec<NetReading>,
 }
 
-/// The runs to be weighed.
+/// Returns the runs to be weighed.
 ///
 /// # Errors
-/// Unreadable tables, runs without what the answer needs.
+/// Tables that can't be read, and runs that lack data for the answer.
 pub(super) fn runs_of(
     work: &mut Work,
     task: &Task,
@@ -61,7 +61,7 @@ pub(super) fn runs_of(
         Some(runs) => read_runs(&mut work.inputs, job, runs)?,
         None => Vec::new(),
     };
-    // Without wheels there is nothing to believe.
+    // If the job has no wheels and strain is used, no wheel forces are needed.
     let asked = use_reactions && !(use_strain && task.wheels.is_empty());
     let reactions = asked && accept_wheel_forces(work, task, use_strain);
     if !use_strain && !reactions {
@@ -145,7 +145,7 @@ pub(super) fn runs_of(
             "add rows to the strain or runs file",
         )));
     }
-    // Runs with and without wheel forces are weighed by the same rule.
+    // All runs are weighed by the same rule: if one run lacks wheel forces, no run uses them.
     if !without.is_empty() {
         out.iter_mut().for_each(|r| r.reactions.clear());
     }
@@ -170,7 +170,7 @@ fn same_runs(
         let names: Vec<&str> = some.map(|r| r.run.as_str()).collect();
         list_few(&names)
     };
-    // The strain of a single record has the name of its file, which a runs file need not know.
+    // The strain of a single record has the name of its file, which the runs file may lack.
     if read.len() > 1 && !read.iter().any(|run| row(run).is_some()) {
         let all = names(&mut read.iter());
         return Err(Fault::with_line(
@@ -201,7 +201,7 @@ fn same_runs(
     Ok(())
 }
 
-/// Puts the runs' known places and, where asked for, wheel forces in; names the runs that lack wheel forces.
+/// Adds the known places of the runs and, if requested, their wheel forces. Returns the names of the runs that lack wheel forces.
 fn shifts_and_reactions(
     task: &Task,
     rows: &[RunRow],
@@ -339,7 +339,7 @@ fn strain(
         let record = nets(all.into_iter(), &zero);
         (vec![(stem(&measured.strain), record)], false)
     };
-    // The unloaded run of the table reads the common zero too.
+    // The unloaded run contains the common zero too, so that it need not be subtracted.
     if !from_unloaded {
         let common = common_zero(work, task.job, &model.gauges)?;
         for (_, nets) in &mut runs {
@@ -363,7 +363,7 @@ fn of_runs(
 ) -> Result<(Vec<(String, Vec<Net>)>, bool), Faults> {
     let noise = noise_of_gauges(measured, model);
     let readings = by_gauge(table, model);
-    // Without a zero file an unloaded run of the same table is the zero.
+    // Without a zero file, an unloaded run of the same table is the zero.
     let own = task
         .payload
         .unloaded

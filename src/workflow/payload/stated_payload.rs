@@ -10,13 +10,13 @@ use crate::host::work::Work;
 use crate::measured::runs_file::read_runs;
 use crate::payload::{PayloadRun, Place, WeighSpec, WeighedRun, Weighing, weigh};
 
-/// Standard deviations from which readings refute a stated place, as for moments of wheel forces.
+/// Standard deviations from which readings contradict a stated place, as for moments of wheel forces.
 pub(super) const REFUTED: f64 = 4.0;
-/// Share of a recorded mass by which the weighed one differs at least where one of them is wrong.
+/// Relative difference between weighed and recorded mass from which one of them is wrong.
 const OTHER_MASS: f64 = 0.1;
 
-/// Returns the findings on a stated place that the strain refutes: the runs are weighed again with a free place. An error where the weight
-/// changes by more than its interval.
+/// Returns the finding on a stated place that the strain contradicts. The runs are weighed again with a free place. The finding is an error if the
+/// weight changes by more than its interval.
 pub(super) fn place_contradicted(
     task: &Task,
     parts: &Parts,
@@ -33,7 +33,7 @@ pub(super) fn place_contradicted(
         ..spec.clone()
     };
     let free = weigh(&parts.model, runs, &free);
-    // The stated place of a run is its own, where the runs file gives one.
+    // Each run uses its own place, if the runs file states one.
     let of = |((run, known), free)| Some((sigmas(free, run)?, known, free));
     let stated = runs.iter().zip(&weighing.runs).zip(&free.runs);
     let refuted = stated.filter_map(of);
@@ -75,7 +75,7 @@ pub(super) fn place_contradicted(
     )
 }
 
-/// Returns how many standard deviations a place that was found lies from the stated one; `None` where it was not found.
+/// Returns the distance between the found and the stated place in standard deviations. Returns `None` if no place was found.
 fn sigmas(free: &WeighedRun, run: &PayloadRun) -> Option<f64> {
     let [a, b, _, d] = free.shift_covariance;
     let determinant = a * d - b * b;

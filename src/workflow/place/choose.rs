@@ -48,7 +48,7 @@ pub(super) fn choose(
     match choose_once(task, kinds, spec) {
         Err(ChoiceRefusal::By(PlaceError::Singular { gauges, loads })) => {
             know_the_loads(work, spec, gauges, loads);
-            // What is no plan needs no proof that it is the best: with fewer gauges than loads that may take minutes.
+            // A layout that does not separate the loads needs no proof that it is the best. With fewer gauges than loads, the proof may take minutes.
             spec.proof = 0.0;
             choose_once(task, kinds, spec)
         }
@@ -124,13 +124,13 @@ pub(super) fn choose_once(
     }
 }
 
-/// Puts the layout of least condition number in place of the best one by D, where the job asks for it.
+/// Replaces the best D-optimal layout by the layout with the least condition number, if the job requests it.
 fn well_conditioned(task: &Task, kind: &Kind, spec: &Spec, layout: &mut Layout) -> Option<f64> {
     if task.job.placement.criterion != Optimality::Condition {
         return None;
     }
     let k = task.cases.len();
-    // Gauges that stay read with the noise of all.
+    // The gauges that stay have the noise of all gauges.
     let noise = task.job.placement.noise_microstrain;
     let mut base = vec![0.0; k * k];
     for row in &task.kept_rows {
@@ -274,7 +274,7 @@ fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<ChosenLayou
     })
 }
 
-/// Every bundle that the job's candidates allow: single gauges and rosettes at each site, in pairs where the layout is to be symmetric.
+/// Returns every bundle that the job's candidates allow: single gauges and rosettes at each site, in pairs for a symmetric layout.
 fn bundles_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<DescribedBundles<'a>, ChoiceRefusal> {
     let p = &task.job.placement;
     let cost_of = |name: &str, default: f64| {
@@ -295,7 +295,7 @@ fn bundles_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<DescribedBundles<'a>
     let mates = p
         .symmetric
         .map(|axis| Mirror::from_positions(task, &positions, axis));
-    // Rosettes need a quarter kind to take their legs from.
+    // The legs of a rosette are candidates of the quarter-bridge kind.
     let quarter = kinds.iter().position(|k| k.bridge == Bridge::Quarter);
     let legs: Option<[f64; 3]> = task.job.candidates.rosette.map(|r| r.legs().map(|l| l.1));
     let asked = &task.job.candidates.bridges;
@@ -316,7 +316,7 @@ fn bundles_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<DescribedBundles<'a>
     for site in 0..task.sites.len() {
         let mate = match &mates {
             Some(m) => match m.mate(site) {
-                // Of a pair the first is taken; one without a partner can't be in a symmetric layout.
+                // The first site of a pair is taken for both. A site without a partner can't be in a symmetric layout.
                 Some(other) if other >= site => Some(other),
                 _ => continue,
             },
@@ -342,7 +342,7 @@ fn bundles_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<DescribedBundles<'a>
             }
         }
         if let (Some(q), Some(legs)) = (quarter, legs) {
-            // Its orientation matters little: two are compared.
+            // The orientation of a rosette matters little, so only two orientations are compared.
             for turn in [0.0, 0.5 * legs[1]] {
                 let members: Vec<(usize, Choice)> =
                     legs.iter().flat_map(|l| paired(q, turn + l)).collect();
@@ -402,7 +402,7 @@ impl Mirror {
             .iter()
             .flatten()
             .fold(0.0_f64, |a, v| a.max(v.abs()));
-        // Partners of a mirrored mesh agree to the deck's digits.
+        // Partners of a mirrored mesh agree within the digits of the deck.
         let cell = (1e-3 * size).max(f64::MIN_POSITIVE);
         let key = |x: [f64; 3]| x.map(|v| (v / cell).round() as i64);
         let mut at: HashMap<[i64; 3], Vec<usize>> = HashMap::new();

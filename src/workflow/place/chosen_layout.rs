@@ -14,7 +14,7 @@ pub(super) struct Channel {
     pub bridge: &'static str,
     /// Side of the shell; `None` on a bar.
     pub site: Option<Site>,
-    /// The spot of the job's table, where it is one.
+    /// Spot of the job's table, if the gauge is on a named spot.
     pub spot: Option<JobGauge>,
     /// Row over its standard deviation, columns in the candidates' order.
     pub row: Vec<f64>,
@@ -36,9 +36,9 @@ pub(super) struct ChosenLayout {
     pub efficiency_bound: f64,
     pub proved: bool,
     pub nodes: usize,
-    /// Costs, where they were counted.
+    /// Costs, if they were counted.
     pub cost: Option<f64>,
-    /// The least condition number met, where that was looked for.
+    /// Least condition number that the search found, if it was requested.
     pub least_condition: Option<f64>,
 }
 

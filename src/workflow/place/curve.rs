@@ -1,4 +1,4 @@
-//! How many gauges: what each number of them gives, and what the next one buys.
+//! Number of gauges: the result with each number, and the benefit of the next gauge.
 
 use super::choose::choose_once;
 use super::chosen_layout::ChoiceRefusal;

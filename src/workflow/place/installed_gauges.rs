@@ -40,7 +40,7 @@ pub(super) fn evaluate_installed(
         }
     };
     let k = task.cases.len();
-    // Without the gauges that stay: they are among the installed ones.
+    // The prior leaves out the gauges that stay, because they are among the installed gauges.
     let spec = Spec {
         prior: task.without_kept(spec),
         ..spec.clone()

@@ -98,7 +98,7 @@ impl Task<'_> {
             let noise = self.noise_of(gauge);
             let sd = match self.given_row(gauge) {
                 Some((own, _)) => match &own.uncertainty {
-                    // As runs that were left out have it: `scale` is a factor on all of sigma.
+                    // As for the left-out runs, `scale` is a factor on the whole standard deviation.
                     Some(u) => noise * u.scale,
                     None => noise.hypot(model_rel * spd::dot(row, row).sqrt()),
                 },
@@ -146,8 +146,8 @@ fn is_of(gauge: &Gauge, stated: &JobGauge) -> bool {
     gauge.name == stated.name || gauge.name.starts_with(&format!("{}.", stated.name))
 }
 
-/// Returns the variance that the tolerances of gluing add to the reading of each gauge, microstrain squared at the expected loads, as for
-/// candidates at the same place; 0 for gauges whose S is calibrated as they are glued, and for gauges on bars.
+/// Returns the variance that the installation tolerances add to the reading of each gauge, microstrain squared at the expected loads. It is equal to
+/// the variance of candidates at the same place. It is 0 for gauges whose S is calibrated as installed, and for gauges on bars.
 pub(super) fn gluing_variance(task: &Task, gauges: &[Gauge]) -> Vec<f64> {
     let of = |gauge: &Gauge| {
         let stated = task.job.gauges.iter().find(|g| is_of(gauge, g))?;
@@ -215,7 +215,7 @@ pub(super) fn gluing_effect(task: &Task, gauge: &Gauge, stated: &JobGauge) -> Op
     })
 }
 
-/// `L^-1 A` with `L L' = w`; over the roots of the diagonal where rounding leaves `w` without a factor.
+/// Returns `L^-1 A` with `L L' = w`. If rounding leaves `w` without a factor, divides the rows by the roots of the diagonal.
 fn whiten_rows(w: &[f64], rows: &[Vec<f64>], k: usize) -> Vec<Vec<f64>> {
     let n = rows.len();
     let mut out = rows.to_vec();

@@ -118,8 +118,8 @@ pub(super) fn as_glued(job: &Job, q: &Quality, k: usize) -> Vec<f64> {
     out
 }
 
-/// Standard deviations of the loads, and of the job's combinations of them, in report units: as recovered, and as glued where the job states
-/// tolerances.
+/// Returns the standard deviations of the loads and of the job's combinations, report units. They are given as recovered, and as installed if the job
+/// states tolerances.
 pub(super) fn sigma_rows(
     job: &Job,
     listed: &ListedLoads,
@@ -148,7 +148,7 @@ pub(super) fn sigma_rows(
         .collect()
 }
 
-/// The finding on loads that gauges will not determine, with the cause where `expected` is the size of a unit load of the deck.
+/// Returns the finding on loads that gauges will not determine. If `expected` is the size of a unit load of the deck, the finding states this cause.
 pub(super) fn with_unit_loads(job: &Job, mut finding: Finding) -> Finding {
     let unit_load = job.loads.iter().find_map(|l| {
         let (size, quantity) = (l.expected?, l.quantity()?);
@@ -170,7 +170,7 @@ const STRAIN: f64 = 2000.0;
 /// Tolerance of a place that a technician can keep with a rule, mm.
 const PLACE: f64 = 1.0;
 
-/// Findings on what the workshop has to keep.
+/// Adds the findings on the requirements for the installation.
 fn judge_workshop(work: &mut Work, job: &Job, placed: &[PlacedGauge]) {
     let strained = placed
         .iter()
@@ -214,8 +214,8 @@ fn judge_workshop(work: &mut Work, job: &Job, placed: &[PlacedGauge]) {
     }
 }
 
-/// Gauges whose place has to be kept better than it will be: than the stated tolerance where that is finer than a rule, else than a rule. Budgets and
-/// tolerance are in `unit`; the remedy follows from both.
+/// Returns the finding on gauges whose position budget is smaller than the expected position error. The expected error is the stated tolerance if it
+/// is finer than a ruler, else the error with a ruler. Budgets and tolerance are in `unit`. The remedy depends on whether a tolerance is stated.
 fn check_budgets<'a>(
     budgets: impl Iterator<Item = (&'a str, Option<f64>)>,
     tolerance: f64,
@@ -361,7 +361,7 @@ mod tests {
             "{}",
             stated.remedy
         );
-        // Who glues by a template and says so is done.
+        // A stated tolerance within the smallest budget needs no finding.
         assert!(found(4e-4).is_none());
     }
 }

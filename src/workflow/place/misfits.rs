@@ -1,4 +1,4 @@
-//! Places that are chosen and where a grid does not fit on the part.
+//! Chosen places at which a grid does not fit on the part.
 
 use super::task::Task;
 use crate::finding::Finding;
@@ -60,11 +60,11 @@ fn misfit(job: &Job, built: &BuiltGauges) -> Option<Fault> {
     ))
 }
 
-/// Leaves out the sites of chosen gauges whose grid does not fit, and returns the refusal of one of them; `None` where every grid fits. Of each
-/// gauge are given its site, its element and its refusal.
+/// Leaves out the sites of chosen gauges whose grid does not fit. Returns one of their refusals, or `None` if every grid fits. `chosen` contains the
+/// site, the element and the refusal of each gauge.
 ///
 /// # Errors
-/// The refusal of such a gauge, where no further round is allowed or its element is wanted.
+/// The refusal of a gauge, if no further round is allowed or if its element is wanted.
 pub(super) fn leave_out<'a>(
     task: &mut Task,
     chosen: impl Iterator<Item = (Option<Site>, u32, Option<&'a Fault>)>,

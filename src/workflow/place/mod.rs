@@ -69,7 +69,7 @@ pub fn place(job: &Job, cx: &Context) -> Result<Outcome<CertifiedLayout>, Faults
     ))
 }
 
-/// Layouts that are looked for at most until every grid fits: each leaves out the places of the one before where a grid does not fit.
+/// Largest number of layouts until every grid fits. Each layout leaves out the places of the previous layout where a grid does not fit.
 const ROUNDS: usize = 20;
 
 /// The layout on the model.
@@ -97,7 +97,7 @@ fn lay_out_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutO
         work.go_on()?;
         let chosen = match (chosen, misfit.take()) {
             (Ok(chosen), _) => chosen,
-            // Too few places are left.
+            // Too few places remain.
             (Err(_), Some(misfit)) => return Err(misfit.into()),
             (Err(refused), None) => return Err(refused),
         };
@@ -249,10 +249,11 @@ impl LayoutOf {
     }
 }
 
-/// Gauges reserved for validation: index and prediction's standard deviation over the reading's.
+/// Reserves gauges for validation. Returns the index of each gauge, and the standard deviation of its prediction over the standard deviation of its
+/// reading.
 ///
 /// # Errors
-/// Where the rest would not separate the loads.
+/// If the remaining gauges would not separate the loads.
 fn reserve_gauges(
     work: &mut Work,
     task: &task::Task,

@@ -33,7 +33,7 @@ pub struct CertifiedLayout {
     pub proved: bool,
     /// Nodes of the proof.
     pub nodes: usize,
-    /// Costs, where they were counted.
+    /// Costs, if they were counted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cost: Option<f64>,
     /// Gauges that stay.
@@ -44,7 +44,7 @@ pub struct CertifiedLayout {
     /// Rank and condition numbers of S.
     #[serde(flatten)]
     pub conditioning: Conditioning,
-    /// The least condition number met, where that was looked for.
+    /// Least condition number that the search found, if it was requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub least_condition_number_scaled: Option<f64>,
     /// One standard deviation of each load, report units.
@@ -177,7 +177,7 @@ pub struct PlacedGauge {
 }
 
 impl PlacedGauge {
-    /// Returns the length of its grid: as its spot states it, else that of the candidates.
+    /// Returns the length of the gauge's grid: the length in its spot, else the length of the candidates.
     pub fn grid_length(&self, of_candidates: f64) -> f64 {
         self.spot.as_ref().map_or(of_candidates, |s| s.grid_length)
     }
@@ -227,10 +227,10 @@ pub struct ReservedGauge {
 pub struct InstalledLayout {
     /// How many gauges.
     pub gauges: usize,
-    /// Rank of their S, where they don't separate the loads.
+    /// Rank of S of the gauges, if they don't separate the loads.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rank: Option<usize>,
-    /// How good they are, where they do.
+    /// Quality of the gauges, if they separate the loads.
     #[serde(flatten)]
     pub quality: Option<InstalledQuality>,
 }

@@ -35,7 +35,8 @@ pub(crate) fn scatter(
 ) -> Scatter {
     let p = &job.placement;
     let own = p.noise_by_bridge.iter().find(|(b, _)| *b == bridge);
-    // Misplacement, and the spread of strain over the length of the grid (its mean square from the middle is a twelfth).
+    // The variance contains the position tolerance and the spread of strain over the grid. The mean square distance from the middle of the grid is a
+    // twelfth of its squared length.
     let variance = p.position_tolerance.powi(2) + job.candidates.grid_length.powi(2) / 12.0;
     Scatter {
         angle_sd: p.angle_tolerance_deg.to_radians(),

@@ -11,7 +11,7 @@ use crate::placement::sites::Site;
 use crate::strain_chain::Fields;
 use std::collections::BTreeSet;
 
-/// Surfaces where the job lets gauges go, among shells with strain in every case.
+/// Returns the surfaces on which the job allows gauges, among shells with strain in every case.
 ///
 /// # Errors
 /// No surface is left, or the deck lacks a SET, an element or a property.

@@ -34,7 +34,7 @@ pub(super) fn list_placed_gauges(
         .iter()
         .enumerate()
         .map(|(i, c)| {
-            // Share of a load's expected size by which an error of one microstrain of this gauge moves the load it moves most.
+            // An error of one microstrain of this gauge changes the load that it affects most by this share of its expected size.
             let moves = influence.get(i).copied().unwrap_or(0.0) / c.sd;
             let allowed = |change: f64| {
                 let error = moves * change;

@@ -31,7 +31,7 @@ pub(super) struct Task<'a> {
     pub order: Vec<usize>,
     /// Where gauges can go.
     pub sites: Vec<Site>,
-    /// Named spots to choose from, where the job states a table of them; `sites` are then those of spots on shells.
+    /// Named spots to choose from, if the job states a table of them. `sites` are then the sites of spots on shells.
     pub spots: Option<Vec<LaidSpot>>,
     /// Rule of `[candidates]` that excludes the most shells.
     pub strict: Option<StrictRule>,
@@ -114,7 +114,7 @@ impl<'a> Task<'a> {
         Ok(())
     }
 
-    /// Spec with gauges, criterion, and what is known beforehand.
+    /// Returns the specification: number of gauges, criterion, and prior information on the loads.
     pub fn spec(&self, work: &mut Work) -> Spec {
         let (job, k) = (self.job, self.cases.len());
         let gauges = job.placement.gauges.unwrap_or_else(|| {
@@ -141,7 +141,7 @@ impl<'a> Task<'a> {
         spec.proof = if job.placement.proof { PROOF } else { 0.0 };
         spec.criterion = self.criterion();
         for (l, &from) in self.order.iter().enumerate() {
-            // What is known of a load: its expected size, 1 in these columns.
+            // The prior information on a load is its expected size, which is 1 in these columns.
             let load = &job.loads[from];
             let nuisance = load.role == LoadRole::Nuisance && load.expected.is_some();
             if nuisance || job.placement.criterion == Optimality::BayesianD {
@@ -187,7 +187,8 @@ impl<'a> Task<'a> {
         }
     }
 
-    /// Mean over the sites of the squares of the strain tensor by pairs of loads, microstrain squared: what I weighs variances with.
+    /// Returns the mean over the sites of the product of strain tensors by pairs of loads, microstrain squared. Criterion I weights the variances
+    /// with it.
     fn mean_strain(&self) -> Vec<f64> {
         let (ordered, scales) = self.nuisance_first();
         let k = ordered.len();
@@ -198,7 +199,7 @@ impl<'a> Task<'a> {
                 .zip(&scales)
                 .map(|(c, f)| {
                     let t = bridge_strain(Bridge::Quarter, c.case, site).unwrap_or_default();
-                    // Engineering shear g: 2 (g/2)^2 is its part of the square of the tensor.
+                    // The square of the tensor contains 2 (g/2)^2 of the engineering shear g.
                     [t[0], t[1], t[2] / std::f64::consts::SQRT_2]
                         .map(|v| v * f / c.applied / MICROSTRAIN)
                 })
@@ -241,8 +242,8 @@ pub(super) fn position(fields: &Fields, (shell, side): Site) -> Option<Vec3> {
     Some(crate::gauge::centre(model, s)? + z * crate::gauge::to_side(model, s, side))
 }
 
-/// Where no layout separates the loads, the best one for loads that are each known to their expected size (1 in these columns), with
-/// the finding that the measurement alone does not give them.
+/// Adds prior information if no layout separates the loads: each load has its expected size (1 in these columns). Adds the finding that the
+/// measurement alone does not determine the loads.
 pub(super) fn know_the_loads(work: &mut Work, spec: &mut Spec, gauges: usize, loads: usize) {
     for l in 0..loads {
         if let Some(p) = spec.prior.get_mut(l * loads + l) {
@@ -264,7 +265,7 @@ pub(super) fn know_the_loads(work: &mut Work, spec: &mut Spec, gauges: usize, lo
     );
 }
 
-/// The job's columns, those of nuisance loads first, as scales and cases.
+/// Builds the task. Scales and cases are in the order of the columns, nuisance loads first.
 pub(super) fn task<'a>(
     job: &'a Job,
     fields: &'a Fields,

@@ -7,7 +7,7 @@ use crate::placement::candidates::Choice;
 use crate::placement::required_places::with_one_in_each;
 use crate::placement::{Layout, Spec};
 
-/// The gauges of a layout with one on every element that the job wants; `None` where it wants none.
+/// Returns the gauges of a layout with one gauge on every wanted element; `None` if the job wants no elements.
 ///
 /// # Errors
 /// Elements that are no candidates, more of them than gauges, no place at that spacing.

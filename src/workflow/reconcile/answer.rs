@@ -42,7 +42,7 @@ pub struct Reconciliation {
     /// Squared residual over the allowed variance, per reading.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reduced_chi2: Option<ReducedChi2>,
-    /// Residual after the named effects, in words.
+    /// Description of the residual after the named effects.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub remains: Option<String>,
     /// Measurement that would separate the first two explanations.
@@ -56,12 +56,12 @@ pub struct Reconciliation {
     /// Results for motion only.
     #[serde(flatten)]
     pub motion: Option<MotionPart>,
-    /// Causes measured in every run, weighed.
+    /// Comparison of the causes that are measured in every run.
     #[serde(skip)]
     pub causes: Option<CauseOutcome>,
     /// Changes of the model: path, old and new value.
     pub added: Vec<ModelChange>,
-    /// The job with the named effects in it; `None` where nothing was named or an effect can't be put into it.
+    /// The job with the named effects; `None` if no effect was named or an effect can't be added to it.
     pub extended_model: Option<ExtendedModel>,
     /// The job.
     #[serde(skip)]
@@ -147,7 +147,7 @@ pub struct RivalFound {
 /// Gap on data that were not fitted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GapFound {
-    /// Definition of the gap, in words.
+    /// Definition of the gap.
     pub metric: String,
     /// Gap of the analyst's model.
     pub before: f64,
@@ -156,7 +156,7 @@ pub struct GapFound {
     /// Expected gap from noise and stated uncertainty.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub floor: Option<f64>,
-    /// (before^2 - after^2) / (before^2 - floor^2); zero where there is nothing to close.
+    /// (before^2 - after^2) / (before^2 - floor^2); zero if there is no gap to close.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub explained_share: Option<f64>,
     /// Results for strain only.
@@ -213,7 +213,7 @@ pub struct StrainPart {
     pub smooth: Vec<SmoothAt>,
     /// Joint covariance of the parameters of the named set (or best attempt), by rows.
     pub covariance: Vec<Vec<f64>>,
-    /// Where the gap sits, in words.
+    /// Description of where the gap is.
     pub sits: String,
     /// Gauges beyond their own floor before any effect, worst first.
     pub gauges_off_before: Vec<Misfit>,
@@ -244,7 +244,7 @@ pub struct StrainPart {
 /// Results for motion only.
 #[derive(Serialize)]
 pub struct MotionPart {
-    /// Where the gap of the analyst's model is largest, in words.
+    /// Description of where the gap of the analyst's model is largest.
     pub sits: String,
     /// By equation: band, time and size of the motion at which the gap is largest.
     pub sits_at: Vec<GapSits>,
@@ -254,7 +254,7 @@ pub struct MotionPart {
     pub covariance: Vec<Vec<f64>>,
     /// Measured wheel forces: residual of `identify`.
     pub wheel_force: Vec<WheelMisfit>,
-    /// Both models simulated; `None` where nothing was named.
+    /// Simulation of both models; `None` if no effect was named.
     pub simulation: Option<Simulation>,
     /// Complete outcome of the comparison.
     #[serde(skip)]
@@ -282,7 +282,7 @@ pub struct WheelMisfit {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Simulation {
-    /// Both models over the record that judges.
+    /// Errors of both models over the simulated record.
     Done(SimulationFound),
     /// Why it can't be done.
     NotDone {
@@ -304,7 +304,7 @@ impl Simulation {
 /// Result of simulating both models over the held-out record, else over the fitted record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SimulationFound {
-    /// Definition of the error, in words.
+    /// Definition of the error.
     pub metric: String,
     /// Kind of data on which both models were simulated.
     pub judged_by: Proof,

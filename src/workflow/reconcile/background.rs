@@ -17,7 +17,7 @@ const STILL_TO_COME: f64 = 1.0;
 /// Remaining mesh error, 1 sd, over the change if the mesh was divided around the gauges only. In open rails this change is two thirds of the whole
 /// change. Single coefficients have the error of [`ENTRY_SHARE`] in addition, as without a finer mesh.
 const STILL_TO_COME_IN_PART: f64 = 1.5;
-/// Where no finer mesh was solved: share of the stated model uncertainty that single coefficients have besides the common factor.
+/// Share of the stated model uncertainty that single coefficients have in addition to the common factor, if no finer mesh was solved.
 pub(super) const ENTRY_SHARE: f64 = 0.5;
 
 /// A direction of a gauge.
@@ -54,8 +54,9 @@ pub(super) fn gradients(
     out
 }
 
-/// Errors of one standard deviation: angle, place, mesh. `own` is the influence on the analyst's own mesh where a finer one was solved, with
-/// whether that is finer everywhere; `per_mm` the gradients along and across. None for a model that is stated to be exact.
+/// Returns the errors of angle, place and mesh, one standard deviation each. `own` is the influence on the analyst's own mesh if a finer mesh was
+/// solved, and whether that mesh is finer everywhere. `per_mm` contains the gradients along and across. A model that is stated to be exact has no
+/// errors.
 pub(super) fn background(
     job: &Job,
     part: &ModelPart,
@@ -76,7 +77,7 @@ pub(super) fn background(
     let place = reconcile
         .and_then(|r| r.position_tolerance_mm)
         .unwrap_or(0.0);
-    // Along the axis of a gauge the derivative by its angle is the shear there.
+    // The derivative of the strain along a gauge by the angle of the gauge is the shear strain.
     let turned = part
         .tensors
         .iter()
@@ -90,7 +91,7 @@ pub(super) fn background(
         ));
     }
     if let Some((own, is_whole)) = own {
-        // The remainder has the pattern of what was found: loads that cancel in the strain cancel in its error.
+        // The remaining mesh error has the pattern of the change by refinement. Loads that cancel in the strain also cancel in its error.
         let still = match is_whole {
             true => STILL_TO_COME,
             false => STILL_TO_COME_IN_PART,

@@ -1,4 +1,4 @@
-//! Readings against causes measured in every run, where no model gives their strain: `[reconcile] causes`.
+//! Readings compared with causes that are measured in every run, if no model gives their strain: `[reconcile] causes`.
 
 use super::answer::{EffectFound, GapFound, Reconciliation, RivalFound, SlopeFound};
 use crate::finding::{Finding, Severity};
@@ -11,10 +11,10 @@ use crate::measured::runs_file::given_loads;
 use crate::reconcile::{Cause, CauseOutcome, CauseSet, Observations, Verdict, weigh_causes};
 use crate::strain_chain::stated_noise;
 
-/// Weighs the causes of the job.
+/// Compares the causes of the job.
 ///
 /// # Errors
-/// A runs file that lacks a cause, or one of the runs.
+/// A runs file that lacks a cause or a run.
 pub(super) fn answer(
     job: &Job,
     reconcile: &Reconcile,
@@ -90,7 +90,7 @@ fn rivals(outcome: &CauseOutcome) -> Vec<RivalFound> {
     others.filter(|s| !s.names.is_empty()).map(rival).collect()
 }
 
-/// The causes of a set, each with what the channels do under it.
+/// Returns the causes of a set, each with the change of the channels per unit of the cause.
 fn effects(best: &CauseSet, observations: &Observations) -> Vec<EffectFound> {
     let by_channel = |slopes: &Vec<(f64, f64)>| {
         let channels = observations.channels.iter().cloned();

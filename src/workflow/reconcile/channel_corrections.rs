@@ -1,4 +1,4 @@
-//! Named faults of channels as `[[correction]]` entries: they hold for the readings at hand and for all to come.
+//! Named faults of channels as `[[correction]]` entries, which apply to these readings and to all later readings.
 
 use super::extended_model::ReadingCorrection;
 use crate::job::correct::channel_of;
@@ -34,8 +34,9 @@ impl Undo {
 /// Name of a place, and change of the strain of a mass's weight there by the written deck, microstrain per kg by gauge.
 pub(super) type Weight = (String, Vec<f64>);
 
-/// Returns the corrections of the named effects; `deck` is present for a job with a deck. Returns `None` if entries of a job can't express them.
-/// This applies to channels exchanged in a ring or corrected by the job before, and to an offset in a job with a zero record, in which it cancels.
+/// Returns the corrections of the named effects; `deck` is present for a job with a deck. Returns `None` if entries of a job can't express them. This
+/// applies to channels that are exchanged in a ring or already corrected by the job. It also applies to an offset in a job with a zero record, in
+/// which the offset cancels.
 ///
 /// Faults of channels are undone first, in the reverse of the order in which they act. Then the strain of masses added after the zero is subtracted.
 /// With a deck, a factor on all strain follows.
@@ -61,7 +62,7 @@ pub(super) fn corrections(
                 Correction::Gain(gain) if *gain != 0.0 => own.factor *= gain,
                 Correction::Gain(_) | Correction::Ignore => own.ignore = true,
                 Correction::Offset(offset) => own.subtract_offset(*offset),
-                // Where S is given its row is turned instead.
+                // With a given S, the row of S is turned instead.
                 Correction::AngleDeg(by) if has_deck => own.angle_deg += by,
                 Correction::AngleDeg(_) | Correction::PositionMm(_) => {}
                 Correction::ExchangedWith(other) => {
@@ -107,7 +108,7 @@ pub(super) fn corrections(
         let name = &frame.gauges.get(g)?.name;
         let pair = exchanged.iter().find(|e| e[0] == g);
         let with = pair.and_then(|e| Some(frame.gauges.get(e[1])?.name.clone()));
-        // Readings are those that the job's own corrections leave.
+        // The readings already contain the corrections of the job.
         let before = channel_of(&job.corrections, name).factor;
         (*own != Undo::NOTHING || with.is_some()).then(|| ReadingCorrection {
             gauge: name.clone(),

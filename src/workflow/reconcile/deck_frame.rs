@@ -74,7 +74,7 @@ pub(super) fn read(
     let model = &heated.model;
     let asked = SignatureLoads::from_job(job, &heated)?;
     let support = support_of_job(job, model)?;
-    // Signatures come from a mesh half as wide, where that can be made: what the mesh makes is computed, not guessed.
+    // Signatures come from a mesh of half the width, if it can be made. The mesh error is then computed, not assumed.
     let laid = [&gauges, &turned[0], &turned[1]];
     let finer = work.stage("refine", |_| RefinedGaugeModel::refine_model(model, laid));
     if let Err(why) = &finer {
@@ -138,7 +138,7 @@ pub(super) fn read(
         asked.thermal_strain(&heated, &apparent, &heated.rises(&gauges), column);
     let along = gradients(job, model, &gauges, &own, n_c, Axis::Along);
     let across = gradients(job, model, &gauges, &own, n_c, Axis::Across);
-    // An S whose mesh error is subtracted hardly differs from the finer mesh: the change by halving the width bounds the remaining error.
+    // An S without its mesh error hardly differs from the S of the finer mesh. The change by halving the width then bounds the remaining error.
     let corrected = fields.mesh_error.is_some();
     let own_mesh = if corrected { &by_solver } else { &base };
     part.scatter = background(
@@ -166,8 +166,8 @@ pub(super) fn read(
     Ok((part, deck))
 }
 
-/// Returns the job with S of the deck's own mesh unless it asks for the mesh error: the part of the mesh in the gap is stated, and signatures come
-/// from a finer mesh.
+/// Returns the job with S of the deck's own mesh, unless the job requests the mesh error. The gap then states the part of the mesh, and signatures
+/// come from a finer mesh.
 fn on_own_mesh(job: &Job) -> Job {
     let mut job = job.clone();
     if let Some(model) = &mut job.model {
@@ -194,8 +194,8 @@ fn lay_turned_gauges(
     Ok(turned)
 }
 
-/// Influence with S in the columns of the wanted loads: S is that of the job, and where its results are Nastran's, the built-in solver has
-/// the rest.
+/// Returns the influence matrix with the S of the job in the columns of the wanted loads. The other columns come from the built-in solver, also if
+/// the results of the job are from Nastran.
 fn with_s(by_solver: &[f64], s: &FrameColumns, n_columns: usize) -> Vec<f64> {
     let mut base = by_solver.to_vec();
     for (c, (_, column)) in s.wanted_columns().iter().enumerate() {
@@ -218,7 +218,7 @@ fn plane_strain([at_0, at_45, at_90]: [&[f64]; 3], n_columns: usize) -> Vec<Plan
 fn gauge_facts(job: &Job, channels: &[String], gauges: &[Gauge]) -> Vec<GaugeFacts> {
     let length_m = job.units.length_m();
     let one = |(channel, laid): (&String, &Gauge)| GaugeFacts {
-        // In-plane strain is in the axes of the gauge itself, its wiring included.
+        // In-plane strain is in the axes of the gauge, with its wiring included.
         angle_deg: 0.0,
         wiring: Wiring::Quarter,
         position: Some([0, 1, 2].map(|k| laid.position[k] * length_m)),
@@ -227,7 +227,8 @@ fn gauge_facts(job: &Job, channels: &[String], gauges: &[Gauge]) -> Vec<GaugeFac
     channels.iter().zip(gauges).map(one).collect()
 }
 
-/// Names of the wanted loads, and kN or kN m in a unit of the job: tables count in microstrain per unit of the job, as sensitivity.csv does.
+/// Returns the names of the wanted loads, with 1 kN or 1 kN m in units of the job. Tables are in microstrain per unit of the job, as in
+/// sensitivity.csv.
 pub(super) fn per_job_unit(job: &Job) -> Vec<TableColumn> {
     let wanted = job.loads.iter().filter(|l| l.role == LoadRole::Wanted);
     let per = |l: &JobLoad| match l.acts {
@@ -278,7 +279,7 @@ fn in_order(job: &Job, laid: Vec<Gauge>, channels: &[String]) -> Result<Vec<Gaug
     Ok(out)
 }
 
-/// No finer mesh was solved: what is assumed instead.
+/// Returns the finding that no finer mesh was solved, with the assumption that is used instead.
 fn mesh_unknown(job: &Job, why: &str) -> Finding {
     let stated = job
         .measured

@@ -11,7 +11,7 @@ use crate::reconcile::strain::{MassSignature, NuisanceLoad};
 use crate::strain_chain::unit_loads;
 use crate::units::KILO;
 
-/// Side loads and moments that a wheel may bring besides the load asked for.
+/// Side loads and moments that a wheel may transmit in addition to the wanted load.
 const BESIDES: [Component; 5] = [
     Component::FX,
     Component::FY,
@@ -52,7 +52,7 @@ impl SignatureLoads {
         let mut loads = columns.clone();
         let mut besides = Vec::new();
         for (name, grid) in &wheels {
-            // A side load that the job has as a nuisance load is no effect that is missing.
+            // A side load that is a nuisance load of the job is not a missing effect.
             for c in BESIDES
                 .into_iter()
                 .filter(|c| !has_nuisance(job, model, *grid, *c))
@@ -141,8 +141,8 @@ impl SignatureLoads {
         }
     }
 
-    /// Microstrain a degree, everywhere and along the deck's pattern: mechanical strain from the model, and what the gauge shows of heat
-    /// besides (`apparent`, `rises` the pattern where each gauge sits).
+    /// Returns the strain per degree in microstrain, for an even temperature and for the deck's temperature pattern. It is the mechanical strain of
+    /// the model plus the apparent strain of the gauge (`apparent`). `rises` is the temperature of the pattern at each gauge.
     pub(super) fn thermal_strain(
         &self,
         heated: &UnitTemperatureModel,
@@ -198,8 +198,8 @@ pub(super) fn unit(job: &Job, grid: GridIx, component: Component, size: f64) -> 
 struct JobLoads {
     /// Name and grid of each wanted load.
     wheels: Vec<(String, GridIx)>,
-    /// Columns of the influence matrix: each of these loads per kN or kN m, then the payload per kg: its weight, and the moments that
-    /// moving it by a metre forward and to the left brings (W dx about y, -W dy about x).
+    /// Columns of the influence matrix: each of these loads per kN or kN m, then the payload per kg. The payload columns are its weight, and the
+    /// moments of a move by a metre (W dx about y, -W dy about x). Positive is forward and to the left.
     columns: Vec<UnitLoad>,
     nuisance: Vec<JobNuisance>,
 }
@@ -216,7 +216,8 @@ struct JobNuisance {
     set: Option<u32>,
 }
 
-/// The loads as every command has them, in the axes of `cid`; those at the payload's grid are left out, since the runs note the payload.
+/// Returns the loads of the job in the axes of `cid`, as in every command. Loads at the payload's grid are left out, because the runs file records
+/// the payload.
 fn job_loads(job: &Job, model: &Model) -> Result<JobLoads, Faults> {
     let mut out = JobLoads {
         wheels: Vec::new(),
@@ -279,13 +280,13 @@ fn job_loads(job: &Job, model: &Model) -> Result<JobLoads, Faults> {
     }
     Faults::check(faults)?;
     let weight = job.gravity_m_s2() / KILO;
-    // Without a payload grid its columns stand for nothing and are blanked.
+    // Without a payload grid, the payload columns have no meaning and are blanked.
     let first = out.wheels.first().map_or(GridIx(0), |w| w.1);
     let at = payload.unwrap_or(first);
     out.columns.push(unit(job, at, Component::FZ, -weight));
     out.columns.push(unit(job, at, Component::MY, weight));
     out.columns.push(unit(job, at, Component::MX, -weight));
-    // Bending is linear in the place: the product term stands for nothing and is blanked.
+    // Bending is linear in the place. The column of the product term has no meaning and is blanked.
     out.columns.push(unit(job, at, Component::MX, -weight));
     Ok(out)
 }

@@ -1,8 +1,8 @@
-//! Strain that heat gives the structure itself, from the model: a temperature set of the deck, and expansion that differs by material.
+//! Thermal strain of the structure from the model: a temperature set of the deck, and expansion that differs by material.
 //!
-//! A self-compensated gauge reads the mechanical strain; what it reads of the expansion besides is the apparent strain of the job. A
-//! linear temperature field strains no free structure of one material, so a gradient must come from the analyst's own set (sun on one
-//! flange, a hot exhaust).
+//! A self-compensated gauge reads the mechanical strain. The job states the apparent strain that the gauge reads in addition. A linear temperature
+//! field causes no strain in a free structure of one material. A gradient must therefore come from the analyst's own set (sun on one flange, a hot
+//! exhaust).
 
 use crate::fe::UnitLoad;
 use crate::fe::strain_tensor::Surface;
@@ -22,7 +22,7 @@ pub(super) const NOTHING: f64 = 0.02;
 pub(super) struct UnitTemperatureModel {
     /// The deck's model, synthetic sets added.
     pub(super) model: Model,
-    /// A degree everywhere, where materials expand differently.
+    /// Strain for one degree everywhere, if materials expand differently.
     pub(super) even: Option<UnitLoad>,
     /// One degree between the coldest and the warmest place of the deck's set.
     pub(super) pattern: Option<UnitLoad>,
@@ -32,7 +32,7 @@ pub(super) struct UnitTemperatureModel {
 
 impl UnitTemperatureModel {
     /// # Errors
-    /// A set that the deck lacks, or that holds one temperature only.
+    /// A set that the deck lacks, or that contains only one temperature.
     pub(super) fn from_job(job: &Job, model: &Model) -> Result<Self, Faults> {
         let top = |sids: Vec<u32>| sids.into_iter().max().unwrap_or(0);
         let free = top(model.temperatures.iter().map(|t| t.sid).collect())
@@ -67,7 +67,7 @@ impl UnitTemperatureModel {
         Ok(out)
     }
 
-    /// The pattern where each gauge sits: on its side of a shell, else the mean of the ends of its bar.
+    /// Returns the pattern at each gauge: on its side of a shell, or the mean of the ends of its bar.
     pub(super) fn rises(&self, gauges: &[Gauge]) -> Vec<f64> {
         let Some(set) = &self.shape else {
             return vec![0.0; gauges.len()];
@@ -208,8 +208,8 @@ fn extremes(model: &Model, set: &TemperatureSet) -> [f64; 2] {
         })
 }
 
-/// A `[[load]]` entry of the deck's temperature set, `role = "nuisance"`, where `thermal_gradient` was named; `usual`: degrees between
-/// its coldest and warmest place, one standard deviation.
+/// Returns a `[[load]]` entry of the deck's temperature set, `role = "nuisance"`, if `thermal_gradient` was named. `usual` is the difference in
+/// degrees between its coldest and warmest place, one standard deviation.
 pub(super) fn entry(job: &Job, model: &Model, effects: &[NamedEffect]) -> Option<Value> {
     let sid = job.reconcile.as_ref()?.temperature_set?;
     let usual = effects.iter().find_map(|e| match &e.extension {
@@ -229,7 +229,7 @@ pub(super) fn entry(job: &Job, model: &Model, effects: &[NamedEffect]) -> Option
     Some(Value::Table(t))
 }
 
-/// Whether an even temperature strains the structure: its materials expand differently, or one of them with its direction.
+/// Returns whether an even temperature strains the structure. Its materials then expand differently, or one of them expands differently by direction.
 fn expands_unevenly(model: &Model) -> bool {
     let mut seen: Option<f64> = None;
     let mut same = |alpha: f64| {

@@ -119,10 +119,10 @@ fn from_table(
 }
 
 impl DeckFrame {
-    /// Signatures of all hypotheses of a job with a deck.
+    /// Computes the signatures of all hypotheses of a job with a deck.
     ///
     /// # Errors
-    /// Tables that can't be read, edits of what the deck lacks, what stops the solver.
+    /// Tables that can't be read, edits of items that the deck lacks, and errors of the solver.
     pub(super) fn compute_signatures(
         &self,
         inputs: &mut Inputs,
@@ -175,7 +175,7 @@ impl DeckFrame {
                 }
                 DeckStiffnessChange::Bush(element.to_string(), factor)
             }
-            // A table is no change of the deck.
+            // A table does not change the deck.
             EffectSource::Signature(_) => return Ok(vec![0.0; self.base.len()]),
         };
         let mut changes = self.changes_by(job, &[changed])?;

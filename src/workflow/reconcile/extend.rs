@@ -21,7 +21,7 @@ use crate::reconcile::{NamedEffect, Outcome};
 /// File name of the job.
 const JOB: &str = "job_extended.toml";
 
-/// Why an effect can't be put into the model of this job; `None` where it can.
+/// Returns why an effect can't be added to the model of this job; `None` if it can be added.
 fn out_of_reach(job: &Job, e: &NamedEffect, deck: Option<&DeckFrame>) -> Option<&'static str> {
     let moved = |c: &Correction| matches!(c, Correction::PositionMm(_));
     match (&e.extension, deck) {
@@ -109,7 +109,7 @@ pub(super) fn extend_model(
         work.findings.push(effect_not_in_model(&e.id, why));
         return Ok(None);
     }
-    // The payload's place is moved in the model, for all runs to come, as far as the model can say it.
+    // The place of the payload is corrected in the model for all later runs, as far as the model can express it.
     let moved = payload_moved(frame, effects, deck.is_some());
     let is_moved = |e: &&NamedEffect| {
         matches!(e.extension, Extension::PayloadOffset { .. })
@@ -175,7 +175,7 @@ fn weights_in(
     Ok(out)
 }
 
-/// Readings less what the weights of named masses gain by the deck that is written.
+/// Returns the readings minus the change of the strain of the named masses' weights by the written deck.
 fn less_gains(
     mut values: Vec<f64>,
     frame: &StrainFrame,
@@ -206,7 +206,7 @@ enum PositionCorrection {
     Signature { dx: f64, dy: f64 },
     /// By another nominal x, m, from which every run's x counts.
     Origin { x_m: f64 },
-    /// In what is noted of every run.
+    /// In the recorded position of every run.
     InNotes,
 }
 
@@ -277,7 +277,7 @@ fn deck_with(job: &Job, deck: &DeckFrame, outcome: &Outcome) -> DeckEditOutcome 
         .map_or(DeckEditOutcome::Refused, DeckEditOutcome::Deck)
 }
 
-/// Does an effect change what was noted of runs?
+/// Returns whether an effect changes the recorded data of runs.
 fn changes_notes(e: &Extension) -> bool {
     use Extension::{LoadScale, PayloadOffset, RunExchange, RunRecord};
     matches!(
@@ -290,7 +290,7 @@ fn changes_notes(e: &Extension) -> bool {
 fn runs_with(frame: &StrainFrame, effects: &[NamedEffect], state: &StrainState) -> ExtendedRuns {
     let (n_l, n_c) = (frame.n_loads(), frame.n_columns().max(1));
     let rows = || state.columns.chunks_exact(n_c);
-    // Columns of the payload are its mass times 1, x, y.
+    // The payload columns are its mass times 1, x and y.
     let acting = |row: &[f64]| match row.get(n_l..n_l + 3) {
         Some([m, mx, my]) if *m > 0.0 => [*m, mx / m, my / m],
         _ => [0.0; 3],
@@ -338,7 +338,7 @@ fn payload_noted(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<[f64; 3]> 
     out
 }
 
-/// S with effects in it and with the loads that were left out; `None` where it stays as it is.
+/// Returns S with the effects and with the loads that were left out; `None` if S does not change.
 fn sensitivity_with(
     frame: &StrainFrame,
     outcome: &Outcome,
@@ -393,7 +393,7 @@ fn nuisance(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<(String, Vec<f6
         let found = |k: usize| e.size.get(k).copied();
         let largest = e.size.iter().copied().fold(0.0, f64::max);
         for (k, (name, usual)) in loads.iter().enumerate() {
-            // What was found, where there is one size a load; else what is usual, scaled up to what was found at most.
+            // A single load has the size that was found. Each of several loads has its usual size, or the largest size found if that is larger.
             let size = if loads.len() == 1 {
                 found(k).unwrap_or(*usual)
             } else {

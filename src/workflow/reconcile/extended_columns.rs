@@ -18,7 +18,7 @@ pub struct ExtendedColumn {
     pub values: Vec<f64>,
 }
 
-/// Columns of S: the wanted loads, those that the job knows besides, those that were left out.
+/// Returns the columns of S: the wanted loads, the other loads of the job, and the loads that were left out.
 pub fn sensitivity_columns(job: &Job, frame: &StrainFrame, s: &ExtendedS) -> Vec<ExtendedColumn> {
     let Some(given) = &job.sensitivity else {
         return Vec::new();

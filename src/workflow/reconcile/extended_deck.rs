@@ -19,8 +19,8 @@ use nastran::cards::{Bush, Orientation, Pbush};
 pub(super) type NamedStiffness = (StiffnessOf, String, f64);
 
 impl DeckFrame {
-    /// The deck with zones thickened, joints changed, masses and a load set of side loads added, in one file, each edited card behind a
-    /// comment; `None` where nothing changes or it can't be written.
+    /// Returns the deck in one file, with thickened zones, changed joints, added masses and a load set of side loads. A comment precedes each edited
+    /// card. Returns `None` if nothing changes or if the deck can't be written.
     pub(super) fn extend_deck(
         &self,
         job: &Job,
@@ -129,7 +129,7 @@ impl DeckFrame {
         let others = others.chain(c.psolids.iter().map(|p| p.card.id));
         let others = others.chain(c.pelas.iter().map(|p| p.card.id));
         let highest = others.chain(c.pbushes.iter().map(|p| p.card.id)).max();
-        // Above all others, and another one for every bush.
+        // The id is above all others, and is different for every bush.
         let id = highest?.checked_add(bush.card.id)?;
         edits.insert_cards(
             deck,

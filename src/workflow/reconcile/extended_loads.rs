@@ -1,5 +1,4 @@
-//! Loads that the extended job of a deck asks for as well: side loads at the wheels that were named, and the payload, which strains
-//! the structure in every run.
+//! Additional loads of the extended job of a deck: side loads at the named wheels, and the payload, which strains the structure in every run.
 
 use crate::job::{Component, Job, LoadActs};
 use crate::reconcile::NamedEffect;
@@ -67,7 +66,7 @@ pub(super) fn side_loads(job: &Job, effects: &[NamedEffect]) -> Vec<SideLoad> {
     out
 }
 
-/// Sizes of side loads, one a component, in words.
+/// Returns the sizes of side loads as text, one a component.
 pub(super) fn sizes_by_component(sizes: &[f64]) -> String {
     let word = |(c, size): (&Component, &f64)| {
         let unit = match c.is_force() {
@@ -124,7 +123,7 @@ pub(super) fn entries(job: &Job, frame: &StrainFrame, side: &[SideLoad]) -> Vec<
         && heaviest > 0.0
         && !taken(grid)
     {
-        // `recover` knows the payload of each run from its notes: the sizes are those of what the notes leave open.
+        // `recover` reads the payload of each run from the runs file. These sizes cover its remaining uncertainty.
         let weight = heaviest * job.gravity_m_s2() / KILO;
         let placed = frame.payload.iter().any(|p| p[1] != 0.0 || p[2] != 0.0);
         let off = if placed { NOTED_PLACE_M } else { OFF_GRID_M };

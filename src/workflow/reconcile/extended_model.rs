@@ -103,7 +103,7 @@ pub struct ExtendedS {
     pub influence: Vec<f64>,
     /// Whether the influence is another than the job's: then the payload's signature is, too.
     pub changed: bool,
-    /// Loads that the job knows besides: name, microstrain per unit by gauge.
+    /// Other loads of the job: name, microstrain per unit by gauge.
     pub known: Vec<(String, Vec<f64>)>,
     /// Loads that were left out: name, microstrain per kN or kN m (or degree) by gauge, usual size in these.
     pub left_out: Vec<(String, Vec<f64>, f64)>,

@@ -17,10 +17,10 @@ pub(super) struct FrameColumns {
 }
 
 impl FrameColumns {
-    /// `sensitivity` is that of the job.
+    /// Reads the rows of the channels from `sensitivity`, the S of the job.
     ///
     /// # Errors
-    /// Channels that S has no row for.
+    /// Channels that have no row in S.
     pub(super) fn from_sensitivity(
         job: &Job,
         sensitivity: Sensitivity,
@@ -64,7 +64,7 @@ impl FrameColumns {
         self.wanted_loads().map(one).collect()
     }
 
-    /// The loads that are there and not asked for; their size is what the job expects.
+    /// Returns the loads of S that are not wanted, with the size that the job expects.
     pub(super) fn nuisance(&self) -> Vec<NuisanceLoad> {
         let loads = self.sensitivity.loads.iter().enumerate();
         let one = |(k, l): (usize, &Load)| NuisanceLoad {
@@ -75,7 +75,7 @@ impl FrameColumns {
         loads.filter(|l| !l.1.wanted).map(one).collect()
     }
 
-    /// How far a calibrated S may be off, in the wanted loads.
+    /// Returns the error of a calibrated S in the wanted loads.
     pub(super) fn calibrated_uncertainty(&self) -> Option<Uncertainty> {
         let of_channels = self.sensitivity.uncertainty.as_ref()?.of_gauges(&self.rows);
         let loads: Vec<(usize, f64)> = self.wanted_loads().map(|k| (k, self.scales[k])).collect();

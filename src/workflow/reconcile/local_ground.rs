@@ -97,7 +97,7 @@ impl<'a> Ground<'a> {
             };
             let mut far: Vec<f64> = self.off.iter().map(|p| (p - m).norm()).collect();
             far.sort_by(f64::total_cmp);
-            // Between two gauges that fail together before beyond either.
+            // A shell between two gauges that disagree comes before a shell beyond either gauge.
             far.iter().take(2).sum()
         };
         shells.sort_by(|a, b| key(a).total_cmp(&key(b)));
@@ -114,8 +114,8 @@ impl<'a> Ground<'a> {
         out
     }
 
-    /// Regions of a third of the gauges' distance round the gauges that disagree, then fewer that are wider: a section of a member that is
-    /// weaker over several gauges is found by growing no small region.
+    /// Returns regions of a third of the gauges' distance near the gauges that disagree, then fewer and wider regions. A section of a member that is
+    /// weaker over several gauges can't be found by growing a small region.
     pub(super) fn first_regions(&self, n: usize) -> Vec<Region> {
         let mut out: Vec<Region> = Vec::new();
         for (k, width) in WIDTHS.into_iter().enumerate() {

@@ -1,8 +1,8 @@
 //! Small regions of shells whose stiffness may be wrong, near gauges that disagree: a crack, a loose joint, a missing patch.
 //!
-//! A region is the shells within a radius of one of them, all its moduli times one factor. Regions near the gauges that disagree are ranked by the
-//! reduction of the residual with one amplitude each. Their signatures come to first order from adjoint solutions (one factor for all). The best
-//! regions are moved, widened and narrowed. The leading ones are solved at half their stiffness, and the best of these join the library's effects.
+//! A region contains the shells within a radius of a shell, and one factor scales all its moduli. Regions near the gauges that disagree are ranked by
+//! the reduction of the residual with one amplitude each. Their signatures come to first order from adjoint solutions (one factor for all). The best
+//! regions are moved, widened and narrowed. The leading regions are solved at half their stiffness, and the best of these join the library's effects.
 
 use super::deck_frame::DeckFrame;
 use super::influence::{adjoint, blank_payload, of_solver};
@@ -48,7 +48,7 @@ struct TrialRegion {
 
 /// Returns the gauges near which a region is searched, if nothing explains the gap or if several gauges would each be at fault; otherwise none.
 pub(super) fn gauges_that_disagree(outcome: &Outcome) -> Vec<String> {
-    // Where a smooth error of the model stands in for names, those that the names blame.
+    // If a smooth model error replaces named effects, the gauges of these effects count too.
     let attempt = outcome.best_attempt.iter().chain(&outcome.replaced);
     let at_fault: Vec<&String> = attempt.flat_map(read_otherwise).collect();
     if outcome.verdict != Verdict::Unknown && at_fault.len() < 2 {
@@ -79,7 +79,8 @@ fn read_otherwise(e: &NamedEffect) -> Vec<&String> {
 }
 
 impl DeckFrame {
-    /// Signatures of the regions that take most of what the gauges `off` read besides; kept by place for [`DeckFrame::shells_of_region`].
+    /// Returns the signatures of the regions that explain most of the residual of the gauges `off`. The regions are kept by place for
+    /// [`DeckFrame::shells_of_region`].
     pub(super) fn regions_round(
         &mut self,
         job: &Job,
@@ -140,7 +141,7 @@ impl DeckFrame {
             .collect())
     }
 
-    /// Displacements under the job's loads and for what the gauges read.
+    /// Solves the displacements under the job's loads, and the adjoint displacements of the gauge readings.
     fn adjoint(&self, job: &Job, ground: &Ground<'_>) -> Result<Readings<'_>, Faults> {
         let mut counted: Vec<usize> = (0..self.gauges.len()).collect();
         counted.sort_by(|a, b| {

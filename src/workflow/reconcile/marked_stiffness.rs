@@ -1,4 +1,4 @@
-//! Where a stiffness that is off lies on the deck's model.
+//! Location of a wrong stiffness on the deck's model.
 
 use super::deck_frame::DeckFrame;
 use super::described_effects::effect_of;

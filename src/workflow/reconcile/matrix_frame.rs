@@ -17,7 +17,7 @@ use crate::reconcile::strain::{
 use crate::strain_chain::read_given;
 use crate::units::{KILO, Quantity};
 
-/// Ratio of the transverse to the axial strain where a table gives the axial one alone: a rail flange in bending.
+/// Ratio of the transverse to the axial strain if a table contains only the axial strain: a rail flange in bending.
 const POISSON: f64 = 0.29;
 
 /// Reads everything that `[sensitivity]` names. `channels` are the gauges in the order of the strain file.
@@ -77,7 +77,7 @@ struct Tables<'a> {
     job: &'a Job,
     signatures: &'a Signatures,
     channels: &'a [String],
-    /// Name of each load, and of its column: tables name their columns as that of S does.
+    /// Name of each load, and of its column in S. Tables use the same column names.
     columns: Vec<(String, String)>,
     /// Factors to kN, kN m, kg and m, in which the frame counts.
     per_kn: f64,
@@ -191,7 +191,7 @@ impl<'a> Tables<'a> {
         };
         let t = self.read(inputs, file)?;
         let names = self.loads_and_payload();
-        // Columns as far as the table goes: payload columns may end with b_dx.
+        // Columns are read as far as the table contains them: the payload columns may end with b_dx.
         let known: Vec<&(String, f64)> = names
             .iter()
             .take_while(|(c, _)| t.has(&format!("exx_{c}")))
@@ -213,7 +213,7 @@ impl<'a> Tables<'a> {
         let (n_l, n_c) = (self.columns.len(), self.n_columns());
         let wired = |(g, plane): (usize, PlaneStrainRow)| match gauges[g].wiring {
             Wiring::Quarter => plane,
-            // A bridge: its own reading along its axis, with the shear of both sides cancelled.
+            // A bending bridge reads the strain along its axis, and the shear of both sides cancels.
             Wiring::Bending => (0..n_l + 2)
                 .map(|c| influence[g * n_c + c])
                 .map(|a| [a, -POISSON * a, 0.0])
@@ -239,7 +239,7 @@ impl<'a> Tables<'a> {
         Ok(loads)
     }
 
-    /// Strain of heat, even and along its gradient; what the job has as a nuisance load is no effect that is missing.
+    /// Reads the thermal strain of an even temperature and of a gradient. A nuisance load of the job is not a missing effect.
     fn read_thermal_strain(&self, inputs: &mut Inputs) -> Result<[Option<Vec<f64>>; 2], Faults> {
         let Some(file) = &self.signatures.thermal else {
             return Ok([None, None]);

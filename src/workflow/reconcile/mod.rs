@@ -1,4 +1,4 @@
-//! `reconcile`: where simulation and measurement disagree, which effect is missing, and the model with the effect in it.
+//! `reconcile`: where simulation and measurement disagree, which effect is missing, and the model with the effect.
 
 mod added_motion;
 mod answer;

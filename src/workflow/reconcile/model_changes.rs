@@ -164,7 +164,7 @@ impl EffectPlaceInputs<'_> {
 
     /// Returns the `[[correction]]` entry of a channel that undoes `correction`, with the value in the entries of the job.
     fn entry(&self, gauge: &str, correction: &Correction) -> Place {
-        // A fault that acts before an exchange stands with the channel it is exchanged with.
+        // A fault that acts before an exchange is entered for the channel with which its channel is exchanged.
         let has = |c: &&ReadingCorrection, name: &str| {
             c.gauge == name || c.exchanged_with.as_deref() == Some(name)
         };
@@ -184,7 +184,7 @@ impl EffectPlaceInputs<'_> {
             };
             let before = channel_of(&self.job.corrections, name);
             let is_first = !self.job.corrections.iter().any(|c| c.gauge == name);
-            // Several entries of a channel: their factors are multiplied, their offsets and angles added.
+            // If a channel has several entries, their factors are multiplied, and their offsets and angles are added.
             let with = |key: &str, [old, new, both]: [f64; 3]| {
                 let text = |v: f64| match key {
                     "sign" => format!("{v:.0}"),
@@ -227,7 +227,7 @@ impl EffectPlaceInputs<'_> {
         let (key, old) = match correction {
             Correction::ExchangedWith(_) => ("exchanged_with", "none"),
             Correction::Ignore => ("ignore", "false"),
-            // Two effects that undo each other: no entry is left of them.
+            // Two effects that cancel each other leave no entry.
             Correction::Sign
             | Correction::Gain(_)
             | Correction::Offset(_)

@@ -26,7 +26,7 @@ pub(super) struct ModelPart {
     pub(super) as_modelled: Option<Vec<f64>>,
     /// Errors that every gauge may have.
     pub(super) scatter: Vec<Scatter>,
-    /// How far a calibrated S may be off.
+    /// Error of a calibrated S.
     pub(super) learnt: Option<Uncertainty>,
     /// Noise of the channels, where it differs or is correlated.
     pub(super) gauge_noise: Option<GaugeNoise>,

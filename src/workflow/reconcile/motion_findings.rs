@@ -10,7 +10,7 @@ use crate::units::number;
 /// Share of the measured quantity that noise and tolerances leave, from which nothing is compared at all.
 const DROWNED: f64 = 1.0;
 
-/// Notes what is to be known of the verdict.
+/// Adds the findings on the verdict.
 pub(super) fn findings(work: &mut Work, outcome: &MotionOutcome) {
     if outcome.verdict == Verdict::Unknown {
         work.findings.push(

@@ -24,7 +24,7 @@ pub(super) fn edit(section: &mut Table, frame: &MotionFrame, outcome: &MotionOut
         _ => vec![],
     };
     if terms.is_empty() {
-        // What a job without terms stands for.
+        // A job without terms has stiffness and damping of every link.
         for l in &frame.vehicle.links {
             terms.extend(["k", "c"].map(|t| format!("{t}_{}", l.name)));
         }

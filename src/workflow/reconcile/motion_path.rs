@@ -225,7 +225,7 @@ fn is_dead(effect: &MotionEffect) -> bool {
     effect.id.starts_with("dead_channel")
 }
 
-/// The frame of a job: one side of an axle is compared, the other is a witness where it was measured.
+/// Returns the frame of a job. One side of an axle is compared. The other side is a witness if it was measured.
 fn frame(section: &VehicleJob, records: &VehicleRecords, stop: Stop) -> MotionFrame {
     let q = &records.task;
     let mut model = q.vehicle.clone();
@@ -294,7 +294,7 @@ fn compute_motion(
     Some((found, moved))
 }
 
-/// The analyst's vehicle as identified; none where a channel has no signal, as the vehicle would be fitted to it.
+/// Identifies the analyst's vehicle. Returns `None` if a channel has no signal, because the vehicle would be fitted to it.
 fn identify_vehicle(records: &VehicleRecords, outcome: &MotionOutcome) -> Option<Identification> {
     let is_dead = outcome.effects.iter().any(is_dead);
     let found = || identify(&records.task, &records.data, records.hold_out.as_ref()).ok();

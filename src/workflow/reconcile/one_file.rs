@@ -2,8 +2,8 @@
 
 use nastran::bdf::{Deck, MemoryLoader, read_deck};
 
-/// Returns the deck in one file. `files` are its sources in the order in which they were met, edited. Returns `None` if the joined text does not read
-/// as the same deck (for example with a conditional INCLUDE), or if a file of an INCLUDE is missing.
+/// Returns the deck in one file. `files` are its edited sources in the order in which they were read. Returns `None` if the joined text does not read
+/// as the same deck (for example with a conditional INCLUDE). Also returns `None` if a file of an INCLUDE is missing.
 pub(super) fn one_file(deck: &Deck, files: Vec<(String, Vec<u8>)>) -> Option<Vec<u8>> {
     let mut rest = files.into_iter().map(|f| f.1);
     let main = rest.next()?;
@@ -16,7 +16,7 @@ pub(super) fn one_file(deck: &Deck, files: Vec<(String, Vec<u8>)>) -> Option<Vec
     if rest.next().is_some() {
         return None;
     }
-    // Edits replace cards one for one or add some: no kind of card may get rarer.
+    // Edits replace cards one for one or add cards, so that the number of cards of a kind must not decrease.
     let again = read_deck("joined", out.clone(), &mut MemoryLoader::default());
     let kept = deck.counts.iter().all(|(name, n)| {
         name.eq_ignore_ascii_case("INCLUDE") || again.counts.get(name).is_some_and(|m| m >= n)

@@ -4,7 +4,7 @@ use crate::gauge::{Gauge, on_refined};
 use crate::model::{Model, RefinedModel};
 use crate::strain_chain::refined_mesh;
 
-/// The finer model with the gauges as drawn, turned by 45 and by 90 degrees.
+/// The finer model with the gauges at their nominal positions, and turned by 45 and by 90 degrees.
 pub(super) struct RefinedGaugeModel {
     pub(super) refined: RefinedModel,
     pub(super) laid: [Vec<Gauge>; 3],

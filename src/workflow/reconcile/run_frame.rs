@@ -11,7 +11,7 @@ use crate::reconcile::Observations;
 use crate::reconcile::strain::{PayloadWeight, StrainFrame, angle_scatter};
 use crate::units::{KILO, Quantity};
 
-/// Noise of a measured wheel force where the runs file states none: nothing is assumed better than this, kN.
+/// Noise of a measured wheel force if the runs file states no noise, kN. No smaller noise is assumed.
 const LOAD_NOISE_KN: f64 = 0.05;
 
 /// Joins the model part with the measurements.
@@ -119,7 +119,7 @@ pub(super) fn frame(
         scatter: part.scatter,
         learnt: part.learnt,
     };
-    // From a deck it is known at the gauges themselves, and there already.
+    // With a deck, the scatter of the angle is already computed at the gauges.
     let stated = job.reconcile.as_ref().and_then(|r| r.angle_tolerance_deg);
     if let (Some(_), Some(degrees)) = (&job.sensitivity, stated.filter(|d| *d > 0.0)) {
         let scatter = angle_scatter(&frame, degrees);

@@ -19,8 +19,8 @@ const JOINT_PRIOR: f64 = 70.0;
 /// Bushes of a deck that names none: more of them are springs of something else.
 const MOST_JOINTS: usize = 12;
 
-/// Factor of a stiffness at a size: a zone counts in percent, a joint in its natural log times 100, an edit of the user's own in its own
-/// size; `None` for a table, which is no stiffness of the deck.
+/// Returns the factor on a stiffness for a size. The size of a zone is in percent, and the size of a joint is its natural log times 100. A user's own
+/// edit has its own size. Returns `None` for a table, which is not a stiffness of the deck.
 pub(super) fn factor(job: &Job, of: StiffnessOf, place: &str, size: f64) -> Option<f64> {
     match of {
         StiffnessOf::Joint | StiffnessOf::Local => Some((size / 100.0).exp()),
@@ -81,8 +81,8 @@ impl DeckFrame {
         Ok(wanted.into_iter().map(signature).collect())
     }
 
-    /// Change of the influence matrix when the stiffness of a zone or a joint changes by `percent` (see [`factor`]), from a solution of the changed
-    /// model on the mesh of the deck.
+    /// Returns the change of the influence matrix when the stiffness of a zone or a joint changes by `percent` (see [`factor`]). The changed model is
+    /// solved on the mesh of the deck.
     pub(super) fn stiffness_change(
         &self,
         job: &Job,

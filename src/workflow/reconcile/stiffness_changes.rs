@@ -43,8 +43,8 @@ impl DeckFrame {
         )
     }
 
-    /// Returns the change of the influence matrix by each change of the deck from one factor, where all gauges lie on shells: exact for bushes, to
-    /// first order for shells. Else as [`Self::changes_by`] does.
+    /// Returns the change of the influence matrix by each change of the deck. If all gauges are on shells, one factor serves for all changes. The
+    /// result is then exact for bushes, and of first order for shells. Otherwise the changes are computed as in [`Self::changes_by`].
     pub(super) fn small_changes_by(
         &self,
         job: &Job,

@@ -6,11 +6,11 @@ use crate::host::work::Work;
 use crate::reconcile::{Outcome, SmoothAt, Verdict};
 use crate::units::number;
 
-/// Gap over readings, and over its floor, from which numbers are in another unit: the model makes ten times what was read, and no effect of
-/// the library does that.
+/// Gap over readings, and gap over expected residual, above which numbers are in another unit. The model then gives ten times the readings, and no
+/// effect of the library does that.
 const OTHER_UNIT: f64 = 10.0;
 
-/// The finding on a model that makes far more than was read.
+/// Returns the finding on a model that gives far more strain than the readings.
 fn far_above_readings(outcome: &Outcome) -> Option<Finding> {
     let gap = &outcome.gap;
     let far = gap.before > OTHER_UNIT && gap.before > OTHER_UNIT * gap.floor;
@@ -125,7 +125,7 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
     }
 }
 
-/// The curve in words: from the least factor to the greatest.
+/// Returns the finding on the curve, from the smallest to the largest factor.
 fn smooth_curve_finding(outcome: &Outcome) -> Finding {
     let by_factor = |a: &&SmoothAt, b: &&SmoothAt| a.factor.total_cmp(&b.factor);
     let at = |s: Option<&SmoothAt>| {

@@ -1,4 +1,4 @@
-//! The named effects of strain in a job: names of the files that hold them, loads that were left out.
+//! Named effects of strain in a job: names of the files that contain them, and loads that were left out.
 
 use super::answer::StrainPart;
 use super::channel_corrections::entry;
@@ -50,7 +50,7 @@ pub(super) fn edit(table: &mut Table, job: &Job, found: &StrainPart, extended: &
     if ground > 0.0
         && let Some(runs) = &job.runs
     {
-        // What was put into kN stays in kN.
+        // The extended runs file is in kN.
         let unit = match extended.runs {
             Some(_) => KILO,
             None => runs.units.force.si,
@@ -110,7 +110,7 @@ fn drop_accepted(table: &mut Table, accepted: &[&str]) {
     if let Some(Value::Array(list)) = section.get_mut("effects") {
         list.retain(|e| !is_one(Some(e)));
         if list.is_empty() {
-            // An empty list is that of all effects.
+            // An empty list would mean all effects.
             section.remove("effects");
         }
     }
@@ -120,7 +120,7 @@ fn drop_accepted(table: &mut Table, accepted: &[&str]) {
 fn edit_sensitivity(table: &mut Table, job: &Job, frame: &StrainFrame, s: &ExtendedS) {
     set(table, "sensitivity", "file", SENSITIVITY);
     if let Some(Value::Table(section)) = table.get_mut("sensitivity") {
-        // Names and units stay those of the job, which its other tables share.
+        // Names and units remain as in the job, because its other tables use them.
         let columns: Table = sensitivity_columns(job, frame, s)
             .into_iter()
             .map(|c| (c.load, Value::String(c.column)))
@@ -136,7 +136,7 @@ fn edit_sensitivity(table: &mut Table, job: &Job, frame: &StrainFrame, s: &Exten
         for (name, _, size) in &s.left_out {
             let mut t = Table::new();
             t.insert("name".into(), Value::String(name.clone()));
-            // Where S is given a load acts nowhere on a model: grid and component stand for nothing but its kind.
+            // With a given S, a load acts at no grid of a model. Grid and component only state whether it is a force or a moment.
             t.insert("grid".into(), Value::Integer(0));
             t.insert(
                 "component".into(),
@@ -164,7 +164,7 @@ fn put_readings(table: &mut Table, job: &Job, frame: &StrainFrame) {
         }
     }
     table.remove("correction");
-    // A turned gauge is no matter of its readings.
+    // The readings don't contain the angle of a turned gauge, so its correction stays.
     let turned = job.corrections.iter().filter_map(|c| {
         let mut t = Table::new();
         t.insert("gauge".into(), Value::String(c.gauge.clone()));
@@ -199,7 +199,7 @@ fn set_key(table: &mut Table, section: &str, key: &str, value: Value) {
     }
 }
 
-/// The noise of the runs file, stated in its units, in those of the extended file: kN, kN m, kg, m.
+/// Converts the noise of the runs file from its units to the units of the extended file: kN, kN m, kg, m.
 fn in_units_of_the_extended_file(runs: &mut Table, job: &Job) {
     let (Some(stated), Some(Value::Table(noise))) = (&job.runs, runs.get_mut("noise")) else {
         return;

@@ -85,7 +85,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciliation, Fault
         }
     }
     if let Some(deck) = &deck {
-        // A stiffness is solved again at the size that was found, until it stays.
+        // The model is solved again at the size of stiffness that was found, until the size is constant.
         for _ in 0..RESOLVED {
             if !resolve_stiffness(job, work, deck, &mut frame, &outcome)? {
                 break;
@@ -138,7 +138,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciliation, Fault
     })
 }
 
-/// Reads what is compared, as [`answer`] does, as far as no model is solved.
+/// Reads the data of the comparison as [`answer`] does, without solving a model.
 ///
 /// # Errors
 /// Faults of the job and of the files it names.
@@ -158,7 +158,7 @@ pub(super) fn look(job: &Job, work: &mut Work) -> Result<(), Faults> {
     }
 }
 
-/// The verdict on the frame.
+/// Searches the effects and returns the verdict on the frame.
 ///
 /// # Errors
 /// One fault where the work is stopped: the search was cut short then.
@@ -260,7 +260,7 @@ fn is_thickness(job: &Job, of: StiffnessOf, place: &str) -> bool {
 /// Solutions at a size that was found: the second is at the size to a few thousandths.
 const RESOLVED: usize = 2;
 
-/// Adds to the signature of a named stiffness the solution at its size; false where nothing new is to be solved.
+/// Adds the solution at the found size to the signature of a named stiffness. Returns `false` if there is nothing new to solve.
 fn resolve_stiffness(
     job: &Job,
     work: &mut Work,

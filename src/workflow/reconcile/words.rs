@@ -1,4 +1,4 @@
-//! Effects and the verdict in words: on the terminal, on the page and in the extended job, the same for strain and motion.
+//! Text of effects and of the verdict for the terminal, the page and the extended job, in common for strain and motion.
 
 use super::answer::{EffectFound, GapFound, Reconciliation};
 use crate::estimate::NORMAL_95;
@@ -14,7 +14,8 @@ pub fn effect_in_words(e: &EffectFound) -> String {
     }
 }
 
-/// Returns the sizes of an effect, each with the half width of its 95 % interval, and their unit; empty for a cause or a fault without a size.
+/// Returns the sizes of an effect, each with the half width of its 95 % interval, and their unit. The text is empty for a cause or a fault without a
+/// size.
 pub fn size_in_words(e: &EffectFound) -> String {
     let Some(found) = e.size.as_ref().filter(|s| !s.sizes.is_empty()) else {
         return String::new();
@@ -52,7 +53,7 @@ fn clause(e: &EffectFound) -> String {
             )
         }
         ("joint_stiffness" | "local_stiffness", [(v, half)]) => {
-            // Natural log of the stiffness times 100.
+            // The size is the natural log of the stiffness times 100.
             let percent = |log: f64| 100.0 * (0.01 * log).exp_m1();
             let half = 0.5 * (percent(v + half) - percent(v - half));
             format!(
@@ -109,7 +110,7 @@ fn stiffness_in_words(percent: f64, half: f64) -> String {
 }
 
 impl Reconciliation {
-    /// Returns the verdict in words: what, where, how large, how sure, and what to do.
+    /// Returns the verdict as text: what is wrong, where, how large, how certain, and what to do.
     pub(super) fn sentence(&self) -> String {
         let gap = &self.gap;
         match self.verdict {
@@ -143,7 +144,8 @@ impl Reconciliation {
         }
     }
 
-    /// The gauges that the effects explain, in words: those beyond their own floor before and not after, worst first.
+    /// Returns the gauges that the effects explain as text, worst first. Their gap exceeds their own expected residual before the effects, and not
+    /// after them.
     fn gauges_closed(&self) -> String {
         /// Gauges that one sentence names at most.
         const MOST: usize = 4;
@@ -179,7 +181,7 @@ impl Reconciliation {
         })
     }
 
-    /// The nearest explanation where none is identified, and what would settle it.
+    /// Returns the sentence on the nearest explanation, for a gap without an identified effect.
     fn nearest_explanation(&self) -> String {
         let attempt = self.best_attempt.iter().flatten();
         let attempt: Vec<String> = attempt.map(clause).collect();

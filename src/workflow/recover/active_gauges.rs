@@ -35,7 +35,7 @@ pub(super) fn exclude_silent_gauges(
     work.findings.extend(record.findings());
     let found = columns_of(work, named, &record.names, &all.gauges);
     let channel = |g: usize| (found[g], channel_of(corrections, &all.gauges[g]));
-    // Gauges without a column take no part.
+    // Gauges without a column are not used.
     let mut used: Vec<usize> = task
         .estimating
         .iter()

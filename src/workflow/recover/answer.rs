@@ -18,7 +18,7 @@ use crate::units::{MICROSTRAIN, half_width};
 use serde::Serialize;
 use std::sync::Arc;
 
-/// Validation, comparison and sections: results besides the loads.
+/// Results in addition to the loads: validation, comparison and sections.
 #[derive(Default)]
 pub(super) struct AdditionalResults {
     pub validation: Vec<ValidationGauge>,
@@ -44,7 +44,7 @@ pub struct RecoveredLoads {
     /// Loads by section and over the duty cycle, where the job has sections.
     #[serde(flatten)]
     pub sections: Option<Sections>,
-    /// By gauge, what the deck's mesh makes, where the job asks for it: S is without it, and what may be left of it is weighed.
+    /// Mesh error of the deck by gauge, if the job requests it. It is subtracted from S, and its possible remainder is part of the uncertainty.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub mesh_error: Vec<GaugeMeshError>,
     /// S, gauges, model and strain fields.
@@ -262,7 +262,7 @@ pub struct RecordLoad {
 }
 
 impl RecoveredRuns {
-    /// The answer in report units; `units` are those of the loads that the estimates list.
+    /// Builds the answer in report units; `units` are the units of the loads that the estimates list.
     pub(super) fn from_recovery(
         s: &Sensitivity,
         readings: Vec<Readings>,

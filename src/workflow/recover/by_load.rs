@@ -94,7 +94,7 @@ fn of_record(record: &RecoveredRecord) -> Vec<LoadSpan> {
 }
 
 impl States {
-    /// Returns the residual in words: with its ratio to the expected one for runs, whose errors are known one by one.
+    /// Returns the residual as text. For runs, the text contains the ratio to the expected residual, because the errors of each run are known.
     pub(super) fn residual(&self) -> String {
         match self {
             Self::Record(record) => {
@@ -108,7 +108,7 @@ impl States {
                 let dof: usize = runs.runs.iter().map(|r| r.degrees_of_freedom).sum();
                 let rms = number(runs.residual_rms_microstrain);
                 match dof {
-                    // As many loads as readings leave nothing.
+                    // With as many loads as readings there is no residual.
                     0 => "none, with as many loads as readings".to_owned(),
                     n => format!(
                         "{rms} microstrain, {:.1} times expected",

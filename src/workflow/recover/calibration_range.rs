@@ -68,8 +68,8 @@ pub(super) fn of_runs(
     out
 }
 
-/// Returns the findings on a record, of so many samples, whose smallest or largest loads, job units, are beyond the calibration; `loads` are those of
-/// S with a stated range, by number, and `halves` are half widths of the 95 % intervals of a sample.
+/// Returns the findings on a record whose smallest or largest loads, job units, are beyond the calibration. `samples` is the number of its samples.
+/// `loads` are the loads of S with a stated range, by number. `halves` are half widths of the 95 % intervals of a sample.
 pub(crate) fn record_beyond_calibration(
     loads: &[(usize, CalibratedLoad)],
     (file, samples): (&str, u64),
@@ -85,7 +85,7 @@ pub(crate) fn record_beyond_calibration(
         };
         let mut ends = vec![at(max[*l]), at(min[*l])];
         ends.retain(|e| e.value.is_finite());
-        // One record is one run, whichever end is beyond.
+        // A record counts as one run, even if both ends are beyond the calibration.
         let (low, high) = (load.range[0].min(0.0), load.range[1].max(0.0));
         ends.sort_by(|a, b| {
             let beyond = |r: &RunLoad| (r.value - high).max(low - r.value);

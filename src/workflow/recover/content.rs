@@ -4,7 +4,8 @@ use crate::fe::Support;
 use crate::finding::{Finding, Severity};
 use crate::series::content::content_hz;
 
-/// Inertia of elastic motion adds 1 / (1 - r^2) - 1 to the strain at the share r of the first frequency: an eighth at one third.
+/// Largest ratio of frequency content to first frequency. Inertia of elastic motion adds 1 / (1 - r^2) - 1 to the strain at the ratio r. This is an
+/// eighth at one third.
 const SHARE_OF_FIRST_MODE: f64 = 1.0 / 3.0;
 
 /// Content of every load, Hz; `pieces` hold samples of all loads in turn, `sigma` is the noise of each load.
@@ -22,7 +23,7 @@ pub(super) fn content_of_loads(
                     let mut before = 0.0;
                     p.chunks_exact(k)
                         .map(|f| {
-                            // A gap repeats what was there before.
+                            // A gap repeats the last value before it.
                             before = if f[l].is_finite() { f[l] } else { before };
                             before
                         })
@@ -34,7 +35,7 @@ pub(super) fn content_of_loads(
         .collect()
 }
 
-/// The structure that the first mode is of, in words: as it is held where unit loads strain it.
+/// Describes the structure to which the first mode belongs: with the support that it has under the unit loads.
 pub(super) fn structure(support: Support) -> String {
     match support.is_held() {
         true => format!("the structure {}", support.words()),
@@ -42,7 +43,7 @@ pub(super) fn structure(support: Support) -> String {
     }
 }
 
-/// A warning for each load whose content reaches beyond what is recovered.
+/// Returns a warning for each load whose content exceeds the recovered frequencies.
 pub(super) fn check_band(names: &[String], content: &[Option<f64>], up_to_hz: f64) -> Vec<Finding> {
     let beyond = names.iter().zip(content).filter_map(|(name, f)| {
         let f = f.filter(|f| *f > up_to_hz)?;

@@ -1,4 +1,4 @@
-//! Cycles and pseudo-damage of the loads of a record: its samples are read a piece at a time, and those at the ends of cycles once more.
+//! Cycles and pseudo-damage of the loads of a record. Its samples are read piece by piece, and the samples at the ends of cycles are read again.
 
 use super::sink::{RecordHead, Samples};
 use crate::estimate::NORMAL_95;
@@ -120,7 +120,7 @@ impl CycleCountInput<'_> {
         let mut damage = Damage::new(slope, limit);
         let mut ends = [Vec::new(), Vec::new()];
         let columns: Vec<usize> = (0..head.n_loads()).collect();
-        // Its interval is that of a normal error.
+        // The interval of the damage uses the factor of the normal distribution.
         let wider = head.filter.coverage_factor() / NORMAL_95;
         let mut add = |cycle: Cycle| {
             for (end, point) in ends.iter_mut().zip([cycle.from, cycle.to]) {
@@ -134,7 +134,7 @@ impl CycleCountInput<'_> {
                 .zip(&head.units)
                 .map(|((a, b), u)| (b - a) / u.factor)
                 .collect();
-            // The worse known end is that of the change.
+            // The error of the change is the larger one of the errors with the gauges at either end.
             let by_end = [cycle.from, cycle.to].map(|point| {
                 let gain = head.estimate_at(point.at);
                 let ends = [cycle.from.at, cycle.to.at];

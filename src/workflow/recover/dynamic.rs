@@ -18,13 +18,13 @@ use crate::strain_chain::built_in_solver::{ElasticModes, cases_of_job, faults_of
 use crate::strain_chain::deck::DeckModel;
 use serde::Serialize;
 
-/// Modes are solved up to this many times the highest frequency wanted at least, and all that are solved are taken. What the next one answers beyond
-/// its answer at rest is an eighth of that at the highest frequency, and a third of it where the band ends; it is left to the doubt.
+/// Modes are solved up to at least this factor times the highest wanted frequency, and all solved modes are used. The next mode exceeds its
+/// quasi-static response by an eighth at the highest frequency, and by a third at the end of the band. The uncertainty includes this error.
 const MODES_UP_TO: f64 = 3.0;
-/// Modes that are looked for at first, and at most.
+/// Number of modes that the solver searches at first, and at most.
 const FIRST_MODES: usize = 16;
 const MOST_MODES: usize = 256;
-/// How many more modes are looked for than lie in the band if they are as dense as those below.
+/// Factor on the number of modes expected in the band, which assumes that they are as dense as the modes below.
 const MARGIN: f64 = 1.25;
 /// Damping from which an estimate starts; the search tries others.
 const START_DAMPING: f64 = 0.03;
@@ -32,9 +32,10 @@ const START_DAMPING: f64 = 0.03;
 const OFF_BY: f64 = 3.0;
 /// Share of the mean square of the vibration in the residual that the modes may leave: a third of its amplitude.
 const UNEXPLAINED: f64 = 0.1;
-/// Mean square of the residual over that of noise from which it is vibration.
+/// Mean square of the residual over mean square of the noise from which the residual is vibration.
 const OVER_NOISE: f64 = 2.0;
-/// Numbers of a record that are held in memory: 0.8 GB of readings and of what they are off by, and the readings again at rest.
+/// Largest number of values of a record in memory. They are the readings and their errors, 0.8 GB together, and the quasi-static readings in
+/// addition.
 const MOST_NUMBERS: usize = 100_000_000;
 
 /// Vibration that was removed from a record.
@@ -44,7 +45,7 @@ pub struct Motion {
     pub up_to_hz: f64,
     /// Frequencies of the modes used; the intervals contain the effect of further modes.
     pub modes_hz: Vec<f64>,
-    /// The same modes with their damping, and intervals.
+    /// Modes of `modes_hz`, with their damping and intervals.
     pub modes: Vec<ModeInUse>,
     /// Time without known loads at either end of the record and of every gap.
     pub blank_s: f64,
@@ -90,7 +91,7 @@ pub(super) struct QuasiStaticRecord {
 /// Returns the record without the vibration of the structure, if the job asks for it.
 ///
 /// # Errors
-/// A job without a model that could vibrate; a band that does not fit the sampling rate; gauges that don't determine the loads in the band; a record
+/// A job without a model that could vibrate. A band that does not fit the sampling rate. Gauges that don't determine the loads in the band. A record
 /// that is too long.
 pub(super) fn remove_vibration(
     work: &mut Work,
@@ -177,7 +178,7 @@ pub(super) fn remove_vibration(
     }))
 }
 
-/// Samples by which noise is apart where it is independent: white noise of a band up to `f` is so at `1 / (2 f)`.
+/// Returns the number of samples between independent noise values. White noise in a band up to `f` is independent at a spacing of `1 / (2 f)`.
 fn independent_spacing(dynamics: &Dynamics, step_s: f64) -> usize {
     (0.5 / (dynamics.up_to_hz * step_s)).ceil().max(1.0) as usize
 }
@@ -258,7 +259,7 @@ fn dynamics(
         };
         s.gauges.iter().map(at).collect()
     };
-    // A damping that the record determines starts from any value.
+    // If the record determines the damping, any start value is suitable.
     let damping_at = |hz: f64| asked.damping.stated_at(hz).unwrap_or(START_DAMPING);
     let modes = (0..solved.hz.len())
         .map(|j| {
@@ -281,7 +282,7 @@ fn dynamics(
     })
 }
 
-/// The modes of the structure as the cases hold it, up to `end_hz` and beyond, and whether there may be further ones.
+/// Returns the modes of the structure with the support of the cases, up to `end_hz` and beyond, and whether there may be further modes.
 fn modes_up_to(
     work: &mut Work,
     deck: &DeckModel,
@@ -333,8 +334,8 @@ impl ModeInUse {
     }
 }
 
-/// Returns the error that the record contradicts the modes: a frequency or a damping that differs from the stated one by more than its stated
-/// uncertainty, or vibration that no frequency and damping of the modes explains.
+/// Returns the error that the record contradicts the modes. A frequency or a damping then differs from its stated value by more than its stated
+/// uncertainty. Otherwise, no frequency and damping of the modes explains the vibration.
 fn contradiction(stated: &Dynamics, found: &EstimatedModes, file: &str) -> Option<Finding> {
     let off = |(j, by_kind): (usize, &[Option<Deviation>; 2])| {
         let of_kind = |(kind, d): (usize, &Option<Deviation>)| {

@@ -1,5 +1,5 @@
-//! A payload that `[runs]` states is known: its strain is taken from the readings. Where S is given it is that of
-//! `[sensitivity] signatures.payload`; from a deck that of the job's nuisance loads at `[payload] grid`.
+//! Known payload: the strain of a payload that `[runs]` states is subtracted from the readings. With a given S, the strain comes from
+//! `[sensitivity] signatures.payload`. With a deck, it comes from the job's nuisance loads at `[payload] grid`.
 
 use super::task::Task;
 use crate::finding::{Finding, Severity, list_few};
@@ -103,7 +103,8 @@ struct AtGrid {
 }
 
 impl AtGrid {
-    /// The loads of a payload, job units: its weight down, and the moments of a place off the grid (W dx about y, -W dy about x).
+    /// Returns the loads of a payload, job units. They are its weight downward, and the moments of a place off the grid (W dx about y, -W dy about
+    /// x).
     fn loads_of(&self, job: &Job, kg: f64, dx: f64, dy: f64) -> Vec<(usize, f64)> {
         let weight = kg * job.gravity_m_s2();
         let of = |c: Component| match c {
@@ -148,7 +149,7 @@ fn at_grid(task: &Task) -> Option<AtGrid> {
     })
 }
 
-/// Mass, kg, and distance from the nominal place, m, which is `origin` where the job states none.
+/// Returns the mass, kg, and the distance from the nominal place, m. If the job states no nominal place, it is `origin`.
 fn payload_of(job: &Job, row: &RunRow, origin: [f64; 2]) -> Option<(f64, f64, f64)> {
     let length = job.units.length_m();
     let payload = job.payload.as_ref();

@@ -44,7 +44,7 @@ pub fn list_load_columns(job: &Job, s: &Sensitivity) -> Result<ListedLoads, Faul
     Ok(ListedLoads { names, units, sums })
 }
 
-/// Columns and factors; what is wrong and what to do.
+/// Returns the columns and factors of a combination. The error contains what is wrong and what to do.
 fn terms_of(
     combination: &Combination,
     s: &Sensitivity,

@@ -12,8 +12,8 @@ use crate::recovery::reading_plausibility;
 use crate::sensitivity::{Sensitivity, check_separability};
 use crate::strain_chain::JobSensitivity;
 
-/// Reads the measured strain of a job, its zero and the payload that is known, as `recover` does, and judges readings and times; every
-/// fault of them. `sensitivity` is the job's given S, or the names of its gauges without a load where S takes a solution.
+/// Reads the measured strain of a job, its zero and its known payload, as `recover` does. Tests readings and times, and returns every fault.
+/// `sensitivity` is the job's given S. If S needs a solution, it contains only the names of the gauges.
 pub(crate) fn look(
     work: &mut Work,
     job: &Job,
@@ -26,7 +26,7 @@ pub(crate) fn look(
         gauges: Vec::new(),
         mesh_error: Vec::new(),
     };
-    // A model's reference state takes a solution.
+    // A reference state from the model needs a solution.
     let known = match job.model.is_none() && !prepared.sensitivity.loads.is_empty() {
         true => KnownSensitivity::S,
         false => KnownSensitivity::Names,
@@ -40,7 +40,7 @@ pub(crate) fn look(
         Ok(task) => return faults_of(readings(work, &task, known)),
         Err(faults) => faults,
     };
-    // What is wrong with the readings is said beside what is wrong with their zero.
+    // Faults of the readings are reported together with the faults of their zero.
     let mut bare = measured.clone();
     (bare.zero, bare.reference) = (None, Reference::None);
     let mut faults = first.into_list();
@@ -60,11 +60,11 @@ enum KnownSensitivity {
     Names,
 }
 
-/// Reads and judges.
+/// Reads and tests the readings.
 fn readings(work: &mut Work, task: &Task, known: KnownSensitivity) -> Result<(), Faults> {
     let s = &task.prepared.sensitivity;
     if known == KnownSensitivity::S {
-        // A job that is reconciled lists loads that only the runs file tells apart.
+        // A job for `reconcile` may list loads that only the runs file distinguishes.
         if task.job.reconcile.is_none() {
             work.findings
                 .extend(check_separability(&s.without_prior_loads()));
@@ -82,7 +82,7 @@ fn readings(work: &mut Work, task: &Task, known: KnownSensitivity) -> Result<(),
             reading_plausibility::check_signal(&readings, task.errors)
         }
     };
-    // The strain of a reference state that is not in them may be all there is.
+    // The readings don't contain the strain of the reference state, which may be the whole strain.
     let all = known == KnownSensitivity::S || task.measured.reference == Reference::None;
     let holds = |code: &str| all || code != "readings-below-noise";
     work.findings
@@ -90,7 +90,7 @@ fn readings(work: &mut Work, task: &Task, known: KnownSensitivity) -> Result<(),
     Ok(())
 }
 
-/// Gauges that the strain file of a job names, where the job itself names none.
+/// Returns the gauges that the strain file of a job contains, if the job itself names no gauges.
 ///
 /// # Errors
 /// A file that can't be read.

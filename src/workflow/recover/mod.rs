@@ -1,7 +1,7 @@
 //! `recover`: loads from measured strain.
 //!
-//! `runs` static states, a row each; `record` records of any length and format ([`crate::series::record`]), at constant memory: their
-//! loads go to a [`RecordSink`] as they come.
+//! `runs` recovers static states, one a row. `record` recovers records of any length and format ([`crate::series::record`]) at constant memory. It
+//! sends their loads to a [`RecordSink`] piece by piece.
 
 mod active_gauges;
 mod answer;
@@ -136,10 +136,10 @@ pub fn recover_into(
     ))
 }
 
-/// Loads of what was measured; those of a record go to `sink`.
+/// Recovers the loads from the measured strain. The loads of a record go to `sink`.
 ///
 /// # Errors
-/// Unreadable readings; those of `sink`.
+/// Readings that can't be read, and the errors of `sink`.
 fn recover_measured_loads(
     work: &mut Work,
     (job, measured): (&Job, &Measured),

@@ -90,7 +90,7 @@ pub(super) fn record(
         &combinations,
     )?;
     let first_mode = motion.as_ref().and_then(|m| m.modes_hz.first().copied());
-    // What the band leaves out stands in the record as measured.
+    // The measured record still has content outside of the band.
     let content = content(work, task, (&record, first_mode), &filter, &names)?;
     if at_rest.is_some() {
         let dropped = channels.take();
@@ -289,14 +289,14 @@ struct RecordPassResults {
     sums: Sums,
     spans: Spans,
     compared: ValidationSums,
-    /// Samples in which a gauge gives nothing, with the estimate from the others, where loads are compared.
+    /// Samples in which a gauge gives nothing, with the estimate from the other gauges, if loads are compared.
     gaps: Vec<Gap>,
 }
 
-/// Recovers the record piece by piece, in parallel, and hands the loads on; the sums over it.
+/// Recovers the record piece by piece, in parallel, and passes the loads to `sink`. Returns the sums over the record.
 ///
 /// # Errors
-/// The first piece that can't be read; what `sink` refuses; one fault where the work is stopped.
+/// The first piece that can't be read, the errors of `sink`, or one fault if the work is stopped.
 fn stream(
     work: &Work,
     (record, channels): (&Record, Option<&Channels>),

@@ -36,7 +36,7 @@ pub(super) fn judge(
     recover_samples_with_alternatives(s, readings, task.errors, (Vec::new(), &mut others))
 }
 
-/// Recovers quasi-static samples, each with its number, and tests loads, gauges and intervals. `doubt`: covariance of their errors.
+/// Recovers quasi-static samples, each with its number, and tests loads, gauges and intervals. `doubt` is the covariance of their errors.
 pub(super) fn judge_at_rest(
     task: &Task,
     s: &Sensitivity,
@@ -79,7 +79,7 @@ pub(super) fn spread(
     let pieces = record.n_pieces();
     let mut readings: Vec<(usize, Readings)> = Vec::new();
     let spread = pieces.min(10);
-    // A short record is judged on all of its samples, as the same rows would be as runs.
+    // A short record is tested on all of its samples, as if they were runs.
     let each = match pieces {
         1 => JUDGED_OF_SHORT,
         _ => JUDGED.div_ceil(spread.max(1)),
@@ -90,7 +90,7 @@ pub(super) fn spread(
         let first = record.first_of(piece);
         let take = times.len().min(TYPICAL);
         let row = |i: usize| values.get(i * n..(i + 1) * n).unwrap_or_default();
-        // In a gap there is nothing to judge.
+        // A gap has no readings to test.
         let reads = |i: &usize| row(*i).iter().any(|v| v.is_finite());
         let every = || (0..take).step_by(apart);
         let mut measured: Vec<usize> = every().filter(reads).collect();
@@ -134,7 +134,8 @@ pub(super) fn check_times(work: &mut Work, record: &Record) -> Result<(), Faults
     Ok(())
 }
 
-/// Returns the frequency content of the loads relative to the first elastic mode if its frequency is already solved for; `None` if it is not known.
+/// Returns the frequency content of the loads relative to the first elastic mode. Returns `None` if the frequency of this mode is not solved for
+/// already.
 ///
 /// # Errors
 /// A piece that can't be read.
@@ -158,7 +159,7 @@ pub(super) fn content(
     let held = structure(support_of_job(task.job, fields.model())?);
     let mut sigma = filter.sigma(&vec![0.0; filter.n_loads()]);
     if task.job.dynamic.is_some() {
-        // The record as measured has its noise outside of the band too.
+        // The measured record also has noise outside of the band.
         let noise = task.errors.noise_variance(task.noise_factor).sqrt();
         for (l, s) in sigma.iter_mut().enumerate() {
             let weights = filter.gain_of_all_gauges().weights(l);
@@ -169,7 +170,7 @@ pub(super) fn content(
     let (_, step) = record.first_and_step();
     let rate = if step > 0.0 { 1.0 / step } else { 0.0 };
     let content_hz = content_of_loads(&pieces, &sigma, rate);
-    // With [dynamic] the first mode that is not taken lies at three times the band's end or higher: what comes near it lies beyond the band.
+    // With [dynamic], the first mode that is not used is at three times the end of the band or higher. Content near this mode is beyond the band.
     work.findings.extend(match &task.job.dynamic {
         Some(dynamic) => check_band(names, &content_hz, dynamic.up_to_hz),
         None => check_content(names, &content_hz, first_elastic_mode_hz, &held),

@@ -11,10 +11,10 @@ use crate::measured::runs_file::read_runs;
 use crate::recovery::{Readings, Recovery};
 use crate::sensitivity::Sensitivity;
 
-/// Returns the findings on recorded loads of the other sign, in another unit, or exchanged; those of a job without `[runs]` are none.
+/// Returns the findings on recorded loads with the other sign, in another unit, or exchanged. A job without `[runs]` has no such findings.
 ///
-/// The strain of loads that the runs file does not record is taken from the readings, as it was recovered. Recorded loads are not used for
-/// the recovered ones: a finding is an error only if it may be the readings that are wrong.
+/// The recovered strain of loads that the runs file does not record is subtracted from the readings. Recorded loads do not influence the recovered
+/// loads. A finding is therefore an error only if the readings may be wrong.
 ///
 /// # Errors
 /// The faults of the runs file.
@@ -95,7 +95,7 @@ pub(super) fn wrong_records(
     Ok(found)
 }
 
-/// Returns the finding on `runs`, of `all` measured ones, that the runs file has no row for: a warning where that are all of them.
+/// Returns the finding on `runs` for which the runs file has no row, out of `all` measured runs. It is a warning if the file has a row for no run.
 fn without_row(file: &str, runs: &[&str], all: usize) -> Option<Finding> {
     let severity = match runs.len() == all {
         true => Severity::Warning,

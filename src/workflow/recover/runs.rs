@@ -42,7 +42,7 @@ pub(super) fn read(
     }
     let zeros = zeros_by_row(work, task.job, task.measured, table)?;
     let mut readings = readings_of(table, names, &columns, task, zeros.as_ref());
-    // What the job leaves out is not missing.
+    // Gauges that the job ignores are not missing.
     let asked: Vec<(usize, &str)> = (task.estimating.iter())
         .map(|g| (columns[*g], &s.gauges[*g]))
         .filter(|(_, gauge)| !channel_of(&task.job.corrections, gauge).ignore)
@@ -260,7 +260,7 @@ fn weight_carried(task: &Task) -> Option<(usize, f64)> {
     Some((wheels.axis, model.weight().mass * task.job.gravity()))
 }
 
-/// Equilibrium: the sum of all forces by direction, where it is far from the weight, or from zero, in a run.
+/// Returns findings on equilibrium: the sum of all forces in a direction is far from the weight, or from zero, in a run.
 fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
     let carried = weight_carried(task);
     let mut worst: Vec<String> = Vec::new();

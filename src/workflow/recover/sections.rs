@@ -68,7 +68,7 @@ pub(super) struct Part<'a> {
     pub range: Range<usize>,
 }
 
-/// Refuses sections where there is no record.
+/// Refuses sections without a record.
 ///
 /// # Errors
 /// A fault at the first section.
@@ -90,7 +90,7 @@ pub(super) fn parts<'a>(job: &'a Job, clock: &Clock) -> Result<Vec<Part<'a>>, Fa
     let mut out = Vec::new();
     let step = 1.0 / clock.rate_hz;
     let end_s = clock.start_s + clock.samples as f64 * step;
-    // Times are rounded: a millionth of a step is no time.
+    // Times are rounded, so a millionth of a step is ignored.
     let place = |t: f64| (((t - clock.start_s) / step - 1e-6).ceil()).max(0.0) as usize;
     for section in &job.sections {
         let SectionExtent::Times([from, to]) = section.extent else {
@@ -202,7 +202,7 @@ impl Sections {
             let sum = &mut duty_cycle[at];
             sum.seconds += s.repeats * s.seconds;
             sum.damage += s.repeats * s.damage;
-            // Errors of the model last: the ends of all sections move together.
+            // Errors of the model are common to all sections, so the ends of the intervals are added.
             sum.damage_low += s.repeats * s.damage_low;
             sum.damage_high += s.repeats * s.damage_high;
         }

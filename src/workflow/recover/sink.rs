@@ -28,10 +28,10 @@ pub trait RecordSink {
     /// What was left to be done and failed.
     fn end(&mut self, samples: u64) -> Result<(), Fault>;
 
-    /// The samples that were taken, to be read once more; asked for after the last block, and only where [`RecordHead::is_read_again`].
+    /// Returns the recorded samples, to be read again. It is called after the last block, and only if [`RecordHead::is_read_again`].
     ///
     /// # Errors
-    /// Where they can't be read.
+    /// If the samples can't be read.
     fn samples(&self) -> Result<Box<dyn Samples + '_>, Fault>;
 }
 
@@ -40,7 +40,7 @@ pub trait Samples: Sync {
     /// How many.
     fn n_samples(&self) -> usize;
 
-    /// Appends samples `from .. to`, of each the loads `columns`: report units, rounded to single precision; NaN where a load is not known.
+    /// Appends the loads `columns` of samples `from .. to`, report units, rounded to single precision. A load that is not known is NaN.
     fn read(&self, from: usize, to: usize, columns: &[usize], out: &mut Vec<f64>);
 }
 
@@ -115,8 +115,8 @@ impl RecordHead {
         !self.files.is_empty() || self.is_compared
     }
 
-    /// Returns value, low and high end of the 95 % interval of the loads of a sample, report units; `None` if the active gauges don't determine a
-    /// load.
+    /// Returns value, low and high end of the 95 % interval of each load of a sample, report units. Returns `None` for a load that the active gauges
+    /// don't determine.
     pub fn intervals<'a>(
         &'a self,
         sample: &Sample<'a>,

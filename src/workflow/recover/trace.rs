@@ -140,7 +140,8 @@ mod tests {
         assert_eq!(counts, 18_000.0);
         let high = spans.list.iter().map(|s| s.loads[0][2]).fold(0.0, f64::max);
         assert_eq!(high, 8999.0);
-        // In order of time, the largest of each span rises, and all spans but the last hold as many samples.
+        // The spans are in the order of time, and the largest value rises from span to span. All spans except the last one have equal numbers of
+        // samples.
         assert!(
             spans
                 .list
@@ -153,7 +154,7 @@ mod tests {
 
     #[test]
     fn a_step_in_pieces_of_unlike_length_is_drawn_when_it_happens() {
-        // A step at 9,000 of 10,000 samples; the last piece is short, as the last of a file is.
+        // The step is at sample 9,000 of 10,000. The last piece is short, as at the end of a file.
         let values: Vec<f64> = (0..10_000)
             .map(|i| f64::from(u8::from(i >= 9000)))
             .collect();

@@ -13,8 +13,8 @@ use crate::sensitivity::{Sensitivity, Uncertainty};
 use crate::units::MICROSTRAIN;
 use serde::Serialize;
 
-/// Measured over expected difference beyond which a validation gauge contradicts its prediction: by chance one gauge in 370 does in a single run,
-/// fewer in several runs.
+/// Ratio of measured to expected difference above which a validation gauge contradicts its prediction. By chance, one gauge in 370 exceeds it in a
+/// single run, and fewer in several runs.
 const CONTRADICTED: f64 = 3.0;
 
 /// Comparison of a gauge, from which no load was estimated, with its prediction.
@@ -162,7 +162,7 @@ pub(super) fn of_runs(
         .collect()
 }
 
-/// The channels of a record that hold validation gauges.
+/// The channels of a record that contain validation gauges.
 pub(super) struct Channels<'a> {
     record: Record,
     gauges: Vec<PredictedGauge<'a>>,
@@ -229,7 +229,7 @@ impl<'a> Channels<'a> {
         )
     }
 
-    /// Compares a piece with its loads, `width` numbers a sample of which the first are those of S.
+    /// Compares the predictions with a piece of the record. `loads` contains `width` numbers a sample, which begin with the loads of S.
     ///
     /// # Errors
     /// A piece that can't be read.

@@ -15,9 +15,9 @@ use serde::Serialize;
 
 /// Limit of residual over measured rms of a gauge above which its prediction is poor.
 const POOR: f64 = 0.1;
-/// Limit of residual over measured rms of a gauge above which the loads explain almost nothing of its reading. A model is off by some tens of per
-/// cent at its worst gauges. Wrong loads leave more than half at most gauges: loads of another run, in pounds for newtons (a residual of .78 or 3.4),
-/// or in another power of ten.
+/// Limit of residual over measured rms of a gauge above which the loads explain almost nothing of its reading. A model is wrong by some tens of per
+/// cent at its worst gauges. Wrong loads leave more than half at most gauges. Examples are loads of another run, in pounds for newtons (a residual of
+/// .78 or 3.4), or in another power of ten.
 const MISSED: f64 = 0.5;
 
 /// One gauge over all states, microstrain.
@@ -31,7 +31,7 @@ pub struct GaugeCheck {
     /// Root mean square of measured less predicted strain.
     #[serde(rename = "residual_rms_microstrain")]
     pub residual_rms: f64,
-    /// Correlation of measured and predicted strain; `None` if one of them does not vary.
+    /// Correlation of measured and predicted strain; `None` if either does not vary.
     pub correlation: Option<f64>,
 }
 
@@ -48,7 +48,7 @@ pub struct Check {
     pub pairs: Vec<Vec<(f64, f64)>>,
 }
 
-/// Compares where the job has gauges and measured strain whose rows are the states.
+/// Compares predicted and measured strain, if the job has gauges and measured strain whose rows are the states.
 ///
 /// # Errors
 /// Unreadable strain.
@@ -78,7 +78,7 @@ pub(super) fn check(
     let zeroed = read_zeroed(work, job, measured, &measured.strain)?;
     let table = &zeroed.table;
     let read = subtract_and_test_zero(work, measured, &s.gauges, &zeroed.readings(&s.gauges));
-    // The row of the strain table that belongs to each state: by name, or by order where there are as many samples.
+    // Each state needs its row of the strain table. Rows are found by name, or by order if there are as many samples as states.
     let row_of: Vec<Option<usize>> = match &table.rows {
         StrainRows::Runs(names) => states
             .iter()
@@ -160,7 +160,7 @@ fn not_compared(why: &str, remedy: &str) -> Finding {
     Finding::new(Severity::Info, "gauges-not-compared", "gauges", why, remedy)
 }
 
-/// Whether the loads reproduce what the gauges measured.
+/// Returns a finding if the loads do not reproduce the measured strain.
 fn judge(rows: &[GaugeCheck], noise_microstrain: f64) -> Option<Finding> {
     let beyond = |share: f64| -> Vec<&str> {
         let off = rows.iter().filter(|r| {

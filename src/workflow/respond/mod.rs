@@ -188,7 +188,7 @@ fn no_history(job: &Job) -> Fault {
     )
 }
 
-/// Pseudo-damage of places in the words of the answer.
+/// Returns the pseudo-damage of places in the form of the answer.
 fn damage_of(
     places: &[&ResponseRow],
     states: &[LoadState],

@@ -105,7 +105,7 @@ pub struct Element {
     pub max_von_mises: f64,
     /// The state.
     pub at: Option<String>,
-    /// One standard deviation of it, from that of the loads.
+    /// Standard deviation of the largest von Mises stress, from the uncertainty of the loads.
     pub sigma: f64,
     /// Lower end of its 95 % interval.
     pub low: f64,

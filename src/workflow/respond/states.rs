@@ -51,7 +51,7 @@ pub(super) fn read(
     let states = recovery.runs.into_iter();
     let states = states
         .map(|r| {
-            // The Birge factor and Student's t of the interval count as a wider sigma.
+            // The Birge factor and Student's t of the interval widen sigma.
             let widen = (r.estimate.coverage_factor / NORMAL_95).powi(2);
             LoadState {
                 label: r.estimate.run,
@@ -121,7 +121,7 @@ pub(super) fn from_table(work: &mut Work, job: &Job, named: &NamedFile) -> Resul
     Ok(States { states, is_history })
 }
 
-/// Adds what is to be reported of the states of a file; `exact` are loads without an interval, `blank` counts rows that lack a load.
+/// Adds the findings on the states of a file. `exact` are loads without an interval, and `blank` is the number of rows that lack a load.
 ///
 /// # Errors
 /// A file without a state.
@@ -407,7 +407,7 @@ mod tests {
             ("time [s],A\n0,1\n0,2\n", vec!["3: time 0 after 0"]),
             ("A,t\n1,1\n2,0.5\n", vec!["3: time 0.5 after 1"]),
             ("time,A\n0,1\n,2\n", vec!["3: the time is missing"]),
-            // Rows without a name: equal loads are no fault.
+            // Rows without a name may have equal loads.
             ("A,B\n1,1\n1,2\n", vec![]),
         ] {
             assert_eq!(wrong_keys(text), expected, "{text}");

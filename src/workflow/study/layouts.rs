@@ -41,7 +41,7 @@ pub(super) fn build_layouts(
     study: &Study,
     prepared: &StudyInputs,
 ) -> Result<Vec<LayoutOf>, Faults> {
-    // Named spots are the pool for every layout but the given one.
+    // Named spots are the pool for every layout except the given layout.
     let pool = prepared.spots.as_ref().unwrap_or(&prepared.pool);
     let counts = if study.gauges.is_empty() {
         let all = pool.len();
@@ -53,7 +53,7 @@ pub(super) fn build_layouts(
     } else {
         study.gauges.clone()
     };
-    // The job's gauges are the pool unless it says where others could go.
+    // The job's gauges are the pool, unless the job states candidates for other places.
     let from_model = prepared.fields.is_some()
         && prepared.spots.is_none()
         && (job.candidates.line > 0 || prepared.pool.is_empty());

@@ -267,8 +267,8 @@ fn errors(job: &Job, study: &Study) -> Result<Vec<(StudyError, String)>, Faults>
     Ok(out)
 }
 
-/// Returns the true loads: those of the first run of the runs file that has all wanted ones, else drawn in every trial with `expected` as
-/// standard deviation. Nuisance loads are always drawn.
+/// Returns the true loads. They are the loads of the first run in the runs file that has all wanted loads. Without such a run, they are drawn in
+/// every trial with `expected` as standard deviation. Nuisance loads are always drawn.
 fn truth(
     work: &mut Work,
     job: &Job,

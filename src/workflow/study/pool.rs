@@ -72,7 +72,7 @@ pub(super) fn prepare(work: &mut Work, job: &Job) -> Result<StudyInputs, Faults>
     }
     let prepared = crate::strain_chain::prepare(work, job)?;
     let s = prepared.sensitivity;
-    // Beside a given S the model says nothing of gauges turned or moved.
+    // With a given S, the model has no strain for gauges that are turned or moved.
     let fields = prepared.fields.filter(|_| job.sensitivity.is_none());
     let (pool, spots) = match &fields {
         None => (of_table(&s, 0..s.gauges.len()), spots_in_table(job, &s)?),
@@ -226,8 +226,8 @@ fn variants(
 /// Cosine between normals up to which a neighbour counts as the same plate.
 const SAME_PLATE: f64 = 0.98;
 
-/// Change of the row per length along direction `k` of the element: from the neighbours on both sides that lie in the same plate; zero
-/// at an edge without one.
+/// Returns the change of the row per length along direction `k` of the element, from the neighbours on both sides in the same plate. A single
+/// neighbour gives a one-sided difference. Without neighbours the change is zero.
 fn slope(
     model: &Model,
     laid: &dyn Fn(&GaugeSpec) -> Option<Gauge>,
@@ -248,7 +248,7 @@ fn slope(
     let size =
         reach.clone().fold(f64::NEG_INFINITY, f64::max) - reach.fold(f64::INFINITY, f64::min);
     let middle = corners.iter().sum::<Vec3>() / corners.len() as f64;
-    // On the skin, so that the neighbour's side is the same one in space.
+    // The neighbour is searched from the skin, so that its side is the same side in space.
     let skin = here.normal * to_side(model, shell, here.surface);
     let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
     for sign in [-1.0, 1.0] {
@@ -265,7 +265,7 @@ fn slope(
         if g.outward().dot(&here.outward()) < SAME_PLATE {
             continue;
         }
-        // With centre strain a gauge reads its element's centre: the distance is that of the centres.
+        // With centre strain, a gauge reads the centre of its element. The distance is then the distance of the centres.
         let other = model
             .shell_ix(g.element)
             .and_then(|i| model.shells.get(i.us()));

@@ -13,7 +13,7 @@ fn point(f: &mut Fields, i: usize) -> Option<[f64; 3]> {
     stated.then(|| f.reals(i, ["XS", "YS", "ZS"]))
 }
 
-/// Reads a CWELD. The second line contains grids, elements or properties, depending on field 4; the third line contains a point.
+/// Reads a CWELD. Depending on field 4, the second line contains grids, elements or properties. The third line contains a point.
 pub(super) fn weld(f: &mut Fields) -> Weld {
     let id = f.id(0, "EID");
     let pid = f.opt_id(1, "PID");

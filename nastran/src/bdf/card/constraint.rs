@@ -5,7 +5,7 @@ use super::ids::id_lists;
 use crate::cards::{Cards, IdList, Mpc, SetSum, Spc, Spc1, Suport};
 use crate::place::PlacedCard;
 
-/// Terms are in fields 3-5 and 6-8 of every line.
+/// Reads an MPC; its terms are in fields 3-5 and 6-8 of every line.
 pub(super) fn mpc(f: &mut Fields) -> Mpc {
     let sid = f.id(0, "SID");
     let mut terms = Vec::new();
@@ -32,7 +32,7 @@ pub(super) fn spc(f: &mut Fields) -> Spc {
     Spc { sid, terms }
 }
 
-/// A card that mixes single ids and ranges becomes several entries at one place.
+/// Reads a card that may mix single ids and ranges; it then becomes several entries at one place.
 pub(super) fn spc1(f: &mut Fields, cards: &mut Cards) {
     let sid = f.id(0, "SID");
     let dofs = f.dofs(1, "C");

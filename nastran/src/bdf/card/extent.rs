@@ -1,9 +1,9 @@
-//! Fields that a card has: a value in another field is a fault.
+//! Fields that a card has; a value in another field is a fault.
 
 use super::super::fault::DeckFaultKind;
 use super::super::fields::{Fields, excerpt};
 
-/// Fields of a card as bits, bit 0 being field 2; bits 8 and on are those of continuations.
+/// Fields of a card as bits: bit 0 is field 2, and bits 8 and above are the fields of continuations.
 type Mask = u64;
 
 /// Returns the first `n` fields.
@@ -22,7 +22,7 @@ const fn span(from: u32, to: u32) -> Mask {
 /// Fields of each line of an MPC after the first: field 2 and field 9 are blank.
 const MPC_LINES: Mask = 0x7e7e_7e7e_7e7e_7e7e;
 
-/// Returns the fields of a card; `None` for a card of any length, or with fields that depend on others.
+/// Returns the fields of a card. Returns `None` for a card of any length, or if the fields depend on other fields.
 ///
 /// # Reference
 /// MSC Nastran 2022.4 and Simcenter Nastran quick reference guides, formats of bulk data entries.
@@ -61,14 +61,14 @@ fn fields_of(name: &[u8]) -> Option<Mask> {
     })
 }
 
-/// Notes a fault at the first value in a field that the card does not have.
+/// Adds a fault at the first value in a field that the card does not have.
 #[inline]
 pub(super) fn check(f: &mut Fields) {
     let Some(mask) = fields_of(f.name) else {
         return;
     };
     let last = f.len();
-    // Lines of an MPC repeat without end.
+    // An MPC may have any number of lines.
     let is_field = |i: usize| match u32::try_from(i) {
         Ok(i @ ..64) => mask >> i & 1 == 1,
         _ => f.name == b"MPC" && MPC_LINES >> (i % 8) & 1 == 1,

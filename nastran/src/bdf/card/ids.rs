@@ -4,8 +4,8 @@ use super::super::fault::DeckFaultKind;
 use super::super::fields::{Fields, Value};
 use crate::cards::IdList;
 
-/// The ids from field `first` on. A plain range stays a range, so the result has more than one part where a card
-/// mixes single ids and ranges. Blank fields are skipped.
+/// Reads the ids from field `first` on. A plain range stays a range, so a card that mixes single ids and ranges gives several parts. Blank fields are
+/// skipped.
 pub(super) fn id_lists(f: &mut Fields, first: usize, name: &'static str) -> Vec<IdList> {
     let mut lists = Vec::new();
     let mut each: Vec<u32> = Vec::new();
@@ -22,7 +22,7 @@ pub(super) fn id_lists(f: &mut Fields, first: usize, name: &'static str) -> Vec<
                 i = range(f, i, name, &mut each, &mut lists);
                 continue;
             }
-            // ALL GRIDS and the like: kept by nobody, said so
+            // Text such as ALL GRIDS is not supported and becomes a fault.
             _ => {
                 f.integer(i, name);
             }
@@ -47,7 +47,7 @@ fn out_of_range(f: &mut Fields, i: usize, name: &'static str) {
     );
 }
 
-/// Reads `THRU b [BY n]` at field `i`, the lower end being the last of `each`; the index after it.
+/// Reads `THRU b [BY n]` at field `i`; the lower end is the last id of `each`. Returns the index after the range.
 fn range(
     f: &mut Fields,
     i: usize,
@@ -91,7 +91,7 @@ fn range(
     next + 3
 }
 
-/// The ids as a single list, ranges written out where there are several parts.
+/// Returns the ids as a single list; if there are several parts, ranges are expanded.
 pub(super) fn join_ids(f: &mut Fields, first: usize, name: &'static str) -> IdList {
     let mut lists = id_lists(f, first, name);
     if lists.len() == 1 {

@@ -4,7 +4,7 @@ use super::super::fault::DeckFaultKind;
 use super::super::fields::{Fields, Value};
 use crate::cards::{Bar, BarDefaults, Beam, Conrod, Orientation, Rod};
 
-/// X1 X2 X3 or G0 from field `i` on: an integer alone is a grid.
+/// Reads X1 X2 X3 or G0 from field `i` on; a single integer is a grid.
 pub(super) fn orientation(f: &mut Fields, i: usize) -> Orientation {
     if (i..i + 3).all(|k| f.is_blank(k)) {
         return Orientation::Blank;
@@ -39,7 +39,7 @@ fn offt(f: &mut Fields, i: usize) -> Option<[u8; 3]> {
         Value::Real(_) => None,
         Value::Text => match *f.bytes_at(i).to_ascii_uppercase().as_slice() {
             [a @ (b'G' | b'B'), b @ (b'G' | b'O'), c @ (b'G' | b'O')] => Some([a, b, c]),
-            // NX and newer MSC: E for element, basic form of the ends
+            // NX and newer MSC: E is an offset in the element frame, B in the basic frame.
             [
                 a @ (b'G' | b'B'),
                 b @ (b'G' | b'O' | b'B' | b'E'),

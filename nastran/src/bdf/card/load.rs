@@ -63,7 +63,7 @@ pub(super) fn pload(f: &mut Fields) -> Pload {
     }
 }
 
-/// Up to four letters, padded with blanks.
+/// Returns up to four letters, padded with blanks.
 fn letters(f: &mut Fields, i: usize, name: &'static str, allowed: &'static str) -> [u8; 4] {
     let word = f.word(i);
     if !allowed.split(", ").any(|w| w == word) {
@@ -102,7 +102,7 @@ pub(super) fn pload1(f: &mut Fields) -> Pload1 {
     }
 }
 
-/// A card that mixes single ids and ranges becomes several entries at one place.
+/// Reads a card that may mix single ids and ranges; it then becomes several entries at one place.
 pub(super) fn pload2(f: &mut Fields, cards: &mut Cards) {
     let sid = f.id(0, "SID");
     let pressure = f.real_or(1, "P", 0.0);
@@ -266,7 +266,7 @@ pub(super) fn tempd(f: &mut Fields, cards: &mut Cards) {
     }
 }
 
-/// The element of field 2 and those of the lines from field `more` on.
+/// Reads the element of field 2 and the elements from field `more` on.
 fn first_and_more(f: &mut Fields, more: usize) -> Vec<IdList> {
     let mut lists = vec![IdList::Each(vec![f.id(1, "EID1")])];
     lists.extend(id_lists(f, more, "EID"));

@@ -61,7 +61,7 @@ pub(super) fn pmass(f: &mut Fields, first: usize) -> Pmass {
     }
 }
 
-/// NSM and NSML: pairs of id and value, an entry each; NSM1 and NSML1: one value for a list.
+/// Reads NSM and NSML (pairs of id and value, one entry for each pair), and NSM1 and NSML1 (one value for a list of ids).
 pub(super) fn nonstructural(f: &mut Fields, cards: &mut Cards) {
     let lumped = f.name.starts_with(b"NSML");
     let (sid, of) = (f.id(0, "SID"), f.word(1).to_uppercase());

@@ -1,4 +1,4 @@
-//! Reads one card's fields into its struct, a file a family.
+//! Reads the fields of a card into its struct, with one file for each family of cards.
 
 mod connector;
 mod constraint;
@@ -25,7 +25,7 @@ use super::fields::Fields;
 use crate::cards::Cards;
 use crate::place::PlacedCard;
 
-/// Adds the card to its list; false where no struct exists for it.
+/// Adds the card to its list; returns false if no struct exists for the card.
 ///
 /// `name` is in upper case and without `*`.
 pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
@@ -132,7 +132,7 @@ fn keep<T>(list: &mut Vec<PlacedCard<T>>, f: &mut Fields, read: impl FnOnce(&mut
     }
 }
 
-/// Adds the entries of a card that has several, each in `width` fields. Entries of blank fields are left out, the first one excepted.
+/// Adds the entries of a card that contains several, each in `width` fields. Entries with only blank fields are omitted, except the first.
 fn keep_several<T>(
     list: &mut Vec<PlacedCard<T>>,
     f: &mut Fields,

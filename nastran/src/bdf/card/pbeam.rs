@@ -5,11 +5,11 @@ use super::super::fields::Fields;
 use super::property::recovery;
 use crate::cards::{BeamStation, Pbeam};
 
-/// A station as written: blank properties are filled when all stations are known.
+/// A station as written. Blank properties are filled after all stations are read.
 struct RawStation {
     x_xb: f64,
     output: bool,
-    /// A I1 I2 I12 J NSM.
+    /// Values of A, I1, I2, I12, J and NSM.
     values: [Option<f64>; 6],
     recovery: [[f64; 2]; 4],
 }
@@ -24,7 +24,7 @@ pub(super) fn pbeam(f: &mut Fields) -> Pbeam {
     let id = f.id(0, "PID");
     let mid = f.id(1, "MID");
     let values_a = std::array::from_fn(|k| f.real_or(2 + k, VALUES[k.min(5)], 0.0));
-    // the stress points of end A fill the second line unless a station begins there
+    // The second line contains the stress points of end A, unless a station begins there.
     let mut i = 8;
     let mut points_a = [[0.0; 2]; 4];
     if !is_so(f, i) {
@@ -48,7 +48,8 @@ pub(super) fn pbeam(f: &mut Fields) -> Pbeam {
         }
         let values = std::array::from_fn(|k| f.opt_real(i + 2 + k, VALUES[k.min(5)]));
         i += 8;
-        // YESA: the points of end A. NO asks for no stress there and states no points; the section between the stations has those of end A.
+        // YESA takes the stress points of end A. NO requests no stress and states no points; the section between stations then has the points of end
+        // A, too.
         let mut points = points_a;
         if word == "YES" && !is_so(f, i) && i < f.len() {
             points = recovery(f, i);
@@ -81,7 +82,7 @@ pub(super) fn pbeam(f: &mut Fields) -> Pbeam {
     }
 }
 
-/// Blank properties of end B are those of end A, of a station between them the linear interpolation.
+/// Fills blank properties and returns the stations: end B takes the values of end A, a station between the ends takes interpolated values.
 fn stations(
     values_a: [f64; 6],
     points_a: [[f64; 2]; 4],

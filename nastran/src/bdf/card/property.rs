@@ -29,7 +29,7 @@ pub(super) fn pcomp(f: &mut Fields) -> Pcomp {
     let ge = f.real_or(6, "GE", 0.0);
     let lam = f.word(7);
     let mut plies: Vec<Ply> = Vec::new();
-    // PCOMPG: one ply a line, its global number first
+    // A PCOMPG has one ply on each line, which begins with the ply's global number.
     let (step, offset) = if f.name == b"PCOMPG" { (8, 1) } else { (4, 0) };
     for i in (8..f.len()).step_by(step).map(|i| i + offset) {
         if (i..i + 4).all(|k| f.is_blank(k)) {
@@ -58,7 +58,7 @@ pub(super) fn pcomp(f: &mut Fields) -> Pcomp {
     if plies.is_empty() {
         f.fault(8, "MID1", DeckFaultKind::Missing);
     }
-    // SYMEM, SYBEND and SYSMEAR are symmetric too
+    // SYMEM, SYBEND and SYSMEAR are symmetric laminates, too.
     let symmetric = lam.starts_with("SY");
     Pcomp {
         id,
@@ -84,7 +84,7 @@ pub(super) fn pshear(f: &mut Fields) -> Pshear {
     }
 }
 
-/// C D E F, each (y, z), from field `i` on.
+/// Reads the points C D E F, each (y, z), from field `i` on.
 pub(super) fn recovery(f: &mut Fields, i: usize) -> [[f64; 2]; 4] {
     const NAMES: [[&str; 2]; 4] = [["C1", "C2"], ["D1", "D2"], ["E1", "E2"], ["F1", "F2"]];
     let mut points = [[0.0; 2]; 4];

@@ -5,7 +5,7 @@ use super::super::fields::{Fields, Value};
 use super::ids::id_lists;
 use crate::cards::{Dofs, IdList, Rbar, Rbe1, Rbe2, Rbe3, Rbe3Group, Rspline};
 
-/// Grids up to the first real, which is ALPHA.
+/// Reads grids up to the first real, which is ALPHA.
 pub(super) fn rbe2(f: &mut Fields) -> Rbe2 {
     let id = f.id(0, "EID");
     let independent = f.id(1, "GN");
@@ -155,7 +155,7 @@ pub(super) fn rbar(f: &mut Fields) -> Rbar {
     }
 }
 
-/// RBAR1: an RBAR whose six dofs at A are independent, those of CB at B dependent (all where it is blank).
+/// Reads RBAR1, an RBAR with six independent dofs at A. The dofs CB at B are dependent, or all dofs at B if CB is blank.
 pub(super) fn rbar1(f: &mut Fields) -> Rbar {
     let of_b = Some(f.dofs(3, "CB")).filter(|d| !d.is_empty());
     Rbar {
@@ -167,7 +167,7 @@ pub(super) fn rbar1(f: &mut Fields) -> Rbar {
     }
 }
 
-/// RTRPLT: a rigid triangle; what is not independent is dependent where CMA, CMB, CMC are blank.
+/// Reads RTRPLT, a rigid triangle. If CMA, CMB and CMC are blank, every dof that is not independent is dependent.
 pub(super) fn rtrplt(f: &mut Fields) -> Rbe1 {
     let id = f.id(0, "EID");
     let grids = [f.id(1, "GA"), f.id(2, "GB"), f.id(3, "GC")];
@@ -188,7 +188,7 @@ pub(super) fn rtrplt(f: &mut Fields) -> Rbe1 {
     }
 }
 
-/// RSPLINE: G1, then pairs of grid and dependent dofs.
+/// Reads RSPLINE: G1, then pairs of grid and dependent dofs.
 pub(super) fn rspline(f: &mut Fields) -> Rspline {
     let id = f.id(0, "EID");
     let diameter = f.real_or(1, "D/L", 0.1);

@@ -4,7 +4,7 @@ use super::super::fault::DeckFaultKind;
 use super::super::fields::Fields;
 use crate::cards::{BeamlStation, Pbarl, Pbeaml};
 
-/// Number of dimensions of a section type; `None` where unknown.
+/// Returns the number of dimensions of a section type; `None` for an unknown type.
 fn n_dims(section: &str) -> Option<usize> {
     Some(match section {
         "ROD" => 1,
@@ -19,8 +19,8 @@ fn n_dims(section: &str) -> Option<usize> {
     })
 }
 
-/// Dimensions from field `first` on. A blank inner radius of a TUBE is 0; blank thicknesses of a DBOX are DIM4 for DIM5 to DIM8 and
-/// DIM6 for DIM9 and DIM10.
+/// Reads the dimensions from field `first` on. A blank inner radius of a TUBE is 0. Blank thicknesses of a DBOX take another dimension: DIM5 to DIM8
+/// take DIM4, and DIM9 and DIM10 take DIM6.
 fn dims(
     f: &mut Fields,
     first: usize,
@@ -46,7 +46,7 @@ fn dims(
     all
 }
 
-/// Dimensions a section has: of an unknown type, up to the last field.
+/// Returns the number of dimensions of a section. An unknown type has dimensions up to the last field.
 fn count(f: &mut Fields, section: &str) -> usize {
     if section.is_empty() {
         f.fault(3, "TYPE", DeckFaultKind::Missing);
@@ -70,7 +70,7 @@ pub(super) fn pbarl(f: &mut Fields) -> Pbarl {
     }
 }
 
-/// End A, then for every station SO, X/XB, dimensions and NSM; blank dimensions are those of end A.
+/// Reads PBEAML: end A, then SO, X/XB, dimensions and NSM for every station. A blank dimension takes the value of end A.
 pub(super) fn pbeaml(f: &mut Fields) -> Pbeaml {
     let id = f.id(0, "PID");
     let mid = f.id(1, "MID");

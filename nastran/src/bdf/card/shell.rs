@@ -60,7 +60,7 @@ pub(super) fn shell(f: &mut Fields) -> Shell {
     }
 }
 
-/// THETA or MCID: an integer is a coordinate system, a real an angle, blank the angle 0.
+/// Reads THETA or MCID: an integer is a coordinate system, a real is an angle, and a blank is the angle 0.
 fn angle(f: &mut Fields, i: usize) -> MaterialAngle {
     match f.value(i) {
         Value::Blank => MaterialAngle::Theta(0.0),

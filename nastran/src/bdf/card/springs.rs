@@ -47,7 +47,7 @@ pub(super) fn spring(f: &mut Fields) -> Spring {
     }
 }
 
-/// CELAS3 and CELAS4: between scalar points, or one and ground.
+/// Reads CELAS3 and CELAS4, which join two scalar points, or a scalar point and ground.
 pub(super) fn scalar_spring(f: &mut Fields) -> Spring {
     let id = f.id(0, "EID");
     let stiffness = if f.name == b"CELAS4" {
@@ -66,7 +66,7 @@ pub(super) fn scalar_spring(f: &mut Fields) -> Spring {
     }
 }
 
-/// Lines begin with what they hold in field 3: K, B, GE, RCV, M.
+/// Reads PBUSH. Field 3 of a line states the kind of its values: K, B, GE, RCV, M.
 pub(super) fn pbush(f: &mut Fields) -> Pbush {
     let mut p = Pbush {
         id: f.id(0, "PID"),
@@ -96,7 +96,7 @@ pub(super) fn pbush(f: &mut Fields) -> Pbush {
             "B" => p.b = f.reals(first, ["B1", "B2", "B3", "B4", "B5", "B6"]),
             "GE" => {
                 p.ge = f.reals(first, ["GE1", "GE2", "GE3", "GE4", "GE5", "GE6"]);
-                // only GE1 given: it counts for all
+                // If only GE1 is given, it applies to all components.
                 if (first + 1..first + 6).all(|i| f.is_blank(i)) {
                     p.ge = [p.ge[0]; 6];
                 }

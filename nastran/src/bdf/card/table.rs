@@ -72,7 +72,7 @@ fn end_of_table(f: &Fields) -> usize {
         .unwrap_or(f.len())
 }
 
-/// Returns the index after the last pair: ENDT may be in either field of the pair behind it.
+/// Returns the index after the last pair. ENDT may be in either field of the pair that follows.
 fn end_of_pairs(f: &Fields) -> usize {
     match end_of_table(f) {
         end if end < f.len() => end - end % 2,
@@ -80,7 +80,7 @@ fn end_of_pairs(f: &Fields) -> usize {
     }
 }
 
-/// Reads pairs of x and y, without pairs marked SKIP. The values of x ascend, or descend. Two equal values are a jump.
+/// Reads pairs of x and y, without pairs marked SKIP. The values of x must ascend, or descend. Two equal values are a jump.
 fn points(f: &mut Fields) -> Vec<(f64, f64)> {
     let end = end_of_pairs(f);
     let mut points = Vec::new();

@@ -1,4 +1,4 @@
-//! Case control: subcases, what loads and holds each, and what is put out.
+//! Case control: subcases with their loads, constraints and output requests.
 
 mod options;
 mod read;
@@ -30,7 +30,7 @@ pub struct CaseLine {
     pub at: Place,
     /// Index of its subcase in [`CaseControl::subcases`]; `None` above the first.
     pub subcase: Option<usize>,
-    /// First word, upper case, as written.
+    /// First keyword, upper case, as written.
     pub name: String,
     /// The statement without comments, its lines joined.
     pub text: String,
@@ -57,7 +57,7 @@ pub enum SubcaseKind {
     Repcase,
 }
 
-/// A subcase as written: a `None` is inherited.
+/// A subcase as written: a value of `None` is inherited.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Subcase {
     /// Number; 0 for the part above all subcases.
@@ -96,7 +96,7 @@ pub struct Subcase {
     pub analysis: Option<String>,
     /// SUBSEQ or SYMSEQ.
     pub sequence: Vec<f64>,
-    /// Output requests, the last of a name counts.
+    /// Output requests. Of several requests with one name, the last counts.
     pub requests: Vec<Request>,
     /// SETs defined here.
     pub sets: BTreeMap<u32, Set>,
@@ -129,21 +129,21 @@ pub enum Selection {
 }
 
 impl Request {
-    /// Whether an option is given.
+    /// Returns whether the request has an option.
     pub fn has(&self, option: &str) -> bool {
         self.options.iter().any(|o| o.eq_ignore_ascii_case(option))
     }
 }
 
 impl Subcase {
-    /// The request of this full name.
+    /// Returns the request of this full name.
     pub fn request(&self, what: &str) -> Option<&Request> {
         self.requests.iter().rev().find(|r| r.what == what)
     }
 }
 
 impl CaseControl {
-    /// The subcase with what it inherits from above the subcases filled in. Without any subcase: the global part, as id 1.
+    /// Returns the subcase with the values that it inherits from the part above all subcases.
     pub fn effective_subcase(&self, subcase: &Subcase) -> Subcase {
         let global = &self.global;
         let mut full = subcase.clone();
@@ -179,7 +179,8 @@ impl CaseControl {
         full
     }
 
-    /// Returns the place of the statement of this full name that counts in a subcase: the last one there, else the last above the subcases.
+    /// Returns the place of the statement of this full name that counts in a subcase. It is the last such statement in the subcase, otherwise the
+    /// last above the subcases.
     pub fn place_of(&self, word: &str, subcase: Option<u32>) -> Option<Place> {
         let is_named = |l: &&CaseLine| {
             !l.in_packet && super::vocabulary::case_word(&l.name).is_some_and(|w| w.name == word)
@@ -194,13 +195,14 @@ impl CaseControl {
         here.or_else(above).map(|l| l.at)
     }
 
-    /// The MPC set that belongs to the structure whatever the load: the one above the subcases, else the smallest that a subcase selects.
+    /// Returns the MPC set that belongs to the structure under every load. It is the set above the subcases, otherwise the smallest set that a
+    /// subcase selects.
     pub fn mpc_of_structure(&self) -> Option<u32> {
         let below = self.subcases.iter().filter_map(|s| s.mpc).min();
         self.global.mpc.or(below)
     }
 
-    /// Returns all subcases with what they inherit; a deck without SUBCASE has one, number 1.
+    /// Returns all subcases with the values that they inherit. A deck without SUBCASE has one subcase, with id 1.
     ///
     /// # Example
     /// ```

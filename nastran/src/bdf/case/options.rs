@@ -1,11 +1,11 @@
-//! Options and values of the commands that select what acts on the structure.
+//! Options and values of the case control commands that select loads and constraints.
 
-/// Returns whether an option is the word, or at least its first four letters.
+/// Returns whether an option is the keyword, or an abbreviation of it to four letters or more.
 pub(super) fn abbreviates(option: &str, word: &str) -> bool {
     option == word || option.len() >= 4 && word.starts_with(option)
 }
 
-/// Returns what is wrong with the options of a command; `None` where Nastran knows them all, or the command has output options alone.
+/// Returns the fault in the options of a command. Returns `None` if Nastran knows all of them, or if the command has only output options.
 ///
 /// # Reference
 /// MSC Nastran 2022.4 and Simcenter Nastran quick reference guides, case control commands.
@@ -69,7 +69,7 @@ const RIGIDS: [&str; 7] = [
     "LINEAR", "LAGRANGE", "LGELIM", "LELIM", "STATIC", "PENALTY", "AUTO",
 ];
 
-/// Returns what is wrong with the value of a command, in upper case, that is one of a list.
+/// Returns the fault in a value (upper case) of a command whose values are a fixed list.
 pub(super) fn unknown_value(word: &str, value: &str) -> Option<&'static str> {
     let (known, why): (&[&str], _) = match word {
         "ANALYSIS" => (&ANALYSES, "Nastran has no analysis of this name"),

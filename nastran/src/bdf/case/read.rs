@@ -9,10 +9,10 @@ use super::options::{abbreviates, unknown_option, unknown_value};
 use super::{CaseControl, CaseLine, Request, Selection, Set, Subcase, SubcaseKind};
 use crate::cards::{Param, ParamValue};
 
-/// Longest statement, its continuation lines joined.
+/// Largest size of a statement in bytes, its continuation lines joined.
 const MAX_STATEMENT: usize = 4 << 20;
 
-/// Case control in statements of one line each.
+/// Reads case control from its lines.
 pub(in super::super) fn read_case_control(
     statements: &[Statement],
     faults: &mut Vec<Fault>,
@@ -44,7 +44,7 @@ pub(in super::super) fn read_case_control(
             in_packet = false;
             read.begin(kind, &name, text);
         } else if word == "OUTPUT" && text.contains('(') {
-            // OUTPUT(PLOT), (XYPLOT), (POST): a language of its own up to the end of case control
+            // OUTPUT(PLOT), (XYPLOT) and (POST) begin plot commands, which extend to the end of case control and are not read.
             in_packet = true;
         } else if !in_packet {
             read.statement(&name, text);
@@ -62,7 +62,7 @@ pub(in super::super) fn read_case_control(
         if skipped {
             continue;
         }
-        // Statements of substructuring, up to ENDSUBS, are a language of their own.
+        // Substructure commands, up to ENDSUBS, are not read.
         match word {
             "SUBSTRUCTURE" => in_packet = true,
             "ENDSUBS" => in_packet = false,
@@ -72,7 +72,7 @@ pub(in super::super) fn read_case_control(
     case
 }
 
-/// Returns whether the statement begins (`SKIP ON`, `SKIPON`, `SKIP=ON`) or ends a block of statements that are not carried out.
+/// Returns whether the statement begins (`SKIP ON`, `SKIPON`, `SKIP=ON`) or ends a block of statements that are not executed.
 fn skip_switch(name: &str, text: &str) -> Option<bool> {
     let value = match name {
         "SKIPON" => return Some(true),
@@ -87,7 +87,7 @@ fn skip_switch(name: &str, text: &str) -> Option<bool> {
     }
 }
 
-/// The statement with the lines that continue it, where the last ends, and how many they are.
+/// Joins a statement with its continuation lines. Returns the text, its end, and the number of continuation lines.
 fn join_continuations(first: &Statement, more: &[Statement]) -> (String, usize, usize) {
     let mut text = first.text.trim_end().to_owned();
     let mut end = first.end;
@@ -203,7 +203,7 @@ impl Reader<'_> {
             "SUBSEQ" | "SYMSEQ" => self.sequence(name, value),
             "SET" => self.set(text),
             "PARAM" => self.param(text),
-            // the statement that stands for the parameter
+            // The AUTOSPC command is equivalent to the parameter.
             "AUTOSPC" => self.param(&format!("PARAM,AUTOSPC,{value}")),
             _ => self.request(name, text, value),
         }
@@ -253,7 +253,7 @@ impl Reader<'_> {
     fn set(&mut self, text: &str) {
         let (head, items) = match text.split_once('=') {
             Some(parts) => parts,
-            // `SET 10 SHEAR`
+            // The equals sign may be missing: `SET 10 SHEAR`.
             None => text.split_at(end_of_number(text, 3)),
         };
         let id = head.get(3..).unwrap_or_default().trim().parse::<u32>();
@@ -261,7 +261,7 @@ impl Reader<'_> {
             (Ok(id), Ok(set)) => {
                 self.current_subcase().sets.insert(id, set);
             }
-            // sets of times, grid components or named sets: kept in the deck, not read
+            // Sets of times, grid components or set names stay in the deck and are not read.
             (Ok(_), Err(word)) if word.contains(['.', '/', '(']) => {}
             (Ok(_), Err(word)) if word.eq_ignore_ascii_case("THRU") => {
                 let why = "THRU needs two ids that ascend before and behind it, and may not be behind EXCEPT within the range";
@@ -272,7 +272,7 @@ impl Reader<'_> {
         }
     }
 
-    /// `PARAM,POST,-1`.
+    /// Reads a parameter, such as `PARAM,POST,-1`.
     fn param(&mut self, text: &str) {
         let mut words = text
             .split([',', ' ', '\t', '='])
@@ -295,7 +295,7 @@ impl Reader<'_> {
         });
     }
 
-    /// An output request; other statements are kept in the deck and not read.
+    /// Reads an output request; other statements stay in the deck and are not read.
     fn request(&mut self, name: &str, text: &str, value: &str) {
         let Some(full) = request_of(name) else {
             return;
@@ -307,7 +307,7 @@ impl Reader<'_> {
                 Ok(set) => Selection::Set(set),
                 Err(_) => match Set::from_text(number) {
                     Ok(ids) => Selection::Ids(ids),
-                    // times, components and named sets of output that nobody reads
+                    // The selection is a list of times or components, or a set name, of a request that is not read.
                     Err(_) if !READ_REQUESTS.contains(&full) => return,
                     Err(_) => return self.fault(name, value, WANTED_SELECTION),
                 },
@@ -364,7 +364,7 @@ fn find_closing_bracket(inner: &str) -> Option<usize> {
     None
 }
 
-/// The words in brackets behind the name, upper case.
+/// Returns the options in brackets after the name, upper case.
 fn options_of(text: &str) -> Vec<String> {
     let before = text.split('=').next().unwrap_or_default();
     let Some((_, inner)) = text.split_once('(').filter(|_| before.contains('(')) else {

@@ -52,7 +52,7 @@ const TYPES: [&str; 42] = [
     "TRIAR", "TRIAX6", "TUBE", "VISC", "WELD", "CONM1", "CONM2", "PLOTEL", "HBDY",
 ];
 
-/// Returns the type that a word names, with or without the leading C.
+/// Returns the element type of a keyword, with or without the leading C.
 fn type_of(word: &str) -> Option<&'static str> {
     let word = word.to_ascii_uppercase();
     let named = |w: &str| TYPES.into_iter().find(|t| *t == w);
@@ -89,12 +89,12 @@ impl SetItem {
 }
 
 impl Set {
-    /// Whether the id of a grid, or of an element of any type, is in the set.
+    /// Returns whether the id of a grid, or of an element of any type, is in the set.
     pub fn has(&self, id: u32) -> bool {
         self.contains(id, None)
     }
 
-    /// Whether the element is in the set; `card` is its card, such as `CQUAD4`.
+    /// Returns whether the element is in the set; `card` is the element's card, such as `CQUAD4`.
     pub fn has_element(&self, id: u32, card: &str) -> bool {
         self.contains(id, type_of(card))
     }
@@ -104,7 +104,7 @@ impl Set {
             && !self.items.iter().any(|i| i.excludes(id, kind))
     }
 
-    /// The set in the text behind `=`; `Err` holds the word that cannot be read.
+    /// Reads the set from the text after `=`. `Err` contains the text that cannot be read.
     pub(super) fn from_text(text: &str) -> Result<Set, String> {
         let words: Vec<&str> = text
             .split([',', ' ', '\t'])
@@ -132,9 +132,9 @@ impl Set {
 #[derive(Default)]
 struct SetReader {
     items: Vec<SetItem>,
-    /// The words are behind EXCEPT.
+    /// Whether the next items follow EXCEPT.
     excepting: bool,
-    /// Whether the ids are of grids that are plotted with the elements, and not of elements.
+    /// Whether the next ids are grids, which are plotted together with the elements.
     of_grids: bool,
 }
 
@@ -171,7 +171,7 @@ impl SetReader {
         Ok(())
     }
 
-    /// Reads the end and the step of a range; returns the words after them.
+    /// Reads the end and the step of a range; returns the items after them.
     fn range<'w, 's>(&mut self, thru: &str, words: &'w [&'s str]) -> Result<&'w [&'s str], String> {
         let wrong = || thru.to_owned();
         let (last, rest) = words.split_first().ok_or_else(wrong)?;

@@ -3,7 +3,7 @@ use crate::cards::*;
 
 #[test]
 fn pbeam_fills_blank_stations_as_the_guide_says() {
-    // end B takes A's values where blank, stations between are interpolated
+    // Blank values of end B are the values of end A, and blank values of stations between are interpolated.
     let deck = read_clean_deck(
         "PBEAM,1,1,2.,4.,6.,,8.\n,.1,.2,.3,.4,.5,.6,.7,.8\n,NO,.5,,,,,,\n,YESA,1.,4.,,,,,\n,.9,.8\n",
     );
@@ -268,7 +268,7 @@ fn tables_end_at_endt_leave_out_skip_and_keep_their_order() {
         "TABLEM3,9,1.,0.\n,0.,1.,1.,2.,ENDT\n",
         "ACCEL,5,,1.,0.,0.,W\n,1.,2.\n",
         "ACCEL1,5,,1.,1.,0.,0.\n",
-        // A value whose entry has no id.
+        // These cards have a value in an entry without an id.
         "PMASS,7,1.,,2.\n",
         "PELAS,7,1.,,,,2.\n",
     ] {
@@ -278,7 +278,7 @@ fn tables_end_at_endt_leave_out_skip_and_keep_their_order() {
 
 #[test]
 fn a_station_without_stress_output_has_the_points_of_end_a() {
-    // QRG, PBEAM: the line of points is left out where SO is YESA or NO.
+    // MSC Nastran Quick Reference Guide, PBEAM: the line of points is omitted if SO is YESA or NO.
     for so in ["NO", "YESA"] {
         let deck = super::read_clean_deck(&format!(
             "PBEAM,1,1,8.,2.,3.,,1.\n,20.,10.,-20.,10.\n,{so},.5,9.,4.,5.\n,YES,1.,16.,4.,6.\n,21.,11.,-21.,11.\n"

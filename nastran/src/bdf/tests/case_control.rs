@@ -134,7 +134,7 @@ fn an_exception_ends_outside_its_range() {
             "5, 10 THRU 55 EXCEPT 15,16,77,100 THRU 300",
             ids(&[5..=5, 10..=14, 17..=55, 77..=77, 100..=300]),
         ),
-        // below the range is outside the range, too
+        // An id below the range is outside the range, too.
         ("10 THRU 12 EXCEPT 11, 3", ids(&[3..=3, 10..=10, 12..=12])),
         (
             "1 THRU 9 BY 2 EXCEPT 5, 10 THRU 14 BY 4",

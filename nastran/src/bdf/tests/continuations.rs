@@ -82,7 +82,7 @@ fn a_continuation_with_another_name_belongs_to_no_card() {
             .starts_with("test.bdf:1: the card refers to a continuation that does not exist: P4"),
         "{asked:?}"
     );
-    // nor does one below a card that asks for none, whatever is between
+    // A continuation below a card that asks for no continuation is an orphan, even if other cards are between.
     for text in [
         format!("{head}\n+P5     -.1     .2\n"),
         format!("{head}\nGRID,9\n+P5     -.1     .2\n"),
@@ -93,7 +93,7 @@ fn a_continuation_with_another_name_belongs_to_no_card() {
             "{found:?}"
         );
     }
-    // a beginning is another name
+    // The beginning of a name is a different name.
     let other = fault_texts(&super::bulk(&format!(
         "{head}+P\nGRID,9\n+P5     -.1     .2\n"
     )));
@@ -140,7 +140,7 @@ fn a_name_that_two_cards_ask_for_is_refused_though_one_has_it_below() {
 
 #[test]
 fn chunks_of_a_large_deck_are_cut_between_cards() {
-    // cards of three lines, more than a chunk's worth, with comments and trailing commas at the seams
+    // The deck has cards of three lines, more than one chunk can contain, with comments and trailing commas at the chunk boundaries.
     let mut text = String::new();
     for i in 1..=20_000 {
         text.push_str(&format!(
@@ -155,7 +155,7 @@ fn chunks_of_a_large_deck_are_cut_between_cards() {
     }
 }
 
-/// Offsets, stress points and end of a bar whose cards are in any order.
+/// Returns offsets, stress points and end of a bar whose cards are in any order.
 fn bar(text: &str) -> (f64, f64) {
     let deck = read_clean_deck(text);
     (
@@ -178,7 +178,7 @@ fn a_continuation_goes_to_the_card_that_names_it_also_below_a_card_without_a_nam
         [cbar, grids[0], pbar, grids[1], rest_of_cbar, rest_of_pbar].concat(),
         [grids[1], rest_of_pbar, cbar, pbar, grids[0], rest_of_cbar].concat(),
         [grids[0], rest_of_cbar, rest_of_pbar, grids[1], pbar, cbar].concat(),
-        // large field, and names that column 73 does not belong to
+        // Large field, and names whose column 73 is not part of the name.
         [
             "CBAR*                 11               5               1               2*Q1\n",
             grids[0],
@@ -199,7 +199,7 @@ fn a_continuation_goes_to_the_card_that_names_it_also_below_a_card_without_a_nam
             rest_of_cbar,
         ]
         .concat(),
-        // free field
+        // Free field.
         [
             "CBAR,11,5,1,2,0.,1.,0.,,+Q1\n",
             grids[0],
@@ -258,7 +258,7 @@ fn a_continuation_that_two_cards_name_is_refused_with_both_lines() {
         twice.len() == 1 && twice[0].contains("its name is also on line 3"),
         "{twice:?}"
     );
-    // names may repeat where each continuation is below its card
+    // Names may occur several times if each continuation is below its card.
     assert!(deck(&[&five, rest, &six, rest]).is_empty());
 }
 
@@ -297,7 +297,7 @@ fn commas_behind_a_blank_field_are_text_of_the_card_above() {
         let ids: Vec<u32> = deck.cards.grids.iter().map(|g| g.id).collect();
         assert_eq!(ids, [1, 2, 3], "{card}");
     }
-    // a leading comma is an empty field 1
+    // A leading comma means an empty field 1.
     let deck = read_clean_deck(
         "RBE3    9               1       123     1.      123     1\n        ,2,3\n",
     );

@@ -115,7 +115,7 @@ fn cards_in_included_files_are_edited_there() {
     assert_eq!(files[1], ("mesh.inc".to_owned(), b"GRID,2\n".to_vec()));
 }
 
-/// Values that need large field, and such that do not.
+/// Values that need large field, and values that do not.
 const R: [f64; 4] = [0.25, -333.333333333333, 7.85e-9, 2.1e11];
 
 #[test]
@@ -232,7 +232,7 @@ fn written_cards_read_back_equal() {
                 i12: 0.0,
                 j: 4.0,
                 nsm: 0.0,
-                // Without output: the points of end A.
+                // A station without stress output has the points of end A.
                 recovery: [
                     [if x_xb == 0.5 { 0.0 } else { x_xb }, 2.0],
                     [3.0, 4.0],
@@ -321,7 +321,7 @@ fn written_cards_read_back_equal() {
     assert!(text.lines().all(|l| l.len() <= 72));
 }
 
-/// Scalar masses, accelerations, rotations, temperature dependent materials and normals come back as they were written.
+/// Tests that scalar masses, accelerations, rotations, temperature dependent materials and normals read back as they were written.
 #[test]
 fn cards_of_mass_and_temperature_read_back_as_written() {
     let masses = [

@@ -2,7 +2,7 @@ use super::{bulk, fault_texts, read_clean_deck};
 
 #[test]
 fn a_value_beyond_the_last_field_is_a_fault_with_its_field() {
-    // Lengths after the formats of the MSC Nastran Quick Reference Guide.
+    // Lengths of the cards, from their formats in the MSC Nastran Quick Reference Guide.
     for (text, at) in [
         (
             "FORCE,1,2,,1.,0.,1.,0.,5.\n",

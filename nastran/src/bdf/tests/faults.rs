@@ -53,7 +53,7 @@ fn a_card_without_its_id_is_left_out_and_the_others_stay() {
 
 #[test]
 fn shifted_columns_do_not_pass_as_numbers() {
-    // 12 and 3 in one field are two numbers, not 123
+    // The digits 12 and 3 in one field are two numbers, not 123.
     let deck = bulk("CQUAD4  1       1       12 3    4       5       6\n");
     assert_eq!(deck.faults.len(), 1);
 }

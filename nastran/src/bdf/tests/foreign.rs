@@ -1,4 +1,4 @@
-//! Texts that are no decks: nothing of them is shown.
+//! Texts that are not decks: the fault quotes no part of them.
 
 use super::super::{DeckFaultKind, MemoryLoader, read_deck};
 use super::fault_texts;

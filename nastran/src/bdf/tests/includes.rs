@@ -78,7 +78,7 @@ fn a_bare_name_is_looked_for_in_the_folder_of_the_including_file_and_a_path_in_t
     );
     let alone = read("INCLUDE 'sub/one.inc'\n", &[files[0], files[1], files[4]]);
     assert_eq!((ids(&alone), alone.notes.len()), (vec![1, 7], 0));
-    // a copy is no other file
+    // A file with equal contents gives no note.
     let copies = [
         files[0],
         files[1],
@@ -140,7 +140,7 @@ fn a_deck_that_ends_within_a_line_is_cut_and_one_without_enddata_may_be() {
     let between = read(&whole[..whole.len() - 8], &[]);
     assert!(fault_texts(&between).is_empty());
     assert!(between.notes[0].text.contains("without ENDDATA"));
-    // bulk data alone needs no ENDDATA
+    // Bulk data alone needs no ENDDATA.
     let bulk = read("GRID,1\nGRID,21", &[]);
     assert!(fault_texts(&bulk).is_empty() && bulk.notes.is_empty());
 }

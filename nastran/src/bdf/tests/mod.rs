@@ -1,4 +1,4 @@
-//! Decks written for one rule each; the rules are those of the quick reference guides.
+//! Decks for one rule each; the rules are from the quick reference guides.
 
 mod cards;
 mod case_control;

@@ -47,7 +47,7 @@ fn a_name_before_another_kind_of_card_names_nothing() {
     );
 }
 
-/// A shell deck in which a name is written above each of three properties, other cards around.
+/// Returns a shell deck in which a comment above each of three properties names it, with other cards between.
 #[test]
 fn each_name_belongs_to_the_card_below_it() {
     let forms: [fn(u32) -> String; 5] = [

@@ -2,7 +2,7 @@ use super::{bulk, read_clean_deck};
 
 #[test]
 fn fields_are_repeated_and_increased() {
-    // the example of the quick reference guide
+    // Example of the quick reference guide.
     let deck = read_clean_deck("GRID,101,17,1.0,10.5,,17,3456\n=,*(1),=,*(0.2),*(0.1),==\n=(3)\n");
     let ids: Vec<u32> = deck.cards.grids.iter().map(|g| g.id).collect();
     assert_eq!(ids, [101, 102, 103, 104, 105]);
@@ -37,7 +37,7 @@ fn a_new_value_replaces_the_repeated_one() {
 fn a_repetition_without_limit_is_a_fault_and_not_a_matter_of_memory() {
     let deck = bulk("GRID,1,,0.,0.,0.\n=,*1,==\n=(1000000000)\n");
     assert_eq!(deck.faults.len(), 1);
-    // The first and that of the line with increments: none of the thousand million.
+    // The deck keeps the first card and the card of the line with increments. No card of the billion repetitions is made.
     assert_eq!(deck.cards.grids.len(), 2);
 }
 

@@ -1,7 +1,7 @@
 use super::super::vocabulary::{Effect, all_cards, case_word, effect_of_card};
 use super::{bulk, fault_texts, read_clean_deck};
 
-/// Names with a struct are those that the table calls carried.
+/// Tests that the names with a struct are the names that the table marks as carried.
 #[test]
 fn names_that_are_not_carried_have_no_struct() {
     for (name, effect) in all_cards().filter(|c| c.1 != Effect::Carried) {

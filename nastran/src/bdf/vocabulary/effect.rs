@@ -3,17 +3,17 @@
 /// Effect of a name on linear statics, mass and modes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
-    /// The readers of this program carry it.
+    /// Read by this program.
     Carried,
     /// Output request that is read.
     Request,
     /// No influence, for this reason.
     None(&'static str),
-    /// Acts wherever the deck has it, and is not carried.
+    /// Acts wherever the deck has it, and is not read.
     Acts,
-    /// Load that is not carried and acts where its set, the first field, is selected.
+    /// Load that is not read; it acts if case control selects its set, the first field.
     Load,
-    /// Acts together with this word of case control, or with the items named here (connectors, its own values), and is not carried.
+    /// Acts together with this case control command, or with the items named here (connectors, its own values), and is not read.
     ActsWith(&'static str),
     /// Statement of executive control, above CEND.
     Executive,
@@ -28,11 +28,11 @@ impl Effect {
     }
 }
 
-/// A word of case control as Nastran reads it.
+/// A case control command as Nastran reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CaseWord {
-    /// Full name of the word; synonyms have one name.
+    /// Full name of the command; synonyms have one name.
     pub name: &'static str,
-    /// Effect of the word.
+    /// Effect of the command.
     pub effect: Effect,
 }

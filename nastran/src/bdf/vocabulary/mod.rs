@@ -1,4 +1,4 @@
-//! Tables of every name of bulk data and every word of case control with its effect on linear statics, mass and modes.
+//! Tables of all bulk data names and case control commands, with their effects on linear statics, mass and modes.
 
 mod effect;
 mod lookup;

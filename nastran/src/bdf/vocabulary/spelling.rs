@@ -1,7 +1,7 @@
 //! Search for the known name nearest to a misspelt one.
 
-/// Returns the known name that one letter more, less, other or exchanged with its neighbour makes of `word`: of several the one with the
-/// longest common beginning, then the shortest.
+/// Returns the known name that differs from `word` by one letter: added, omitted, replaced, or exchanged with its neighbour. If several names fit,
+/// the name with the longest common beginning is chosen, then the shortest.
 pub(super) fn find_nearest_name(
     word: &str,
     known: impl Iterator<Item = &'static str>,
@@ -15,7 +15,7 @@ fn common_prefix_length(a: &str, b: &str) -> usize {
     a.bytes().zip(b.bytes()).take_while(|(a, b)| a == b).count()
 }
 
-/// Whether the distance of two words is 1.
+/// Returns whether the distance of two words is 1.
 fn differs_by_one(a: &str, b: &str) -> bool {
     let same = common_prefix_length(a, b);
     let (a, b) = (a.as_bytes().get(same..), b.as_bytes().get(same..));
@@ -32,7 +32,7 @@ fn differs_by_one(a: &str, b: &str) -> bool {
 mod tests {
     use super::*;
 
-    /// Number of letters that are to be added, left out, replaced or exchanged with their neighbour to make one word of the other.
+    /// Returns the number of letters to add, omit, replace or exchange with their neighbour to change one word into the other.
     ///
     /// # Reference
     /// Optimal string alignment, after F. J. Damerau (1964), Communications of the ACM 7, 171.
@@ -62,7 +62,7 @@ mod tests {
 
     #[test]
     fn words_that_differ_by_one_are_those_at_distance_one() {
-        // every word of up to four letters of an alphabet of three
+        // Pairs of all words of up to four letters from an alphabet of three letters.
         let mut words = vec![String::new()];
         for first in 0.. {
             let Some(word) = words.get(first).filter(|w| w.len() < 4).cloned() else {

@@ -1,4 +1,4 @@
-//! A card as text, in small field where that loses nothing, else in large field.
+//! Writes a card as text, in small field if no value loses digits, otherwise in large field.
 
 use super::real_format::{format_real, shortest_real};
 
@@ -64,9 +64,9 @@ impl Field {
     }
 }
 
-/// The card, its lines ended by `\n`: `fields` begin with field 2, 8 to a line.
+/// Returns the text of a card, with lines that end in `\n`. `fields` begin with field 2, 8 to a line.
 ///
-/// Small field (8 columns) where every value keeps all its digits, else large field (16 columns).
+/// The text is in small field (8 columns) if every value keeps all its digits, otherwise in large field (16 columns).
 pub fn format_card(name: &str, fields: &[Field]) -> String {
     let used = fields
         .iter()
@@ -79,7 +79,7 @@ pub fn format_card(name: &str, fields: &[Field]) -> String {
     }
     let large: Vec<String> = fields.iter().map(Field::format_large).collect();
     let mut text = lines(&format!("{name}*"), "*", &large, 4);
-    // large field counts in pairs of lines
+    // A card in large field has an even number of lines.
     if large.len().div_ceil(4) % 2 == 1 {
         text.push_str("*\n");
     }

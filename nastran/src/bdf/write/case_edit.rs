@@ -6,11 +6,12 @@ use super::super::source::Position;
 use super::edit::Edits;
 
 impl Edits {
-    /// Adds lines at the end of case control, so after the last subcase.
+    /// Adds lines at the end of case control, after the last subcase.
     ///
     /// A deck of bulk data alone gets the sections `SOL 101`, `CEND`, these lines and `BEGIN BULK` in front, and ENDDATA.
     pub fn insert_case_end(&mut self, deck: &Deck, text: &str) {
-        // Packets stand at the end of case control; skipped lines above other statements do not.
+        // The lines must precede a packet, which extends to the end of case control. Skipped lines that other statements follow are not such a
+        // packet.
         let lines = deck.case_control.lines.iter().rev();
         let packet = lines.take_while(|l| l.in_packet).last();
         match packet.map(position).or(deck.bounds.bulk_line) {
@@ -19,19 +20,19 @@ impl Edits {
         }
     }
 
-    /// Takes out the case control statements for which `is_unwanted` holds.
+    /// Removes the case control statements for which `is_unwanted` returns true.
     pub fn remove_case_lines(&mut self, deck: &Deck, is_unwanted: impl Fn(&CaseLine) -> bool) {
         for line in deck.case_control.lines.iter().filter(|l| is_unwanted(l)) {
             self.patch(line.at.source.0 as usize, line.start, line.end, "");
         }
     }
 
-    /// Takes out all subcases with their statements; comments stay.
+    /// Removes all subcases with their statements; comments remain.
     pub fn remove_subcases(&mut self, deck: &Deck) {
         self.remove_case_lines(deck, |l| l.subcase.is_some() && !l.in_packet);
     }
 
-    /// Writes `SOL text` in place of the deck's SOL statement; a deck without one stays as it is.
+    /// Replaces the deck's SOL statement by `SOL text`; a deck without SOL stays unchanged.
     pub fn replace_sol(&mut self, deck: &Deck, text: &str) {
         if let Some((p, end)) = deck.bounds.sol {
             self.patch(p.source, p.offset, end, &format!("SOL {text}"));

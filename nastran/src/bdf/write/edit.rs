@@ -29,17 +29,17 @@ struct Patch {
     end: usize,
     /// Lines ended by `\n`, written with the line ending of the file.
     text: String,
-    /// Behind other patches at the same bytes.
+    /// Whether the patch follows other patches at the same bytes.
     is_last: bool,
 }
 
-/// Edits of one deck, which stays as it is; [`write_edited`] applies them.
+/// Edits of one deck. The deck stays unchanged; [`write_edited`] applies the edits.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Edits {
     patches: Vec<Patch>,
 }
 
-/// The files of the deck as they were read: path and bytes, the first deck first.
+/// Returns the files of the deck as they were read: path and bytes, the main deck first.
 pub fn write_deck(deck: &Deck) -> Vec<(String, Vec<u8>)> {
     write_edited(deck, &Edits::default())
 }
@@ -85,7 +85,7 @@ pub fn write_edited(deck: &Deck, edits: &Edits) -> Vec<(String, Vec<u8>)> {
     files
 }
 
-/// How the lines of a file end, by its first.
+/// Returns the line ending of a file, by its first line.
 fn line_ending(bytes: &[u8]) -> &'static str {
     match memchr::memchr2(b'\n', b'\r', bytes) {
         Some(i) if bytes.get(i) == Some(&b'\r') => {
@@ -100,7 +100,7 @@ fn line_ending(bytes: &[u8]) -> &'static str {
 }
 
 impl Edits {
-    /// Puts `text` (whole lines) in place of the bytes.
+    /// Replaces the bytes by `text` (whole lines).
     pub(super) fn patch(&mut self, source: usize, start: usize, end: usize, text: &str) {
         let mut text = text.to_owned();
         if !text.is_empty() && !text.ends_with('\n') {
@@ -116,7 +116,7 @@ impl Edits {
         });
     }
 
-    /// Adds ENDDATA at the end of the first deck, behind all other edits.
+    /// Adds ENDDATA at the end of the main deck, after all other edits.
     pub(super) fn end_with_enddata(&mut self, deck: &Deck) {
         let end = deck.sources.first().map_or(0, |s| s.bytes.len());
         self.patch(0, end, end, "ENDDATA");
@@ -125,7 +125,7 @@ impl Edits {
         }
     }
 
-    /// Puts `text` in place of the card that begins at `at`; comments between its lines stay.
+    /// Replaces the card that begins at `at` by `text`; comments between the card's lines remain.
     ///
     /// # Errors
     ///
@@ -143,7 +143,7 @@ impl Edits {
         Ok(())
     }
 
-    /// Takes the card that begins at `at` out; comments stay.
+    /// Removes the card that begins at `at`; comments remain.
     ///
     /// # Errors
     ///
@@ -152,7 +152,7 @@ impl Edits {
         self.replace_card(deck, at, "")
     }
 
-    /// Adds cards (whole lines) before ENDDATA, or at the end of the first deck if it has no ENDDATA.
+    /// Adds cards (whole lines) before ENDDATA, or at the end of the main deck if it has no ENDDATA.
     pub fn insert_cards(&mut self, deck: &Deck, text: &str) {
         let end = deck.sources.first().map_or(0, |s| s.bytes.len());
         let Position { source, offset } = deck.bounds.enddata.unwrap_or(Position {
@@ -163,7 +163,7 @@ impl Edits {
     }
 }
 
-/// Start and end, line ending included, of the physical lines of the card that begins at `at`.
+/// Returns start and end, line ending included, of the physical lines of the card that begins at `at`.
 fn card_lines(deck: &Deck, at: Place) -> Result<Vec<(usize, usize)>, EditError> {
     let bytes = deck
         .sources
@@ -206,7 +206,7 @@ fn card_lines(deck: &Deck, at: Place) -> Result<Vec<(usize, usize)>, EditError> 
         open = cut.is_open();
         spans.push((line.start, line.end));
     }
-    // named continuations that did not follow
+    // The named continuation is not on the next line.
     if matches!(label, [b'+' | b'*', rest @ ..] if !trim(rest).is_empty()) {
         return Err(EditError::ContinuationsApart(at));
     }

@@ -1,4 +1,4 @@
-//! Writes cards, and decks with edits; what is not edited stays as it was, byte for byte.
+//! Writes cards, and decks with edits; bytes that no edit touches stay unchanged.
 
 mod card;
 mod case_edit;

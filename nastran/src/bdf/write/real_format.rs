@@ -1,8 +1,8 @@
 //! Reals in few columns: `1.5-3`, `.5`, `-0.`.
 
-/// A short Nastran form of `x` that reads back as exactly `x`; without exponent where 8 columns allow.
+/// Returns a short Nastran form of `x` that reads back as exactly `x`, without an exponent if 8 columns suffice.
 ///
-/// A finite `x` only; others are written as 0.
+/// A value that is not finite is written as 0.
 pub fn shortest_real(x: f64) -> String {
     let (negative, digits, exponent) = parts(&format!("{:e}", finite_or_zero(x)));
     format_shortest(negative, &digits, exponent)
@@ -45,7 +45,7 @@ fn finite_or_zero(x: f64) -> f64 {
     if x.is_finite() { x } else { 0.0 }
 }
 
-/// Sign, digits without trailing zeros, and the power of ten of the first digit, from `-1.25e-3`.
+/// Returns sign, digits without trailing zeros, and the power of ten of the first digit, from text such as `-1.25e-3`.
 fn parts(text: &str) -> (bool, String, i32) {
     let (mantissa, exponent) = text.split_once('e').unwrap_or((text, "0"));
     let negative = mantissa.starts_with('-');
@@ -56,7 +56,7 @@ fn parts(text: &str) -> (bool, String, i32) {
     (negative, digits, exponent.parse().unwrap_or(0))
 }
 
-/// Without an exponent where that takes at most 8 columns, else the shortest form. The value is `d.ddd * 10^exponent`.
+/// Formats the value `d.ddd * 10^exponent` without an exponent if that takes at most 8 columns, otherwise in the shortest form.
 fn format_shortest(negative: bool, digits: &str, exponent: i32) -> String {
     let sign = if negative { "-" } else { "" };
     if digits == "0" {
@@ -76,7 +76,7 @@ fn format_shortest(negative: bool, digits: &str, exponent: i32) -> String {
         }
         offer(plain);
     }
-    // the point behind `k` digits; a shift of the point can save a digit of the exponent
+    // Try the point after `k` digits: a shift of the point can shorten the exponent by a digit.
     for k in [1, 0, n, exponent + 9, exponent - 9, exponent + 1] {
         let power = exponent + 1 - k;
         if (0..=n).contains(&k) && power != 0 {
@@ -86,7 +86,7 @@ fn format_shortest(negative: bool, digits: &str, exponent: i32) -> String {
     best
 }
 
-/// The digits with the point behind the first `k`, zeros added if the point is outside.
+/// Returns the digits with the point after the first `k`; zeros are added if the point is outside the digits.
 fn with_point(digits: &str, k: i32) -> String {
     let n = digits.len();
     match usize::try_from(k) {

@@ -3,7 +3,7 @@
 use super::fields::Fields;
 use crate::cards::{IdList, SetSum, Spc, Spc1, Suport};
 
-/// SPC: `sid g c d`, 4 words; 5 with an unused word before d, 6 where d is double.
+/// Reads SPC: `sid g c d`, 4 words; 5 with an unused word before d, 6 if d is double.
 pub(super) fn spc(f: &mut Fields<'_>) -> Option<Spc> {
     let (sid, grid, dofs) = (f.id()?, f.id()?, f.dofs()?);
     if f.words_left() > 1 {
@@ -15,7 +15,7 @@ pub(super) fn spc(f: &mut Fields<'_>) -> Option<Spc> {
     })
 }
 
-/// SPC1: `sid c 0 g .. -1`, or `sid c 1 first last`.
+/// Reads SPC1: `sid c 0 g .. -1`, or `sid c 1 first last`.
 pub(super) fn spc1(f: &mut Fields<'_>) -> Option<Spc1> {
     let (sid, dofs) = (f.id()?, f.dofs()?);
     let grids = match f.int()? {
@@ -26,7 +26,7 @@ pub(super) fn spc1(f: &mut Fields<'_>) -> Option<Spc1> {
     Some(Spc1 { sid, dofs, grids })
 }
 
-/// SPCADD, MPCADD: `sid s .. -1`.
+/// Reads SPCADD, MPCADD: `sid s .. -1`.
 pub(super) fn set_sum(f: &mut Fields<'_>) -> Option<SetSum> {
     Some(SetSum {
         sid: f.id()?,
@@ -34,7 +34,7 @@ pub(super) fn set_sum(f: &mut Fields<'_>) -> Option<SetSum> {
     })
 }
 
-/// SUPORT: `g c`.
+/// Reads SUPORT: `g c`.
 pub(super) fn suport(f: &mut Fields<'_>) -> Option<Suport> {
     Some(Suport {
         sid: None,
@@ -42,7 +42,7 @@ pub(super) fn suport(f: &mut Fields<'_>) -> Option<Suport> {
     })
 }
 
-/// SUPORT1: `sid (g c) .. -1 -1`.
+/// Reads SUPORT1: `sid (g c) .. -1 -1`.
 pub(super) fn suport1(f: &mut Fields<'_>) -> Option<Suport> {
     Some(Suport {
         sid: Some(f.id()?),

@@ -1,4 +1,4 @@
-//! Which record code is which card.
+//! Assigns record codes to cards.
 
 use super::records::{Geometry, Record};
 use super::{
@@ -14,7 +14,7 @@ pub(in crate::op2) fn read_record(table: &str, words: Words<'_>, out: &mut Geome
         return;
     };
     if words.len() <= 3 {
-        return; // the closing record 65535, or a card that the deck does not have
+        return; // the closing record 65535, or a record without cards
     }
     let prefix = third
         .checked_div(10_000)
@@ -26,7 +26,7 @@ pub(in crate::op2) fn read_record(table: &str, words: Words<'_>, out: &mut Geome
         table,
         stated,
     };
-    // some codes of cards have a third number above 10 000 of their own; none of those below has
+    // The code of some cards has a third number above 10 000. No card that is read here has such a code.
     let code = (
         a,
         b,

@@ -1,17 +1,17 @@
-//! The words of a card, one after the other.
+//! Reads the consecutive words of a card.
 
 use crate::cards::Dofs;
 use crate::op2::words::Words;
 
-/// Ids up to here are an analyst's; solvers number what they add from 100 000 001 on.
+/// Largest id of an analyst's item; solvers number the items that they add from 100 000 001 on.
 pub(super) const LARGEST_ID: i64 = 100_000_000;
 
-/// Reads words in order; every reader gives `None` where the words end or the value cannot be.
+/// Reads words in order. Every reader returns `None` at the end of the words, or if the value is impossible.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fields<'a> {
     words: Words<'a>,
     at: usize,
-    /// Reals take two words of a 32-bit file.
+    /// Whether reals take two words, in a 32-bit file.
     double: bool,
 }
 
@@ -24,12 +24,12 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// Words not yet read.
+    /// Returns the number of words that are not yet read.
     pub(super) fn words_left(&self) -> usize {
         self.words.len().saturating_sub(self.at)
     }
 
-    /// The next word without taking it.
+    /// Returns the next word and does not advance.
     pub(super) fn peek(&self) -> Option<i64> {
         self.words.int(self.at)
     }
@@ -48,23 +48,23 @@ impl<'a> Fields<'a> {
         Some(value)
     }
 
-    /// An id that must be there: 1 or more.
+    /// Reads a required id: 1 or more.
     pub(super) fn id(&mut self) -> Option<u32> {
         u32::try_from(self.int()?).ok().filter(|id| *id > 0)
     }
 
-    /// An id or 0.
+    /// Reads an id or 0.
     pub(super) fn id_or_zero(&mut self) -> Option<u32> {
         u32::try_from(self.int()?).ok()
     }
 
-    /// An id; 0 and negative numbers are blanks.
+    /// Reads an id; 0 and negative numbers are blanks.
     pub(super) fn blank_or_id(&mut self) -> Option<Option<u32>> {
         let word = self.int()?;
         Some(u32::try_from(word).ok().filter(|id| *id > 0))
     }
 
-    /// An id that may be negative.
+    /// Reads an id that may be negative.
     pub(super) fn read_signed_id(&mut self) -> Option<i32> {
         i32::try_from(self.int()?).ok()
     }
@@ -79,13 +79,13 @@ impl<'a> Fields<'a> {
         Some(value)
     }
 
-    /// A real that is no integer read as one: 0, or of a usual size.
+    /// Reads a real, and refuses an integer read as a real: the value must be 0 or of a usual size.
     pub(super) fn usual_real(&mut self) -> Option<f64> {
         self.read_real()
             .filter(|x| *x == 0.0 || (1e-30..1e30).contains(&x.abs()))
     }
 
-    /// A real; the solvers' mark for a blank field (1.7368e-18) is `None`.
+    /// Reads a real; the solvers' mark for a blank field (1.7368e-18) is `None`.
     pub(super) fn blank_or_real(&mut self) -> Option<Option<f64>> {
         let x = self.read_real()?;
         Some(Some(x).filter(|x| !(1.7366e-18..1.7370e-18).contains(&x.abs())))
@@ -107,7 +107,7 @@ impl<'a> Fields<'a> {
         Some(out)
     }
 
-    /// A double in two words of a 32-bit file, or the first of two words.
+    /// Reads an 8-byte real from two words of a 32-bit file, or from the first of two words of a 64-bit file.
     pub(super) fn pair(&mut self, narrow: bool) -> Option<f64> {
         let value = if narrow {
             self.words.double_at(self.at)?
@@ -118,19 +118,19 @@ impl<'a> Fields<'a> {
         Some(value)
     }
 
-    /// `n` words of characters.
+    /// Reads `n` words of characters.
     pub(super) fn text(&mut self, n: usize) -> Option<String> {
         let text = self.words.part(self.at, n)?.text(0, n);
         self.at = self.at.checked_add(n)?;
         Some(text)
     }
 
-    /// Components as digits.
+    /// Reads components as digits.
     pub(super) fn dofs(&mut self) -> Option<Dofs> {
         Dofs::from_digits(u32::try_from(self.int()?).ok()?)
     }
 
-    /// Components, none written as 0 or a negative number.
+    /// Reads components; 0 or a negative number means no components.
     pub(super) fn blank_or_dofs(&mut self) -> Option<Option<Dofs>> {
         match self.peek()? {
             ..=0 => self.skip(1).map(|()| None),
@@ -138,7 +138,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// Ids up to a word that is not positive, which is taken too.
+    /// Reads ids up to the next word that is not positive; that word is read, too.
     pub(super) fn ids_until_mark(&mut self) -> Option<(Vec<u32>, i64)> {
         let mut ids = Vec::new();
         loop {

@@ -3,7 +3,7 @@
 use super::fields::Fields;
 use crate::cards::{Coord, CoordDefinition, CoordKind, Grid, IdList};
 
-/// GRID: `id cp x1 x2 x3 cd ps seid`, 8 words, or 11 where the coordinates are double.
+/// Reads GRID: `id cp x1 x2 x3 cd ps seid`, 8 words, or 11 if the coordinates are double.
 pub(super) fn grid(f: &mut Fields<'_>) -> Option<Grid> {
     Some(Grid {
         id: f.id()?,
@@ -15,12 +15,12 @@ pub(super) fn grid(f: &mut Fields<'_>) -> Option<Grid> {
     })
 }
 
-/// SPOINT: `id`.
+/// Reads SPOINT: `id`.
 pub(super) fn spoint(f: &mut Fields<'_>) -> Option<IdList> {
     Some(IdList::Each(vec![f.id()?]))
 }
 
-/// CORD1R, CORD1C, CORD1S: `cid kind 1 g1 g2 g3`.
+/// Reads CORD1R, CORD1C, CORD1S: `cid kind 1 g1 g2 g3`.
 pub(super) fn cord1(f: &mut Fields<'_>) -> Option<Coord> {
     let (id, kind) = head(f, 1)?;
     Some(Coord {
@@ -30,7 +30,7 @@ pub(super) fn cord1(f: &mut Fields<'_>) -> Option<Coord> {
     })
 }
 
-/// CORD2R, CORD2C, CORD2S: `cid kind 2 rid a b c`, 13 words, or 22 where the points are double.
+/// Reads CORD2R, CORD2C, CORD2S: `cid kind 2 rid a b c`, 13 words, or 22 if the points are double.
 pub(super) fn cord2(f: &mut Fields<'_>) -> Option<Coord> {
     let (id, kind) = head(f, 2)?;
     let rid = f.id_or_zero()?;

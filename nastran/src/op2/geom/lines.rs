@@ -21,7 +21,7 @@ pub(super) fn bar(f: &mut Fields<'_>) -> Option<Bar> {
     )
 }
 
-/// CBEAM: `eid pid ga gb sa sb`, then as CBAR.
+/// Reads CBEAM: `eid pid ga gb sa sb`, then the remaining words of CBAR.
 pub(super) fn beam(f: &mut Fields<'_>) -> Option<Beam> {
     let (id, pid, grids) = (f.id()?, f.id()?, f.ids()?);
     let warping = [f.blank_or_id()?, f.blank_or_id()?];
@@ -42,8 +42,8 @@ pub(super) fn beam(f: &mut Fields<'_>) -> Option<Beam> {
     })
 }
 
-/// Orientation and offset flag. Bits of f: 1-2 are 0 vector in basic, 1 vector in the displacement frame of A, 2 grid; 3-4 the offset
-/// at A (0 G, 1 O, 2 B), 5-6 at B, 7 the orientation vector in basic.
+/// Reads the orientation and the offset flag f. Bits 1-2: 0 vector in basic, 1 vector in the displacement frame of A, 2 grid. Bits 3-4: offset at A
+/// (0 G, 1 O, 2 B). Bits 5-6: offset at B. Bit 7: orientation vector in basic.
 fn orientation(f: &mut Fields<'_>) -> Option<(Orientation, Option<[u8; 3]>)> {
     let mut grid = *f;
     let x = f.reals()?;
@@ -78,7 +78,7 @@ fn rest_of_bar(f: &mut Fields<'_>, mut bar: Bar) -> Option<Bar> {
     Some(bar)
 }
 
-/// CROD, CTUBE: `eid pid g1 g2`.
+/// Reads CROD, CTUBE: `eid pid g1 g2`.
 pub(super) fn rod(f: &mut Fields<'_>, is_tube: bool) -> Option<Rod> {
     Some(Rod {
         id: f.id()?,
@@ -88,7 +88,7 @@ pub(super) fn rod(f: &mut Fields<'_>, is_tube: bool) -> Option<Rod> {
     })
 }
 
-/// CONROD: `eid g1 g2 mid a j c nsm`.
+/// Reads CONROD: `eid g1 g2 mid a j c nsm`.
 pub(super) fn conrod(f: &mut Fields<'_>) -> Option<Conrod> {
     Some(Conrod {
         id: f.id()?,
@@ -101,7 +101,7 @@ pub(super) fn conrod(f: &mut Fields<'_>) -> Option<Conrod> {
     })
 }
 
-/// CBUSH: `eid pid ga gb x1 x2 x3 f cid s ocid s1 s2 s3`; f is -1 with a CID, 0 or 1 with a vector, 2 with a grid in the place of x1.
+/// Reads CBUSH: `eid pid ga gb x1 x2 x3 f cid s ocid s1 s2 s3`. f is -1 with a CID, 0 or 1 with a vector, 2 with a grid instead of x1.
 pub(super) fn bush(f: &mut Fields<'_>) -> Option<Bush> {
     let (id, pid, a, b) = (f.id()?, f.id()?, f.id()?, f.blank_or_id()?);
     let mut grid = *f;
@@ -128,7 +128,7 @@ pub(super) fn bush(f: &mut Fields<'_>) -> Option<Bush> {
     })
 }
 
-/// CELAS1: `eid pid g1 g2 c1 c2`.
+/// Reads CELAS1: `eid pid g1 g2 c1 c2`.
 pub(super) fn celas1(f: &mut Fields<'_>) -> Option<Spring> {
     let (id, pid) = (f.id()?, f.id()?);
     Some(Spring {
@@ -138,7 +138,7 @@ pub(super) fn celas1(f: &mut Fields<'_>) -> Option<Spring> {
     })
 }
 
-/// CELAS2: `eid k g1 g2 c1 c2 ge s`.
+/// Reads CELAS2: `eid k g1 g2 c1 c2 ge s`.
 pub(super) fn celas2(f: &mut Fields<'_>) -> Option<Spring> {
     let (id, k) = (f.id()?, f.read_real()?);
     let ends = ends(f)?;
@@ -153,7 +153,7 @@ pub(super) fn celas2(f: &mut Fields<'_>) -> Option<Spring> {
     })
 }
 
-/// CELAS3: `eid pid s1 s2`.
+/// Reads CELAS3: `eid pid s1 s2`.
 pub(super) fn celas3(f: &mut Fields<'_>) -> Option<Spring> {
     Some(Spring {
         id: f.id()?,
@@ -162,7 +162,7 @@ pub(super) fn celas3(f: &mut Fields<'_>) -> Option<Spring> {
     })
 }
 
-/// CELAS4: `eid k s1 s2`.
+/// Reads CELAS4: `eid k s1 s2`.
 pub(super) fn celas4(f: &mut Fields<'_>) -> Option<Spring> {
     Some(Spring {
         id: f.id()?,

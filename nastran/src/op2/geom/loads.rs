@@ -5,7 +5,7 @@ use crate::cards::{
     Force, Grav, IdList, LoadSum, Pload, Pload1, Pload2, Pload4, Rforce, Temp, Tempd,
 };
 
-/// FORCE, MOMENT: `sid g cid f n1 n2 n3`.
+/// Reads FORCE, MOMENT: `sid g cid f n1 n2 n3`.
 pub(super) fn force(f: &mut Fields<'_>) -> Option<Force> {
     Some(Force {
         sid: f.id()?,
@@ -16,7 +16,7 @@ pub(super) fn force(f: &mut Fields<'_>) -> Option<Force> {
     })
 }
 
-/// PLOAD: `sid p g1..g4`.
+/// Reads PLOAD: `sid p g1..g4`.
 pub(super) fn pload(f: &mut Fields<'_>) -> Option<Pload> {
     let (sid, pressure) = (f.id()?, f.read_real()?);
     Some(Pload {
@@ -26,7 +26,7 @@ pub(super) fn pload(f: &mut Fields<'_>) -> Option<Pload> {
     })
 }
 
-/// PLOAD1: `sid eid kind scale x1 p1 x2 p2`; kind and scale are numbers in the order of the card's description.
+/// Reads PLOAD1: `sid eid kind scale x1 p1 x2 p2`; kind and scale are numbers in the order of the card's description.
 pub(super) fn pload1(f: &mut Fields<'_>) -> Option<Pload1> {
     const KINDS: [&[u8; 4]; 12] = [
         b"FX  ", b"FY  ", b"FZ  ", b"FXE ", b"FYE ", b"FZE ", b"MX  ", b"MY  ", b"MZ  ", b"MXE ",
@@ -53,7 +53,7 @@ pub(super) fn pload1(f: &mut Fields<'_>) -> Option<Pload1> {
     })
 }
 
-/// PLOAD2: `sid p eid`.
+/// Reads PLOAD2: `sid p eid`.
 pub(super) fn pload2(f: &mut Fields<'_>) -> Option<Pload2> {
     Some(Pload2 {
         sid: f.id()?,
@@ -62,7 +62,7 @@ pub(super) fn pload2(f: &mut Fields<'_>) -> Option<Pload2> {
     })
 }
 
-/// PLOAD4: `sid eid p1..p4 g1 g34 cid n1 n2 n3`, 12 words; 16 with SORL and LDIR.
+/// Reads PLOAD4: `sid eid p1..p4 g1 g34 cid n1 n2 n3`, 12 words; 16 with SORL and LDIR.
 pub(super) fn pload4(f: &mut Fields<'_>) -> Option<Pload4> {
     let (sid, eid) = (f.id()?, f.id()?);
     let pressure = f.reals::<4>()?.map(Some);
@@ -88,7 +88,7 @@ pub(super) fn pload4(f: &mut Fields<'_>) -> Option<Pload4> {
     })
 }
 
-/// GRAV: `sid cid a n1 n2 n3 mb`; 6 words in old versions.
+/// Reads GRAV: `sid cid a n1 n2 n3 mb`; 6 words in old versions.
 pub(super) fn grav(f: &mut Fields<'_>) -> Option<Grav> {
     Some(Grav {
         sid: f.id()?,
@@ -98,7 +98,7 @@ pub(super) fn grav(f: &mut Fields<'_>) -> Option<Grav> {
     })
 }
 
-/// RFORCE: `sid g cid a r1 r2 r3 method racc mb`; fewer words in old versions.
+/// Reads RFORCE: `sid g cid a r1 r2 r3 method racc mb`; fewer words in old versions.
 pub(super) fn rforce(f: &mut Fields<'_>) -> Option<Rforce> {
     let (sid, grid, cid, speed, r) = (
         f.id()?,
@@ -130,7 +130,7 @@ pub(super) fn rforce(f: &mut Fields<'_>) -> Option<Rforce> {
     })
 }
 
-/// LOAD: `sid s (si li) .. -1 -1`.
+/// Reads LOAD: `sid s (si li) .. -1 -1`.
 pub(super) fn load_sum(f: &mut Fields<'_>) -> Option<LoadSum> {
     let (sid, scale) = (f.id()?, f.read_real()?);
     let mut terms = Vec::new();
@@ -143,7 +143,7 @@ pub(super) fn load_sum(f: &mut Fields<'_>) -> Option<LoadSum> {
     }
 }
 
-/// TEMP: `sid g t`.
+/// Reads TEMP: `sid g t`.
 pub(super) fn temp(f: &mut Fields<'_>) -> Option<Temp> {
     Some(Temp {
         sid: f.id()?,
@@ -152,7 +152,7 @@ pub(super) fn temp(f: &mut Fields<'_>) -> Option<Temp> {
     })
 }
 
-/// TEMPD: `sid t`.
+/// Reads TEMPD: `sid t`.
 pub(super) fn tempd(f: &mut Fields<'_>) -> Option<Tempd> {
     Some(Tempd {
         sid: f.id()?,

@@ -4,7 +4,7 @@ use super::fields::Fields;
 use super::lines::{ends, points};
 use crate::cards::{Conm1, Conm2, Pmass, ScalarMass, ScalarMassValue};
 
-/// CONM1: `eid g cid m1..m21`.
+/// Reads CONM1: `eid g cid m1..m21`.
 pub(super) fn conm1(f: &mut Fields<'_>) -> Option<Conm1> {
     Some(Conm1 {
         id: f.id()?,
@@ -14,7 +14,7 @@ pub(super) fn conm1(f: &mut Fields<'_>) -> Option<Conm1> {
     })
 }
 
-/// CONM2: `eid g cid m x1 x2 x3 i11 i21 i22 i31 i32 i33`.
+/// Reads CONM2: `eid g cid m x1 x2 x3 i11 i21 i22 i31 i32 i33`.
 pub(super) fn conm2(f: &mut Fields<'_>) -> Option<Conm2> {
     Some(Conm2 {
         id: f.id()?,
@@ -46,7 +46,7 @@ pub(super) fn cmass4(f: &mut Fields<'_>) -> Option<ScalarMass> {
     mass(f, value, points)
 }
 
-/// Reads the id of a scalar mass, then its value or property as `value` does, and its ends as `ends` does.
+/// Reads the id of a scalar mass, then its value or property with `value`, and its ends with `ends`.
 fn mass(
     f: &mut Fields<'_>,
     value: fn(&mut Fields<'_>) -> Option<ScalarMassValue>,
@@ -67,7 +67,7 @@ fn value(f: &mut Fields<'_>) -> Option<ScalarMassValue> {
     Some(ScalarMassValue::Direct(f.read_real()?))
 }
 
-/// PMASS: `pid m`.
+/// Reads PMASS: `pid m`.
 pub(super) fn pmass(f: &mut Fields<'_>) -> Option<Pmass> {
     Some(Pmass {
         id: f.id()?,

@@ -3,7 +3,7 @@
 use super::fields::Fields;
 use crate::cards::{Mat1, Mat2, Mat8, Mat9};
 
-/// MAT1: `mid e g nu rho a tref ge st sc ss mcsid`.
+/// Reads MAT1: `mid e g nu rho a tref ge st sc ss mcsid`.
 pub(super) fn mat1(f: &mut Fields<'_>) -> Option<Mat1> {
     Some(Mat1 {
         id: f.id()?,
@@ -18,7 +18,7 @@ pub(super) fn mat1(f: &mut Fields<'_>) -> Option<Mat1> {
     })
 }
 
-/// MAT2: `mid g11 g12 g13 g22 g23 g33 rho a1 a2 a3 tref ge st sc ss mcsid`, 17 words; 23 with six damping terms.
+/// Reads MAT2: `mid g11 g12 g13 g22 g23 g33 rho a1 a2 a3 tref ge st sc ss mcsid`, 17 words; 23 with six damping terms.
 pub(super) fn mat2(f: &mut Fields<'_>) -> Option<Mat2> {
     Some(Mat2 {
         id: f.id()?,
@@ -30,7 +30,7 @@ pub(super) fn mat2(f: &mut Fields<'_>) -> Option<Mat2> {
     })
 }
 
-/// MAT8: `mid e1 e2 nu12 g12 g1z g2z rho a1 a2 tref` and strengths.
+/// Reads MAT8: `mid e1 e2 nu12 g12 g1z g2z rho a1 a2 tref` and strengths.
 pub(super) fn mat8(f: &mut Fields<'_>) -> Option<Mat8> {
     Some(Mat8 {
         id: f.id()?,
@@ -46,7 +46,7 @@ pub(super) fn mat8(f: &mut Fields<'_>) -> Option<Mat8> {
     })
 }
 
-/// MAT9: `mid g1..g21 rho a1..a6 tref ge`, 35 words; 56 with 21 damping terms.
+/// Reads MAT9: `mid g1..g21 rho a1..a6 tref ge`, 35 words; 56 with 21 damping terms.
 pub(super) fn mat9(f: &mut Fields<'_>) -> Option<Mat9> {
     Some(Mat9 {
         id: f.id()?,
@@ -58,7 +58,7 @@ pub(super) fn mat9(f: &mut Fields<'_>) -> Option<Mat9> {
     })
 }
 
-/// A real where 0 means blank.
+/// Reads a real; 0 means blank.
 fn limit(f: &mut Fields<'_>) -> Option<Option<f64>> {
     Some(f.blank_or_real()?.filter(|x| *x != 0.0))
 }

@@ -1,12 +1,12 @@
-//! Bulk data out of the geometry blocks: one reader per card, chosen by record code.
+//! Bulk data from the geometry blocks, with one reader for each card, selected by the record code.
 //!
-//! A record begins with three numbers, the card's code. The third may carry a prefix: 4501,45,1120001 is GRID (4501,45,1) with
-//! 11 words a card and double precision, 5501,55,620016 is SPC (5501,55,16) with 6 words and double precision.
+//! A record begins with three numbers, the card's code. The third number may have a prefix. For example, 4501,45,1120001 is GRID (4501,45,1) with 11
+//! words for each card and double precision. 5501,55,620016 is SPC (5501,55,16) with 6 words for each card and double precision.
 //!
-//! - [`fields`] the words of a card one after the other; [`records`] cards of fixed and of varying length;
-//! - [`grids`], [`shells`], [`lines`], [`solids`], [`masses`], [`rigid`], [`constraints`], [`loads`], [`properties`], [`sections`],
-//!   [`materials`], [`params`] the cards; [`dispatch`] which code is which; [`tidy`] what solvers add on their own;
-//!   [`unread_records`] records without a reader.
+//! - [`fields`]: the consecutive words of a card. [`records`]: cards of fixed and of varying length.
+//! - [`grids`], [`shells`], [`lines`], [`solids`], [`masses`], [`rigid`], [`constraints`], [`loads`], [`properties`], [`sections`], [`materials`],
+//!   [`params`]: readers of the cards.
+//! - [`dispatch`]: cards by record code. [`tidy`]: removal of cards that solvers add. [`unread_records`]: records without a reader.
 
 mod constraints;
 mod dispatch;

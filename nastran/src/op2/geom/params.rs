@@ -1,11 +1,11 @@
-//! PARAM cards out of table PVT0.
+//! Reads PARAM cards from table PVT0.
 
 use super::fields::Fields;
 use super::records::Geometry;
 use crate::cards::{Param, ParamValue};
 use crate::op2::words::Words;
 
-/// Parameters of a record: name (2 words), type (1 integer, 2 real, 3 two words: text or a double), value. Stops at a type we do not know.
+/// Reads the parameters of a record: name (2 words), type (1 integer, 2 real, 3 two words: text or a double), value. Stops at an unknown type.
 pub(in crate::op2) fn read_params(words: Words<'_>, out: &mut Geometry) {
     let mut f = Fields::new(words, false);
     while f.words_left() >= 4 {
@@ -35,7 +35,7 @@ fn param(f: &mut Fields<'_>, narrow: bool) -> Option<Param> {
     })
 }
 
-/// Text, or a double: text has only characters that a keyword may have.
+/// Reads text or an 8-byte real; the value is text if it has only characters that a keyword may have.
 fn two_words(f: &mut Fields<'_>, narrow: bool) -> Option<ParamValue> {
     let mut number = *f;
     let text = f.text(2)?;

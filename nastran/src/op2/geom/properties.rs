@@ -3,7 +3,7 @@
 use super::fields::Fields;
 use crate::cards::{Pbush, Pcomp, Pelas, Ply, Prod, Pshear, Pshell, Psolid, Ptube};
 
-/// PSHELL: `pid mid1 t mid2 12i/t3 mid3 ts/t nsm z1 z2 mid4`.
+/// Reads PSHELL: `pid mid1 t mid2 12i/t3 mid3 ts/t nsm z1 z2 mid4`.
 pub(super) fn pshell(f: &mut Fields<'_>) -> Option<Pshell> {
     Some(Pshell {
         id: f.id()?,
@@ -42,7 +42,7 @@ pub(super) fn pcomp(f: &mut Fields<'_>) -> Option<Pcomp> {
     (n == u64::MAX || pcomp.plies.len() as u64 == n).then_some(pcomp)
 }
 
-/// PCOMPG: `pid lam z0 nsm sb ft tref ge`, then `ply mid t theta sout` up to five words -1.
+/// Reads PCOMPG: `pid lam z0 nsm sb ft tref ge`, then `ply mid t theta sout` for each ply, up to five words -1.
 pub(super) fn pcompg(f: &mut Fields<'_>) -> Option<Pcomp> {
     let id = f.id()?;
     f.skip(1)?;
@@ -82,7 +82,7 @@ fn ply(f: &mut Fields<'_>) -> Option<Ply> {
     })
 }
 
-/// PSHEAR: `pid mid t nsm f1 f2`.
+/// Reads PSHEAR: `pid mid t nsm f1 f2`.
 pub(super) fn pshear(f: &mut Fields<'_>) -> Option<Pshear> {
     Some(Pshear {
         id: f.id()?,
@@ -94,7 +94,7 @@ pub(super) fn pshear(f: &mut Fields<'_>) -> Option<Pshear> {
     })
 }
 
-/// PROD: `pid mid a j c nsm`.
+/// Reads PROD: `pid mid a j c nsm`.
 pub(super) fn prod(f: &mut Fields<'_>) -> Option<Prod> {
     Some(Prod {
         id: f.id()?,
@@ -106,7 +106,7 @@ pub(super) fn prod(f: &mut Fields<'_>) -> Option<Prod> {
     })
 }
 
-/// PTUBE: `pid mid od t nsm`, and od2 in some versions.
+/// Reads PTUBE: `pid mid od t nsm`, and od2 in some versions.
 pub(super) fn ptube(f: &mut Fields<'_>) -> Option<Ptube> {
     let (id, mid, od, t, nsm) = (
         f.id()?,
@@ -130,7 +130,7 @@ pub(super) fn ptube(f: &mut Fields<'_>) -> Option<Ptube> {
     })
 }
 
-/// PBUSH: `pid k1..k6 b1..b6`, then `ge1 sa st ea et` (18 words) or `ge1..ge6 sa st ea et` (23), from 24 words on with the mass.
+/// Reads PBUSH: `pid k1..k6 b1..b6`, then `ge1 sa st ea et` (18 words) or `ge1..ge6 sa st ea et` (23 words). With 24 words or more the mass follows.
 pub(super) fn pbush(f: &mut Fields<'_>) -> Option<Pbush> {
     let n = f.words_left();
     let (id, k, b) = (f.id()?, f.reals()?, f.reals()?);
@@ -156,7 +156,7 @@ pub(super) fn pbush(f: &mut Fields<'_>) -> Option<Pbush> {
     })
 }
 
-/// PELAS: `pid k ge s`.
+/// Reads PELAS: `pid k ge s`.
 pub(super) fn pelas(f: &mut Fields<'_>) -> Option<Pelas> {
     Some(Pelas {
         id: f.id()?,
@@ -166,7 +166,7 @@ pub(super) fn pelas(f: &mut Fields<'_>) -> Option<Pelas> {
     })
 }
 
-/// PSOLID: `pid mid cordm in stress isop fctn`; options as numbers, 0 where blank.
+/// Reads PSOLID: `pid mid cordm in stress isop fctn`; options as numbers, 0 where blank.
 pub(super) fn psolid(f: &mut Fields<'_>) -> Option<Psolid> {
     let (id, mid, cordm) = (f.id()?, f.id_or_zero()?, f.read_signed_id()?);
     let mut options: [Option<String>; 4] = Default::default();

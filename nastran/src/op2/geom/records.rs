@@ -1,4 +1,4 @@
-//! Records of cards: cards of fixed length in one of several widths, cards of varying length.
+//! Records of cards: cards of fixed length with several possible widths, and cards of varying length.
 
 use super::fields::Fields;
 use super::unread_records::{Code, UnreadRecord, classify_unread_record};
@@ -7,7 +7,7 @@ use crate::op2::words::Words;
 use crate::place::{Place, PlacedCard};
 use crate::results::Note;
 
-/// Cards read so far, and what was passed over.
+/// Cards read so far, and notes on skipped content.
 #[derive(Clone, Debug, Default)]
 pub(in crate::op2) struct Geometry {
     pub(in crate::op2) cards: Cards,
@@ -19,7 +19,7 @@ pub(in crate::op2) struct Geometry {
 pub(super) struct Record<'a> {
     pub(super) words: Words<'a>,
     pub(super) table: &'a str,
-    /// Words of each card, and double precision, if the code states them.
+    /// Number of words of each card, and double precision, if the code states them.
     pub(super) stated: Option<(usize, bool)>,
 }
 
@@ -28,12 +28,12 @@ impl<'a> Record<'a> {
         self.stated.is_some_and(|s| s.1)
     }
 
-    /// All words as fields, for cards of varying length.
+    /// Returns all words as fields, for cards of varying length.
     pub(super) fn fields(&self) -> Fields<'a> {
         Fields::new(self.words, self.is_double())
     }
 
-    /// Words after the last `mark` in the record: what a card holds behind its terminator, at most two.
+    /// Returns the number of words after the last `mark` in the record, that is after a card's terminator; at most two.
     pub(super) fn tail(&self, mark: i64) -> usize {
         let n = self.words.len();
         (0..n.min(3))
@@ -50,7 +50,7 @@ impl Geometry {
         });
     }
 
-    /// Adds the entries of a record without a reader that act, and a note on those that act where case control selects them.
+    /// Adds the entries of a record without a reader if they act, or a note if they act only if case control selects them.
     pub(super) fn add_unread_entries(&mut self, code: Code, record: Record<'_>) {
         match classify_unread_record(code, record.table, record.words, record.stated.map(|s| s.0)) {
             UnreadRecord::Acting(entries) => {
@@ -67,7 +67,7 @@ impl Geometry {
         }
     }
 
-    /// Adds an entry for cards that are left out of a record.
+    /// Adds an entry and a note for cards of a record that are omitted.
     fn left_out(&mut self, card: &str, table: &str, message: String) {
         self.note(table, message);
         self.cards.unread.push(Self::place(UnreadEntry {
@@ -84,8 +84,8 @@ impl Geometry {
         }
     }
 
-    /// Adds cards of a fixed number of words. Solvers and versions differ in it: of `widths` the first one with which all cards
-    /// make sense is taken, else the one with which most do; cards that do not are left out with a note.
+    /// Adds cards of a fixed number of words. This number differs between solvers and versions. The first of `widths` with which all cards are valid
+    /// is used, otherwise the width with the fewest invalid cards. Invalid cards are omitted with a note.
     pub(super) fn add_fixed_cards<T>(
         &mut self,
         record: Record<'_>,
@@ -134,7 +134,7 @@ impl Geometry {
         list(&mut self.cards).append(&mut cards);
     }
 
-    /// Adds cards of varying length; stops with a note at the first that does not make sense.
+    /// Adds cards of varying length; stops with a note at the first invalid card.
     pub(super) fn add_varying_cards<T>(
         &mut self,
         record: Record<'_>,

@@ -4,7 +4,7 @@ use super::fields::Fields;
 use super::records::Record;
 use crate::cards::{Dofs, Mpc, Rbar, Rbe1, Rbe2, Rbe3, Rbe3Group};
 
-/// RBAR: `eid ga gb cna cnb cma cmb`, 7 words; 8 and 9 with alpha and a reference temperature.
+/// Reads RBAR: `eid ga gb cna cnb cma cmb`, 7 words; 8 and 9 with alpha and a reference temperature.
 pub(super) fn rbar(f: &mut Fields<'_>) -> Option<Rbar> {
     let (id, grids) = (f.id()?, f.ids()?);
     let mut c = [Dofs(0); 4];
@@ -26,7 +26,7 @@ pub(super) fn rbar(f: &mut Fields<'_>) -> Option<Rbar> {
     })
 }
 
-/// RBE1: `eid (gn cn) .. -2 -2 (gm cm) .. -1 -1`, and further words in newer versions (alpha first).
+/// Reads RBE1: `eid (gn cn) .. -2 -2 (gm cm) .. -1 -1`, and further words in newer versions (alpha first).
 pub(super) fn rbe1(record: Record<'_>) -> impl Fn(&mut Fields<'_>) -> Option<Rbe1> {
     let tail = record.tail(-1);
     move |f| {
@@ -39,7 +39,7 @@ pub(super) fn rbe1(record: Record<'_>) -> impl Fn(&mut Fields<'_>) -> Option<Rbe
     }
 }
 
-/// RBE2: `eid gn cm gm .. -1`, in newer versions then alpha, in the newest also a reference temperature.
+/// Reads RBE2: `eid gn cm gm .. -1`. Newer versions add alpha, and the newest also a reference temperature.
 pub(super) fn rbe2(record: Record<'_>) -> impl Fn(&mut Fields<'_>) -> Option<Rbe2> {
     let tail = record.tail(-1);
     move |f| {
@@ -56,7 +56,7 @@ pub(super) fn rbe2(record: Record<'_>) -> impl Fn(&mut Fields<'_>) -> Option<Rbe
     }
 }
 
-/// RBE3: `eid refg refc, (wt c g .. -1) .., -2, (gm cm) .., -3`, then as RBE2. -2 is missing in files without UM of old versions.
+/// Reads RBE3: `eid refg refc, (wt c g .. -1) .., -2, (gm cm) .., -3`, then the end of RBE2. Old versions omit -2 in files without UM.
 pub(super) fn rbe3(record: Record<'_>) -> impl Fn(&mut Fields<'_>) -> Option<Rbe3> {
     let tail = record.tail(-3);
     move |f| {
@@ -94,7 +94,7 @@ pub(super) fn rbe3(record: Record<'_>) -> impl Fn(&mut Fields<'_>) -> Option<Rbe
     }
 }
 
-/// MPC: `sid (g c a) .. -1 -1 -1`.
+/// Reads MPC: `sid (g c a) .. -1 -1 -1`.
 pub(super) fn mpc(f: &mut Fields<'_>) -> Option<Mpc> {
     let sid = f.id()?;
     let mut terms = Vec::new();
@@ -111,7 +111,7 @@ pub(super) fn mpc(f: &mut Fields<'_>) -> Option<Mpc> {
     }
 }
 
-/// Grid and component pairs up to a pair of marks.
+/// Reads pairs of grid and component up to a pair of marks.
 pub(super) fn pairs(f: &mut Fields<'_>, mark: i64) -> Option<Vec<(u32, Dofs)>> {
     let mut pairs = Vec::new();
     while f.peek()? != mark {

@@ -3,7 +3,7 @@
 use super::fields::Fields;
 use crate::cards::{BeamStation, BeamlStation, Pbar, Pbarl, Pbeam, Pbeaml};
 
-/// PBAR: `pid mid a i1 i2 j nsm fe c1 c2 d1 d2 e1 e2 f1 f2 k1 k2 i12`.
+/// Reads PBAR: `pid mid a i1 i2 j nsm fe c1 c2 d1 d2 e1 e2 f1 f2 k1 k2 i12`.
 pub(super) fn pbar(f: &mut Fields<'_>) -> Option<Pbar> {
     let (id, mid) = (f.id()?, f.id()?);
     let [area, i1, i2, j, nsm, _] = f.reals()?;
@@ -22,7 +22,7 @@ pub(super) fn pbar(f: &mut Fields<'_>) -> Option<Pbar> {
     })
 }
 
-/// PBARL: `pid mid group group type type dimensions.. nsm -1`.
+/// Reads PBARL: `pid mid group group type type dimensions.. nsm -1`.
 pub(super) fn pbarl(f: &mut Fields<'_>) -> Option<Pbarl> {
     let (id, mid, section, mut dims) = section(f)?;
     let nsm = dims.pop()?;
@@ -35,7 +35,7 @@ pub(super) fn pbarl(f: &mut Fields<'_>) -> Option<Pbarl> {
     })
 }
 
-/// PBEAML: as PBARL with `so x/xb dimensions.. nsm` at each of up to 11 stations; those that are not used are zero.
+/// Reads PBEAML: the beginning of PBARL, then `so x/xb dimensions.. nsm` at each of up to 11 stations. Unused stations are zero.
 pub(super) fn pbeaml(f: &mut Fields<'_>) -> Option<Pbeaml> {
     let (id, mid, section, values) = section(f)?;
     let width = n_dims(&section)?.checked_add(3)?;
@@ -62,9 +62,9 @@ pub(super) fn pbeaml(f: &mut Fields<'_>) -> Option<Pbeaml> {
     })
 }
 
-/// PBEAM: `pid mid n ccf x`, 11 stations of `so x/xb a i1 i2 i12 j nsm c1 c2 d1 d2 e1 e2 f1 f2`, then
-/// `k1 k2 s1 s2 nsi(a) nsi(b) cw(a) cw(b) m1(a) m2(a) m1(b) m2(b) n1(a) n2(a) n1(b) n2(b)`. `None` for a PBCOMP, which is written the
-/// same way with other numbers in the place of `so`.
+/// Reads PBEAM: `pid mid n ccf x`, 11 stations of `so x/xb a i1 i2 i12 j nsm c1 c2 d1 d2 e1 e2 f1 f2`, then
+/// `k1 k2 s1 s2 nsi(a) nsi(b) cw(a) cw(b) m1(a) m2(a) m1(b) m2(b) n1(a) n2(a) n1(b) n2(b)`. `None` for a PBCOMP, which has the same form with other
+/// numbers instead of `so`.
 pub(super) fn pbeam(f: &mut Fields<'_>) -> Option<Pbeam> {
     let (id, mid) = (f.id()?, f.id()?);
     f.skip(3)?;
@@ -90,7 +90,7 @@ pub(super) fn pbeam(f: &mut Fields<'_>) -> Option<Pbeam> {
         }
     }
     stations.sort_by(|a, b| a.x_xb.total_cmp(&b.x_xb));
-    // A station without stress output states no points: those of end A, as in a deck.
+    // A station without stress output states no points; it takes the points of end A, as in a deck.
     let points_a = stations.first().map_or([[0.0; 2]; 4], |s| s.recovery);
     for station in stations.iter_mut().filter(|s| !s.output) {
         station.recovery = points_a;
@@ -118,7 +118,7 @@ pub(super) fn pbeam(f: &mut Fields<'_>) -> Option<Pbeam> {
     })
 }
 
-/// Property, material, type, and the values up to -1.
+/// Reads property, material, type, and the values up to -1.
 fn section(f: &mut Fields<'_>) -> Option<(u32, u32, String, Vec<f64>)> {
     let (id, mid) = (f.id()?, f.id()?);
     f.skip(2)?;
@@ -131,7 +131,7 @@ fn section(f: &mut Fields<'_>) -> Option<(u32, u32, String, Vec<f64>)> {
     Some((id, mid, kind, values))
 }
 
-/// Dimensions of a PBEAML section type.
+/// Returns the number of dimensions of a PBEAML section type.
 fn n_dims(section: &str) -> Option<usize> {
     Some(match section {
         "ROD" => 1,

@@ -3,7 +3,7 @@
 use super::fields::Fields;
 use crate::cards::{MaterialAngle, ShearPanel, Shell, ShellShape};
 
-/// CQUAD4, CQUADR: `eid pid g1..g4 theta zoffs blank tflag t1..t4`, 14 words; 15 with a material coordinate system or -1.
+/// Reads CQUAD4, CQUADR: `eid pid g1..g4 theta zoffs blank tflag t1..t4`, 14 words; 15 with a material coordinate system or -1.
 pub(super) fn quad4(shape: ShellShape) -> impl Fn(&mut Fields<'_>) -> Option<Shell> {
     move |f| {
         let mut shell = head(f, shape)?;
@@ -16,7 +16,7 @@ pub(super) fn quad4(shape: ShellShape) -> impl Fn(&mut Fields<'_>) -> Option<She
     }
 }
 
-/// CTRIA3, CTRIAR: `eid pid g1..g3 theta zoffs blank blank tflag t1..t3`, 13 words; 14 with a material coordinate system or -1.
+/// Reads CTRIA3, CTRIAR: `eid pid g1..g3 theta zoffs blank blank tflag t1..t3`, 13 words; 14 with a material coordinate system or -1.
 pub(super) fn tria3(shape: ShellShape) -> impl Fn(&mut Fields<'_>) -> Option<Shell> {
     move |f| {
         let mut shell = head(f, shape)?;
@@ -29,7 +29,7 @@ pub(super) fn tria3(shape: ShellShape) -> impl Fn(&mut Fields<'_>) -> Option<She
     }
 }
 
-/// CQUAD8: `eid pid g1..g8 t1..t4 theta zoffs tflag`, 17 words; 16 without the flag, 18 with a material coordinate system or -1.
+/// Reads CQUAD8: `eid pid g1..g8 t1..t4 theta zoffs tflag`, 17 words; 16 without the flag, 18 with a material coordinate system or -1.
 pub(super) fn quad8(f: &mut Fields<'_>) -> Option<Shell> {
     let mut shell = head(f, ShellShape::Quad8)?;
     thicknesses(f, &mut shell)?;
@@ -39,7 +39,7 @@ pub(super) fn quad8(f: &mut Fields<'_>) -> Option<Shell> {
     mcid(f, shell)
 }
 
-/// CTRIA6: `eid pid g1..g6 theta zoffs t1..t3 tflag`, 14 words; 13 without the flag, 15 with a material coordinate system or -1.
+/// Reads CTRIA6: `eid pid g1..g6 theta zoffs t1..t3 tflag`, 14 words; 13 without the flag, 15 with a material coordinate system or -1.
 pub(super) fn tria6(f: &mut Fields<'_>) -> Option<Shell> {
     let mut shell = head(f, ShellShape::Tria6)?;
     shell.angle = theta(f)?;
@@ -49,7 +49,7 @@ pub(super) fn tria6(f: &mut Fields<'_>) -> Option<Shell> {
     mcid(f, shell)
 }
 
-/// CSHEAR: `eid pid g1..g4`.
+/// Reads CSHEAR: `eid pid g1..g4`.
 pub(super) fn shear_panel(f: &mut Fields<'_>) -> Option<ShearPanel> {
     Some(ShearPanel {
         id: f.id()?,
@@ -80,7 +80,7 @@ fn head(f: &mut Fields<'_>, shape: ShellShape) -> Option<Shell> {
     })
 }
 
-/// Degrees; or 512 (MCID + 1), which no angle reaches.
+/// Returns the angle in degrees. The value is an angle or 512 (MCID + 1), which no angle reaches.
 fn theta(f: &mut Fields<'_>) -> Option<MaterialAngle> {
     let theta = f.usual_real()?;
     Some(if theta > 511.0 {
@@ -106,7 +106,7 @@ fn flag(f: &mut Fields<'_>) -> Option<bool> {
     }
 }
 
-/// Corner thicknesses; -1 and 0 are blanks.
+/// Reads corner thicknesses; -1 and 0 are blanks.
 fn thicknesses(f: &mut Fields<'_>, shell: &mut Shell) -> Option<()> {
     let n = shell.shape.n_corners();
     for t in shell.thickness.iter_mut().take(n) {
@@ -115,7 +115,7 @@ fn thicknesses(f: &mut Fields<'_>, shell: &mut Shell) -> Option<()> {
     Some(())
 }
 
-/// The last word of newer versions: a material coordinate system, or -1.
+/// Reads the last word of newer versions: a material coordinate system, or -1.
 fn mcid(f: &mut Fields<'_>, mut shell: Shell) -> Option<Shell> {
     if f.words_left() > 0 {
         match f.int()? {

@@ -1,9 +1,9 @@
-//! Solids: `eid pid` and the grids, corners first, 0 where a mid-side grid is missing.
+//! Solids: `eid pid` and the grids, corners first; a missing mid-side grid is 0.
 
 use super::fields::Fields;
 use crate::cards::{Solid, SolidShape};
 
-/// CTETRA 12 words, CPENTA 17, CHEXA 22, CPYRAM 16 (13 grids and a spare word).
+/// Returns the reader of a solid of this shape: CTETRA has 12 words, CPENTA 17, CHEXA 22, CPYRAM 16 (13 grids and a spare word).
 pub(super) fn solid(shape: SolidShape) -> impl Fn(&mut Fields<'_>) -> Option<Solid> {
     let n_grids = match shape {
         SolidShape::Tetra => 10,

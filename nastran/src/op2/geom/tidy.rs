@@ -6,8 +6,8 @@ use super::fields::LARGEST_ID;
 use super::records::Geometry;
 use crate::place::PlacedCard;
 
-/// Keeps one card of each id; drops properties and materials that the solver made of others: PSHELL and MAT2 of a PCOMP, PBAR of a
-/// PBARL, PBEAM of a PBEAML.
+/// Keeps one card of each id, and removes properties and materials that the solver made from other cards. These are PSHELL and MAT2 from a PCOMP,
+/// PBAR from a PBARL, and PBEAM from a PBEAML.
 pub(in crate::op2) fn tidy(g: &mut Geometry) {
     let c = &mut g.cards;
     let mut twice: Vec<String> = Vec::new();
@@ -95,7 +95,7 @@ pub(in crate::op2) fn tidy(g: &mut Geometry) {
     }
 }
 
-/// Keeps the first card of each id; how many went.
+/// Keeps the first card of each id; returns the number of removed cards.
 fn remove_duplicate_ids<T>(list: &mut Vec<PlacedCard<T>>, id: impl Fn(&T) -> u32) -> usize {
     let before = list.len();
     let mut seen = HashSet::with_capacity(before);

@@ -1,4 +1,4 @@
-//! Records without a reader: the names of their entries, and which of them act.
+//! Records without a reader: the names of their entries, and whether they act.
 
 use super::fields::LARGEST_ID;
 use crate::bdf::vocabulary::{Effect, effect_of_card};
@@ -26,8 +26,8 @@ pub(super) enum UnreadRecord {
     WithoutInfluence,
 }
 
-/// Returns the entries of a record without a reader. `words` are those behind its code, `stated` is the length of an entry where the code
-/// states it. A record whose entries vary in length, or have an unknown length, is one entry.
+/// Returns the entries of a record without a reader. `words` follow the record's code. `stated` is the length of an entry, if the code states it. A
+/// record whose entries vary in length, or have an unknown length, is one entry.
 pub(super) fn classify_unread_record(
     code: Code,
     table: &str,
@@ -68,7 +68,7 @@ pub(super) fn classify_unread_record(
     })
 }
 
-/// Returns names and lengths of entries by the code of their record; length 0 where it is not fixed.
+/// Returns names and lengths of entries by the code of their record; the length is 0 if it is not fixed.
 fn names() -> &'static HashMap<Code, (&'static str, usize)> {
     static NAMES: OnceLock<HashMap<Code, (&'static str, usize)>> = OnceLock::new();
     NAMES.get_or_init(|| {

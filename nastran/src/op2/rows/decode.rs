@@ -1,18 +1,18 @@
-//! Words of a record into rows.
+//! Decodes the words of a record into rows.
 
 use super::{Layout, Shape};
 use crate::op2::words::Words;
 use crate::results::{Label, RowId, Rows};
 
-/// An id word that no entity can have: row, word.
+/// An impossible id in a record, with its row and value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::op2) struct BadId {
     pub row: usize,
     pub found: i64,
 }
 
-/// Rows of a record; a last entry that is not complete is left off. `entity` is the id of all rows where the identification
-/// record names it (SORT2); else each entry begins with it.
+/// Returns the rows of a record; an incomplete last entry is omitted. If the identification record names the entity (SORT2), `entity` is the id of
+/// all rows. Otherwise each entry begins with its id.
 ///
 /// # Errors
 ///
@@ -42,7 +42,7 @@ pub(in crate::op2) fn decode(
     Ok(rows)
 }
 
-/// The most rows an entry can give. Beams have 11 stations but mostly 2 that count, so these are not reserved beforehand.
+/// Returns the number of rows to reserve for an entry. A beam has 11 stations, of which mostly 2 are used, so only 2 are reserved.
 fn rows_per_entry(layout: Layout) -> usize {
     match layout.shape {
         Shape::Nodal | Shape::Plain | Shape::Stations | Shape::Ply | Shape::GridPoint => 1,
@@ -53,7 +53,7 @@ fn rows_per_entry(layout: Layout) -> usize {
     }
 }
 
-/// Adds the rows of one entry; the word found where an id cannot be.
+/// Adds the rows of one entry. `Err` contains the value found in place of an id.
 fn push_entry(
     w: Words<'_>,
     layout: Layout,
@@ -110,7 +110,7 @@ fn push_entry(
         }
         Shape::Beam => {
             for (i, station) in w.rest(1).entries(columns.saturating_add(1)).enumerate() {
-                // stations that are not asked for are filled with zeros
+                // The solver writes zeros for stations without an output request.
                 if i == 0 || station.real_at(1).is_some_and(|x| x > 0.0) {
                     rows.ids
                         .push(id(narrow_to_u32(station.int(0).unwrap_or(0))?, 0));
@@ -129,8 +129,8 @@ fn push_entry(
     Ok(())
 }
 
-/// A location of a solid: `grid, xx xy p1 a1 a2 a3 pressure vm, yy yz p2 b1 b2 b3, zz zx p3 c1 c2 c3`, where a, b, c are direction cosines. The
-/// principal values p1 p2 p3 have no fixed order in the file; they are sorted.
+/// Adds a location of a solid: `grid, xx xy p1 a1 a2 a3 pressure vm, yy yz p2 b1 b2 b3, zz zx p3 c1 c2 c3`, where a, b, c are direction cosines. The
+/// file lists the principal values p1 p2 p3 in any order; the row contains them sorted.
 fn push_solid(place: Words<'_>, out: &mut Vec<f64>) {
     let v = |i: usize| place.real_at(i).unwrap_or(f64::NAN);
     let mut principal = [v(3), v(11), v(17)];
@@ -139,7 +139,7 @@ fn push_solid(place: Words<'_>, out: &mut Vec<f64>) {
     out.extend([v(1), v(9), v(15), v(2), v(10), v(16), max, mid, min, v(8)]);
 }
 
-/// `10 id + device` without the device code.
+/// Returns the id of `10 id + device`, without the device code.
 fn leading_id(w: Words<'_>) -> Result<u32, i64> {
     let word = w.int(0).unwrap_or(0);
     if word < 0 {

@@ -1,8 +1,8 @@
-//! Which words of a row are what, by quantity, element type and words a row.
+//! Layout of the words of a row, by quantity, element type and number of words.
 
 use crate::results::{ElementType, Quantity, columns as c};
 
-/// How an entry of the file becomes rows.
+/// Form in which an entry of the file becomes rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::op2) enum Shape {
     /// `10 id + device, grid type, reals`.
@@ -13,13 +13,13 @@ pub(in crate::op2) enum Shape {
     Stations,
     /// `10 id + device, reals, reals`: a row at each of two fibres.
     ShellCentre,
-    /// `10 id + device, CEN/, n`, then the centre and the corners: 16 reals each, for a corner after its grid id.
+    /// `10 id + device, CEN/, n`, then the centre and the corners with 16 reals each; a corner begins with its grid id.
     ShellCorners,
     /// Entries like `ShellCorners`, with one row for each location.
     ForceCorners,
     /// `10 id + device`, then 11 stations: `grid, reals`.
     Beam,
-    /// `10 id + device, cid, GRID, n`, then the centre and the corners: 21 words each.
+    /// `10 id + device, cid, GRID, n`, then the centre and the corners with 21 words each.
     Solid,
     /// `10 id + device, ply, reals`.
     Ply,
@@ -27,16 +27,16 @@ pub(in crate::op2) enum Shape {
     GridPoint,
 }
 
-/// The words of an entry.
+/// Layout of the words of an entry.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::op2) struct Layout {
     pub shape: Shape,
-    /// Words an entry.
+    /// Number of words in an entry.
     pub wide: usize,
     pub columns: &'static [&'static str],
 }
 
-/// The layout of real SORT1 rows; `None` where we have none for this element type and width.
+/// Returns the layout of real SORT1 rows; `None` if this element type and width have no known layout.
 pub(in crate::op2) fn layout(
     quantity: Quantity,
     element: Option<ElementType>,

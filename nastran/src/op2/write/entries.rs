@@ -1,13 +1,13 @@
-//! Rows into the words of entries: the inverse of decoding.
+//! Encodes rows as the words of entries, the inverse of decoding.
 
 use super::error::WriteError;
 use crate::op2::rows::{Layout, Shape};
 use crate::results::{Block, RowId, Rows};
 
-/// Stations a beam has in the file.
+/// Number of stations of a beam in the file.
 const BEAM_STATIONS: usize = 11;
 
-/// The words of all entries of a block.
+/// Returns the words of all entries of a block.
 pub(super) fn entries(block: &Block, rows: &Rows, layout: Layout) -> Result<Vec<u8>, WriteError> {
     if rows.columns.len() != layout.columns.len() {
         return Err(WriteError::Columns {
@@ -27,7 +27,7 @@ pub(super) fn entries(block: &Block, rows: &Rows, layout: Layout) -> Result<Vec<
     Ok(out)
 }
 
-/// Rows from `at` on that make one entry.
+/// Returns the number of rows from `at` on that make one entry.
 fn rows_of_entry(
     block: &Block,
     rows: &Rows,
@@ -66,7 +66,7 @@ fn rows_of_entry(
     Ok(expected)
 }
 
-/// The word behind `CEN/`: the element's number of grids.
+/// Returns the word after `CEN/`, the element's number of grids.
 fn corner_word(block: &Block) -> i32 {
     match block.element.map(|e| e.0) {
         Some(64) => 8,
@@ -117,7 +117,7 @@ fn push_entry<'r>(
             }
         }
         Shape::Solid => {
-            // the coordinate system stands in the first row's layer, the corners' number without the centre
+            // The first row's `layer` contains the coordinate system. The number of corners does not include the centre.
             int(out, first.layer)?;
             out.extend_from_slice(b"GRID");
             int(out, ids.len().saturating_sub(1))?;
@@ -127,7 +127,7 @@ fn push_entry<'r>(
             }
         }
         Shape::Beam => {
-            // end A stands first and end B last, the stations between them follow end A
+            // End A is first and end B is last; the stations between them follow end A.
             let last = ids.len().saturating_sub(1);
             for slot in 0..BEAM_STATIONS {
                 let i = if slot.saturating_add(1) == BEAM_STATIONS {
@@ -157,7 +157,7 @@ fn push_entry<'r>(
     Ok(())
 }
 
-/// The 20 reals of a location of a solid from `xx yy zz xy yz zx max mid min vm`; direction cosines of the principal axes stay zero.
+/// Returns the 20 reals of a location of a solid from `xx yy zz xy yz zx max mid min vm`. The direction cosines of the principal axes are zero.
 fn solid_words(row: &[f64]) -> [f64; 20] {
     let v = |i: usize| row.get(i).copied().unwrap_or(0.0);
     let pressure = -(v(0) + v(1) + v(2)) / 3.0;

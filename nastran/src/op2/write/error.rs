@@ -2,9 +2,9 @@
 
 use crate::results::{ElementType, Quantity};
 
-/// Why an OP2 could not be written.
+/// Reason why an OP2 could not be written.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs)] // the messages say what the values are
+#[allow(missing_docs)] // the messages describe the values
 pub enum WriteError {
     #[error(transparent)]
     Io(#[from] std::io::Error),

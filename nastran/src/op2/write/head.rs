@@ -2,7 +2,7 @@
 
 use crate::results::{Analysis, Block, Quantity, ShellForm};
 
-/// Table and sub-table name, as MSC and NX use them.
+/// Returns the table and sub-table name that MSC and NX use.
 pub(super) fn names(quantity: Quantity) -> Option<(&'static str, &'static str)> {
     use Quantity as Q;
     Some(match quantity {
@@ -19,7 +19,7 @@ pub(super) fn names(quantity: Quantity) -> Option<(&'static str, &'static str)> 
     })
 }
 
-/// The 146 words in front of the rows of a block. Device code 1; format 1 (real); load set as the subcase.
+/// Returns the 146 words before the rows of a block. The device code is 1, the format 1 (real), and the load set is the subcase.
 pub(super) fn ident(block: &Block, wide: usize) -> Vec<u8> {
     let mut words = [0_i32; 50];
     let subcase = i32::try_from(block.subcase).unwrap_or(i32::MAX);
@@ -77,7 +77,8 @@ fn analysis_code(analysis: Analysis) -> i32 {
     }
 }
 
-/// Words 5 to 7: load set in statics; mode, eigenvalue and frequency (sqrt(eigenvalue) / 2 pi) of modes; time or load factor.
+/// Returns words 5 to 7. Statics: load set. Modes: mode, eigenvalue and frequency (sqrt(eigenvalue) / 2 pi). Frequency, transient and nonlinear
+/// analyses: frequency, time or load factor.
 fn step(block: &Block, subcase: i32) -> (i32, i32, i32) {
     let real = |x: f64| i32::from_le_bytes((x as f32).to_le_bytes());
     match block.analysis {
@@ -109,7 +110,7 @@ fn table_code(quantity: Quantity) -> i32 {
     }
 }
 
-/// Bits: 1 von Mises, 2 and 8 strain, 4 fibre form of strain.
+/// Returns the stress code with the bits 1 von Mises, 2 and 8 strain, 4 fibre form of strain.
 fn stress_code(block: &Block) -> i32 {
     let von_mises = i32::from(block.von_mises);
     match block.quantity {

@@ -1,6 +1,6 @@
-//! Writes result tables as OP2: 32-bit little-endian with the header of PARAM,POST,-1, a block at a time.
+//! Writes result tables as OP2, one block at a time: 32-bit little-endian with the header of PARAM,POST,-1.
 //!
-//! - [`writer`] what a caller uses; [`stream`] keys and records; [`head`] identification records; [`entries`] rows into words, the
+//! - [`writer`]: the public writer. [`stream`]: keys and records. [`head`]: identification records. [`entries`]: encoding of rows as words, the
 //!   inverse of [`super::rows`].
 
 mod entries;

@@ -2,14 +2,14 @@
 
 use std::io::{self, Write};
 
-/// Words a physical record holds at most; longer records are split, always between entries.
+/// Largest number of words in a physical record; longer records are split, always between entries.
 const LARGEST_PIECE: usize = 65_536;
 
-/// The bytes of a file in the making.
+/// Output stream of a file that is being written.
 #[derive(Debug)]
 pub(super) struct Stream<W> {
     out: W,
-    /// Number of the last record of the open table, as the positive part of its key.
+    /// Number of the last record of the open table; the key contains the negative number.
     record: i32,
 }
 
@@ -18,7 +18,7 @@ impl<W: Write> Stream<W> {
         Stream { out, record: 0 }
     }
 
-    /// The output, flushed.
+    /// Writes the closing key 0, flushes the output and returns it.
     pub(super) fn finish(mut self) -> io::Result<W> {
         self.key(0)?;
         self.out.flush()?;
@@ -38,7 +38,7 @@ impl<W: Write> Stream<W> {
         self.physical(&key.to_le_bytes())
     }
 
-    /// A key with the number of words, and the words.
+    /// Writes a key with the number of words, then the words.
     fn words(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.key(
             i32::try_from(bytes.len() / 4).map_err(|_| io::Error::other("a record is too long"))?,
@@ -46,7 +46,7 @@ impl<W: Write> Stream<W> {
         self.physical(bytes)
     }
 
-    /// Date (month, day, year), tape label, version label.
+    /// Writes the header: date (month, day, year), tape label, version label.
     pub(super) fn header(&mut self, date: [u32; 3], version: &str) -> io::Result<()> {
         let [month, day, year] = date;
         self.words(&ints(&[month, day, year % 100]))?;
@@ -81,7 +81,7 @@ impl<W: Write> Stream<W> {
         self.key(0)
     }
 
-    /// A record of entries of `wide` words.
+    /// Writes a record of entries of `wide` words.
     pub(super) fn record(&mut self, bytes: &[u8], wide: usize) -> io::Result<()> {
         self.open_record()?;
         let entry = wide.max(1).saturating_mul(4);
@@ -96,7 +96,7 @@ impl<W: Write> Stream<W> {
     }
 }
 
-/// Eight characters, blanks behind.
+/// Returns eight characters, padded with blanks.
 fn name(text: &str) -> [u8; 8] {
     let mut name = [b' '; 8];
     name.iter_mut().zip(text.bytes()).for_each(|(n, c)| *n = c);

@@ -1,4 +1,4 @@
-//! Writes blocks one after the other.
+//! Writes blocks one after another.
 
 use std::io::Write;
 
@@ -8,15 +8,15 @@ use super::{entries, head};
 use crate::op2::rows::layout;
 use crate::results::{Block, Quantity, Rows};
 
-/// Version label of the header: the one most readers take for an MSC file.
+/// Version label of the header, which most readers take for an MSC file.
 const LABEL: &str = "XXXXXXXX";
 
-/// Writes an OP2 a block at a time; only the block at hand is in memory.
+/// Writes an OP2 one block at a time; only the current block is in memory.
 ///
-/// Blocks of one kind (displacements; stress; strain ..) that follow each other share a table, so give all subcases of a kind
-/// together. Values become 32-bit reals. What readers want of a [`Block`]: `quantity`, `analysis`, `subcase`, `element` (33 CQUAD4
-/// and 74 CTRIA3 with two rows an element; 144 CQUAD4 with centre and corners; 34 CBAR; 2 CBEAM ..), `form`, `von_mises`, `titles`;
-/// `table`, `num_wide` and `entries` are the writer's own.
+/// Consecutive blocks of one kind (displacements, stress, strain ..) share a table, so write all subcases of a kind together. Values become 32-bit
+/// reals. The writer uses these fields of a [`Block`]: `quantity`, `analysis`, `subcase`, `element`, `form`, `von_mises`, `titles`. It sets `table`,
+/// `num_wide` and `entries` itself. Element types include 33 CQUAD4 and 74 CTRIA3 with two rows for each element, 144 CQUAD4 with centre and corners,
+/// 34 CBAR and 2 CBEAM.
 #[derive(Debug)]
 pub struct Op2Writer<W: Write> {
     stream: Stream<W>,
@@ -29,7 +29,7 @@ impl<W: Write> Op2Writer<W> {
     ///
     /// # Errors
     ///
-    /// What `out` gives.
+    /// Every error of `out`.
     pub fn new(out: W, date: [u32; 3]) -> Result<Self, WriteError> {
         let mut stream = Stream::new(out);
         stream.header(date, LABEL)?;
@@ -40,22 +40,22 @@ impl<W: Write> Op2Writer<W> {
         })
     }
 
-    /// Adds a block. Rows are those that [`Op2::rows`](crate::op2::Op2::rows) gives: of shells first and second row of the centre,
-    /// then of each corner; of beams end A, stations between, end B.
+    /// Adds a block, with rows in the order of [`Op2::rows`](crate::op2::Op2::rows). A shell has the first and second row of the centre, then of each
+    /// corner. A beam has end A, the stations between, then end B.
     ///
     /// # Errors
     ///
-    /// [`WriteError::Unsupported`] for solids, grid point forces and element types without a layout; [`WriteError::Rows`] where an
-    /// element lacks rows; [`WriteError::Id`]; [`WriteError::Columns`]; what the output gives.
+    /// [`WriteError::Unsupported`] for grid point forces and element types without a layout. [`WriteError::Rows`] if an element lacks rows.
+    /// [`WriteError::Id`], [`WriteError::Columns`], and every error of the output.
     pub fn write_block(&mut self, block: &Block, rows: &Rows) -> Result<(), WriteError> {
         self.write_encoded(&EncodedBlock::new(block, rows)?)
     }
 
-    /// Adds a block whose bytes were made before, perhaps on another thread.
+    /// Adds a block that was encoded before, perhaps on another thread.
     ///
     /// # Errors
     ///
-    /// What the output gives.
+    /// Every error of the output.
     pub fn write_encoded(&mut self, block: &EncodedBlock) -> Result<(), WriteError> {
         if self.open != Some(block.table) {
             self.close_table()?;
@@ -68,11 +68,11 @@ impl<W: Write> Op2Writer<W> {
         Ok(())
     }
 
-    /// Ends the file and gives the output back.
+    /// Ends the file and returns the output.
     ///
     /// # Errors
     ///
-    /// What the output gives.
+    /// Every error of the output.
     pub fn finish(mut self) -> Result<W, WriteError> {
         self.close_table()?;
         Ok(self.stream.finish()?)
@@ -86,7 +86,7 @@ impl<W: Write> Op2Writer<W> {
     }
 }
 
-/// A block as the words of the file.
+/// A block encoded as the words of the file.
 #[derive(Clone, Debug)]
 pub struct EncodedBlock {
     table: &'static str,
@@ -97,11 +97,11 @@ pub struct EncodedBlock {
 }
 
 impl EncodedBlock {
-    /// The words of a block with these rows; see [`Op2Writer::write_block`].
+    /// Encodes a block with these rows; see [`Op2Writer::write_block`].
     ///
     /// # Errors
     ///
-    /// As [`Op2Writer::write_block`], output excepted.
+    /// Every error of [`Op2Writer::write_block`], except errors of the output.
     pub fn new(block: &Block, rows: &Rows) -> Result<Self, WriteError> {
         let unsupported = || WriteError::Unsupported {
             quantity: block.quantity,
@@ -121,11 +121,11 @@ impl EncodedBlock {
     }
 }
 
-/// All blocks as the bytes of a file; `date` is month, day, year.
+/// Returns all blocks as the bytes of a file; `date` is month, day, year.
 ///
 /// # Errors
 ///
-/// As [`Op2Writer::write_block`].
+/// Every error of [`Op2Writer::write_block`].
 pub fn write_blocks<'b>(
     blocks: impl IntoIterator<Item = (&'b Block, &'b Rows)>,
     date: [u32; 3],
@@ -137,7 +137,7 @@ pub fn write_blocks<'b>(
     writer.finish()
 }
 
-/// Words of an entry.
+/// Returns the number of words in an entry.
 fn num_wide(block: &Block) -> Option<u32> {
     use Quantity as Q;
     let element = block.element.map_or(0, |e| e.0);

@@ -9,7 +9,8 @@ const GAUSS: [(f64, f64); 3] = [
     (0.5, 8.0 / 18.0),
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
-/// A section without stiffness in a direction is integrated with this share of the others, and its rows are cleared after.
+/// Share of the other stiffnesses that replaces a section's missing stiffness in a direction during integration. The rows of that direction are
+/// cleared afterwards.
 const ALMOST_NOTHING: f64 = 1e-9;
 
 /// A beam in its own frame.
@@ -93,7 +94,7 @@ impl LocalBeam<'_> {
                 let xi = w[0].0 + span * x;
                 let s = section_at(self.sections, xi);
                 let arm = l * (1.0 - xi);
-                // Rows N, My, Mz at the section from the forces at B.
+                // Rows N, My, Mz at the section under the forces at B.
                 let b = SMatrix::<f64, 3, 6>::from_row_slice(&[
                     1.0, 0.0, 0.0, 0.0, 0.0, 0.0, //
                     0.0, 0.0, -arm, 0.0, 1.0, 0.0, //
@@ -118,7 +119,7 @@ impl LocalBeam<'_> {
     pub(super) fn basic(&self) -> Option<(Matrix6<f64>, Matrix6<f64>)> {
         let kb = self.flexibility().try_inverse()?;
         let kb = (kb + kb.transpose()) * 0.5;
-        // Forces at A from those at B: -g.
+        // The forces at A are -g times the forces at B.
         let mut g = Matrix6::identity();
         g[(4, 2)] = -self.length;
         g[(5, 1)] = self.length;

@@ -125,7 +125,7 @@ impl Interior {
         d
     }
 
-    /// End forces, A then B, that act as what is between the ends: those of the held beam, sign reversed.
+    /// Returns the end forces, A then B, equivalent to the loads between the ends: the end forces of the clamped beam with reversed sign.
     pub(super) fn end_forces(&self, beam: &LocalBeam<'_>) -> Option<SVector<f64, 12>> {
         let (kb, g) = beam.basic()?;
         let held = kb * self.displacement(beam);

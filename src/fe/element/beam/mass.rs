@@ -41,10 +41,10 @@ fn density(model: &Model, beam: &Beam) -> f64 {
         .map_or(0.0, |m| m.rho)
 }
 
-/// Mass lumped at the two ends, 6 x 6 about each grid, basic frame, before WTMASS.
+/// Returns the mass lumped at the two ends, 6 x 6 about each grid, basic frame, before WTMASS.
 ///
-/// A CBAR puts half its mass at each offset end. A CBEAM puts it on its neutral axis, non-structural mass at its own centre, and
-/// adds the polar inertia of the section and NSI about its axis.
+/// A CBAR puts half its mass at each offset end. A CBEAM puts structural mass on its neutral axis and non-structural mass at the centre of that mass.
+/// It adds the polar inertia of the section and NSI about the beam's axis.
 pub(crate) fn beam_lumped_mass(model: &Model, i: usize) -> [Matrix6<f64>; 2] {
     let beam = &model.beams[i];
     let rho = density(model, beam);
@@ -106,7 +106,7 @@ fn per_length(rho: f64, s: &Section) -> (f64, f64) {
 fn local_mass(model: &Model, beam: &Beam) -> SMatrix<f64, 12, 12> {
     let (rho, l) = (density(model, beam), length(model, beam));
     let mut m = SMatrix::<f64, 12, 12>::zeros();
-    // Degree six: the three-point rule on halves is exact enough for uniform beams and keeps rigid motions exact.
+    // The integrand has degree six. The three-point rule on halves is accurate enough for uniform beams and exact for rigid motions.
     integrate_along_beam(model, beam, |xi, s, dx| {
         let (mass, polar) = per_length(rho, s);
         let n = shapes(xi, l);
@@ -120,10 +120,10 @@ fn local_mass(model: &Model, beam: &Beam) -> SMatrix<f64, 12, 12> {
     m
 }
 
-/// Returns the forces of the coupled mass of beam `i` in a field of acceleration (basic, by grid), as forces along the acceleration, before WTMASS:
-/// forces along the beam, and the twelve at its ends equivalent to them. Element frame.
+/// Returns the forces of the coupled mass of beam `i` in a field of acceleration (basic, by grid), before WTMASS. The forces point along the
+/// acceleration. They are the forces along the beam, and the twelve equivalent forces at its ends, both in the element frame.
 ///
-/// The forces along the beam are linear in four parts of each section interval, with the resultant and the moment of the exact ones.
+/// The forces along the beam are linear in each of four parts of a section interval. They have the resultant and the moment of the exact forces.
 pub(crate) fn beam_inertia(
     model: &Model,
     i: usize,
@@ -152,7 +152,7 @@ pub(crate) fn beam_inertia(
         let part = (w[1].0 - w[0].0) / f64::from(PARTS);
         for k in (0..PARTS).map(f64::from).filter(|_| part > 0.0) {
             let span = [w[0].0 + part * k, w[0].0 + part * (k + 1.0)];
-            // Means of the force and of its first moment about the middle, three-point rule: exact to degree five.
+            // Means of the force and of its first moment about the middle, by the three-point rule, which is exact to degree five.
             let (mut mean, mut slope) = (Vector4::zeros(), Vector4::zeros());
             for (s, weight) in GAUSS {
                 let (force, torque) = at(span[0] + part * s);

@@ -85,7 +85,7 @@ pub(super) fn build_local_beam<'a>(
     Ok((local, property))
 }
 
-/// Displacements in the element frame at the offset ends from those of the grids in basic.
+/// Returns the transformation from the grids' displacements (basic frame) to the displacements of the offset ends (element frame).
 pub(super) fn to_element(beam: &Beam) -> Matrix12 {
     let mut t = Matrix12::zeros();
     for end in 0..2 {
@@ -100,7 +100,7 @@ pub(super) fn to_element(beam: &Beam) -> Matrix12 {
     t
 }
 
-/// Stiffness and the end forces that act as what is between the ends, pins released, element frame.
+/// Computes the stiffness and the end forces equivalent to the loads between the ends, with pins released, element frame.
 fn form_stiffness_and_forces(
     model: &Model,
     beam: &Beam,
@@ -131,8 +131,8 @@ fn form_stiffness_and_forces(
     Ok((k, f))
 }
 
-/// Forces at the grids of beam `i` (and bimoments at its warping points, in the first place), basic frame, that act as what is between
-/// its ends.
+/// Computes the forces at the grids of beam `i` that are equivalent to the loads between its ends, basic frame. Bimoments at warping points are in
+/// the first component.
 ///
 /// # Errors
 /// As `beam_stiffness`.
@@ -184,7 +184,7 @@ pub(crate) fn beam_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, R
     })
 }
 
-/// The stiffness `k` of a beam (element frame) with its torsion replaced by that of a bar that warps.
+/// Returns the stiffness `k` of a beam (element frame) with its torsion replaced by warping torsion.
 fn replace_torsion_by_warping(
     model: &Model,
     beam: &Beam,
@@ -271,8 +271,8 @@ pub(crate) fn beam_forces(
     })
 }
 
-/// Returns the mechanical axial strain at C, D, E, F and at the neutral axis at station `xi` of a beam: sections, modulus and length,
-/// forces on end B, loads between the ends.
+/// Returns the mechanical axial strain at C, D, E, F and at the neutral axis at station `xi` of a beam. The arguments are sections, modulus and
+/// length, forces on end B, and loads between the ends.
 pub(crate) fn strain_at(
     (sections, e, length): (&[(f64, Section)], f64, f64),
     forces: &BeamForces,

@@ -9,16 +9,17 @@ const SHORT: f64 = 0.05;
 /// lambda L above which exp(-lambda L) is negligible against 1.
 const LONG: f64 = 40.0;
 
-/// Stiffness over (theta_A, theta'_A, theta_B, theta'_B) of E Cw theta'''' - G J theta'' = 0, exact: with psi = L sqrt(GJ / E Cw),
-/// s = sinh psi, c = cosh psi and D = 2 - 2 c + psi s,
-/// k11 = psi^3 s, k12 = psi^2 (c - 1) L, k22 = psi (psi c - s) L^2, k24 = psi (s - psi) L^2, all times E Cw / (L^3 D).
+/// Returns the exact stiffness of E Cw theta'''' - G J theta'' = 0 over (theta_A, theta'_A, theta_B, theta'_B).
+///
+/// With psi = L sqrt(GJ / E Cw), s = sinh psi, c = cosh psi and D = 2 - 2 c + psi s: k11 = psi^3 s, k12 = psi^2 (c - 1) L, k22 = psi (psi c - s) L^2,
+/// k24 = psi (s - psi) L^2, all times E Cw / (L^3 D).
 ///
 /// # Reference
 /// V. Z. Vlasov, Thin-Walled Elastic Beams (1961), chapter I; the same equation as a beam under tension.
 pub(super) fn warping_torsion(gj: f64, ecw: f64, length: f64) -> Matrix4<f64> {
     let psi = length * (gj / ecw).max(0.0).sqrt();
     let [k11, k12, k22, k24] = if psi < SHORT {
-        // Cubic shape: bending of the flanges and Saint-Venant's torsion apart.
+        // Cubic shape: the sum of flange bending and Saint-Venant torsion.
         let p = psi * psi;
         [
             12.0 + 1.2 * p,
@@ -27,7 +28,7 @@ pub(super) fn warping_torsion(gj: f64, ecw: f64, length: f64) -> Matrix4<f64> {
             2.0 - p / 30.0,
         ]
     } else {
-        // Over cosh psi, so that nothing overflows.
+        // Numerators and denominator are divided by cosh psi, so that they do not overflow.
         let (s, one) = if psi > LONG {
             (1.0, 0.0)
         } else {
@@ -63,8 +64,8 @@ pub(super) fn warping_torsion(gj: f64, ecw: f64, length: f64) -> Matrix4<f64> {
     ) * unit
 }
 
-/// Twist and its rate at the share `xi` of the length by theta_A, theta'_A, theta_B, theta'_B, exact: the two pieces that meet there,
-/// solved for their common point.
+/// Returns the rows of twist and its rate at the share `xi` of the length, over theta_A, theta'_A, theta_B, theta'_B. The rows are exact: the two
+/// pieces of the beam are solved for their common point.
 fn interpolate_twist(gj: f64, ecw: f64, length: f64, xi: f64) -> SMatrix<f64, 2, 4> {
     let mut rows = SMatrix::<f64, 2, 4>::zeros();
     if !(xi > 0.0 && xi < 1.0) {
@@ -86,9 +87,12 @@ fn interpolate_twist(gj: f64, ecw: f64, length: f64, xi: f64) -> SMatrix<f64, 2,
     rows
 }
 
-/// Torques and bimoments at both ends that act as a torque per length of mean c with the slope 2 d from end to end:
-/// (c / 2 -+ d (1/6 + 2 gamma)) L and (+-c beta - d gamma) L^2 with beta = (psi / 2 coth(psi / 2) - 1) / psi^2 and
-/// gamma = (1 / (12 beta) - 1) / psi^2, which are 1/12 and 1/60 (a clamped beam's) without GJ.
+/// Returns the torques and bimoments at both ends equivalent to a torque per length of mean c with the slope 2 d from end to end.
+///
+/// The torques are (c / 2 -+ d (1/6 + 2 gamma)) L, the bimoments (+-c beta - d gamma) L^2.
+///
+/// With beta = (psi / 2 coth(psi / 2) - 1) / psi^2, gamma = (1 / (12 beta) - 1) / psi^2. Without GJ, beta is 1/12 and gamma 1/60, as for a clamped
+/// beam.
 fn of_linear_torque(gj: f64, ecw: f64, length: f64, torque: [f64; 2]) -> Vector4<f64> {
     let psi = length * (gj / ecw).max(0.0).sqrt();
     let p = psi * psi;
@@ -113,8 +117,10 @@ fn of_linear_torque(gj: f64, ecw: f64, length: f64, torque: [f64; 2]) -> Vector4
     ) * length
 }
 
-/// Over (theta_A, theta'_A, theta_B, theta'_B): what acts as torques along the beam do, each over a span of shares of the length, per
-/// length at both ends of it; of equal ends: concentrated, the first number.
+/// Returns the torques and bimoments equivalent to torques along the beam, over (theta_A, theta'_A, theta_B, theta'_B).
+///
+/// Each torque has a span in shares of the length, and a value per length at both ends of the span. A torque with equal span ends is concentrated;
+/// its first value counts.
 pub(super) fn torque_at_ends(
     (gj, ecw, length): (f64, f64, f64),
     torques: impl Iterator<Item = ([f64; 2], [f64; 2])>,

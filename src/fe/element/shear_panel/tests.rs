@@ -87,7 +87,7 @@ fn no_rigid_motion_of_a_flat_panel_is_resisted_and_it_has_one_stiffness() {
 
 #[test]
 fn nearly_parallel_sides_give_the_flexibility_of_parallel_ones() {
-    // From either side of the limit of parallelism the formulas must meet.
+    // The formulas must agree on both sides of the limit of parallelism.
     let near = |tilt: f64| {
         let x = [
             [0., 0., 0.],
@@ -99,7 +99,7 @@ fn nearly_parallel_sides_give_the_flexibility_of_parallel_ones() {
         Plane::new(&x).unwrap().flexibility(0.3)
     };
     let (parallel, almost) = (near(0.0), near(0.02));
-    // The change of shape itself is 3e-4 of the height.
+    // The tilt changes the height by 3e-4.
     assert!(
         (almost / parallel - 1.0).abs() < 2e-3,
         "{almost} for {parallel}"

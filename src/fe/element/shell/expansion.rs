@@ -52,7 +52,7 @@ fn times(q: &[[f64; 3]; 3], e: &[f64; 3]) -> [f64; 3] {
     q.map(|row| row.iter().zip(e).map(|(a, b)| a * b).sum())
 }
 
-/// The expansion of a property whose material x axis lies at `angle_rad` from the output x axis; `None` without a law.
+/// Computes the thermal expansion of a property whose material x axis is at `angle_rad` from the output x axis; `None` without a law.
 pub(crate) fn expansion(
     model: &Model,
     property: &ShellProperty,
@@ -119,7 +119,7 @@ pub(crate) fn expansion(
                 Lamination::Membrane => out.moment = [[0.0; 3]; 2],
                 Lamination::Bending => out.force = [[0.0; 3]; 2],
                 Lamination::Smeared => {
-                    // No coupling: the gradient bends as a homogeneous plate of the mean law.
+                    // No coupling: a temperature gradient bends the laminate like a homogeneous plate of the mean law.
                     let inertia = t * t / 12.0;
                     out.moment = [[0.0; 3], out.force[0].map(|f| f * inertia)];
                     out.force[1] = [0.0; 3];

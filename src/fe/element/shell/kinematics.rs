@@ -1,8 +1,8 @@
 //! Covariant strains of a shell with nodal directors.
 //!
-//! Position x(r, s, z) = sum h_k (x_k + z d_k), displacement u = sum h_k (u_k + z theta_k x d_k). With g_r = x,r and D = sum h_k d_k the
-//! strains linear in z are e_rr = g_r . u,r + z (g_r . q,r + D,r . u,r) with q = sum h_k theta_k x d_k, and so on. Every one of
-//! them vanishes for u_k = c + w x x_k, theta_k = w, whatever the shape: a x (b x c) products cancel in pairs.
+//! Position x(r, s, z) = sum h_k (x_k + z d_k), displacement u = sum h_k (u_k + z theta_k x d_k). With g_r = x,r and D = sum h_k d_k the strains
+//! linear in z are e_rr = g_r . u,r + z (g_r . q,r + D,r . u,r) with q = sum h_k theta_k x d_k, and so on. On any shape, all strains vanish for u_k =
+//! c + w x x_k, theta_k = w: a x (b x c) products cancel in pairs.
 
 use super::products::Products;
 use super::types::{BadShape, Row, ShellLaw, StrainRows};
@@ -125,9 +125,10 @@ pub(super) fn membrane<const N: usize, const M: usize>(
     rows
 }
 
-/// Adds what bending sides do to the mid-surface strains rr, ss, 2 rs: between corners i and j the side bulges by
-/// (x_j - x_i) x n / 8 times the difference of their rotations about n, along the side as a parabola. `slopes` are the derivatives of
-/// the parabolas (one in the middle of their sides) along r and s.
+/// Adds the contribution of bending sides to the mid-surface strains rr, ss, 2 rs.
+///
+/// Between corners i and j the side bulges as a parabola along the side. The bulge is (x_j - x_i) x n / 8 times the difference of their rotations
+/// about n. `slopes` are the derivatives along r and s of the parabolas, which are one in the middle of their sides.
 ///
 /// # Reference
 /// Allman, A compatible triangular element including vertex rotations, Computers and Structures 19 (1984) 1.

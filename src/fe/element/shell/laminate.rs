@@ -50,8 +50,7 @@ pub(super) struct LaminatePly {
     pub(super) z: [f64; 2],
 }
 
-/// Plies of a laminate whose material x axis lies at `angle_rad` from the output x axis; `None` where a material has no plane-stress
-/// law.
+/// Returns the plies of a laminate whose material x axis is at `angle_rad` from the output x axis. `None` if a material has no plane-stress law.
 pub(super) fn place_plies(
     model: &Model,
     plies: &[ModelPly],
@@ -132,8 +131,8 @@ pub(super) fn law(plies: &[LaminatePly], lamination: Lamination) -> Option<Shell
     })
 }
 
-/// Transverse shear stiffness along axis `i`: (EI)^2 over the integral of g^2 / G, where g is the first moment of the stiffness about
-/// the neutral axis beyond a height.
+/// Computes the transverse shear stiffness along axis `i`: (EI)^2 over the integral of g^2 / G. g is the first moment about the neutral axis of the
+/// stiffness beyond a height.
 fn transverse_shear_stiffness(plies: &[LaminatePly], i: usize) -> f64 {
     let e = |p: &LaminatePly| p.q[i][i];
     let (mut area, mut first) = (0.0, 0.0);

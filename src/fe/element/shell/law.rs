@@ -8,7 +8,7 @@ use super::types::ShellLaw;
 use crate::model::{Model, ShellKind, ShellProperty};
 
 impl ShellLaw {
-    /// The law of a PSHELL or laminate whose material x axis lies at `angle_rad` from the element's output x axis.
+    /// Computes the law of a PSHELL or laminate whose material x axis is at `angle_rad` from the element's output x axis.
     ///
     /// `None` for materials that aren't plane-stress laws.
     pub(crate) fn new(model: &Model, property: &ShellProperty, angle_rad: f64) -> Option<Self> {
@@ -47,7 +47,7 @@ impl ShellLaw {
             }
             (None, Some(b)) => Some([[RIGID_SHEAR * b[2][2], 0.0], [0.0, RIGID_SHEAR * b[2][2]]]),
         };
-        // Nastran writes strain = e - z chi; our curvature is -chi.
+        // Nastran writes strain = e - z chi; the curvature here is -chi.
         let coupling_matrix = plane(coupling)?.map(|g| g.map(|row| row.map(|v| -v)));
         Some(Self {
             membrane: membrane_matrix,

@@ -1,10 +1,10 @@
-//! CQUAD8 and CTRIA6: four- or three-sided shells with mid-side grids, as one quadrilateral a corner around a point in the middle
-//! whose unknowns are eliminated.
+//! CQUAD8 and CTRIA6: four- or three-sided shells with mid-side grids. Each consists of one quadrilateral per corner around a middle point, whose
+//! unknowns are eliminated.
 //!
-//! Every quadrilateral is the four-node shell of this module between a corner, the middles of its two sides and the centre, all on
-//! the serendipity surface through the grids, with that surface's normals as directors. So the element passes what its parts pass
-//! (constant strain and curvature, six rigid motions and no other), bends in its plane as two elements a side, and follows a curve.
-//! A mid-side grid that the card leaves out lies halfway between its corners and moves with their mean.
+//! Every quadrilateral is the four-node shell of this module between a corner, the middles of its two sides and the centre. All its points are on the
+//! serendipity surface through the grids, with the normals of that surface as directors. So the element passes the tests that its parts pass
+//! (constant strain and curvature, six rigid motions and no other). It bends in its plane like two elements per side, and follows a curve. A mid-side
+//! grid that the card leaves out is halfway between its corners and moves with their mean.
 
 use super::expansion::{expansion, turn_strain};
 use super::output_frame::output_frame;
@@ -229,7 +229,7 @@ pub(super) fn many_shell(
     for c in 0..n {
         let four = [c, n + c, 2 * n, n + (c + n - 1) % n];
         let (m, x_angle) = whole.part(four.map(|i| &points[i]))?;
-        // Where each of the 24 unknowns goes.
+        // For each of the 24 unknowns of a part: unknowns of the whole element, with factors.
         let to: Vec<Vec<(usize, f64)>> = (0..24)
             .map(|i| {
                 points[four[i / 6]]
@@ -321,7 +321,7 @@ pub(super) fn over_surface(
     });
 }
 
-/// The linear function of corner `c`: its own and half of those of its sides' grids.
+/// Returns the linear function of corner `c`: its own function plus half of the functions of the grids on its two sides.
 pub(crate) fn linear_part(n: usize, functions: &[[f64; 4]], sides: &[usize], c: usize) -> f64 {
     let halves = sides
         .iter()

@@ -1,10 +1,10 @@
 //! Three- and four-node shells.
 //!
-//! Bending and transverse shear: degenerated shell with nodal directors, mixed interpolation of the covariant shear strains
-//! (MITC4: Dvorkin and Bathe 1984; MITC3+: Lee, Lee and Bathe 2014). Membrane: covariant strains of the mid-surface, with the
-//! incompatible modes of Taylor, Beresford and Wilson 1976 (QM6) on quadrilaterals; CQUADR and CTRIAR have sides that bend with the
-//! rotations about the normal instead (Allman 1984). Drilling: the rotation about the surface
-//! normal is tied to the curl of the displacements about the same normal (Hughes and Brezzi 1989).
+//! Bending and transverse shear use a degenerated shell with nodal directors. The covariant shear strains are interpolated separately (mixed
+//! interpolation). The sources are Dvorkin and Bathe 1984 (MITC4) and Lee, Lee and Bathe 2014 (MITC3+). The membrane uses covariant strains of the
+//! mid-surface. Quadrilaterals add the incompatible modes of Taylor, Beresford and Wilson 1976 (QM6). CQUADR and CTRIAR instead have sides that bend
+//! with the rotations about the normal (Allman 1984). Drilling ties the rotation about the surface normal to the curl of the displacements about the
+//! same normal (Hughes and Brezzi 1989).
 
 mod area;
 mod expansion;

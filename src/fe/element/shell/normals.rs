@@ -23,10 +23,12 @@ fn corner_normals(model: &Model, shell: &Shell) -> CornerDirectors {
     normals
 }
 
-/// Directors of every shell: the normal that SNORM gives a grid; else the mean normal of the shells at a grid where all of them lie within
-/// `snorm_rad` of it, else the shell's own.
+/// Computes the directors of every shell at its corners.
 ///
-/// Shells of opposite orientation share a normal too, each with its own sign. An angle of zero or less keeps all normals apart.
+/// The director is the normal that SNORM gives a grid. Without SNORM, it is the mean normal of the shells at the grid, if all their normals are
+/// within `snorm_rad` of the mean. Otherwise it is the shell's own normal.
+///
+/// Shells of opposite orientation share a normal too, each with its own sign. With an angle of zero or less, shells share no normals.
 pub(crate) fn shared_normals(model: &Model) -> Vec<CornerDirectors> {
     let own: Vec<CornerDirectors> = model
         .shells
@@ -74,7 +76,7 @@ pub(crate) fn shared_normals(model: &Model) -> Vec<CornerDirectors> {
     result
 }
 
-/// Returns the normals of SNORM that the formulation refuses. Such a normal is farther than PARAM,SNORM from that of a shell at its grid, or
+/// Returns the normals of SNORM that the formulation refuses. Such a normal is farther than PARAM,SNORM from the normal of a shell at its grid, or
 /// PARAM,SNORM turns shared normals off.
 pub(crate) fn normals_beyond(model: &Model) -> Vec<&GridNormal> {
     let given: HashMap<GridIx, &GridNormal> = model.normals.iter().map(|n| (n.grid, n)).collect();

@@ -47,7 +47,7 @@ pub(super) fn plane_strain_matrix(m: &Material) -> Option<[[f64; 3]; 3]> {
 pub(super) fn transverse_shear(m: &Material) -> Option<[[f64; 2]; 2]> {
     Some(match m.kind {
         MaterialKind::Isotropic { g, .. } => [[g, 0.0], [0.0, g]],
-        // As MID3 a MAT2 gives G11 G12 G22 of the transverse shear.
+        // A MAT2 used as MID3 gives the transverse shear moduli in G11, G12, G22.
         MaterialKind::Anisotropic2d {
             g: [a, b, _, d, ..],
             ..

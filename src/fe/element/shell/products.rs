@@ -1,4 +1,4 @@
-//! The stiffness of a shell as a sum of products of rows, formed at once: blocks of it stay in registers while all rows go by.
+//! Forms the stiffness of a shell as a sum of products of rows in one pass. Blocks of the stiffness stay in registers while all rows are added.
 
 use super::types::Row;
 
@@ -16,14 +16,14 @@ pub(super) struct Products {
 }
 
 impl Products {
-    /// None, with room for those of four points.
+    /// Creates an empty list with capacity for the products of four points.
     pub(super) fn new() -> Self {
         Self {
             rows: Vec::with_capacity(ROOM),
         }
     }
 
-    /// Notes a' D b.
+    /// Adds a' D b.
     pub(super) fn add<const R: usize, const M: usize>(
         &mut self,
         a: &[Row<M>; R],
@@ -42,7 +42,7 @@ impl Products {
         }
     }
 
-    /// The sum of all that were noted.
+    /// Returns the sum of all added products.
     pub(super) fn sum<const M: usize>(&self) -> [[f64; M]; M] {
         let mut sum = [[0.0; WIDE]; WIDE];
         pulp::Arch::new().dispatch(UpperHalf(&self.rows, &mut sum));

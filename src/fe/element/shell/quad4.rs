@@ -199,7 +199,7 @@ fn corner_rows(points: &[Point]) -> [StrainRows<24>; 4] {
             curvature: [[0.0; 24]; 3],
         };
         for (p, (pa, pb)) in points.iter().zip(CORNERS) {
-            // Bilinear through the Gauss points, taken at the corner.
+            // Weight of the Gauss point in the bilinear extrapolation to the corner.
             let w = 0.25 * (1.0 + a * pa / GAUSS) * (1.0 + b * pb / GAUSS);
             for c in 0..3 {
                 for i in 0..24 {

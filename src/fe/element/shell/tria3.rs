@@ -105,7 +105,7 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
         }
         let [rows_r, rows_s] = assumed.shear_rows_at(r, s);
         if let Some(heat) = input.heat {
-            // The bubble takes no part: the integral of its curvature vanishes.
+            // The bubble has no thermal force, because the integral of its curvature vanishes.
             let rise = shape.h.iter().zip(&heat.rise).map(|(h, t)| h * t).sum();
             add_thermal(
                 &mut thermal,

@@ -68,8 +68,8 @@ pub(crate) struct ShellMatrices<const N: usize, const M: usize> {
     pub(crate) thermal: [f64; M],
 }
 
-/// Rows that turn an element's displacements into strain in its output frame: exx, eyy, gxy (engineering shear); strain at
-/// height z above the reference plane is `membrane + z * curvature`.
+/// Rows that transform an element's displacements to strain in its output frame: exx, eyy, gxy (engineering shear). Strain at height z above the
+/// reference plane is `membrane + z * curvature`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StrainRows<const M: usize> {
     pub(crate) membrane: [[f64; M]; 3],

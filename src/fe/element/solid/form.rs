@@ -27,7 +27,7 @@ pub(super) struct StrainColumns {
     pub(super) columns: Vec<Vector6<f64>>,
 }
 
-/// Stiffness over three translations a grid (row by row) and what the modes follow by: `amount = thermal - share u`.
+/// Stiffness over three translations per grid (by rows), and the coefficients of the incompatible modes: `amount = thermal - share u`.
 pub(super) struct CondensedSolid {
     pub(super) stiffness: DMatrix<f64>,
     /// Modes by translations.
@@ -181,7 +181,7 @@ impl SolidInput {
         let n = self.x.len();
         let mut out = vec![0.0; n * n];
         let hand = self.hand();
-        // Products of linear functions are of second degree: a tetrahedron's single point is not enough.
+        // Products of linear functions have degree two, for which a tetrahedron's single point is not enough.
         for point in &Tables::get(self.shape).quadratic {
             let functions = point.functions(self.shape, &self.mids);
             let det = self.jacobian(&functions).determinant() * hand;

@@ -47,7 +47,7 @@ impl SolidLaw {
         let (g, alpha) = match &axes {
             None => (g, alpha),
             Some(axes) => {
-                // Strain in the material axes from that in the basic ones.
+                // `t` transforms strain from the basic axes to the material axes.
                 let t = strain_rotation(axes);
                 let back = strain_rotation(&axes.transpose());
                 (t.transpose() * g * t, back * alpha)
@@ -65,7 +65,7 @@ pub(super) fn strain_rotation(r: &Mat3) -> Matrix6<f64> {
         let both = if c == d {
             r[(a, c)] * r[(b, c)]
         } else {
-            // Tensor shear is half of it, and stands twice in the tensor.
+            // Tensor shear is half of the engineering shear, and occurs twice in the tensor.
             0.5 * (r[(a, c)] * r[(b, d)] + r[(a, d)] * r[(b, c)])
         };
         if a == b { both } else { 2.0 * both }

@@ -1,8 +1,8 @@
-//! CTETRA, CPENTA, CHEXA, CPYRAM with any of their mid-side grids: isoparametric serendipity elements, three translations a grid.
+//! CTETRA, CPENTA, CHEXA, CPYRAM with any of their mid-side grids: isoparametric serendipity elements with three translations per grid.
 //!
-//! Bricks and wedges without mid-side grids carry incompatible modes (quadratic along a brick's three directions, along a wedge's
-//! axis) with the gradient taken at the centre and scaled by the ratio of Jacobians, so that constant strain is met exactly on
-//! distorted shapes. Integration is full everywhere: six zero-energy modes and no more.
+//! Bricks and wedges without mid-side grids have incompatible modes, quadratic along a brick's three directions or along a wedge's axis. Their
+//! gradient is taken at the centre and scaled by the ratio of Jacobians, so that constant strain is exact on distorted shapes. Integration is full
+//! everywhere, so that an element has exactly six zero-energy modes.
 //!
 //! # Reference
 //! Taylor, Beresford and Wilson, IJNME 10 (1976) 1211; Zienkiewicz and Taylor, The Finite Element Method, volume 1, chapters 8 and 10.

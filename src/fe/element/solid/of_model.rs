@@ -147,8 +147,8 @@ pub(crate) fn solid_thermal_force(
         .collect())
 }
 
-/// Mechanical strain of solid `i` under displacements (basic frame, by grid of the model) and the temperature rise of its grids
-/// (empty: none), one answer a field.
+/// Computes the mechanical strain of solid `i`, one result per displacement field. Displacements are in the basic frame by grid of the model. The
+/// temperature rise is by grid of the solid (empty: none).
 ///
 /// # Errors
 /// As `solid_stiffness`.

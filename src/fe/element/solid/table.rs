@@ -89,7 +89,7 @@ impl Tables {
                 with_height(&square(&TWO), &TWO),
                 [0.5; 3],
             ),
-            // The lower face's centre to the top: the centre of gravity lies a quarter of the height up.
+            // The axis is from the centre of the base to the apex; the centre of gravity is at a quarter of the height.
             SolidShape::Pyram => (
                 with_height(&square(&THREE), &THREE),
                 with_height(&square(&THREE), &THREE),
@@ -170,7 +170,7 @@ fn collapse_cube_rule() -> Vec<(f64, [f64; 3])> {
 
 /// Linear (bricks: trilinear) through the sampling points, taken at the corners.
 fn to_corner(shape: SolidShape, sampling: &[(f64, [f64; 3])]) -> Vec<Vec<f64>> {
-    // Along a direction with two points: value at an end from both.
+    // Weight of the point `at` in the linear extrapolation from two points to an end.
     let along = |end: f64, at: f64| {
         let [(a, _), (b, _)] = TWO;
         let other = if (at - a).abs() < 0.1 { b } else { a };
@@ -178,7 +178,7 @@ fn to_corner(shape: SolidShape, sampling: &[(f64, [f64; 3])]) -> Vec<Vec<f64>> {
     };
     let on_triangle = |corner: usize, p: &[f64; 3]| {
         let l = [1.0 - p[0] - p[1], p[0], p[1]];
-        // Barycentric coordinates 2/3 and 1/6.
+        // The points have the barycentric coordinates 2/3 and 1/6.
         let own = if l[corner] > 0.5 { 1.0 } else { 0.0 };
         (own - 1.0 / 6.0) / 0.5
     };

@@ -69,7 +69,7 @@ fn all_elements() -> Vec<SolidInput> {
         distorted_element(SolidShape::Tetra, &[0, 1, 2, 3, 4, 5]),
         distorted_element(SolidShape::Penta, &[0, 1, 2, 3, 4, 5, 6, 7, 8]),
         distorted_element(SolidShape::Hexa, &(0..12).collect::<Vec<_>>()),
-        // Mid-side grids left out.
+        // Some mid-side grids are missing.
         distorted_element(SolidShape::Tetra, &[1, 4]),
         distorted_element(SolidShape::Penta, &[0, 3, 7]),
         distorted_element(SolidShape::Hexa, &[0, 2, 5, 8, 11]),
@@ -134,7 +134,7 @@ fn a_linear_displacement_field_gives_its_own_strain_at_every_point_of_a_straight
                     [u.x, u.y, u.z]
                 })
                 .collect();
-        // The modes stay at rest: their share of a constant strain is none.
+        // The incompatible modes remain zero under constant strain.
         for m in 0..formed.share.nrows() {
             let amount: f64 = u
                 .iter()
@@ -172,14 +172,14 @@ fn products_of_shape_functions_add_up_to_the_volume_and_its_first_moment() {
             s.shape,
             SolidShape::Hexa | SolidShape::Tetra | SolidShape::Pyram
         );
-        // A curved wedge's volume needs a higher degree than its stiffness rule has in height.
+        // The volume of a curved wedge needs a higher degree along its height than the stiffness rule has.
         let tolerance = if exact_volume { 1e-9 } else { 1e-6 };
         assert!(
             (sum / volume - 1.0).abs() < tolerance,
             "{:?} {n}: {sum} {volume}",
             s.shape
         );
-        // x is itself a shape-function field: x' P x must not depend on which way it is summed, and is positive.
+        // x is a field of the shape functions, so x' P x is positive.
         let moment: f64 = (0..n)
             .map(|i| s.x[i].x * (0..n).map(|j| p[i * n + j] * s.x[j].x).sum::<f64>())
             .sum();

@@ -17,7 +17,7 @@ fn find_repeated(texts: &[String]) -> Vec<RepeatedSubcase> {
 
 #[test]
 fn a_subcase_with_other_values_in_a_second_table_is_there_twice() {
-    // As an optimisation writes its first and last design.
+    // An optimisation writes its first and last design like this.
     let text = strain(1, 11, 1e-4) + &strain(2, 11, 5e-4) + &strain(1, 11, 1.8e-4);
     let expected = RepeatedSubcase {
         subcase: 1,
@@ -43,7 +43,7 @@ fn other_elements_and_equal_values_are_no_repetition() {
     assert_eq!(find_repeated(&[spread]), []);
     let equal = strain(1, 11, 1e-4) + &strain(1, 11, 1e-4);
     assert_eq!(find_repeated(&[equal]), []);
-    // Seven digits of a punch file.
+    // A punch file has seven digits.
     let rounded = [strain(1, 11, 1.234_567_4e-4), strain(1, 11, 1.234_567e-4)];
     assert_eq!(find_repeated(&rounded), []);
 }

@@ -1,4 +1,4 @@
-//! One axle joined to the next along the vehicle: a walking beam, a balancer, springs that see both axles.
+//! One axle joined to the next along the vehicle: a walking beam, a balancer, or springs that connect both axles.
 
 use super::places::coupling_forms;
 use crate::reconcile::motion::candidate::Candidate;

@@ -1,4 +1,5 @@
-//! A channel whose clock runs faster or slower than that of the others: late by a share of the time since the record began.
+//! A channel whose clock runs faster or slower than the clocks of the other channels. The channel is late by a share of the time since the record
+//! began.
 
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::change::Change;

@@ -1,4 +1,4 @@
-//! A spring that stiffens (or softens) with the cube of stretch: k3 d^3, with k2 d^2 where its middle is not at rest.
+//! A spring that stiffens (or softens) with the cube of stretch: k3 d^3, with k2 d^2 if its symmetric point is not at rest.
 
 use super::places::links;
 use crate::reconcile::motion::candidate::Candidate;

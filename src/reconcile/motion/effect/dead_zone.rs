@@ -1,4 +1,4 @@
-//! Free play of a spring: no (or next to no) force until the stretch exceeds a gap.
+//! Free play of a spring: no (or almost no) force until the stretch exceeds a gap.
 
 use super::places::{extent, links};
 use crate::reconcile::motion::candidate::Candidate;

@@ -1,4 +1,4 @@
-//! A logger that lost samples of one channel, or wrote some twice: from then on the channel reads early, or late.
+//! A logger that lost samples of one channel, or wrote some of them twice. From then on the channel reads early, or late.
 
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::change::Change;

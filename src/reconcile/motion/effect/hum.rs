@@ -1,4 +1,4 @@
-//! A mains line on a channel: 50 or 60 Hz, railways' 16.7 Hz, their multiples, or what a sample rate folds them onto, within the band.
+//! A mains line on a channel. Its frequency is 50 Hz, 60 Hz or 16.7 Hz (railways), a multiple, or an alias of these within the band.
 
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::change::Change;
@@ -28,7 +28,7 @@ pub(super) fn candidates(frame: &MotionFrame, motion: &Motion) -> Vec<Candidate>
                 hz,
             };
             let mut one = Candidate::new("hum", Some(&channel), vec![line]);
-            // One line a channel bears the plain name; more are told apart by their frequency.
+            // The first line of a channel has the plain name. The names of further lines contain the frequency.
             if out.iter().any(|c| c.id == one.id) {
                 one.id = format!("hum:{id}");
             }
@@ -38,7 +38,7 @@ pub(super) fn candidates(frame: &MotionFrame, motion: &Motion) -> Vec<Candidate>
     out
 }
 
-/// Returns the frequencies at which a signal exceeds its neighbourhood where mains may be.
+/// Returns the possible mains frequencies at which a signal exceeds its neighbourhood.
 fn lines(frame: &MotionFrame, motion: &Motion, x: &[f64]) -> Vec<f64> {
     let window = WindowedTransform::new(motion.n_samples(), motion.rate_hz, frame.band);
     let step = window.step_hz();
@@ -47,7 +47,7 @@ fn lines(frame: &MotionFrame, motion: &Motion, x: &[f64]) -> Vec<f64> {
     for mains in MAINS_HZ {
         for k in 1..=MULTIPLES {
             let nominal = k as f64 * mains;
-            // What lies above half the rate is seen folded.
+            // A frequency above half the sample rate appears as its alias.
             let folded = (nominal - rate * (nominal / rate).round()).abs();
             let inside = folded > frame.band.low_hz && folded < frame.band.high_hz;
             let known = out

@@ -1,10 +1,11 @@
-//! A channel that went through a slower low-pass than the others: of order 1, or 2 (Butterworth).
+//! A channel that passed through a low-pass filter with a lower cut-off frequency than the other channels. The filter has order 1, or order 2
+//! (Butterworth).
 
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::frame::MotionFrame;
 
-/// Log odds against it relative to a plain delay, which it resembles: loggers are late far more often than one of their filters is slow.
+/// Log odds against a low-pass relative to a plain delay, which it resembles. A late logger is far more frequent than a slow filter.
 const HANDICAP: f64 = 3.0;
 
 pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {

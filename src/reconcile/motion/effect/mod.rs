@@ -1,4 +1,4 @@
-//! The library: one effect a file, each a list of candidates for a frame.
+//! Library of effects. Each file contains one effect, with its candidates for a frame.
 
 mod accel_gain;
 mod asymmetric_damper;
@@ -28,7 +28,8 @@ use super::candidate::Candidate;
 use super::design::Design;
 use super::frame::MotionFrame;
 
-/// Every effect that the frame could show in the design of its record, in a fixed order; `only` keeps the ids (or families) given, all where empty.
+/// Returns every effect that the record of the frame could show, in a fixed order. If `only` is not empty, these are the effects whose id or family
+/// it lists.
 pub fn library(frame: &MotionFrame, design: &Design, only: &[String]) -> Vec<Candidate> {
     let motion = &design.motion;
     let mut all = Vec::new();

@@ -1,4 +1,4 @@
-//! Sprung bodies over two axles that are not free of each other: the pitch inertia of the frame, or its substitute.
+//! Coupling of the sprung bodies over two axles: the pitch inertia of the frame, or its substitute.
 
 use super::places::coupling_forms;
 use crate::reconcile::motion::candidate::Candidate;

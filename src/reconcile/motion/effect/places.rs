@@ -1,4 +1,4 @@
-//! Where effects may sit: links of the vehicle, couplings that it lacks.
+//! Places of effects: links of the vehicle, and couplings that it lacks.
 
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::frame::MotionFrame;
@@ -8,7 +8,7 @@ use crate::vehicle::motion::Motion;
 use crate::vehicle::preset::coupling;
 use crate::vehicle::term::Term;
 
-/// Coupling links by name that the vehicle has not, each as inertia, as spring, and as spring with damper.
+/// Returns coupling links, by name, that the vehicle lacks: each as inertia, as spring, and as spring with damper.
 pub(super) fn coupling_forms(frame: &MotionFrame, names: &[&str]) -> Vec<Change> {
     let mut out = Vec::new();
     let has = |name: &str| frame.vehicle.links.iter().any(|l| l.name == name);
@@ -31,7 +31,7 @@ pub(super) fn coupling_forms(frame: &MotionFrame, names: &[&str]) -> Vec<Change>
     out
 }
 
-/// Links between compared bodies with the word for their place; none where there is but one.
+/// Returns the links between compared bodies, each with the name of its place; `None` as name if there is only one link.
 pub(super) fn links(frame: &MotionFrame) -> Vec<(usize, Option<String>)> {
     let v = &frame.vehicle;
     let own: Vec<usize> = (0..v.links.len())
@@ -56,7 +56,7 @@ pub(super) fn links(frame: &MotionFrame) -> Vec<(usize, Option<String>)> {
         .collect()
 }
 
-/// Largest stretch and rms rate of a link.
+/// Returns the largest stretch and rms rate of a link.
 pub(super) fn extent(motion: &Motion, link: usize) -> (f64, f64) {
     let largest = motion
         .stretch

@@ -1,10 +1,10 @@
-//! Left and right of one axle joined: an anti-roll bar, roll inertia or stiffness of body and axle.
+//! Coupling of left and right side of one axle: an anti-roll bar, or roll inertia or stiffness of body and axle.
 
 use super::places::coupling_forms;
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::frame::MotionFrame;
 
-/// Links across the vehicle: between stretches of both sides, wheels, bodies, this body and the other wheel.
+/// Returns links across the vehicle: between the stretches of both sides, the wheels, the bodies, or a body and the opposite wheel.
 const LINKS: [&str; 4] = ["bar", "axle", "roll", "cross"];
 
 pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {

@@ -1,4 +1,4 @@
-//! A channel that is late (or early) against the others.
+//! A channel that is late or early relative to the other channels.
 
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::change::Change;

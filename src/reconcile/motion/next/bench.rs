@@ -11,7 +11,7 @@ use crate::vehicle::layout::Measures;
 
 /// Uncertainty of a gain from plus and minus 1 g, one sd: a sensor that leans by 4 degrees reads this much less.
 const TURNED: f64 = 0.0025;
-/// Uncertainty of a time from a stroke, samples, one sd: a peak between two samples is found to a fifth of their distance.
+/// Uncertainty of a time from a stroke, samples, one sd. A peak between two samples is located to a fifth of their distance.
 const STRUCK: f64 = 0.2;
 
 /// Returns the accelerometers of the compared bodies, as numbers in the design.

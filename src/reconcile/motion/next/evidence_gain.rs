@@ -6,11 +6,12 @@ use super::view::{RecordEquations, View, Weight};
 use crate::linalg::tall::{Triangle, solve, triangle};
 use crate::reconcile::motion::design::Bins;
 
-/// Returns half the squared misfit of the other explanation if the first one is true; `None` if both have different rows. The other one's parameters
-/// are free within the present record and declared tolerances.
+/// Returns half the squared misfit of the other explanation if the first one is true. `None` if both have different rows. The parameters of the other
+/// explanation are free within the present record and declared tolerances.
 ///
-/// With d the difference of both readings there over its standard deviation, A the columns of the other one there, B its columns in the present
-/// record and P the priors: 1/2 min over x of |A x + d|^2 + |B x|^2 + |x / P|^2. Noise adds alike to both.
+/// The result is 1/2 min over x of |A x + d|^2 + |B x|^2 + |x / P|^2. Here d is the difference of both predicted readings over its standard
+/// deviation. A are the columns of the other explanation in the new measurement, B its columns in the present record, and P the priors. Noise
+/// contributes equally to both explanations.
 pub(super) fn expected_evidence(
     known: &ParameterInformation,
     other: &View,
@@ -37,7 +38,7 @@ pub(super) fn expected_evidence(
     columns.extend(other.scale.iter().map(|(_, rows)| (rows.clone(), None)));
     columns.extend(other.fresh);
     let n = columns.len();
-    // Held parameters that stay held have no column.
+    // Parameters that remain fixed have no column.
     let index = |c: &usize| match c.checked_sub(n_own) {
         None => *c,
         Some(k) => {

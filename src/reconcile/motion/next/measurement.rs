@@ -20,7 +20,7 @@ const MASS_SHARE: f64 = 0.2;
 pub(super) enum Measurement {
     /// Present drive with every motion times a factor.
     Road(f64),
-    /// Present power within a part of the band; `level` multiplies every motion there.
+    /// Present power within a part of the band. `level` multiplies every motion in this part.
     Part {
         /// The part.
         part: Band,
@@ -138,7 +138,7 @@ pub(super) fn measurements(frame: &MotionFrame, best: &MotionFit) -> Vec<Measure
             .collect();
         let n = own.len() as f64;
         if n > 0.0 {
-            // In their midst, where each of them has its say.
+            // The place is the centre of the existing sensors, so that each of them contributes.
             out.push(Measurement::Beside(Point {
                 body,
                 x: own.iter().map(|p| p.x).sum::<f64>() / n,
@@ -159,7 +159,7 @@ pub(super) fn measurements(frame: &MotionFrame, best: &MotionFit) -> Vec<Measure
     out
 }
 
-/// Whether an outside force sets the scale of masses and springs.
+/// Returns whether an outside force sets the scale of masses and springs.
 pub(super) fn is_driven(design: &Design) -> bool {
     let mut targets = design.equations.iter().flat_map(|e| &e.target);
     targets.any(|t| t.norm_sqr() > 0.0)
@@ -197,7 +197,7 @@ fn parts(frame: &MotionFrame, design: &Design) -> Vec<Measurement> {
         .collect()
 }
 
-/// Rounded to one digit, as a mass is put on.
+/// Returns a mass rounded to one digit, as it is applied in practice.
 fn one_digit(x: f64) -> f64 {
     let unit = 10f64.powf(x.log10().floor());
     (x / unit).round() * unit

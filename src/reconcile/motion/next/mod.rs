@@ -1,4 +1,4 @@
-//! Measurement that separates explanations which a record can't separate, selected by the predictions of each.
+//! Selection of a measurement that separates explanations which the record cannot separate.
 //!
 //! Each explanation in turn is taken as true. The others predict the same measurement, with parameters as free as in the present record. Their misfit
 //! over noise is the expected difference of log evidence ([`evidence_gain`]). [`measurement`] lists the possible measurements. [`view`] and, at rest,
@@ -22,8 +22,8 @@ use crate::finding::capitalize;
 use crate::reconcile::outcome::Verdict;
 use crate::reconcile::search::{ScoredSet, Scorer};
 
-/// Expected difference of log evidence that justifies a measurement: as much as names one effect over another, and half of it again for losses that
-/// no model predicts.
+/// Expected difference of log evidence that justifies a measurement. It is the difference that decides between two effects, plus half of it for
+/// losses that no model predicts.
 const WORTH: f64 = 5.0;
 /// Difference of log evidence that counts as certain: odds of 10^10.
 const SURE: f64 = 25.0;
@@ -41,8 +41,8 @@ struct MeasurementEvidence {
 }
 
 impl MeasurementEvidence {
-    /// Returns the number of separated pairs, then the sum of their log evidence. No pair counts for more than certainty: of several measurements
-    /// that are as certain, the first one is the least effort.
+    /// Returns the number of separated pairs, then the sum of their log evidence. No pair counts for more than certainty. Of several equally certain
+    /// measurements, the first one needs the least effort.
     fn rank(&self) -> (usize, f64) {
         let separated = self.worth.iter().filter(|w| **w > WORTH).count();
         (separated, self.worth.iter().map(|w| w.min(SURE)).sum())
@@ -108,8 +108,8 @@ pub(super) fn next_measurement(
     }
 }
 
-/// Returns the explanations to separate, the first from the others: the best set and the sets that are indistinguishable from it. If nothing is
-/// named, these are the nearest set and the best one of another kind; for a hint, the hint and the model without it.
+/// Returns the explanations to separate, the first from all others. These are the best set and the sets that are indistinguishable from it. If no
+/// effect is named, these are the nearest set and the best set of another kind. For a hint, these are the hint and the model without it.
 fn explanations<'a>(
     scorer: &MotionScorer,
     verdict: Verdict,

@@ -13,7 +13,7 @@ pub(super) struct Rows {
     pub(super) reading: Vec<f64>,
     /// Columns of the fit, in its order.
     pub(super) own: Vec<Vec<f64>>,
-    /// Columns that the measurement brings, with one sd where they are known beforehand.
+    /// Columns that the measurement adds, each with one standard deviation if it is known beforehand.
     pub(super) fresh: Vec<(Vec<f64>, Option<f64>)>,
     /// Scale of masses and springs, if the measurement sets it.
     pub(super) scale: Vec<(usize, Vec<f64>)>,
@@ -23,7 +23,7 @@ pub(super) struct Rows {
 pub(super) struct ParameterInformation<'a> {
     /// Fit of the explanation.
     pub(super) fit: &'a MotionFit,
-    /// Parameters that are held because nothing sets the scale.
+    /// Parameters that are fixed because no force sets the scale.
     pub(super) held: Vec<usize>,
     /// Rows of the present record: columns of the fit, then the held parameters.
     pub(super) now: Triangle,

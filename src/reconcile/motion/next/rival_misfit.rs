@@ -5,11 +5,12 @@ use crate::reconcile::motion::design::Bins;
 use rustfft::num_complex::Complex64;
 
 /// Returns, by equation and bin, the residual of the equations of `other` in a record that obeys the equations of `truth`. That record is the present
-/// one less the smallest errors of its channels, over their noise, that explain the residual of `truth`. Noise that both miss alike is in neither.
+/// record minus channel errors that explain the residual of `truth`. Of all such errors, these are the smallest relative to the noise. Noise that is
+/// common to both residuals cancels.
 ///
-/// Symbols in a bin: r the residual of the truth, H and G the responses of both, N the power of the channels' noise, C and D the factors by which
-/// both multiply readings. Then e = N H' (H N H')^-1 r, and the residual is other - G (D / C) e. For the reading of a new channel, `r - H e` of the
-/// truth is subtracted from it. `None` if both have different equations.
+/// In a bin, r is the residual of the truth. H and G are the responses of truth and other, and N is the noise power of the channels. C and D are the
+/// factors by which truth and other multiply readings. Then e = N H' (H N H')^-1 r, and the result is the residual of other - G (D / C) e. For the
+/// reading of a new channel, `r - H e` of the truth is subtracted from it. `None` if both have different equations.
 pub(super) fn residual_of_other(
     other: &RecordEquations,
     truth: &RecordEquations,
@@ -63,7 +64,7 @@ pub(super) fn residual_of_other(
     Some(out)
 }
 
-/// The smallest errors of the channels, over their noise, that the equations `old` of the truth show in a bin.
+/// Returns the channel errors, smallest relative to their noise, that explain the residual of the equations `old` of the truth in a bin.
 fn errors(
     truth: &RecordEquations,
     old: &[usize],
@@ -93,7 +94,7 @@ fn errors(
     Some(pairs.iter().map(error).collect())
 }
 
-/// x of a x = b, rows of a one after the other, by elimination with pivots; `None` where a is singular.
+/// Solves a x = b by elimination with pivots; `None` if a is singular. a is stored by rows.
 fn solve_linear(mut a: Vec<Complex64>, mut b: Vec<Complex64>) -> Option<Vec<Complex64>> {
     let n = b.len();
     for k in 0..n {
@@ -162,7 +163,7 @@ mod tests {
         }
     }
 
-    /// Two equations that are the same but for their scale miss nothing of each other's records, whatever the noise in them.
+    /// Tests that two equations which differ only by a scale have no misfit in each other's records, at any noise.
     #[test]
     fn an_exact_alias_misses_nothing() {
         let readings = [c(1.0, 0.5), c(-0.3, 2.0), c(0.7, -1.1)];
@@ -189,14 +190,14 @@ mod tests {
     fn what_is_missed_is_what_is_left_of_a_record_that_obeys() {
         let truth_rows = [[c(1.0, 0.0), c(0.5, 0.0), c(0.0, 0.0)]; 1];
         let other_rows = [[c(1.0, 0.0), c(0.9, 0.0), c(0.0, 0.2)]; 1];
-        // Obeys the truth: c0 = -c1 / 2.
+        // A record that obeys the truth has c0 = -c1 / 2.
         let readings = [c(-1.0, 0.0), c(2.0, 0.0), c(3.0, 0.0)];
         let (truth, other) = (
             linear_record(&truth_rows, readings, &[false]),
             linear_record(&other_rows, readings, &[false]),
         );
         let missed = residual_of_other(&other, &truth).unwrap();
-        // -1 + 1.8 + 0.6 j.
+        // Expected misfit: -1 + 1.8 + 0.6 j.
         assert!((missed[0][0] - c(0.8, 0.6)).norm() < 1e-12, "{missed:?}");
     }
 

@@ -204,7 +204,7 @@ fn give_forces(
         let equations: Vec<usize> = (0..d.equations.len())
             .filter(|&e| d.equations[e].body == at.body)
             .collect();
-        // Motions by wheels: forces from what the equations of the body ask for.
+        // Matrix of body motions by wheels. Its inverse gives wheel forces from the residuals of the equations of the body.
         let rows: Vec<Vec<f64>> = equations
             .iter()
             .map(|&e| {
@@ -365,7 +365,7 @@ fn with_columns(
                     .into_iter()
                     .next()
             }
-            // Its phase is another one in every record.
+            // The phase of a line differs in every record.
             ColumnOf::Line(_) => None,
             ColumnOf::Gain(c) => take(true, &fit.design.channels[*c].name),
             ColumnOf::Delay(c) => take(false, &fit.design.channels[*c].name),
@@ -421,13 +421,13 @@ fn channel_entries(
 }
 
 impl RecordEquations {
-    /// Unit-variance rows of a column, or of a residual.
+    /// Returns unit-variance rows of a column, or of a residual.
     pub(super) fn whiten_bins(&self, bins: &[Bins]) -> Vec<f64> {
         self.whitener.rows(&slices(bins))
     }
 }
 
-/// Returns at most the first 65 536 samples of a record. They represent the rest, since a road is similar from mile to mile.
+/// Returns at most the first 65 536 samples of a record. They represent the whole record, since a road is similar from mile to mile.
 fn truncate_record(record: &Channels) -> Channels {
     const SAMPLES: usize = 65_536;
     let mut out = record.clone();
@@ -466,7 +466,7 @@ fn scale_background(
         let (sum, n) = own.fold((0.0, 0usize), |(s, n), f| (s + gain(*f).powi(2), n + 1));
         sum / n.max(1) as f64
     };
-    // An equation that was not compared so far has no background of its own.
+    // An equation that was not compared before has no background.
     let row = |e: &BinEquation| -> Vec<f64> {
         let at = now.equations.iter().position(|n| n.name == e.name);
         let own = at.and_then(|at| background.power.get(at));

@@ -53,8 +53,8 @@ fn estimate(model: &(Sensitivity, Dynamics), open: bool, record: &[Vec<f64>]) ->
         .unwrap()
 }
 
-/// Frequencies that are off by a few per cent are found within their intervals, and loads recovered with them hold their intervals, where the stated
-/// 2 % is half of the true scatter.
+/// Tests frequencies that differ from the model by a few per cent. The estimates are within their intervals, and so are the loads recovered with
+/// them. The stated 2 % is half of the true scatter.
 #[test]
 fn frequencies_that_are_off_are_estimated_and_loads_hold_their_intervals() {
     let mut random = ChaCha8Rng::seed_from_u64(31);

@@ -82,12 +82,13 @@ fn random_waves(random: &mut ChaCha8Rng) -> Waves {
     )
 }
 
-/// Errors of one mode's frequency stand in all loads together: sums and differences of loads take them as they are.
+/// Tests sums and differences of loads. The frequency error of one mode affects all loads at once, so their errors are correlated.
 #[test]
 fn intervals_of_sums_of_loads_hold_what_one_mode_puts_into_all() {
     for weights in [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, -1.0]] {
         let [share, squares, ..] = simulate_coverage(weights, random_waves, |_| (), |_| true);
-        // As above; the mean square of 100 structures scatters by 14 % and by what their loads differ in, three times that.
+        // The share has the same limits as above. The mean square of 100 structures scatters by 14 %, and more because their loads differ. The limits
+        // are three times this scatter.
         assert!((0.90..=0.99).contains(&share), "{weights:?} {share}");
         assert!((0.55..=1.6).contains(&squares), "{weights:?} {squares}");
     }
@@ -117,10 +118,10 @@ fn intervals_hold_for_the_gauges_that_read() {
     }
 }
 
-/// A record that rests, and shakes for a second: intervals are wide where it shakes, and narrow where it rests.
+/// Tests a quiet record with a burst of one second. Intervals are wide in the burst and narrow in the quiet part.
 #[test]
 fn intervals_follow_a_record_that_rests_and_then_shakes() {
-    // Waves .1 Hz apart that meet at 3 s: a Gaussian of .3 s, which comes again at 13 s.
+    // Waves .1 Hz apart with equal phase at 3 s form a Gaussian burst of .3 s, which repeats at 13 s.
     let burst = |_: &mut ChaCha8Rng| -> Waves {
         [7.0, 9.0].map(|f0| {
             let wave = |m: i32| {
@@ -139,7 +140,7 @@ fn intervals_follow_a_record_that_rests_and_then_shakes() {
         assert!((0.4..=2.0).contains(&squares), "{weights:?} {squares}");
         let [share, _, narrow, same] = simulate_coverage(weights, burst, |_| (), rests);
         assert!((0.88..=1.0).contains(&share), "{weights:?} {share}");
-        // The burst is a Gaussian of .3 s: five of its widths before it there is noise alone, which is the same all the time.
+        // The burst is a Gaussian of .3 s. Five of its widths earlier there is only noise, whose variance is constant.
         assert!(
             (same / noise - 1.0).abs() < 1e-9,
             "{weights:?} {same} {noise}"
@@ -172,14 +173,15 @@ fn what_modes_that_are_not_told_answer_is_in_the_intervals() {
             for l in 0..2 {
                 let error = got[l] - load(&waves[l], i as f64 / 250.0);
                 let sigma = variance(&s, &rested, 0.0, i, &load_weights(&s, l)).sqrt();
-                // A thousandth of what lies in the band is the filter's own.
+                // The filter itself causes an error of a thousandth of the loads in the band.
                 inside += usize::from(error.abs() <= 1.96 * sigma + 1e-3);
                 all += 1;
             }
         }
         inside as f64 / all as f64
     };
-    // The one mode that is left out lies where it may lie at least, so that the error is the one that is told: its peaks are root 2 of that.
+    // The only omitted mode has the lowest frequency that further modes may have, so its error equals the predicted error. The peaks are root 2 of
+    // the rms value.
     assert!(holds(Some(60.0)) > 0.99);
     assert!(holds(None) < 0.5);
 }

@@ -47,9 +47,9 @@ fn oscillator(damping: f64, up_to_hz: f64) -> (Sensitivity, Dynamics) {
     (sensitivity(Matrix::from_element(1, 1, 1.0)), dynamics)
 }
 
-/// A force `(1 - cos W t) / 2` for one period `T`, near the structure's own, from rest; without damping the strain is
-/// `((1 - cos w t) - (cos W t - cos w t) / (1 - (W / w)^2)) / 2`, thereafter free vibration (Biggs, Introduction to Structural Dynamics, 1964,
-/// chapter 2: Duhamel's integral).
+/// Tests a force `(1 - cos W t) / 2` for one period `T`, which is near the natural period, from rest. Without damping the strain is `((1 - cos w t) -
+/// (cos W t - cos w t) / (1 - (W / w)^2)) / 2` during the pulse, and free vibration after it. Source: Biggs, Introduction to Structural Dynamics,
+/// 1964, chapter 2 (Duhamel's integral).
 #[test]
 fn the_force_of_a_pulse_is_found_and_what_rings_after_it_is_none() {
     let (rate, own, period) = (1000.0, TAU * 10.0, 0.15);
@@ -84,7 +84,7 @@ fn the_force_of_a_pulse_is_found_and_what_rings_after_it_is_none() {
             continue;
         }
         known += 1;
-        // The pulse's spectrum falls as the cube of the frequency: a few thousandths lie above 60 Hz, nine times 1 / T.
+        // The spectrum of the pulse falls with the cube of the frequency. A few thousandths are above 60 Hz, nine times 1 / T.
         let expected = force(time(i));
         assert!(
             (got - expected).abs() < 5e-3,
@@ -231,7 +231,8 @@ fn loads_about_three_modes_are_those_that_modal_superposition_was_given() {
             as_if = as_if.max((raw[l] - expected).abs());
         }
     }
-    // A thousandth of the filter's weights lies beyond its reach; the fourth mode answers 1 / (1 - (24 / 400)^2) - 1, .4 % of its share.
+    // A thousandth of the filter weights is beyond the reach. The dynamic response of the fourth mode is 1 / (1 - (24 / 400)^2) - 1, .4 % of its
+    // static share.
     assert!(worst < 5e-3, "{worst}");
     assert!(as_if > 1.0, "{as_if}");
 }
@@ -251,7 +252,7 @@ fn a_gap_takes_what_hangs_on_it_and_the_rest_stays() {
     let whole = readings_at_rest(&s, &dynamics, 0.0, &record, 500.0).unwrap();
     assert_eq!(whole.blank, 2 * whole.reach);
     record.iter_mut().for_each(|c| c[1500..1600].fill(f64::NAN));
-    // One gauge less: the others tell the loads by themselves.
+    // Without one gauge, the other gauges still determine the loads.
     record[2][2800..].fill(f64::NAN);
     let gap = readings_at_rest(&s, &dynamics, 0.0, &record, 500.0).unwrap();
     let r = gap.reach;
@@ -284,7 +285,7 @@ fn intervals_hold_what_frequencies_damping_and_noise_make() {
         let mut real = STRUCTURE;
         for j in 0..3 {
             real.hz[j] *= 1.0 + sd[0] * normal();
-            // A mode that is faster by mass answers the same loads at rest by the same strain.
+            // A mode with a higher frequency due to less mass has the same static strain under the same loads.
             let share = (real.hz[j] / told.hz[j]).powi(2);
             real.work[j] = real.work[j].map(|w| w * share);
         }
@@ -312,8 +313,8 @@ fn intervals_hold_what_frequencies_damping_and_noise_make() {
         }
     }
     let share = held as f64 / all as f64;
-    // Errors of one structure go together: of 100 structures three standard errors of the share are some 5 %. A structure that is off by little has
-    // a smaller error than the one sd that is counted, one that is off by much a larger one: tails are wider than the normal's.
+    // The errors of one structure are correlated, so with 100 structures three standard errors of the share are about 5 %. The prediction uses one sd
+    // of the deviation. The error of a real structure can be smaller or larger, so the tails are wider than in a normal distribution.
     assert!((0.90..=0.99).contains(&share), "{share}");
 }
 
@@ -335,9 +336,9 @@ fn noise_alone_keeps_the_variance_that_is_told() {
             .sum();
         let got = square / range.len() as f64;
         let told = variance(&s, &rested, 1.0, 20_000, &load_weights(&s, l));
-        // Some 40,000 x 50 / 250 independent numbers: 1.6 %, three times that.
+        // There are about 40,000 x 50 / 250 independent numbers, which scatter by 1.6 %. The limit is three times this scatter.
         assert!((got / told - 1.0).abs() < 0.05, "{l} {got} {told}");
-        // What is let through of white noise can't be less than the band's share where motion adds nothing.
+        // Without motion error, the variance of filtered white noise can't be below the share of the band.
         assert!(
             told > 0.5 * 2.0 * 20.0 / 250.0 * gain.row(l).norm_squared(),
             "{told}"
@@ -351,13 +352,13 @@ fn what_cannot_be_is_said() {
     let (s, dynamics) = oscillator(0.02, 60.0);
     let slow = readings_at_rest(&s, &dynamics, 0.0, &record, 150.0).unwrap_err();
     assert!(matches!(slow, Unfit::Rate { .. }), "{slow}");
-    // Two loads at one gauge.
+    // One gauge can't separate two loads.
     let (_, mut dynamics) = oscillator(0.02, 20.0);
     dynamics.modes[0].work = vec![1.0, 1.0];
     let s = sensitivity(Matrix::from_element(1, 2, 1.0));
     let untold = readings_at_rest(&s, &dynamics, 0.0, &record, 500.0).unwrap_err();
     assert!(matches!(untold, Unfit::Untold { .. }), "{untold}");
-    // A band of a billionth of the rate, whatever the structure, and one whose own reach is too long: a lower band would be worse.
+    // Bands of less than a billionth of the rate for any structure, and a band whose reach is too long. A lower band would have a longer reach.
     let (s, mut dynamics) = oscillator(0.02, 20.0);
     for (up_to_hz, rate) in [(1e-18, 500.0), (1e-300, 500.0), (0.001, 50.0)] {
         dynamics.up_to_hz = up_to_hz;
@@ -367,12 +368,12 @@ fn what_cannot_be_is_said() {
             "{up_to_hz} {narrow}"
         );
     }
-    // More modes than a filter has room for: 2 x 3 numbers a mode and frequency.
+    // More modes than the memory limit of a filter permits: 2 x 3 numbers for each mode and frequency.
     dynamics.up_to_hz = 20.0;
     dynamics.modes = vec![dynamics.modes[0].clone(); 400_000];
     let large = readings_at_rest(&s, &dynamics, 0.0, &record, 500.0).unwrap_err();
     assert!(matches!(large, Unfit::Large { .. }), "{large}");
-    // A gauge that reads nothing of the load at a frequency in the band, which next to no damping leaves: what it says there hangs on hours.
+    // The gauge has no strain from the load at one frequency in the band, and almost no damping. Its reading there depends on hours of the record.
     let (_, mut dynamics) = oscillator(1e-7, 40.0);
     dynamics.modes[0].strain = vec![0.5];
     let s = sensitivity(Matrix::from_element(1, 1, 1.0));

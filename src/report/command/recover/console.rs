@@ -21,7 +21,7 @@ pub(super) fn console(outcome: &Outcome<RecoveredLoads>) -> Console {
         States::Runs(runs) if n > 1 => vec![by_run(runs, &spans)],
         _ => Vec::new(),
     };
-    // Smallest and largest of one run are the same.
+    // With one run, smallest and largest are equal.
     if n > 1 {
         tables.push(by_load);
     }

@@ -7,10 +7,12 @@ use crate::workflow::recover::{Block, RecordHead, RecordSink, Samples};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Takes the loads of a record into `loads.csv` and `loads.bin` of a folder, under temporary names: [`RecordFolder::into_output`] gives the
-/// folder to whoever adds the other files and puts all of them in place. Before a record begins nothing is touched.
+/// Writes the loads of a record to `loads.csv` and `loads.bin` of a folder, under temporary names.
+///
+/// [`RecordFolder::into_output`] passes the folder to the caller, who adds the other files and renames all of them. Before a record begins, no file
+/// is touched.
 pub struct RecordFolder {
-    // Dropped before `out`, which removes the files.
+    // `tables` is dropped before `out`, which removes the files.
     tables: Option<LoadTables>,
     out: Option<Output>,
     folder: PathBuf,

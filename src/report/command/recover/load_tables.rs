@@ -15,7 +15,7 @@ pub(super) fn key_numbers(outcome: &Outcome<RecoveredLoads>) -> Vec<KeyNumber> {
     let size = |s: &LoadSpan| s.peak().abs() / s.size;
     let largest = known().max_by(|a, b| size(a).total_cmp(&size(b)));
     numbers.extend(largest.map(|s| {
-        // A run has an interval of its own.
+        // Each run has a separate interval.
         let of_runs = outcome.runs().map_or(&[][..], |r| &r.loads);
         let of_load = of_runs
             .iter()
@@ -65,7 +65,7 @@ pub(super) fn key_numbers(outcome: &Outcome<RecoveredLoads>) -> Vec<KeyNumber> {
     numbers
 }
 
-/// The expected residual in words.
+/// Formats the expected residual.
 fn format_expected_residual(runs: &RecoveredRuns) -> String {
     let chi2: f64 = runs.runs.iter().map(|r| r.chi2).sum();
     let dof: usize = runs.runs.iter().map(|r| r.degrees_of_freedom).sum();

@@ -1,6 +1,6 @@
-//! Files and words of `recover`.
+//! Report files and console output of `recover`.
 //!
-//! Loads of a record are written while they are recovered, by a [`RecordFolder`]; everything else is written of the outcome.
+//! A [`RecordFolder`] writes the loads of a record while they are recovered. All other files are written from the outcome.
 
 mod columns;
 mod console;

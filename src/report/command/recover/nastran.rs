@@ -147,7 +147,7 @@ pub(super) fn write_history(
         return Ok(());
     }
     let n = units.len() as u32;
-    // Tables have ids of their own; the same number for TLOAD1 and its table is easy to follow.
+    // Tables have separate ids. Using one number for TLOAD1 and its table makes the deck easy to follow.
     let (first, all) = (next, next + n);
     let mut text = heading(
         recovered,

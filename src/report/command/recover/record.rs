@@ -1,4 +1,4 @@
-//! Records: what is made of `loads.bin`, the page, `loads.xlsx`.
+//! Files of a record: files derived from `loads.bin`, the page, `loads.xlsx`.
 
 use super::columns::{by_gauge, columns_with_units};
 use super::tables::{BIN, CSV, LoadTables, LoadsFile};

@@ -17,7 +17,7 @@ pub(super) fn write(
 ) -> Result<(), Faults> {
     let targets = rpc_targets(&record.head, &record.sums);
     let h = &loads.header;
-    // A record of one sample has no step: the format wants one.
+    // A record of one sample has no step, but the format requires one.
     let dt = if h.dt > 0.0 { h.dt } else { 1.0 };
     let columns: Vec<usize> = (0..targets.len()).collect();
     out.write("loads.rsp", |w| {

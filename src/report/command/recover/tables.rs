@@ -81,7 +81,7 @@ impl LoadTables {
         let sent = self.sender.as_ref().map(|s| s.send(texts));
         match sent {
             Some(Ok(())) => Ok(()),
-            // The thread ended early: it says why.
+            // The thread ended early: `join` returns its error.
             _ => self.join(out).map(|_| ()),
         }
     }
@@ -114,7 +114,7 @@ impl LoadTables {
 impl Drop for LoadTables {
     fn drop(&mut self) {
         self.sender = None;
-        // Its files are given up: whether it could write them is of no account.
+        // The files are discarded, so that errors of writing them do not matter.
         if let Some(writer) = self.writer.take() {
             let _ = writer.join();
         }

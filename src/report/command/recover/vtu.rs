@@ -19,7 +19,7 @@ pub(super) fn write(
         return Ok(());
     };
     let mut grids: Vec<(u32, [f64; 3])> = Vec::new();
-    // Column, point, unit vector in the basic frame, moment rather than force.
+    // Column, point, unit vector in the basic frame, and 1 for a moment or 0 for a force.
     let mut parts: Vec<(usize, usize, [f64; 3], usize)> = Vec::new();
     for (column, name) in runs.names.iter().enumerate() {
         let load = recovered.job.loads.iter().find(|l| &l.name == name);

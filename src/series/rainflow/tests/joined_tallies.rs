@@ -1,4 +1,4 @@
-//! Tallies of parts against that of the whole, and the interval of damage over days.
+//! Tallies of parts against the tally of the whole record, and the interval of damage over days.
 
 use crate::series::rainflow::*;
 
@@ -86,7 +86,7 @@ fn parts_join_to_the_whole_to_the_last_cycle_wherever_they_are_cut() {
                 damage_interval(&joined, &[1e-4, 0.0, 0.0, 1e-4], 0.0),
                 damage_interval(&whole, &[1e-4, 0.0, 0.0, 1e-4], 0.0),
             );
-            // Sums of the same numbers in another order.
+            // Sums of equal numbers in another order.
             for (a, b) in [(a.value, b.value), (a.low, b.low), (a.high, b.high)] {
                 assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
             }
@@ -104,7 +104,7 @@ fn what_is_kept_as_json_comes_back_whole_gaps_and_an_endless_slope_too() {
         }),
     };
     let mut counter = Counter::new(0, 2, 0.1, 0.25, law);
-    // The second load is missing where the first turns.
+    // The second load is missing at reversals of the first.
     push(
         &mut counter,
         &[0.0, f64::NAN, 3.0, f64::NAN, -1.0, 2.0, 2.0, 1.0],
@@ -149,8 +149,8 @@ fn damage_of_a_sine_in_noise_is_that_of_the_sine_and_never_above_what_was_counte
         let d = damage_interval(&tally(&rows, 1, 0, sigma), &[0.0], sigma);
         let ratio = d.value / truth;
         assert!(d.value <= d.counted && d.counted > truth, "{share}: {d:?}");
-        // An independent count with a hundred times as many periods ended at .97 to 1.12 times the truth; where noise makes seven times the
-        // damage, its interval alone is asked.
+        // An independent count with a hundred times as many periods gave .97 to 1.12 times the truth. If noise makes seven times the damage, only the
+        // interval is tested.
         assert!(
             share > 0.1 || (0.7..1.3).contains(&ratio),
             "{share}: {ratio} {d:?}"
@@ -172,7 +172,7 @@ fn damage_without_the_bias_of_noise_is_the_same_however_the_record_is_cut() {
             .collect();
         at.extend([0, n]);
         at.sort_unstable();
-        // Loads of each part with a rounding of their own, as those of a filter of its own have.
+        // The loads of each part have different rounding errors, as from a separate filter for each part.
         let part = |w: &[usize]| {
             let off = 1.0 + 1e-13 * w[0] as f64 / n as f64;
             let loads: Vec<f64> = rows[w[0] * k..w[1] * k].iter().map(|v| v * off).collect();
@@ -214,7 +214,7 @@ fn removed_bias_ratio(length: f64, periods: f64, share: f64, slope: f64) -> f64 
 
 #[test]
 fn of_smooth_loads_as_much_is_taken_off_as_noise_adds() {
-    // A parabola through the logarithms took 1.2 to 1.7 times as much. Over so many periods what is taken scatters by 2 to 4 %.
+    // A parabola through the logarithms subtracted 1.2 to 1.7 times as much. Over this number of periods, the subtracted bias scatters by 2 to 4 %.
     for (length, share, slope) in [
         (16.3, 0.02, 5.0),
         (16.3, 0.02, 9.0),
@@ -233,7 +233,7 @@ fn of_smooth_loads_as_much_is_taken_off_as_noise_adds() {
 
 #[test]
 fn levels_are_rises_through_borders_sample_by_sample_on_borders_too() {
-    // Quarters lie on borders of classes of .25; the second load seldom does, and stays within one for long at a time.
+    // Multiples of 0.25 are on borders of classes of width .25. The second load is seldom on a border, and stays in one class for a long time.
     let rows = history(20_000);
     for load in 0..2 {
         let mut expected = std::collections::BTreeMap::new();
@@ -274,7 +274,7 @@ fn a_known_sine_is_known_cycles_levels_and_damage() {
         .map(|i| -2.0 * (std::f64::consts::TAU * f64::from(i) / 64.0).cos())
         .collect();
     let t = tally(&rows, 1, 0, 0.0);
-    // A hundred peaks between a hundred and one valleys: all the cycles there are, the last as two halves.
+    // A hundred peaks between 101 valleys give a hundred cycles, the last as two half cycles.
     assert_eq!(t.n_cycles(), 100.0);
     let d = damage_interval(&t, &[0.0], 0.0);
     assert!(
@@ -282,7 +282,7 @@ fn a_known_sine_is_known_cycles_levels_and_damage() {
         "{}",
         d.value
     );
-    // Every border strictly within is risen through once a period.
+    // The load rises through every inner border once a period.
     for (i, n) in &t.levels {
         if (-7..8).contains(i) {
             assert_eq!(*n, 100, "{i}");
@@ -311,7 +311,7 @@ fn below_a_knee_a_cycle_does_what_the_flatter_line_says() {
         }),
     };
     assert_eq!((none.damage(9.99), none.derivative(9.99)), (0.0, 0.0));
-    // The derivative is that of the damage.
+    // `derivative` equals the difference quotient of the damage.
     for r in [2.0, 8.0, 15.0] {
         let h = 1e-5 * r;
         let slope = (law.damage(r + h) - law.damage(r - h)) / (2.0 * h);
@@ -324,7 +324,7 @@ fn day(numbers: &mut Numbers, n: usize) -> Vec<f64> {
     let mut waves = [[0.0_f64; 2]; 2];
     let mut rows = Vec::with_capacity(2 * n);
     for _ in 0..n {
-        // A lightly damped oscillator a load, some 25 samples a period, driven by noise.
+        // Each load is a lightly damped oscillator, some 25 samples a period, driven by noise.
         for w in &mut waves {
             let next = 1.9 * w[0] - 0.96 * w[1] + 0.1 * numbers.normal_number();
             *w = [next, w[0]];
@@ -339,7 +339,7 @@ fn the_interval_of_damage_holds_over_thirty_days_with_one_error_of_scale() {
     const VEHICLES: usize = 1000;
     const DAYS: usize = 30;
     const SAMPLES: usize = 500;
-    // Each entry of the gain is 2 % off, one and the same every day; noise is 2 % of the typical load, new in each sample.
+    // Each entry of the gain has an error of 2 %, equal on every day. Noise is 2 % of the typical load and independent in each sample.
     const SCALE: f64 = 0.02;
     let mut numbers = Numbers(11);
     let sample = day(&mut numbers, 20_000);
@@ -373,7 +373,7 @@ fn the_interval_of_damage_holds_over_thirty_days_with_one_error_of_scale() {
         let real = damage_interval(&of(&truth), &covariance, 0.0).value;
         let d = damage_interval(&of(&seen), &covariance, noise);
         held += usize::from((d.low..=d.high).contains(&real));
-        // The same sizes, taken as if each day had an error of its own.
+        // Errors of equal size, but treated as independent from day to day.
         let apart: f64 = seen
             .iter()
             .map(|t| damage_interval(t, &covariance, noise).sigma_s.powi(2))

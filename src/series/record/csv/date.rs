@@ -69,7 +69,7 @@ fn days_of(date: &str) -> Option<i64> {
     let (year, month, day) = match (mark, a.len(), c.len()) {
         ('.', _, 4) => (z, y, x),
         ('/' | '-', 4, _) => (x, y, z),
-        // Which of the two is the month shows where the other can't be one.
+        // The month is known if the other number exceeds 12, or if both are equal.
         ('/', _, 4) if y > 12 => (z, x, y),
         ('/', _, 4) if x > 12 || x == y => (z, y, x),
         _ => return None,

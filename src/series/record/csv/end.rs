@@ -23,20 +23,20 @@ pub fn unsure_end(bytes: &[u8]) -> Option<usize> {
     if n < last_field(previous, delimiter).0 {
         return None;
     }
-    // Of a few rows the first line may be the header.
+    // With only a few rows, the first line may be the header.
     let rows = before.get(..before.len().min(TELLING) - 1)?;
     let alike = |line: &Vec<u8>| {
         let (fields, field) = last_field(line, delimiter);
         fields == n && after_point(field) == after_point(own)
     };
     let whole = after_point(own) != Some(0) && after_point(own).is_some() && rows.iter().all(alike);
-    // A delimiter that ends every line.
+    // A delimiter ends every line.
     let closed = own.is_empty() && rows.iter().all(|r| last_field(r, delimiter) == (n, own));
     (!whole && !closed).then_some(start)
 }
 
-/// Whether the last line is cut beyond doubt: [`unsure_end`] doubts it, and its last number lacks what those of its column have as programs write
-/// numbers: their digits after the point (`has_fewer_digits`), their point or their exponent (`lacks_a_part`).
+/// Whether the last line is certainly cut. [`unsure_end`] returns it, and its last number lacks a part that the other numbers of its column have. The
+/// part may be digits after the point (`has_fewer_digits`), the point or the exponent (`lacks_a_part`).
 pub fn is_cut(bytes: &[u8]) -> bool {
     if unsure_end(bytes).is_none() {
         return false;
@@ -80,8 +80,8 @@ fn has_fewer_digits(own: &[u8], rows: &[Vec<u8>], delimiter: u8) -> bool {
     is_shorter && numbers >= NUMBERS && rows.iter().all(is_alike)
 }
 
-/// Whether the last number `own` has no point while all numbers of its column have one, or no exponent, or less of one, than all of them: where
-/// digits of any number follow the point, what is lost of them changes little, and what is lost before it changes all.
+/// Whether the last number `own` lacks the point, the exponent or a part of the exponent that all numbers of its column have. Lost digits after the
+/// point change a value little, but lost characters before it change the value completely.
 fn lacks_a_part(own: &[u8], rows: &[Vec<u8>], delimiter: u8) -> bool {
     /// Smallest number of rows to compare with.
     const ROWS: usize = 5;
@@ -97,7 +97,7 @@ fn lacks_a_part(own: &[u8], rows: &[Vec<u8>], delimiter: u8) -> bool {
         let least = characters.iter().copied().min().unwrap_or(0);
         return exponent(own).is_none_or(|n| n < least);
     }
-    // `12.0` is written by what always writes a point.
+    // A program that writes `12.0` always writes a point.
     let always = column.iter().any(|f| f.ends_with(b".0"));
     after_point(own).is_none()
         && exponent(own).is_none()
@@ -195,13 +195,13 @@ mod tests {
         let text = table(&["0.00,1.5,130.2", "0.01,1.6,128.4", "0.02,1.7,131.9"]);
         let start = text.rfind("0.02").unwrap();
         assert_eq!(unsure_end(text.as_bytes()), None);
-        // The line end alone is missing.
+        // Only the line end is missing.
         assert_eq!(unsure_end(&text.as_bytes()[..text.len() - 1]), None);
         for less in 2..=6 {
             let cut = &text.as_bytes()[..text.len() - less];
             assert_eq!(unsure_end(cut), Some(start), "{less}");
         }
-        // Fields are missing: the reader says so.
+        // Fields are missing, which the reader reports.
         let cut = &text.as_bytes()[..text.len() - 7];
         assert_eq!(unsure_end(cut), None);
         let returns = text.replace('\n', "\r\n");
@@ -225,7 +225,7 @@ mod tests {
             let bytes = &text.as_bytes()[..text.len() - less];
             assert_eq!(is_cut(bytes), cut, "{less}");
         }
-        // Numbers as people write them, and a few of them.
+        // Numbers without trailing zeros, then a table of few rows.
         let written = text.replacen("1.20", "1.2", 40);
         assert!(!is_cut(&written.as_bytes()[..written.len() - 2]));
         let few = table(&["0.00,1.5,130.2", "0.01,1.6,128.4", "0.02,1.7,131.9"]);
@@ -238,7 +238,7 @@ mod tests {
             let rows = column.map(|v| format!("R,{v}")).join("\n");
             format!("run,A\n{rows}\nR,{last}")
         };
-        // As many digits as each number takes.
+        // Each number has as many digits as it needs.
         let free = [
             "1234.25",
             "987.125",
@@ -257,7 +257,7 @@ mod tests {
         ] {
             assert_eq!(is_cut(table(free, last).as_bytes()), expected, "{last}");
         }
-        // One digit that is never a zero says little, a zero that is written much.
+        // One digit that is never zero proves little. A written trailing zero proves that the point is always written.
         let one = ["1234.2", "987.1", "1001.3", "-55.7", "1200.8", "640.2"];
         assert!(!is_cut(table(one, "19").as_bytes()));
         let written = ["1234.2", "987.1", "1001.0", "-55.7", "1200.8", "640.2"];

@@ -69,10 +69,10 @@ struct Line {
 }
 
 impl Layout {
-    /// The layout of a file.
+    /// Detects the layout of a file.
     ///
-    /// The first row is the first line with a number (or date) in its first field or its time field, and as many fields as the line
-    /// before it; that line is the header, or a row of units below the header.
+    /// The first row is the first line with a number (or date) in its first field or its time field. It also has as many fields as the line before
+    /// it, which is the header, or a row of units below the header.
     ///
     /// # Errors
     /// No header, a header without rows, times in an unknown unit.
@@ -99,7 +99,7 @@ impl Layout {
             .get(header + 1)
             .filter(|f| is_units(f, &columns, mark));
         let row = header + 1 + usize::from(units.is_some());
-        // A delimiter at the end of every line is no column.
+        // A delimiter at the end of every line is not a column.
         if columns.len() > 1 && columns.last().is_some_and(|c| c.name.is_empty()) {
             let rows = fields.get(row..).unwrap_or_default();
             if rows.iter().all(|r| r.last().is_none_or(|f| f.is_empty())) {
@@ -204,7 +204,7 @@ impl Layout {
         self.unit_stated = !unit.is_empty() || matches!(kind, TimeKind::OfDay { .. });
         self.rounding_s = 0.5 * factor * 10_f64.powi(-(digits.min(300) as i32));
         if matches!(kind, TimeKind::Date { .. } | TimeKind::DateBeside { .. }) {
-            // Seconds since 1970 in 64 bits are good to a quarter of a microsecond.
+            // Seconds since 1970 in 64 bits are accurate to a quarter of a microsecond.
             self.rounding_s += 2.5e-7;
         }
         self.time = Some((at, kind));
@@ -212,8 +212,8 @@ impl Layout {
     }
 }
 
-/// The field of the times: of those that are called so the first that holds one, else a date in the first field, whatever its name. Of a date and
-/// a time of day in two fields the first.
+/// Returns the field of the times. It is the first field with a name of time that contains a time. Otherwise it is a date in the first field,
+/// whatever its name. For a date and a time of day in two fields, it is the first of the two.
 fn time_field(columns: &[Column], row: &[&[u8]], mark: DecimalMark) -> Option<usize> {
     let field = |i: usize| row.get(i).copied().unwrap_or_default();
     let pair = |i: usize| date::parse_date_and_time(field(i), field(i + 1)).is_some();
@@ -269,7 +269,7 @@ fn first_lines(encoding: Encoding, bytes: &[u8], begin: usize) -> Vec<Line> {
         }
         at = end;
     }
-    // The last line may be cut off by the end of the file: it is judged when it is read.
+    // The last line may be cut off by the end of the file. It is checked when it is read.
     debug_assert!(lines.iter().all(|l| l.from < l.to));
     lines
 }
@@ -339,7 +339,7 @@ fn header_of(fields: &[Vec<&[u8]>], mark: DecimalMark) -> Result<usize, SeriesEr
                 || decode_field(n).eq_ignore_ascii_case("run")
         })
     };
-    // Names may be numbers (`time,14,15`): a column of time tells the header, if rows of about its length follow.
+    // Names may be numbers (`time,14,15`). A column of time identifies the header if rows of about its length follow.
     let followed = fields.windows(2).position(|w| match w {
         [a, b] => a.len() > 1 && named(a) && a.len().abs_diff(b.len()) <= 1,
         _ => false,
@@ -379,8 +379,8 @@ fn header_of(fields: &[Vec<&[u8]>], mark: DecimalMark) -> Result<usize, SeriesEr
         })
 }
 
-/// Whether these fields are units below a header: as many as columns, none a number, some of them a word. Where a column `run` names the
-/// rows, a name there makes it one of them.
+/// Whether these fields are a row of units below a header. There are as many fields as columns, none is a number, and some contain text. If a column
+/// `run` exists, a name in it makes the row a run.
 pub fn is_units(fields: &[&[u8]], columns: &[Column], mark: DecimalMark) -> bool {
     let word = |f: &[u8]| !f.is_empty() && number(f, mark).is_none() && !is_moment(f);
     let states_none = |f: &[u8]| states_no_unit(&decode_field(f));
@@ -396,7 +396,7 @@ pub fn is_units(fields: &[&[u8]], columns: &[Column], mark: DecimalMark) -> bool
         let mut others = fields.iter().enumerate().filter(|(at, _)| *at != run);
         return fields.get(run).is_some_and(|f| states_none(f)) && others.any(|(_, f)| word(f));
     }
-    // A row of text is no row of units; one that begins with nothing or `-`, or says `s` somewhere, is.
+    // A row of text contains units only if its first field is empty or `-`, or if any field is a unit of time.
     fields.iter().any(|f| word(f))
         && (fields.first().is_some_and(|f| states_none(f)) || fields.iter().any(|f| of_time(f)))
 }

@@ -33,7 +33,7 @@ pub fn find_decimal_mark(
         return Err((a.0.max(b.0), what));
     }
     let has_mark = |n: &&(usize, usize, &[u8])| n.2.contains(&b',') || n.2.contains(&b'.');
-    // One fraction of another form, a time of .01 say, tells.
+    // One fraction that cannot be a thousands group, such as a time of .01, decides.
     let unsure = numbers
         .iter()
         .filter(has_mark)

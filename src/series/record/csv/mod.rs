@@ -149,7 +149,7 @@ impl RecordReader for Csv {
         let raw = (*self.bytes).as_ref().get(from..to).unwrap_or_default();
         let text = self.layout.encoding.text(raw);
         let places = self.places(picks);
-        // Nothing but the time is asked: the rest of each line is passed over.
+        // If only the time is picked, the fields after it are skipped.
         let last = match (picks, self.layout.time) {
             ([Pick::Time | Pick::Nothing], Some((field, _))) => field,
             _ => usize::MAX,
@@ -281,7 +281,7 @@ impl Parser<'_> {
             if next != Some(&delimiter) {
                 break;
             }
-            // A delimiter at the end of every line is no field.
+            // A delimiter at the end of every line is not a field.
             if field == n && matches!(text.get(at), None | Some(b'\n' | b'\r')) {
                 let rest = text.get(at..).unwrap_or_default();
                 at += memchr::memchr(b'\n', rest).map_or(rest.len(), |n| n + 1);

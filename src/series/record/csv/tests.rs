@@ -113,7 +113,7 @@ fn tables_in_the_manners_of_measuring_programs_are_one_record() {
 #[test]
 fn numbers_whose_marks_may_be_read_in_two_ways_are_refused_with_their_line() {
     for (text, line, words) in [
-        // Thousands with points beside decimal commas, and the other way round; with blanks and apostrophes.
+        // Thousands with points in a table of decimal commas, and with commas in a table of decimal points. Thousands with blanks and apostrophes.
         (
             "time;A\n0,0;12,5\n0,1;1.250\n0,2;13,5\n",
             "line 3",
@@ -132,7 +132,7 @@ fn numbers_whose_marks_may_be_read_in_two_ways_are_refused_with_their_line() {
             "line 2",
             "1,250.5",
         ),
-        // Whole numbers with thousands.
+        // Whole numbers with thousands separators.
         (
             "time [ms];A\n0;998\n1;999\n2;1.000\n3;1.001\n",
             "line 4",
@@ -150,7 +150,7 @@ fn numbers_whose_marks_may_be_read_in_two_ways_are_refused_with_their_line() {
             "{text}: {said}"
         );
     }
-    // The same beyond the rows by which the table is laid out.
+    // A thousands separator is also refused after the rows that determine the layout.
     let mut long = String::from("time [ms];A\n");
     (0..900).for_each(|i| long.push_str(&format!("{i};{}\n", 100 + i % 800)));
     long.push_str("900;1.050\n");
@@ -159,14 +159,14 @@ fn numbers_whose_marks_may_be_read_in_two_ways_are_refused_with_their_line() {
         said.contains("line 902") && said.contains("`1.050`"),
         "{said}"
     );
-    // Three digits behind the point are fractions where others show it.
+    // Three digits after the point are a fraction if other numbers prove it.
     let record = open(b"time;A\n0.000;-1.250\n0.001;12\n0.002;1.375\n0.003;15\n").unwrap();
     assert_eq!(samples(&record, "A").unwrap(), [-1.25, 12.0, 1.375, 15.0]);
 }
 
 #[test]
 fn clocks_that_are_set_back_are_refused_and_set_forward_leave_a_gap() {
-    // The hour that summer time takes back, and the one it leaves out.
+    // The repeated hour at the end of summer time, and the skipped hour at its start.
     let back = "Time;A\n2026-10-25 02:59:59.0;1.5\n2026-10-25 02:59:59.5;2.5\n2026-10-25 02:00:00.0;3.5\n2026-10-25 02:00:00.5;4.5\n";
     let said = refusal(back);
     assert!(said.contains("line 4"), "{said}");

@@ -18,7 +18,8 @@ fn eight_bit_text(bytes: &[u8]) -> Option<String> {
     bytes.iter().map(character).collect()
 }
 
-/// Returns a table as text: UTF-8 or UTF-16 with or without its mark, else the eight-bit code of Windows; `None` for bytes that no text has.
+/// Returns a table as text. The encoding is UTF-8 or UTF-16, with or without byte order mark, otherwise the eight-bit code of Windows. The result is
+/// `None` for bytes that no text contains.
 pub fn table_text(bytes: &[u8]) -> Option<String> {
     let (encoding, begin) = Encoding::detect(bytes);
     let raw = bytes.get(begin..)?;
@@ -54,7 +55,7 @@ impl Encoding {
         }
     }
 
-    /// The coding of text without a byte order mark: one byte of each pair is zero in UTF-16, none is in the others.
+    /// Returns the encoding of text without a byte order mark. In UTF-16, one byte of each pair is zero. Other encodings have no zero bytes.
     fn by_zeros(bytes: &[u8]) -> Self {
         /// Characters looked at, and how many of four must be ASCII or Latin.
         const BEGINNING: usize = 64;
@@ -127,7 +128,7 @@ impl Encoding {
         let mut out = Vec::new();
         let mut from = start;
         while from < bytes.len() {
-            // From the start by a whole number of characters.
+            // The size is a whole number of characters.
             let to = match from + size {
                 target if target >= bytes.len() => bytes.len(),
                 target => self.line_end(bytes, target),
@@ -176,7 +177,7 @@ pub fn field_end(rest: &[u8], delimiter: u8) -> usize {
     if let Some(open) = rest.iter().position(|b| *b != b' ')
         && rest.get(open) == Some(&b'"')
     {
-        // A quote within is doubled; a line is never longer than itself.
+        // A quote inside a field is doubled. The search stops at the end of the line.
         from = open + 1;
         while let Some(n) = memchr::memchr2(b'"', b'\n', rest.get(from..).unwrap_or_default()) {
             from += n;

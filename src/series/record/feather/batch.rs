@@ -85,7 +85,7 @@ pub(super) fn parts(file: &[u8]) -> Option<(Vec<Field>, Vec<Batch>, Vec<(usize, 
         let (buffer, kind, table, body) = read_block(file, list, block)?;
         let id = buffer.field(table, 0);
         let id = id.map_or(Some(0), |at| buffer.size(at))?;
-        // Entries of a dictionary that is no text and no number are not read.
+        // Dictionaries whose entries are neither text nor numbers are not read.
         let values = fields
             .iter()
             .find_map(|f| f.dictionary.filter(|d| d.0 == id));
@@ -168,7 +168,7 @@ type Parts = (
     std::vec::IntoIter<usize>,
 );
 
-/// Returns the buffers of a field of `rows` rows and leaves those of the fields behind it; those of its children are passed over.
+/// Returns the buffers of a field of `rows` rows. `parts` keeps the buffers of later fields; the buffers of children are skipped.
 fn take(field: &Field, rows: Option<usize>, parts: &mut Parts) -> Option<Vec<Range<usize>>> {
     let (length, nulls) = parts.0.next()?;
     if rows.is_some_and(|n| n != length) {

@@ -195,7 +195,7 @@ impl Feather {
         Ok(())
     }
 
-    /// Returns the stored values of a field in a batch; those of a dictionary are not looked up.
+    /// Returns the stored values of a field in a batch. Dictionary values are not looked up.
     fn values<'a>(
         &'a self,
         batch: &Batch,
@@ -308,7 +308,7 @@ impl RecordReader for Feather {
 }
 
 impl Field {
-    /// Storage of its values, or of those of its dictionary.
+    /// Storage of the column's values, or of its dictionary's values.
     fn values(&self) -> ColumnStorage {
         self.dictionary.map_or(self.stored, |d| d.1)
     }

@@ -102,7 +102,7 @@ fn damaged_files_are_refused_or_read_without_a_panic() {
                 let _ = runs_as_csv(Arc::new(other));
             }
             let cut = bytes[..i].to_vec();
-            // A file that begins with fewer bytes is no Feather file.
+            // A file that begins with fewer bytes is not a Feather file.
             assert!(i < 6 || runs_as_csv(Arc::new(cut)).is_err(), "{name} {i}");
         }
     }

@@ -21,7 +21,7 @@ enum Kind {
     Index,
 }
 
-/// Where a number lies in a record and what it is worth.
+/// Position of a number in a record, and its conversion.
 pub(super) struct Field {
     kind: Kind,
     big_endian: bool,
@@ -70,7 +70,7 @@ impl Field {
         if !fits || (real && shift != 0) || c.is_array() || c.unreadable().is_some() {
             return None;
         }
-        // Values of which some are text have no number for them.
+        // A conversion that gives text for some values is not numeric.
         let numeric = matches!(
             c.conversion,
             Conversion::None
@@ -98,13 +98,13 @@ impl Field {
         })
     }
 
-    /// Whether the field lies within records of so many bytes.
+    /// Whether the field is within records of so many bytes.
     pub(super) fn fits(&self, data: usize, invalidation: usize) -> bool {
         let within = self.kind == Kind::Index || self.at + self.bytes <= data;
         within && self.invalid.is_none_or(|(byte, _)| byte < invalidation)
     }
 
-    /// The largest error of a value by what it is stored as: half a count, or the last bit of a real of 32 bits at a day's end.
+    /// Returns the largest rounding error of a value. It is half a count, or the last bit of a 32-bit real at the end of a day.
     pub(super) fn rounding_error(&self) -> f64 {
         let one = self.conversion.convert(1.0, self.is_float)
             - self.conversion.convert(0.0, self.is_float);
@@ -115,8 +115,8 @@ impl Field {
         }
     }
 
-    /// The value in each of the records that follow each other, the first being number `first`, `size` bytes each, of which `data` are
-    /// before the invalidation bytes.
+    /// Decodes the value in each of several consecutive records. The first record has number `first`. Each record has `size` bytes, of which `data`
+    /// are before the invalidation bytes.
     pub(super) fn decode(
         &self,
         records: &[u8],

@@ -120,7 +120,7 @@ impl Group {
         if self.samples != other.samples || self.time.is_none() || other.time.is_none() {
             return false;
         }
-        // A megabyte of times each.
+        // Each piece has a megabyte of times.
         const ROWS: usize = 131_072;
         let mut from = 0;
         while from < self.samples {
@@ -193,7 +193,7 @@ impl Group {
             return Cow::Borrowed(records);
         }
         let shifted = records.get(self.skip..).unwrap_or_default();
-        // The last record stays whole for an even division.
+        // Pad the last record to its full size, so that the length is a multiple of it.
         let mut out = shifted.to_vec();
         out.resize(records.len(), 0);
         Cow::Owned(out)
@@ -207,7 +207,7 @@ fn stated_cycles(file: &[u8], at: u64) -> Option<u64> {
         let b: [u8; 8] = file.get(from..from.checked_add(8)?)?.try_into().ok()?;
         Some(u64::from_le_bytes(b))
     };
-    // Id, reserved, length, number of links; links; number of the group; cycles.
+    // Layout of the block: id, reserved, length, number of links; links; number of the group; cycles.
     let links = word(at.checked_add(16)?)?;
     word(at.checked_add(HEAD + 8 * links.min(64) + 8)?)
 }
@@ -268,7 +268,7 @@ impl FixedRecordReader {
             let mut last = 0;
             for (at, block) in &main.blocks {
                 let mut end = at + block.original_size;
-                // One large plain block is taken in parts.
+                // A large uncompressed block is split into parts.
                 if block.compression.is_none() {
                     let mut part = last + PIECE;
                     while part < end {
@@ -341,7 +341,7 @@ impl RecordReader for FixedRecordReader {
             return Ok(());
         };
         let file: &[u8] = (*self.bytes).as_ref();
-        // Records of each group that something is picked of.
+        // Read the records of each group that has a pick.
         let place = |pick: &Pick| match pick {
             Pick::Time => Some((0, None)),
             Pick::Column(c) => self.places.get(*c).map(|(g, f)| (*g, Some(*f))),

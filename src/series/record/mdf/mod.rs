@@ -42,8 +42,8 @@ impl ByteSource for Source {
     }
 }
 
-/// The channels of the group that holds most of `wanted` (most numbers, where none is named), with those of every group on the same
-/// times; text is left out. An invalid sample is NaN.
+/// Opens the channels of the group that contains most of `wanted`, or most numbers if `wanted` is empty. Channels of every group with equal times are
+/// included, and text is left out. An invalid sample is NaN.
 ///
 /// # Errors
 /// A file that can't be read or is cut off, wanted channels on other times.

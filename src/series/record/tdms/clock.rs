@@ -11,8 +11,8 @@ const COMPUTER_CLOCK_S: f64 = 1.0 / 64.0;
 /// Share by which two statements of one rate may differ.
 const SAME_RATE: f64 = 0.01;
 
-/// Returns the times of the samples of each channel. Channels that state a step are on even steps from their start on; the others have the times
-/// of the channel of time in their group, else of the first one in the file.
+/// Returns the times of the samples of each channel. Channels that state a step have even steps from their start. Other channels take the times of
+/// the time channel in their group, or of the first time channel in the file.
 pub(super) fn samplings(all: &[Channel], file: &[u8]) -> Vec<Sampling> {
     let is_clock = |c: &Channel| step(c).is_none() && is_named_time(c, all);
     let clocks: Vec<(usize, &Channel)> = all.iter().enumerate().filter(|c| is_clock(c.1)).collect();
@@ -80,7 +80,7 @@ pub(super) fn axis(c: &Channel) -> String {
     format!("`{name} [{}]`", axis_unit(c))
 }
 
-/// Whether the axis of a channel is time: its unit is one of time; without a unit, its name is one of time, or it has none.
+/// Whether the axis of a channel is time. Its unit must be a unit of time. Without a unit, its name must be a name of time, or empty.
 pub(super) fn is_over_time(c: &Channel) -> bool {
     if step(c).is_none() || !axis_unit(c).is_empty() {
         return seconds_in(axis_unit(c)).is_some();
@@ -116,7 +116,7 @@ pub(super) fn check_restarts(c: &Channel) -> Result<(), SeriesError> {
             }
             _ => {}
         }
-        // A start and an offset that change together count together.
+        // A start and an offset that change at one sample are one restart.
         let next = c.restarts.get(i + 1);
         if next.is_some_and(|n| n.first == restart.first) {
             continue;

@@ -77,7 +77,7 @@ impl Tdms {
                 time = Some((c, scale));
                 continue;
             }
-            // A name that two groups have goes with its group.
+            // A name that two groups share gets its group as a prefix.
             let twice = names.iter().filter(|n| **n == c.name).count() > 1;
             let name = if twice {
                 format!("{}/{}", c.group, c.name)
@@ -123,7 +123,7 @@ impl Tdms {
         Ok(file)
     }
 
-    /// Takes a channel as the times of the others.
+    /// Uses a channel as the times of all other channels.
     fn set_time(&mut self, c: Channel, mut scale: Scale) -> Result<(), SeriesError> {
         let unit = c.unit().to_owned();
         let is_absolute = c.kind == Kind::Time;
@@ -145,7 +145,7 @@ impl Tdms {
             rounding_s: match c.kind {
                 Kind::F64 => 0.0,
                 Kind::F32 => single_rounding_s(one),
-                // Seconds since 1970 in 64 bits are good to a quarter of a microsecond.
+                // Seconds since 1970 in 64 bits are accurate to a quarter of a microsecond.
                 Kind::Time => 2.5e-7,
                 _ => 0.5 * one,
             },

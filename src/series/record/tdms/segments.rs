@@ -243,7 +243,7 @@ struct Object {
     kind: Option<Kind>,
 }
 
-/// Returns the channels, those of text too, in the order of the file.
+/// Returns the channels in the order of the file, including text channels.
 ///
 /// # Errors
 /// Lists that can't be read, samples of a kind that is not read, a channel that changes its kind.
@@ -261,7 +261,7 @@ pub fn channels_of(bytes: &[u8]) -> Result<Vec<Channel>, SeriesError> {
             continue;
         };
         let parts = names_of(&path);
-        // A channel without samples has no kind; the file and its groups are no channels.
+        // A channel without samples has no kind. The file and its groups are not channels.
         let Some(kind) = o.kind.or((parts.len() > 1).then_some(Kind::Text)) else {
             continue;
         };
@@ -297,7 +297,7 @@ fn segment(
         return Err(read_error(format!("no segment begins at byte {at}")));
     }
     let flags = c.u32()?;
-    // From here on in the order of bytes that the flags state.
+    // All further numbers have the byte order that the flags state.
     c.big = flags & BIG_ENDIAN != 0;
     c.u32()?;
     let (next, raw) = (c.u64()?, c.u64()?);

@@ -111,7 +111,7 @@ fn pair(offset_s: f64, start: (i64, f64)) -> [Channel; 2] {
 fn channels_that_begin_at_other_times_are_not_read_as_simultaneous() {
     let same = open(&pair(0.0, (NOON, 0.25)), &["P1", "P2"]).unwrap();
     assert_eq!((same.columns().len(), same.clock.samples), (2, 200));
-    // A converter that lags by a hundredth of a step, and an offset that makes up for the start.
+    // Accepted: a converter that lags by a hundredth of a step, and an offset that compensates the start.
     assert!(open(&pair(0.0, (NOON, 0.2501)), &["P1", "P2"]).is_ok());
     assert!(open(&pair(-0.5, (NOON, 0.75)), &["P1", "P2"]).is_ok());
     for (offset, start) in [
@@ -277,7 +277,7 @@ fn segments_that_do_not_follow_each_other_are_refused() {
         let bytes = [part(0, 0.25, 0.01), second].concat();
         open_record(Arc::new(bytes), &Options::default())
     };
-    // The same start again is that of the channel; a clock of a computer is read to 16 ms.
+    // An equal start is the start of the channel. A computer clock has a resolution of 16 ms.
     for second in [
         part(0, 0.25, 0.01),
         part(2, 0.25, 0.01),

@@ -7,8 +7,9 @@ use std::collections::BTreeSet;
 
 /// Lines of text before the numbers.
 const HEAD: usize = 11;
-/// The code of time among the kinds of abscissa, and of a general or a time response among those of function.
+/// Code of time among the types of abscissa.
 const TIME: i64 = 17;
+/// Codes of a general response and of a time response among the types of function.
 const RESPONSES: [i64; 2] = [0, 1];
 
 /// Numbers in the file as they are.
@@ -112,7 +113,8 @@ pub fn datasets(bytes: &[u8]) -> Result<Vec<Dataset>, SeriesError> {
             return Err(read_error("the file is cut off: a data set has no end"));
         }
     }
-    // Programs differ in what tells their channels apart: the first of the titles that tells most of them; a number where it is there twice.
+    // Programs put the channel name in different title lines. Take the first title that distinguishes most channels, and add a number to a name that
+    // occurs twice.
     let names: [Vec<&str>; 3] =
         [0, 1, 2].map(|t| out.iter().map(|d| d.titles[t].as_str()).collect());
     let distinct = |names: &Vec<&str>| match names.contains(&"") {

@@ -38,7 +38,7 @@ pub(super) struct Uff {
 }
 
 impl Uff {
-    /// The time histories of one clock: those of `wanted` (most of them, where none is named).
+    /// Reads the time histories of one clock: the clock of `wanted`, or the clock of most histories if `wanted` is empty.
     ///
     /// # Errors
     /// A file that can't be read or holds no time histories, wanted channels of another clock.

@@ -61,7 +61,7 @@ fn two_data_sets_of_one_name_are_named() {
             .contains("the file contains `P1` 2 times"),
         "{refused}"
     );
-    // A channel that is there once is read by its name.
+    // A channel that occurs once is read by its name.
     let record = open("P2").unwrap();
     let names: Vec<&str> = record.columns().iter().map(|c| c.name.as_str()).collect();
     assert_eq!(names, ["P1#1", "P2", "P1#3"]);

@@ -24,7 +24,7 @@ pub struct Comparison {
     pub shift: Option<ComparisonShift>,
 }
 
-/// Time that is added to the times of recorded loads to get those of the strain record.
+/// Time shift that converts the times of the recorded loads to times of the strain record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ComparisonShift {
     /// File of the recorded loads.
@@ -52,7 +52,7 @@ pub struct LoadComparison {
     pub rms: f64,
     /// Share of the recorded loads inside the 95 % interval of the recovered ones.
     pub share_within: f64,
-    /// Damage of the recovered over that of the recorded load; `None` of runs.
+    /// Damage by the recovered load over damage by the recorded load; `None` for runs.
     pub damage_ratio: Option<f64>,
     /// Lower end of its 95 % interval.
     pub damage_ratio_low: Option<f64>,
@@ -81,8 +81,8 @@ struct Differences {
 /// Largest number of points of a cross plot.
 const POINTS: usize = 1500;
 
-/// Recovered and recorded value of a load, with standard deviations of their difference: of all of it, and of the part that belongs to the sample
-/// alone. Intervals are `factor` times the first.
+/// Recovered and recorded value of a load, with standard deviations of their difference. `sigma` contains all errors, and `own_sigma` the errors of
+/// the sample alone. Intervals are `factor` times `sigma`.
 struct Pair {
     recovered: f64,
     recorded: f64,

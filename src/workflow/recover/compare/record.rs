@@ -23,10 +23,11 @@ use std::sync::Arc;
 /// Blocks of a record whose scatter shows how many of its samples are independent.
 const BLOCKS: usize = 20;
 
-/// A sample in which a gauge gives nothing, and the estimate from the others.
+/// A sample in which a gauge gives nothing, and the estimate from the other gauges.
 pub type Gap = (usize, Option<Arc<Estimate>>);
 
-/// Opens the record of loads that a job names for its strain record; `None` where it names none. The runs file of a job is read for its faults.
+/// Opens the record of loads that a job names for its strain record; `None` if it names no such record. The runs file of a job is read for its
+/// faults.
 ///
 /// # Errors
 /// Files that can't be read; a `[compare]` that names runs.
@@ -73,7 +74,7 @@ struct LoadRecordPair<'a> {
     quiet: Vec<f64>,
 }
 
-/// Compares a recovered record with the recorded loads; `clock` is that of the strain record.
+/// Compares a recovered record with the recorded loads; `clock` is the clock of the strain record.
 ///
 /// # Errors
 /// No time shift that brings both together; no sample in common.
@@ -156,7 +157,7 @@ impl LoadRecordPair<'_> {
         let n = self.counting.samples.n_samples();
         let last = self.recorded.clock.samples.saturating_sub(1) as f64;
         let end_s = self.start_s + last / self.recorded.clock.rate_hz;
-        // Times are rounded: a sample that misses the end by a millionth of a step is at the end.
+        // Times are rounded. A sample that is a millionth of a step after the end counts as at the end.
         let place = |t: f64| (t - head.first_s) / head.step_s;
         let from = (place(self.start_s) - 1e-6).ceil().max(0.0) as usize;
         let to = ((place(end_s) + 1e-6).floor() + 1.0).max(0.0) as usize;

@@ -68,7 +68,7 @@ pub fn runs(
             };
             let sigma = found.estimate.sigma(l) * unit.factor;
             let factor = found.estimate.coverage_factor;
-            // Student's factor of an interval counts as a wider sigma, also beside noise of the recorded load.
+            // Student's factor widens sigma, also together with the noise of the recorded load.
             let wide = factor / NORMAL_95 * sigma;
             let pair = Pair {
                 recovered: found.estimate.values[l] * unit.factor,
@@ -119,8 +119,8 @@ fn rows<'a>(
     }
 }
 
-/// Whether S was calibrated with this run: `[calibration] runs` names it or, where that names none, all of its loads are recorded and it is not
-/// held out.
+/// Returns whether S was calibrated with this run, because `[calibration] runs` names it. Without that list, a calibration run has all of its loads
+/// recorded and is not held out.
 fn is_calibration_run(job: &Job, s: &Sensitivity, row: &RunRow) -> bool {
     let held_out = job
         .measured
@@ -150,7 +150,7 @@ fn not_compared(runs: &[&str]) -> Option<Finding> {
     })
 }
 
-/// By load: standard deviation from errors that belong to the run alone over that of all errors. Errors of S are common to all runs.
+/// Returns by load the ratio of two standard deviations: from the errors of the run alone, and from all errors. Errors of S are common to all runs.
 fn own_share(task: &Task, s: &Sensitivity, r: &Readings, loads: &[f64]) -> Vec<f64> {
     let plain = Widening {
         variance_factor: 1.0,

@@ -75,7 +75,7 @@ impl ToFields for ShearPanel {
     }
 }
 
-/// Three fields.
+/// Returns three fields.
 fn orientation(row: Row, v: Orientation) -> Row {
     match v {
         Orientation::Vector(x) => row.add_all(x),
@@ -239,7 +239,7 @@ impl ToFields for Snorm {
     }
 }
 
-/// Grid and component of both ends; ground is blank.
+/// Returns grid and component of both ends; ground is blank.
 fn ends(row: Row, ends: &[Option<(u32, u8)>; 2]) -> Row {
     ends.iter().fold(row, |row, end| match end {
         Some((grid, c)) => row.add(*grid).add(u32::from(*c)),

@@ -6,7 +6,7 @@ use super::{Field, Row, ToFields, id_or_blank};
 use crate::cards::*;
 
 impl Force {
-    /// Fields of FORCE and of MOMENT.
+    /// Returns the fields of FORCE and of MOMENT.
     fn fields(&self) -> Vec<Field> {
         Row::default()
             .add(self.sid)
@@ -17,12 +17,12 @@ impl Force {
             .end()
     }
 
-    /// The lines of a FORCE card.
+    /// Returns the lines of a FORCE card.
     pub fn to_force_card(&self) -> String {
         format_card("FORCE", &self.fields())
     }
 
-    /// The lines of a MOMENT card.
+    /// Returns the lines of a MOMENT card.
     pub fn to_moment_card(&self) -> String {
         format_card("MOMENT", &self.fields())
     }

@@ -1,4 +1,4 @@
-//! The fields of typed cards, for writing them.
+//! Fields of typed cards, for writing the cards.
 
 mod element;
 mod geometry;
@@ -31,7 +31,7 @@ pub trait ToFields {
     /// Returns the fields, from field 2 on, 8 to a line.
     fn to_fields(&self) -> Vec<Field>;
 
-    /// The card as lines of a deck, which read back as this card.
+    /// Returns the card as lines of a deck, which read back as this card.
     fn to_card(&self) -> String {
         format_card(self.card_name(), &self.to_fields())
     }
@@ -61,7 +61,7 @@ impl Row {
         self
     }
 
-    /// A real that is left blank where it is the default.
+    /// Adds a real, which stays blank if it is the default.
     fn add_unless_default(self, x: f64, default: f64) -> Row {
         if x == default {
             self.add_blanks(1)
@@ -76,7 +76,7 @@ impl Row {
             .fold(self, |row, &x| row.add_unless_default(x, default))
     }
 
-    /// Blanks up to field 2 of the next line.
+    /// Adds blanks up to field 2 of the next line.
     fn next_line(mut self) -> Row {
         while !self.0.len().is_multiple_of(8) {
             self.0.push(Field::Blank);
@@ -89,17 +89,17 @@ impl Row {
     }
 }
 
-/// Degrees of freedom as digits; none as 0.
+/// Returns degrees of freedom as digits; the empty set is 0.
 fn dofs(d: crate::cards::Dofs) -> Field {
     Field::Text(d.to_string())
 }
 
-/// Degrees of freedom; none is blank.
+/// Returns degrees of freedom as digits; the empty set is blank.
 fn dofs_or_blank(d: crate::cards::Dofs) -> Field {
     if d.is_empty() { Field::Blank } else { dofs(d) }
 }
 
-/// An id; 0 is blank.
+/// Returns an id; 0 is blank.
 fn id_or_blank(id: u32) -> Field {
     if id == 0 { Field::Blank } else { id.into() }
 }

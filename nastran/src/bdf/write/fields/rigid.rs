@@ -39,7 +39,7 @@ impl ToFields for Rbe3 {
         if !self.um.is_empty() {
             row = row.next_line().add("UM");
             for (i, (grid, d)) in self.um.iter().enumerate() {
-                // three pairs a line, field 2 holds UM or is blank
+                // A line has three pairs after field 2, which contains UM or is blank.
                 if i > 0 && i % 3 == 0 {
                     row = row.next_line().add_blanks(1);
                 }
@@ -128,7 +128,7 @@ impl ToFields for Spc {
     }
 }
 
-/// The ids, or `first THRU last`.
+/// Returns the fields of the ids, or of `first THRU last`.
 pub(super) fn ids(row: Row, list: &IdList) -> Row {
     match list {
         IdList::Each(ids) => row.add_all(ids.iter().copied()),
