@@ -6,8 +6,9 @@
 //! deviations are the prior of `x`.
 //!
 //! Errors of the static S leave residuals in phase with the loads. They are projected out first: for every gauge, residual and derivatives are
-//! replaced by their parts that are orthogonal to all loads over the record (the theorem of Frisch and Waugh). The scatter of the gradient over
-//! parts of the record bounds the information from below (a sandwich estimate), because residuals of neighbouring samples are correlated.
+//! replaced by their parts that are orthogonal to all loads over the record (the theorem of Frisch and Waugh). The covariance of the gradient has
+//! two parts. Its scatter over parts of the record states the noise, which neighbouring samples share (a sandwich estimate). Errors of the strain of
+//! a mode at a gauge, independent by mode and gauge, leave residuals in phase with the motion of the mode: `psi_gj a_j c_j' f` each.
 
 use super::block::{Spectrum, spectrum, time_history};
 use super::correct::Stretches;
@@ -29,6 +30,8 @@ const LONGEST_STEP: [f64; 2] = [0.1, 0.7];
 const STARTS: [f64; 4] = [0.01, 0.03, 0.1, 0.3];
 /// One standard deviation of the logarithm of a damping without a stated value, about the start: a factor of 4.5 either way.
 const OPEN: f64 = 1.5;
+/// Least standard deviation of the strain of a mode at a gauge, share of it: what a mesh that was not fitted to measured shapes is off by.
+const SHAPE: f64 = 0.01;
 /// Blocks of the record that are used, evenly spaced, and parts whose gradients are compared.
 const MOST_BLOCKS: usize = 64;
 const PARTS: usize = 64;
@@ -68,7 +71,7 @@ pub struct EstimatedModes {
 }
 
 /// Estimates frequencies and damping of the modes from a record. Arguments as in [`super::readings_at_rest`]; with `open_damping` the damping of
-/// `dynamics` is not used.
+/// `dynamics` is not used. `model_rel` is one standard deviation of the strain of a mode at a gauge, share of it; at least 1 % is assumed.
 ///
 /// Returns `None` where the record contains no information: no more gauges than loads, no mode in the band, or no stretch of the record with all
 /// gauges that is long enough.
@@ -79,7 +82,8 @@ pub fn estimate_modes(
     s: &Sensitivity,
     dynamics: &Dynamics,
     open_damping: bool,
-    (noise, readings, rate_hz): (f64, &[Vec<f64>], f64),
+    (noise, model_rel): (f64, f64),
+    (readings, rate_hz): (&[Vec<f64>], f64),
 ) -> Result<Option<EstimatedModes>, Unfit> {
     let (n, k) = (s.gauges.len(), s.loads.len());
     if n <= k {
@@ -92,6 +96,7 @@ pub fn estimate_modes(
     let record = Record {
         s,
         noise,
+        shape_sd: model_rel.max(SHAPE),
         readings,
         rate_hz,
         spans: Stretches::from_readings(readings, readings.first().map_or(0, Vec::len))
@@ -123,6 +128,8 @@ pub fn estimate_modes(
 struct Record<'a> {
     s: &'a Sensitivity,
     noise: f64,
+    /// One standard deviation of the strain of a mode at a gauge, share of it.
+    shape_sd: f64,
     readings: &'a [Vec<f64>],
     rate_hz: f64,
     /// Stretches in which all gauges read.
@@ -139,9 +146,9 @@ struct Problem<'a> {
 /// Sums of products over part of the record. Columns are the derivatives by parameter, the residual, and the residual without modes.
 #[derive(Clone)]
 struct Products {
-    /// Loads with loads, `k x k`.
+    /// Loads and motions of the `m` modes with one another, `(k + m) x (k + m)`.
     loads: Matrix,
-    /// Loads with columns by gauge, `k x (p + 2)`.
+    /// Loads and motions with columns by gauge, `(k + m) x (p + 2)`.
     by_gauge: Vec<Matrix>,
     /// Columns with columns, `(p + 2) x (p + 2)`, sum over the gauges.
     columns: Matrix,
@@ -158,6 +165,8 @@ struct Normal {
     squares_without: f64,
     /// Gradient of each part of the record, after the best linear step.
     gradients: Vec<Vector>,
+    /// Covariance of the gradient from errors of the modes' strain, `p x p`.
+    by_shape: Matrix,
     /// Samples times residual degrees of freedom.
     freedom: f64,
     /// Share of white noise in the band.
@@ -309,9 +318,19 @@ impl Problem<'_> {
             }
         };
         let scatter: Vec<f64> = (0..p).map(scatter).collect();
-        let information = Matrix::from_fn(p, p, |i, j| {
-            normal.matrix[(i, j)] / (variance * scatter[i] * scatter[j])
+        // Covariance of the gradient; a parameter that the residual does not contain has none.
+        let mut gradient = Matrix::from_fn(p, p, |i, j| {
+            normal.matrix[(i, j)] * variance * scatter[i] * scatter[j] + normal.by_shape[(i, j)]
         });
+        let largest = gradient.diagonal().max().max(f64::MIN_POSITIVE);
+        for i in 0..p {
+            gradient[(i, i)] += 1e-12 * largest;
+        }
+        let weights = gradient
+            .try_inverse()
+            .unwrap_or_else(|| Matrix::zeros(p, p))
+            * &normal.matrix;
+        let information = normal.matrix.transpose() * &weights;
         let mut precision = information.clone();
         for (i, parameter) in self.parameters.iter().enumerate() {
             precision[(i, i)] += self.stated_sd(*parameter).powi(-2);
@@ -321,9 +340,9 @@ impl Problem<'_> {
             Matrix::from_diagonal(&Vector::from_iterator(p, sd2))
         };
         let covariance = precision.try_inverse().unwrap_or_else(prior);
-        let target = x + normal.step();
+        let right = &information * x + weights.transpose() * &normal.right;
         Posterior {
-            mean: &covariance * (information * target),
+            mean: &covariance * right,
             covariance,
         }
     }
@@ -349,14 +368,38 @@ impl Problem<'_> {
         let products: Vec<Products> = (used.par_iter())
             .flat_map_iter(|(span, wanted)| view.products(span, wanted, used.len()))
             .collect();
-        Ok(Normal::new(&products, self.parameters.len(), view.band))
+        let shapes = (0..all.len())
+            .map(|g| {
+                view.modes
+                    .iter()
+                    .map(|j| plant.shapes[(g, *j)].re)
+                    .collect()
+            })
+            .collect();
+        let shapes = Shapes {
+            strain: shapes,
+            sd: record.shape_sd,
+            n_loads: record.s.loads.len(),
+        };
+        Ok(Normal::new(&products, &shapes, view.band))
     }
+}
+
+/// Strain of the modes with parameters at the gauges.
+struct Shapes {
+    /// By gauge, by mode.
+    strain: Vec<Vec<f64>>,
+    /// One standard deviation, share of the strain.
+    sd: f64,
+    n_loads: usize,
 }
 
 /// Derivatives of one mode at one frequency.
 struct ModeAt {
     /// `B (1 - H G) psi_j`, by gauge.
     spread: Vec<Complex<f64>>,
+    /// Response beyond the static one, `a_j`.
+    response: Complex<f64>,
     /// Derivatives of the response by the logarithms of frequency and damping.
     slopes: [Complex<f64>; 2],
 }
@@ -396,6 +439,7 @@ impl<'a> View<'a> {
                 let answer = plant.answer(*j, hz);
                 ModeAt {
                     spread: spread.iter().copied().collect(),
+                    response: answer.added,
                     slopes: [answer.by_frequency, answer.by_damping],
                 }
             };
@@ -438,7 +482,7 @@ impl<'a> View<'a> {
             let bins: Spectrum = (0..kernel.bins.len()).map(bins).collect();
             time_history(&bins, short, kernel.length)[kept.clone()].to_vec()
         };
-        let load_courses: Vec<Vec<f64>> = (loads.iter())
+        let mut load_courses: Vec<Vec<f64>> = (loads.iter())
             .map(|f| course(&|b| f[b] * kernel.bins[b].band))
             .collect();
         let amplitudes: Vec<Spectrum> = (self.displacement.iter())
@@ -447,6 +491,10 @@ impl<'a> View<'a> {
                 (0..kernel.bins.len()).map(of_bin).collect()
             })
             .collect();
+        let motions = amplitudes.iter().enumerate().map(|(m, amplitude)| {
+            course(&|b| amplitude[b] * self.at[b][m].response * kernel.bins[b].band)
+        });
+        load_courses.extend(motions);
         let mode_of: Vec<usize> = (self.parameters.iter())
             .map(|p| self.modes.iter().position(|m| *m == p.0).unwrap_or(0))
             .collect();
@@ -560,26 +608,53 @@ impl Products {
     /// Returns the products of columns less their regression on the loads, with the coefficients `regression` by gauge, `k x (p + 2)`.
     fn orthogonal(&self, regression: &[Matrix]) -> Matrix {
         let mut out = self.columns.clone();
+        let k = regression.first().map_or(0, Matrix::nrows);
+        let loads = self.loads.view((0, 0), (k, k));
         for (own, by) in self.by_gauge.iter().zip(regression) {
-            let cross = by.transpose() * own;
+            let cross = by.transpose() * own.rows(0, k);
             out -= &cross + cross.transpose();
-            out += by.transpose() * &self.loads * by;
+            out += by.transpose() * loads * by;
+        }
+        out
+    }
+
+    /// Returns the covariance of the gradient from errors of `shape_sd` of the strain of each mode at each gauge, `p x p`. `shapes` is the strain of
+    /// the modes, by gauge.
+    fn shape_covariance(
+        &self,
+        regression: &[Matrix],
+        shapes: &[Vec<f64>],
+        shape_sd: f64,
+    ) -> Matrix {
+        let (k, columns) = regression.first().map_or((0, 2), Matrix::shape);
+        let p = columns - 2;
+        let mut out = Matrix::zeros(p, p);
+        for ((own, by), shape) in self.by_gauge.iter().zip(regression).zip(shapes) {
+            for (m, strain) in shape.iter().enumerate() {
+                let with_loads = self.loads.view((0, k + m), (k, 1)).column(0).into_owned();
+                let of_mode = own.row(k + m).transpose() - by.transpose() * with_loads;
+                let of_mode = of_mode.rows(0, p) * (shape_sd * strain);
+                out += &of_mode * of_mode.transpose();
+            }
         }
         out
     }
 }
 
 impl Normal {
-    /// Forms the normal equations of `p` parameters from the sums over parts of the record; `None` without any, or with too few samples.
-    fn new(parts: &[Products], p: usize, band: f64) -> Option<Self> {
+    /// Forms the normal equations from the sums over parts of the record; `None` without any, or with too few samples.
+    fn new(parts: &[Products], shapes: &Shapes, band: f64) -> Option<Self> {
         let mut all = parts.first()?.clone();
         parts[1..].iter().for_each(|part| all.add(part));
-        let (n, k) = (all.by_gauge.len(), all.loads.nrows());
+        let (n, k, p) = (all.by_gauge.len(), shapes.n_loads, all.columns.nrows() - 2);
         if all.samples < 10.0 * (k + p) as f64 {
             return None;
         }
-        let inverse = all.loads.clone().pseudo_inverse(0.0).ok()?;
-        let regression: Vec<Matrix> = all.by_gauge.iter().map(|m| &inverse * m).collect();
+        let inverse = all.loads.view((0, 0), (k, k)).into_owned();
+        let inverse = inverse.pseudo_inverse(0.0).ok()?;
+        let regression: Vec<Matrix> = (all.by_gauge.iter())
+            .map(|m| &inverse * m.rows(0, k))
+            .collect();
         let whole = all.orthogonal(&regression);
         let mut normal = Self {
             matrix: whole.view((0, 0), (p, p)).into_owned(),
@@ -587,6 +662,7 @@ impl Normal {
             squares: whole[(p, p)].max(0.0),
             squares_without: whole[(p + 1, p + 1)].max(0.0),
             gradients: Vec::new(),
+            by_shape: all.shape_covariance(&regression, &shapes.strain, shapes.sd),
             freedom: all.samples * (n - k) as f64,
             band,
         };

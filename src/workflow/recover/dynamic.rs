@@ -129,8 +129,11 @@ pub(super) fn remove_vibration(
     work.go_on()?;
     let noise = task.errors.noise_variance(1.0).sqrt();
     let open = asked.damping == Damping::Estimate;
-    let with = (noise, &*readings, 1.0 / step_s);
-    let estimated = work.stage("modes", |_| estimate_modes(s, &stated, open, with));
+    let errors = (noise, task.errors.model_rel);
+    let with = (&*readings, 1.0 / step_s);
+    let estimated = work.stage("estimate modes", |_| {
+        estimate_modes(s, &stated, open, errors, with)
+    });
     let estimated = estimated.map_err(|e| fault(e.to_string(), remedy_of(&e)))?;
     if open && estimated.is_none() {
         return Err(fault(
