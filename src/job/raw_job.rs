@@ -30,6 +30,7 @@ pub(super) struct RawJob {
     pub section: Vec<SpannedValue<RawSection>>,
     pub ballast: S<RawBallast>,
     pub payload: S<RawPayload>,
+    pub conditioning: S<RawConditioning>,
     pub dynamic: S<RawDynamic>,
     pub recover: S<RawRecover>,
     pub respond: S<RawRespond>,
@@ -275,6 +276,25 @@ pub(super) struct RawPayload {
     pub sources: S<Vec<SpannedValue<String>>>,
     pub nominal_x: S<f64>,
     pub nominal_y: S<f64>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawConditioning {
+    pub spikes: S<bool>,
+    pub temperature: S<RawTemperature>,
+    pub zero_s: S<[f64; 2]>,
+    pub drift: S<String>,
+    pub low_pass_hz: S<f64>,
+    pub high_pass_hz: S<f64>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawTemperature {
+    pub channel: S<String>,
+    #[serde(rename = "microstrain_per_degC")]
+    pub microstrain_per_deg_c: S<f64>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

@@ -6,6 +6,7 @@
 
 pub(crate) mod columns;
 pub(crate) mod common_zero;
+pub mod conditioning;
 pub(crate) mod faults;
 pub mod gauge_columns;
 pub mod means;
