@@ -121,6 +121,25 @@ class CompareKeys(Section):
     """Units of the file; a column that states another unit is a fault; default: the units of the columns, else report_units."""
 
 
+class ConditioningKeys(Section):
+    """Keys of ``conditioning``."""
+
+    drift: _Key[Any]
+    """linear: the least squares line of each gauge over the record is subtracted, so that it is zero in `zero_s`, or at the first sample;
+    default: none."""
+    high_pass_hz: _Key[Any]
+    """Corner of the same filter as a high-pass. Static loads are removed with the static strain [Hz]; default: none."""
+    low_pass_hz: _Key[Any]
+    """Corner of a Butterworth filter of order 4, run forward and backward: half the amplitude at the corner, no phase shift [Hz]; default:
+    none."""
+    spikes: _Key[Any]
+    """Single samples far off the line through their neighbours are replaced by that line, and counted; default: false."""
+    temperature: _Key[Any]
+    """Apparent strain that follows a temperature channel is subtracted; default: none."""
+    zero_s: _Key[Any]
+    """Stretch of the record, [start, end], whose mean is zero for each gauge; it replaces [measured] `zero` [s]; default: none."""
+
+
 class CorrectionKeys(Section):
     """Keys of ``correction``."""
 
@@ -144,7 +163,7 @@ class DynamicKeys(Section):
     """Keys of ``dynamic``."""
 
     damping: _Key[Any]
-    """Damping of the modes, share of critical; required."""
+    """Damping of the modes, share of critical: a number, a list of bands [{ up_to_hz, damping }], or 'estimate' from the record; required."""
     damping_uncertainty_rel: _Key[Any]
     """One standard deviation of the damping, as a fraction of it; default: 0.5."""
     frequency_uncertainty_rel: _Key[Any]
@@ -552,6 +571,9 @@ class Keys:
     """A sum of loads, recovered with its own 95 % interval."""
     compare: _Key[CompareKeys]
     """Recorded loads that `recover` compares its loads with."""
+    conditioning: _Key[ConditioningKeys]
+    """Changes of the readings of a record before anything else, in the order of these keys. `result.json` states what each step changed;
+    default: none."""
     correction: _Key[Items[CorrectionKeys]]
     """Known fault of a channel, corrected in every reading and record of the job."""
     dynamic: _Key[DynamicKeys]

@@ -21,12 +21,12 @@ fn largest_square() -> f64 {
 /// use strainbridge::estimate::{Deviations, chi_square_tail};
 ///
 /// let as_stated = Deviations { mean_square: 1.0, effective: 10.0, common: 0.0 };
-/// assert!(!as_stated.exceed());
+/// assert!(!as_stated.is_significant());
 /// // Chi-square with 10 degrees of freedom exceeds 29.59 with the probability 0.001 (Abramowitz and Stegun, table 26.8).
 /// assert!((chi_square_tail(29.588, 10.0) - 1e-3).abs() < 1e-6);
-/// assert!(Deviations { mean_square: 3.0, ..as_stated }.exceed());
+/// assert!(Deviations { mean_square: 3.0, ..as_stated }.is_significant());
 /// // A common error of all samples can be as large by chance.
-/// assert!(!Deviations { mean_square: 3.0, common: 1.0, ..as_stated }.exceed());
+/// assert!(!Deviations { mean_square: 3.0, common: 1.0, ..as_stated }.is_significant());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviations {

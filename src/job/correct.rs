@@ -18,6 +18,15 @@ pub struct Channel {
 }
 
 impl Channel {
+    /// Returns the channel whose readings are right as they are.
+    pub fn without_correction() -> Self {
+        Self {
+            offset: 0.0,
+            factor: 1.0,
+            ignore: false,
+        }
+    }
+
     /// Returns the corrected reading, microstrain; NaN for an ignored channel.
     pub fn put_right(self, reading: f64) -> f64 {
         if self.ignore {

@@ -16,6 +16,7 @@ pub mod payload_signature;
 mod property_names;
 pub mod quantity;
 mod raw_job;
+mod raw_record;
 pub mod readings;
 mod resolve;
 mod roles;

@@ -1,13 +1,13 @@
 //! The job as written: every key of every section, each value with its place in the text, nothing required here.
 
-use super::shapes::{Counts, DampingValue, Ids, NumberOrNumbers, NumberOrWord, PropertyIds, Texts};
+use super::raw_record::{RawConditioning, RawDynamic};
+use super::shapes::{Counts, Ids, NumberOrNumbers, NumberOrWord, PropertyIds, Texts};
 use super::spanned_value::SpannedValue;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// A value with its place, `None` where the key is absent.
-pub(super) type S<T> = Option<SpannedValue<T>>;
+pub(super) use super::spanned_value::S;
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
@@ -30,6 +30,7 @@ pub(super) struct RawJob {
     pub section: Vec<SpannedValue<RawSection>>,
     pub ballast: S<RawBallast>,
     pub payload: S<RawPayload>,
+    pub conditioning: S<RawConditioning>,
     pub dynamic: S<RawDynamic>,
     pub recover: S<RawRecover>,
     pub respond: S<RawRespond>,
@@ -275,15 +276,6 @@ pub(super) struct RawPayload {
     pub sources: S<Vec<SpannedValue<String>>>,
     pub nominal_x: S<f64>,
     pub nominal_y: S<f64>,
-}
-
-#[derive(Deserialize, JsonSchema, Default, Debug)]
-#[serde(deny_unknown_fields, default)]
-pub(super) struct RawDynamic {
-    pub up_to_hz: S<f64>,
-    pub damping: S<DampingValue>,
-    pub frequency_uncertainty_rel: S<f64>,
-    pub damping_uncertainty_rel: S<f64>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

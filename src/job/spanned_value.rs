@@ -5,6 +5,9 @@ use serde::Deserialize;
 use std::borrow::{Borrow, Cow};
 use std::ops::Range;
 
+/// A value with its place, `None` where the key is absent.
+pub(super) type S<T> = Option<SpannedValue<T>>;
+
 /// A value and its place in the file.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(transparent)]

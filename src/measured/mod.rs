@@ -7,6 +7,8 @@
 
 pub(crate) mod columns;
 pub(crate) mod common_zero;
+pub mod conditioning;
+pub mod conditioning_step;
 pub(crate) mod faults;
 pub mod gauge_columns;
 pub mod means;

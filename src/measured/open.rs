@@ -1,5 +1,6 @@
 //! A strain file: runs, or a record.
 
+use super::conditioning;
 use super::faults::{no_runs, record_fault};
 use super::record::Record;
 use super::strain_file::{read_strain, wanted_columns};
@@ -69,7 +70,7 @@ fn open_first_sheet(
     let wanted = wanted_columns(inputs, job);
     if is_record(&bytes) {
         let of_file = (named.given.as_str(), measured.time_unit_s);
-        let record = Record::open(job, of_file, bytes, &wanted)?;
+        let record = conditioning::condition(job, Record::open(job, of_file, bytes, &wanted)?)?;
         return Ok(MeasuredStrain::Record(Box::new(record)));
     }
     let table = read_strain(inputs, job, named, &wanted);

@@ -1,5 +1,6 @@
 //! A record of any length, a piece at a time: readings, and the loads that a filter makes of them.
 
+use super::conditioning_step::ConditioningStep;
 use super::faults::record_fault;
 use super::gauge_columns::{StrainColumn, find_gauge_columns};
 use crate::finding::Finding;
@@ -11,6 +12,7 @@ use crate::recovery::clock;
 use crate::recovery::dead_gauges::DeadGaugeSpan;
 use crate::recovery::net::Series;
 use crate::recovery::reading_plausibility::LARGEST_STRAIN;
+use crate::series::SeriesError;
 use crate::series::constant_columns::{self, ColumnContents, Gives};
 use crate::series::record::{self as series, Clock, Options, Times, open_record};
 use crate::units::MICROSTRAIN;
@@ -30,6 +32,8 @@ pub(crate) struct Record {
     columns: Vec<(Option<usize>, Channel)>,
     /// Readings that are taken for none: column that is read, and samples.
     blank: Vec<(usize, Range<usize>)>,
+    /// Changes of the readings by `[conditioning]`.
+    conditioning: Vec<ConditioningStep>,
 }
 
 impl Record {
@@ -58,6 +62,7 @@ impl Record {
             micro: columns.iter().map(micro).collect(),
             columns: Vec::new(),
             blank: Vec::new(),
+            conditioning: Vec::new(),
             inner: Arc::new(inner),
         })
     }
@@ -75,6 +80,57 @@ impl Record {
         let columns = columns.map(|c| (Some(c), channel_of(&job.corrections, &self.names[c])));
         let columns = columns.collect();
         self.with_columns(columns)
+    }
+
+    /// Returns the record with all columns of strain but `except` read without corrections.
+    pub fn with_all_uncorrected_strain(self, except: Option<&str>) -> Self {
+        let is_read =
+            |c: &usize| !self.micro[*c].is_nan() && Some(self.names[*c].as_str()) != except;
+        let strain = (0..self.names.len()).filter(is_read);
+        let columns = strain
+            .map(|c| (Some(c), Channel::without_correction()))
+            .collect();
+        self.with_columns(columns)
+    }
+
+    /// Returns the record with conditioned readings, strain, a column for each column that is read.
+    ///
+    /// # Errors
+    /// A record without samples.
+    pub fn with_conditioned_readings(
+        &self,
+        readings: Vec<Vec<f64>>,
+        times: (f64, f64),
+        conditioning: Vec<ConditioningStep>,
+    ) -> Result<Self, Faults> {
+        let names = self.names_read();
+        let record = self.with_readings(readings, times)?;
+        Ok(Self {
+            names,
+            conditioning,
+            ..record
+        })
+    }
+
+    /// Returns the change of the readings by `[conditioning]`.
+    pub fn conditioning_steps(&self) -> &[ConditioningStep] {
+        &self.conditioning
+    }
+
+    /// Returns the numbers of a column as the file contains them; `None` if no column has the name.
+    pub fn raw_column(&self, name: &str) -> Option<Result<Vec<f64>, SeriesError>> {
+        let column = self.names.iter().position(|n| n == name)?;
+        let mut out = Vec::with_capacity(self.clock().samples);
+        for i in 0..self.n_pieces() {
+            let read = self.inner.read(i, &[Some(column)], &mut |block| {
+                out.extend_from_slice(block.values);
+                ControlFlow::Continue(())
+            });
+            if let Err(e) = read {
+                return Some(Err(e));
+            }
+        }
+        Some(Ok(out))
     }
 
     /// Returns the gauges whose columns are read.
@@ -183,11 +239,7 @@ impl Record {
         };
         let inner = series::Record::new(Box::new(whole), None, None)
             .map_err(|e| record_fault(&self.file, &e))?;
-        let as_it_is = Channel {
-            offset: 0.0,
-            factor: 1.0,
-            ignore: false,
-        };
+        let as_it_is = Channel::without_correction();
         Ok(Self {
             inner: Arc::new(inner),
             file: self.file.clone(),
@@ -195,6 +247,7 @@ impl Record {
             micro: vec![1.0; n],
             columns: (0..n).map(|c| (Some(c), as_it_is)).collect(),
             blank: Vec::new(),
+            conditioning: self.conditioning.clone(),
         })
     }
 

@@ -1,5 +1,6 @@
 //! A strain file as a table: a column a gauge, a row a run (`run`) or a sample (`time`).
 
+use super::conditioning::refuse_runs;
 use super::strain_table::StrainTable;
 use super::strain_text::strain_from_text;
 use crate::host::fault::Faults;
@@ -20,6 +21,13 @@ pub fn read_strain(
     named: &NamedFile,
     wanted: &[String],
 ) -> Result<StrainTable, Faults> {
+    if job
+        .measured
+        .as_ref()
+        .is_some_and(|m| m.strain.given == named.given)
+    {
+        refuse_runs(job, &named.given)?;
+    }
     let text = inputs.read_named_text(job, named)?;
     let mut table = strain_from_text(&named.given, &text, wanted)?;
     check_corrected(job, named, &table.gauges)?;

@@ -3,6 +3,7 @@
 //! - [`channels`]: a record of equally long, equally sampled channels with units
 //! - [`record`]: records of any length and origin, read a piece at a time on one clock
 //! - [`binary`]: the long record of strainbridge, read a piece at a time
+//! - [`butterworth`]: low-pass and high-pass filters without phase shift
 //! - [`cell`]: names that a spreadsheet would read as formulas
 //! - [`csv`]: bytes of a CSV file to a record in memory
 //! - [`rpc`]: RPC III files, read and written
@@ -24,6 +25,7 @@
 
 pub mod align;
 pub mod binary;
+pub mod butterworth;
 pub mod cell;
 pub mod channels;
 pub mod constant_columns;

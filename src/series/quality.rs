@@ -214,32 +214,39 @@ fn check_clipped(c: &Channel, kind: Kind) -> Option<Finding> {
     )
 }
 
-/// Single samples far off the line through their neighbours.
+/// Returns the single samples that are far off the line through their neighbours, in ascending order, and the distance that a sample needs for it.
+pub fn find_spikes(x: &[f64]) -> (Vec<usize>, f64) {
+    let bend: Vec<f64> = x.windows(3).map(|w| w[1] - 0.5 * (w[0] + w[2])).collect();
+    let sizes = bend.iter().map(|v| v.abs()).filter(|v| v.is_finite());
+    let sigma = 1.4826 * median(sizes.collect()).unwrap_or(0.0);
+    let is_spike = |w: &[f64]| {
+        let beside = w[0].abs().max(w[2].abs());
+        w[1].abs() > SPIKE_SIGMA * sigma && w[1].abs() > 1.5 * beside
+    };
+    let spikes = bend.windows(3).enumerate().filter(|(_, w)| is_spike(w));
+    let found = spikes.map(|(i, _)| i + 2).collect();
+    (
+        if sigma > 0.0 { found } else { Vec::new() },
+        SPIKE_SIGMA * sigma,
+    )
+}
+
+/// Reports single samples far off the line through their neighbours.
 fn check_spikes(c: &Channel) -> Option<Finding> {
     let x = &c.samples;
-    let bend: Vec<f64> = x
-        .windows(3)
-        .map(|w| w[1] - 0.5 * (w[0] + w[2]))
-        .filter(|v| v.is_finite())
-        .collect();
-    let sizes: Vec<f64> = bend.iter().map(|v| v.abs()).collect();
-    let sigma = 1.4826 * median(sizes).unwrap_or(0.0);
-    let count = bend
-        .windows(3)
-        .filter(|w| {
-            w[1].abs() > SPIKE_SIGMA * sigma && w[1].abs() > 1.5 * w[0].abs().max(w[2].abs())
-        })
-        .count();
-    if count == 0 || sigma == 0.0 {
+    let (spikes, limit) = find_spikes(x);
+    if spikes.is_empty() {
         return None;
     }
-    let largest = bend.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let count = spikes.len();
+    let off = |i: &usize| (x[*i] - 0.5 * (x[i - 1] + x[i + 1])).abs();
+    let largest = spikes.iter().map(off).fold(0.0, f64::max);
     let message =
         format!("{count} single samples differ from their neighbours by up to {largest:.4}.");
     let remedy = "Check for loose contacts. Remove the spikes before the band limit is applied, which widens them.";
     Some(
         Finding::new(Severity::Warning, "spikes", &c.name, message, remedy)
-            .with_numbers(largest, SPIKE_SIGMA * sigma),
+            .with_numbers(largest, limit),
     )
 }
 

@@ -22,7 +22,7 @@ pub const MODES: usize = 10;
 
 /// Number of grids of the largest deck that is solved a second time without a request. Such a solution takes less than a second on two processors. On
 /// a mesh of half the width it takes about 5 s and 1 GB.
-pub(super) const MOST_GRIDS_TWICE: usize = 15_000;
+pub(super) const MOST_GRIDS_TWICE: usize = 13_000;
 
 /// Returns the support of the structure of a job under its unit loads.
 ///

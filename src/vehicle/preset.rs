@@ -410,10 +410,8 @@ pub fn add_next(v: &mut Vehicle, channel: &str) {
 
 /// Returns a coupling link without terms, or `None` if the model has no link of this name.
 ///
-/// - In `front_pair`, `axle` joins the wheels and `roll` the bodies. `bar` resists unequal stretch of both sides. `cross` joins this side's body to
-///   the other wheel.
-/// - In `rear3`, `axle` joins mid and rear wheel, and `bar` adds their stretches.
-/// - `pitch` joins the body to the body over the next axle ([`add_next`]).
+/// In `front_pair`, `axle` joins the wheels, `roll` the bodies, and `cross` this side's body to the other wheel. `bar` resists unequal stretch of
+/// both sides. In `rear3`, `axle` joins mid and rear wheel, and `bar` adds their stretches. `pitch` joins the bodies ([`add_next`]).
 ///
 /// For `pitch`, consider a frame of mass M and pitch inertia J. Its centre of gravity is at distance a behind this axle and b ahead of the next. The
 /// inertance between the bodies is b_pitch = (J - M a b) / (a + b)^2, and m_b is the static share, M b / (a + b).

@@ -213,6 +213,16 @@ fn what_dynamic_cannot_do_is_a_fault_of_its_line() {
         job("[dynamic]\nup_to_hz = 10.0\ndamping = 2.0\n"),
     );
     assert!(heavy.starts_with("dynamic.damping"), "{heavy}");
+    for wrong in [
+        "\"guess\"",
+        "[]",
+        "[{ up_to_hz = 5.0, damping = 0.2 }, { up_to_hz = 4.0, damping = 0.02 }]",
+        "[{ up_to_hz = 5.0, damping = 0.0 }]",
+    ] {
+        let text = format!("[dynamic]\nup_to_hz = 10.0\ndamping = {wrong}\n");
+        let said = fault(files.clone(), job(&text));
+        assert!(said.starts_with("dynamic.damping"), "{said}");
+    }
     let given = "units = \"mm-t-s\"\n[sensitivity]\nfile = \"S.csv\"\nper = { force = \"N\" }\n[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.2\n\
                  [dynamic]\nup_to_hz = 10.0\ndamping = 0.02\n";
     let s = "gauge,tip\nG3,1.0\nG20,0.5\nG40,0.2\n".to_owned();
@@ -318,10 +328,15 @@ fn an_error_of_frequency_blames_no_gauge() {
             |_, x, t| real(share, x, t),
         );
         assert!(held > 0.9, "{share} {held}");
-        assert!(width < 5.0 * worst, "{share} {width} {worst}");
+        // The frequency is estimated from the record. Errors of 1 % of the strain of the mode at each gauge remain: some .5 N of 15 N.
+        assert!(worst < 0.3 && width < 1.0, "{share} {width} {worst}");
         let blamed = ["gauge-suspect", "strain-not-explained"];
         assert!(codes.iter().all(|c| !blamed.contains(c)), "{codes:?}");
     }
+    // A tenth is five stated standard deviations.
+    let far = |_: usize, x: f64, t: f64| real(1.1, x, t);
+    let (.., codes) = recover_tip_force(&GAUGED, 5000, more, |t| two(t).iter().sum(), far);
+    assert!(codes.contains(&"modes-contradicted"), "{codes:?}");
     let off = |g: usize, x: f64, t: f64| real(1.01, x, t) * if g == 1 { 1.3 } else { 1.0 };
     let (_, _, _, codes) = recover_tip_force(&GAUGED, 5000, more, |t| two(t).iter().sum(), off);
     let said = [
@@ -391,4 +406,21 @@ fn modes_are_solved_once_and_kept() {
         .each_ref()
         .map(|o| o.answer.record().unwrap().loads[0].value);
     assert_eq!(values[0], values[1]);
+}
+
+/// Bands that state the same damping for all modes give the loads of the number; a damping that the record determines gives loads within their
+/// intervals too.
+#[test]
+fn damping_by_band_and_from_the_record_give_the_loads_of_a_number() {
+    let head = format!(
+        "[dynamic]\nup_to_hz = {:.4}\nfrequency_uncertainty_rel = 0.001\n",
+        3.5 * first_hz()
+    );
+    let with = |damping: &str| recover_record(record(), &format!("{head}damping = {damping}\n"));
+    let number = with("1e-5");
+    let bands = with("[{ up_to_hz = 1.0, damping = 1e-5 }, { up_to_hz = 50.0, damping = 1e-5 }]");
+    assert_eq!(number, bands);
+    let (worst, _, held, codes) = with("\"estimate\"");
+    assert!(held > 0.93 && worst < 1.0, "{held} {worst}");
+    assert!(!codes.contains(&"modes-contradicted"), "{codes:?}");
 }

@@ -4,6 +4,7 @@
 
 mod calibrated;
 mod compared;
+mod conditioned;
 #[path = "../drawn/mod.rs"]
 mod drawn;
 mod dynamic;

@@ -1,9 +1,9 @@
 //! `[dynamic]`.
 
 use super::super::faults::Collector;
-use super::super::raw_job::{RawDynamic, S};
+use super::super::raw_record::RawDynamic;
 use super::super::shapes::{DampingBand, DampingValue};
-use super::super::spanned_value::SpannedValue;
+use super::super::spanned_value::{S, SpannedValue};
 use super::super::types::{Damping, Dynamic};
 
 /// One standard deviation of a computed frequency if none is stated, relative to the frequency. It covers density, thickness and joints of a model

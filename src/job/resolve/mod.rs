@@ -3,6 +3,7 @@
 mod calibration;
 mod channel;
 mod compare;
+mod conditioning;
 mod dynamic;
 mod fleet;
 mod gauge;
@@ -62,6 +63,7 @@ pub(super) fn resolve_job(
     load::check_results(&mut c, model.as_ref(), &loads);
     let measured = measured::resolve_measured(&mut c, raw.measured.as_ref(), raw.fleet.as_ref());
     one_source(&mut c, &raw);
+    let conditioning = conditioning::resolve_conditioning(&mut c, &raw);
     Job {
         read: Vec::new(),
         title: raw.title.map_or(stem, |t| t.into_inner()),
@@ -88,6 +90,7 @@ pub(super) fn resolve_job(
         ballast: measured::ballast(&mut c, raw.ballast.as_ref()),
         payload: measured::payload(&mut c, raw.payload.as_ref()),
         fleet: fleet::fleet(&mut c, raw.fleet.as_ref()),
+        conditioning,
         dynamic: dynamic::resolve_dynamic(&mut c, raw.dynamic.as_ref()),
         recover: measured::recover(&mut c, raw.recover.as_ref()),
         respond: measured::respond(&mut c, raw.respond.as_ref()),

@@ -4,6 +4,7 @@ use super::ballast::Ballast;
 use super::calibration::CalibrationKeys;
 use super::candidates::Candidates;
 use super::compare::Compare;
+use super::conditioning::ReadingConditioning;
 use super::correction::StrainCorrection;
 use super::dynamic::Dynamic;
 use super::fleet::Fleet;
@@ -93,6 +94,8 @@ pub struct Job {
     pub ballast: Option<Ballast>,
     /// `[payload]`.
     pub payload: Option<Payload>,
+    /// `[conditioning]`.
+    pub conditioning: Option<ReadingConditioning>,
     /// `[dynamic]`.
     pub dynamic: Option<Dynamic>,
     /// `[recover]`; the default where absent.

@@ -1,20 +1,22 @@
-//! Frequencies and damping of the modes, estimated from the record whose dynamic strain they describe.
+//! Frequencies and damping of the modes, estimated from the record that they are removed from.
 //!
-//! More gauges than loads leave a residual `r(w) = B (1 - H G) eps`. To first order, a mode whose frequency or damping differs from the model adds `B
-//! (1 - H G) psi_j da_j c_j' f` to the residual. Here `f = G eps`, and `da_j` is the derivative of the response by the logarithm of the frequency or
-//! damping. The Gauss-Newton method finds the logarithms `x` that minimise the mean square of the residual over the record. The stated standard
+//! More gauges than loads leave a residual `r(w) = B (1 - H G) eps`. A mode whose frequency or damping differs from the model adds, to first order,
+//! `B (1 - H G) psi_j da_j c_j' f` to it, with `f = G eps` and `da_j` the derivative of the response by the logarithm of the frequency or of the
+//! damping. Gauss and Newton's method finds the logarithms `x` that minimise the mean square of the residual over the record. The stated standard
 //! deviations are the prior of `x`.
 //!
-//! Errors of the static S leave residuals in phase with the loads. They are projected out first. For every gauge, residual and derivatives are
-//! replaced by their parts orthogonal to all loads over the record (Frisch-Waugh theorem). The scatter of the gradient over parts of the record
-//! bounds the information from below (sandwich estimate), because residuals of adjacent samples are correlated.
+//! Errors of the static S leave residuals in phase with the loads. They are projected out first: for every gauge, residual and derivatives are
+//! replaced by their parts that are orthogonal to all loads over the record (the theorem of Frisch and Waugh). The covariance of the gradient has
+//! two parts. Its scatter over parts of the record states the noise, which neighbouring samples share (a sandwich estimate). Errors of the strain of
+//! a mode at a gauge, independent by mode and gauge, leave residuals in phase with the motion of the mode: `psi_gj a_j c_j' f` each.
 
-use super::block::{Spectrum, spectrum, time_history};
 use super::correct::Stretches;
 use super::kernel::Kernel;
+use super::normal_equations::{Normal, Products, Shapes};
 use super::plant::Plant;
+use super::residual_courses::{Record, View};
 use super::types::{BAND_END, Dynamics, Unfit};
-use crate::linalg::{Complex, Matrix, Vector};
+use crate::linalg::{Matrix, Vector};
 use crate::sensitivity::Sensitivity;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -29,9 +31,10 @@ const LONGEST_STEP: [f64; 2] = [0.1, 0.7];
 const STARTS: [f64; 4] = [0.01, 0.03, 0.1, 0.3];
 /// One standard deviation of the logarithm of a damping without a stated value, about the start: a factor of 4.5 either way.
 const OPEN: f64 = 1.5;
-/// Blocks of the record that are used, evenly spaced, and parts whose gradients are compared.
+/// Least standard deviation of the strain of a mode at a gauge, share of it: what a mesh that was not fitted to measured shapes is off by.
+const SHAPE: f64 = 0.01;
+/// Blocks of the record that are used, evenly spaced.
 const MOST_BLOCKS: usize = 64;
-const PARTS: usize = 64;
 
 /// Estimated deviation of a parameter of a mode from its stated value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,11 +48,10 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// Returns the deviation over the standard deviation that it has if the stated standard deviation is right. `None` if the record contains no
-    /// information on it.
+    /// Returns the deviation in units of the standard deviation that it has if the stated one is right; `None` if the record does not determine it.
     ///
     /// The estimate shrinks towards 0. Under a prior of variance `p` and an estimate of variance `v` its variance is `p - v`.
-    pub fn standardised(&self) -> Option<f64> {
+    pub fn standard_deviations_off(&self) -> Option<f64> {
         let (prior, own) = (self.stated_sd.powi(2), self.sd.powi(2));
         (own < 0.5 * prior).then(|| self.log / (prior - own).sqrt())
     }
@@ -69,10 +71,10 @@ pub struct EstimatedModes {
 }
 
 /// Estimates frequencies and damping of the modes from a record. Arguments as in [`super::readings_at_rest`]; with `open_damping` the damping of
-/// `dynamics` is not used.
+/// `dynamics` is not used. `model_rel` is one standard deviation of the strain of a mode at a gauge, share of it; at least 1 % is assumed.
 ///
-/// Returns `None` if the record contains no information. It needs more gauges than loads, a mode in the band, and a sufficiently long stretch of
-/// readings of all gauges.
+/// Returns `None` where the record contains no information: no more gauges than loads, no mode in the band, or no stretch of the record with all
+/// gauges that is long enough.
 ///
 /// # Errors
 /// See [`Unfit`].
@@ -80,7 +82,8 @@ pub fn estimate_modes(
     s: &Sensitivity,
     dynamics: &Dynamics,
     open_damping: bool,
-    (noise, readings, rate_hz): (f64, &[Vec<f64>], f64),
+    (noise, model_rel): (f64, f64),
+    (readings, rate_hz): (&[Vec<f64>], f64),
 ) -> Result<Option<EstimatedModes>, Unfit> {
     let (n, k) = (s.gauges.len(), s.loads.len());
     if n <= k {
@@ -93,6 +96,7 @@ pub fn estimate_modes(
     let record = Record {
         s,
         noise,
+        shape_sd: model_rel.max(SHAPE),
         readings,
         rate_hz,
         spans: Stretches::from_readings(readings, readings.first().map_or(0, Vec::len))
@@ -120,49 +124,11 @@ pub fn estimate_modes(
     Ok(Some(problem.solve(first)?))
 }
 
-/// Record to estimate from.
-struct Record<'a> {
-    s: &'a Sensitivity,
-    noise: f64,
-    readings: &'a [Vec<f64>],
-    rate_hz: f64,
-    /// Stretches in which all gauges read.
-    spans: Vec<Range<usize>>,
-}
-
 /// Parameters, mode and kind (0 frequency, 1 damping), with their prior.
 struct Problem<'a> {
     record: Record<'a>,
     prior: Dynamics,
     parameters: Vec<(usize, usize)>,
-}
-
-/// Sums of products over part of the record. Columns are the derivatives by parameter, the residual, and the residual without modes.
-#[derive(Clone)]
-struct Products {
-    /// Loads with loads, `k x k`.
-    loads: Matrix,
-    /// Loads with columns by gauge, `k x (p + 2)`.
-    by_gauge: Vec<Matrix>,
-    /// Columns with columns, `(p + 2) x (p + 2)`, sum over the gauges.
-    columns: Matrix,
-    samples: f64,
-}
-
-/// Normal equations at one set of parameters.
-struct Normal {
-    /// Derivatives with derivatives, and with the residual.
-    matrix: Matrix,
-    right: Vector,
-    /// Sum of squares of the residual, without modes too.
-    squares: f64,
-    squares_without: f64,
-    /// Gradient of each part of the record, after the best linear step.
-    gradients: Vec<Vector>,
-    /// Samples times residual degrees of freedom.
-    freedom: f64,
-    /// Share of white noise in the band.
-    band: f64,
 }
 
 /// Prior and information at one set of parameters.
@@ -245,7 +211,7 @@ impl Problem<'_> {
             let mut improved = false;
             for _ in 0..3 {
                 let next = &x + &step;
-                // Parameters with which the gauges do not separate the loads do not count as an improvement.
+                // Parameters with which the gauges do not separate the loads are no improvement.
                 if let Ok(Some(there)) = self.normal(&next)
                     && self.objective(&next, &there, variance) < now
                 {
@@ -260,7 +226,7 @@ impl Problem<'_> {
                 break;
             }
         }
-        Ok(self.estimated(&x, &normal, &posterior))
+        Ok(self.conclude(&x, &normal, &posterior))
     }
 
     /// Returns twice the negative logarithm of the posterior density, up to a constant.
@@ -270,7 +236,7 @@ impl Problem<'_> {
         normal.squares / variance + prior
     }
 
-    fn estimated(&self, x: &Vector, normal: &Normal, posterior: &Posterior) -> EstimatedModes {
+    fn conclude(&self, x: &Vector, normal: &Normal, posterior: &Posterior) -> EstimatedModes {
         let mut dynamics = self.with_parameters(x);
         let mut deviations = vec![[None; 2]; dynamics.modes.len()];
         for (i, &(mode, kind)) in self.parameters.iter().enumerate() {
@@ -310,9 +276,19 @@ impl Problem<'_> {
             }
         };
         let scatter: Vec<f64> = (0..p).map(scatter).collect();
-        let information = Matrix::from_fn(p, p, |i, j| {
-            normal.matrix[(i, j)] / (variance * scatter[i] * scatter[j])
+        // Covariance of the gradient; a parameter that the residual does not contain has none.
+        let mut gradient = Matrix::from_fn(p, p, |i, j| {
+            normal.matrix[(i, j)] * variance * scatter[i] * scatter[j] + normal.by_shape[(i, j)]
         });
+        let largest = gradient.diagonal().max().max(f64::MIN_POSITIVE);
+        for i in 0..p {
+            gradient[(i, i)] += 1e-12 * largest;
+        }
+        let weights = gradient
+            .try_inverse()
+            .unwrap_or_else(|| Matrix::zeros(p, p))
+            * &normal.matrix;
+        let information = normal.matrix.transpose() * &weights;
         let mut precision = information.clone();
         for (i, parameter) in self.parameters.iter().enumerate() {
             precision[(i, i)] += self.stated_sd(*parameter).powi(-2);
@@ -322,9 +298,9 @@ impl Problem<'_> {
             Matrix::from_diagonal(&Vector::from_iterator(p, sd2))
         };
         let covariance = precision.try_inverse().unwrap_or_else(prior);
-        let target = x + normal.step();
+        let right = &information * x + weights.transpose() * &normal.right;
         Posterior {
-            mean: &covariance * (information * target),
+            mean: &covariance * right,
             covariance,
         }
     }
@@ -350,273 +326,19 @@ impl Problem<'_> {
         let products: Vec<Products> = (used.par_iter())
             .flat_map_iter(|(span, wanted)| view.products(span, wanted, used.len()))
             .collect();
-        Ok(Normal::new(&products, self.parameters.len(), view.band))
-    }
-}
-
-/// Derivatives of one mode at one frequency.
-struct ModeAt {
-    /// `B (1 - H G) psi_j`, by gauge.
-    spread: Vec<Complex<f64>>,
-    /// Derivatives of the response by the logarithms of frequency and damping.
-    slopes: [Complex<f64>; 2],
-}
-
-/// The kernel with the derivatives of the residual.
-struct View<'a> {
-    record: &'a Record<'a>,
-    kernel: &'a Kernel,
-    parameters: &'a [(usize, usize)],
-    /// Modes with parameters, and the static displacement of each by a unit of each load.
-    modes: Vec<usize>,
-    displacement: Vec<Vec<f64>>,
-    /// By frequency, by entry of `modes`.
-    at: Vec<Vec<ModeAt>>,
-    /// Share of white noise in the band.
-    band: f64,
-}
-
-impl<'a> View<'a> {
-    fn new(
-        record: &'a Record<'a>,
-        kernel: &'a Kernel,
-        plant: &Plant<'_>,
-        parameters: &'a [(usize, usize)],
-    ) -> Self {
-        let mut modes: Vec<usize> = parameters.iter().map(|p| p.0).collect();
-        modes.dedup();
-        let s = record.s.values.map(|v| Complex::new(v, 0.0));
-        let of_bin = |b: usize| -> Vec<ModeAt> {
-            let bin = &kernel.bins[b];
-            let hz = b as f64 * record.rate_hz / kernel.length as f64;
-            let band = Complex::new(bin.band, 0.0);
-            let response = &s * band + &bin.added;
-            let of_mode = |j: &usize| {
-                let shape = plant.shapes.column(*j).into_owned();
-                let spread = &shape * band - &response * (&bin.gain * &shape);
-                let answer = plant.answer(*j, hz);
-                ModeAt {
-                    spread: spread.iter().copied().collect(),
-                    slopes: [answer.by_frequency, answer.by_damping],
-                }
-            };
-            modes.iter().map(of_mode).collect()
-        };
-        let sides = |b: usize| if b == 0 { 1.0 } else { 2.0 } / kernel.length as f64;
-        let bands = kernel.bins.iter().enumerate();
-        Self {
-            at: (0..kernel.bins.len()).into_par_iter().map(of_bin).collect(),
-            displacement: modes.iter().map(|j| plant.modal_displacement(*j)).collect(),
-            band: bands.map(|(b, bin)| sides(b) * bin.band.powi(2)).sum(),
-            record,
-            kernel,
-            parameters,
-            modes,
-        }
-    }
-
-    /// Returns the sums of products of the samples `wanted` in parts, one block of `n_blocks`.
-    fn products(
-        &self,
-        span: &Range<usize>,
-        wanted: &Range<usize>,
-        n_blocks: usize,
-    ) -> Vec<Products> {
-        let kernel = self.kernel;
-        let begin = wanted.start - kernel.reach;
-        let last = span.end - 1;
-        let spectra: Vec<Spectrum> = (self.record.readings.iter())
-            .map(|channel| spectrum(kernel.length, |i| channel[(begin + i).min(last)]))
-            .collect();
-        let loads = kernel.loads_of(&spectra);
-        // Use the shortest transform that contains the band.
-        let short = (2 * kernel.bins.len())
-            .next_power_of_two()
-            .min(kernel.length);
-        let step = kernel.length / short;
-        let kept = kernel.reach.div_ceil(step)..(kernel.reach + wanted.len()).div_ceil(step);
-        let course = |bins: &dyn Fn(usize) -> Complex<f64>| -> Vec<f64> {
-            let bins: Spectrum = (0..kernel.bins.len()).map(bins).collect();
-            time_history(&bins, short, kernel.length)[kept.clone()].to_vec()
-        };
-        let load_courses: Vec<Vec<f64>> = (loads.iter())
-            .map(|f| course(&|b| f[b] * kernel.bins[b].band))
-            .collect();
-        let amplitudes: Vec<Spectrum> = (self.displacement.iter())
-            .map(|c| {
-                let of_bin = |b: usize| loads.iter().zip(c).map(|(f, c)| f[b] * *c).sum();
-                (0..kernel.bins.len()).map(of_bin).collect()
-            })
-            .collect();
-        let mode_of: Vec<usize> = (self.parameters.iter())
-            .map(|p| self.modes.iter().position(|m| *m == p.0).unwrap_or(0))
-            .collect();
-        let s = &self.record.s.values;
-        let columns: Vec<Vec<Vec<f64>>> = (0..spectra.len())
+        let shapes = (0..all.len())
             .map(|g| {
-                let derivative = |(m, (_, kind)): (&usize, &(usize, usize))| {
-                    course(&|b| {
-                        let at = &self.at[b][*m];
-                        at.spread[g] * at.slopes[*kind] * amplitudes[*m][b]
-                    })
-                };
-                let mut columns: Vec<Vec<f64>> = mode_of
+                view.modes
                     .iter()
-                    .zip(self.parameters)
-                    .map(derivative)
-                    .collect();
-                columns.push(course(&|b| {
-                    let bin = &kernel.bins[b];
-                    let by_load = loads.iter().enumerate();
-                    let of_loads: Complex<f64> = by_load
-                        .map(|(l, f)| f[b] * (bin.added[(g, l)] + bin.band * s[(g, l)]))
-                        .sum();
-                    spectra[g][b] * bin.band - of_loads
-                }));
-                columns
+                    .map(|j| plant.shapes[(g, *j)].re)
+                    .collect()
             })
             .collect();
-        let without = self.residual_without_modes(&spectra, &course);
-        let parts = PARTS.div_ceil(n_blocks);
-        let length = kept.len().div_ceil(parts).max(1);
-        (0..kept.len())
-            .step_by(length)
-            .map(|from| {
-                let to = (from + length).min(kept.len());
-                Products::new(&load_courses, &columns, &without, from..to)
-            })
-            .collect()
-    }
-
-    /// Returns the course of the residual of the static S, by gauge.
-    fn residual_without_modes(
-        &self,
-        spectra: &[Spectrum],
-        course: &dyn Fn(&dyn Fn(usize) -> Complex<f64>) -> Vec<f64>,
-    ) -> Vec<Vec<f64>> {
-        let n = spectra.len();
-        let projection = Matrix::identity(n, n) - &self.record.s.values * &self.kernel.at_rest;
-        (0..n)
-            .map(|g| {
-                course(&|b| {
-                    let row = projection.row(g);
-                    let sum: Complex<f64> = row.iter().zip(spectra).map(|(p, e)| e[b] * *p).sum();
-                    sum * self.kernel.bins[b].band
-                })
-            })
-            .collect()
-    }
-}
-
-impl Products {
-    /// Sums over the samples `part`. `columns` are by gauge the courses of the derivatives and of the residual.
-    fn new(
-        loads: &[Vec<f64>],
-        columns: &[Vec<Vec<f64>>],
-        without: &[Vec<f64>],
-        part: Range<usize>,
-    ) -> Self {
-        let dot = |a: &[f64], b: &[f64]| -> f64 {
-            let (a, b) = (&a[part.clone()], &b[part.clone()]);
-            a.iter().zip(b).map(|(x, y)| x * y).sum()
+        let shapes = Shapes {
+            strain: shapes,
+            sd: record.shape_sd,
+            n_loads: record.s.loads.len(),
         };
-        let k = loads.len();
-        let p = columns.first().map_or(0, Vec::len) + 1;
-        let mut products = Matrix::zeros(p, p);
-        let by_gauge = columns.iter().zip(without).map(|(columns, without)| {
-            let all: Vec<&[f64]> = columns
-                .iter()
-                .chain(std::iter::once(without))
-                .map(Vec::as_slice)
-                .collect();
-            for i in 0..p {
-                for j in 0..=i {
-                    let sum = dot(all[i], all[j]);
-                    products[(i, j)] += sum;
-                    if i != j {
-                        products[(j, i)] += sum;
-                    }
-                }
-            }
-            Matrix::from_fn(k, p, |l, i| dot(&loads[l], all[i]))
-        });
-        let by_gauge = by_gauge.collect();
-        Self {
-            loads: Matrix::from_fn(k, k, |a, b| dot(&loads[a], &loads[b])),
-            by_gauge,
-            columns: products,
-            samples: part.len() as f64,
-        }
-    }
-
-    fn add(&mut self, other: &Self) {
-        self.loads += &other.loads;
-        self.columns += &other.columns;
-        self.samples += other.samples;
-        for (own, of_other) in self.by_gauge.iter_mut().zip(&other.by_gauge) {
-            *own += of_other;
-        }
-    }
-
-    /// Returns the products of columns less their regression on the loads, with the coefficients `regression` by gauge, `k x (p + 2)`.
-    fn orthogonal(&self, regression: &[Matrix]) -> Matrix {
-        let mut out = self.columns.clone();
-        for (own, by) in self.by_gauge.iter().zip(regression) {
-            let cross = by.transpose() * own;
-            out -= &cross + cross.transpose();
-            out += by.transpose() * &self.loads * by;
-        }
-        out
-    }
-}
-
-impl Normal {
-    /// Forms the normal equations of `p` parameters from the sums over parts of the record; `None` without any, or with too few samples.
-    fn new(parts: &[Products], p: usize, band: f64) -> Option<Self> {
-        let mut all = parts.first()?.clone();
-        parts[1..].iter().for_each(|part| all.add(part));
-        let (n, k) = (all.by_gauge.len(), all.loads.nrows());
-        if all.samples < 10.0 * (k + p) as f64 {
-            return None;
-        }
-        let inverse = all.loads.clone().pseudo_inverse(0.0).ok()?;
-        let regression: Vec<Matrix> = all.by_gauge.iter().map(|m| &inverse * m).collect();
-        let whole = all.orthogonal(&regression);
-        let mut normal = Self {
-            matrix: whole.view((0, 0), (p, p)).into_owned(),
-            right: whole.view((0, p), (p, 1)).column(0).into_owned(),
-            squares: whole[(p, p)].max(0.0),
-            squares_without: whole[(p + 1, p + 1)].max(0.0),
-            gradients: Vec::new(),
-            freedom: all.samples * (n - k) as f64,
-            band,
-        };
-        let step = normal.step();
-        let gradient = |part: &Products| {
-            let own = part.orthogonal(&regression);
-            own.view((0, p), (p, 1)).column(0).into_owned() - own.view((0, 0), (p, p)) * &step
-        };
-        normal.gradients = parts.iter().map(gradient).collect();
-        Some(normal)
-    }
-
-    /// Returns the parameters' change that minimises the linearised residual, the shortest of all.
-    fn step(&self) -> Vector {
-        // Scale the matrix to a diagonal of 1. Combinations without effect on the residual do not change.
-        let n = self.right.len();
-        let scale = |i: usize| self.matrix[(i, i)].max(f64::MIN_POSITIVE).sqrt();
-        let scaled = Matrix::from_fn(n, n, |i, j| self.matrix[(i, j)] / (scale(i) * scale(j)));
-        let right = Vector::from_fn(n, |i, _| self.right[i] / scale(i));
-        let svd = scaled.svd(true, true);
-        let step = svd
-            .solve(&right, 1e-10)
-            .unwrap_or_else(|_| Vector::zeros(n));
-        Vector::from_fn(n, |i, _| step[i] / scale(i))
-    }
-
-    /// Returns the variance of one residual: the noise, or the residual after the best linear step if it is larger.
-    fn variance(&self, noise: f64) -> f64 {
-        let left = (self.squares - self.right.dot(&self.step())).max(0.0) / self.freedom;
-        (noise * noise * self.band).max(left).max(f64::MIN_POSITIVE)
+        Ok(Normal::new(&products, &shapes, view.band))
     }
 }

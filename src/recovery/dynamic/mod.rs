@@ -23,7 +23,9 @@ mod correct;
 mod doubt;
 mod estimate;
 mod kernel;
+mod normal_equations;
 mod plant;
+mod residual_courses;
 mod types;
 
 pub use correct::{AtRest, readings_at_rest, window};

@@ -37,6 +37,13 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
         let remedy = "delete [dynamic], and low-pass filter the strain below a third of the first mode; or `recover` the records one by one";
         return Err(Fault::with_line(&*job.file, dynamic.line, "dynamic", wrong, remedy).into());
     }
+    if let Some(conditioning) = &job.conditioning {
+        let wrong = "records of a fleet are read in pieces, and [conditioning] needs whole records";
+        let remedy = "delete [conditioning] and condition the records before; or `recover` the records one by one";
+        return Err(
+            Fault::with_line(&*job.file, conditioning.line, "conditioning", wrong, remedy).into(),
+        );
+    }
     let prepared = prepare_with_noise(work, job)?;
     let s = &prepared.sensitivity;
     work.findings.extend(check_separability(s));

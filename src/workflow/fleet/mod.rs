@@ -445,8 +445,7 @@ fn evaluate_file(
     if named.is_none() {
         return Ok((file.into(), Came::New));
     }
-    // A file that changed while it was read, or that can't be read to its end, has no valid result. Nothing is stored, so that a later run tries
-    // again.
+    // A file that changed while it was read, or that can't be read to its end, has no valid result: a later run tries again.
     if let Err(e) = opened.check() {
         return unread(file, &e);
     }

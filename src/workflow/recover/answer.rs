@@ -11,6 +11,7 @@ use super::validation::ValidationGauge;
 use crate::host::outcome::Answer;
 use crate::host::words::count_of;
 use crate::job::Job;
+use crate::measured::conditioning_step::ConditioningStep;
 use crate::recovery::{Readings, Recovery, Sums};
 use crate::sensitivity::Sensitivity;
 use crate::strain_chain::{Conditioning, GaugeMeshError, JobSensitivity, LoadUnits};
@@ -24,6 +25,7 @@ pub(super) struct AdditionalResults {
     pub validation: Vec<ValidationGauge>,
     pub comparison: Comparison,
     pub sections: Vec<SectionLoad>,
+    pub reading_conditioning: Vec<ConditioningStep>,
 }
 
 /// Loads from measured strain.
@@ -35,6 +37,9 @@ pub struct RecoveredLoads {
     /// Loads of what was measured.
     #[serde(flatten)]
     pub states: States,
+    /// Changes of the readings by `[conditioning]`, by step and gauge.
+    #[serde(rename = "conditioning", skip_serializing_if = "Vec::is_empty")]
+    pub reading_conditioning: Vec<ConditioningStep>,
     /// Gauges that no load was estimated from, each compared with its prediction.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub validation: Vec<ValidationGauge>,

@@ -130,8 +130,11 @@ pub(super) fn remove_vibration(
     work.go_on()?;
     let noise = task.errors.noise_variance(1.0).sqrt();
     let open = asked.damping == Damping::Estimate;
-    let with = (noise, &*readings, 1.0 / step_s);
-    let estimated = work.stage("modes", |_| estimate_modes(s, &stated, open, with));
+    let errors = (noise, task.errors.model_rel);
+    let with = (&*readings, 1.0 / step_s);
+    let estimated = work.stage("estimate modes", |_| {
+        estimate_modes(s, &stated, open, errors, with)
+    });
     let estimated = estimated.map_err(|e| fault(e.to_string(), remedy_of(&e)))?;
     if open && estimated.is_none() {
         return Err(fault(
@@ -340,7 +343,7 @@ fn contradiction(stated: &Dynamics, found: &EstimatedModes, file: &str) -> Optio
     let off = |(j, by_kind): (usize, &[Option<Deviation>; 2])| {
         let of_kind = |(kind, d): (usize, &Option<Deviation>)| {
             let d = d.as_ref()?;
-            let off = d.standardised()?.abs();
+            let off = d.standard_deviations_off()?.abs();
             (off > OFF_BY).then(|| (off, j, kind, *d))
         };
         let worst = by_kind.iter().enumerate().filter_map(of_kind);

@@ -58,6 +58,7 @@ use crate::host::fault::Faults;
 use crate::host::outcome::{Outcome, StatedUnits};
 use crate::host::work::Work;
 use crate::job::{Job, Measured};
+use crate::measured::conditioning::report_conditioning;
 use crate::measured::noise::prepare_with_noise;
 use crate::measured::{self, MeasuredStrain};
 use crate::recovery::{Readings, Recovery};
@@ -121,6 +122,7 @@ pub fn recover_into(
     let (states, beside) = recover_measured_loads(&mut work, (job, measured), &prepared, sink)?;
     prepared.retain(&task::validation_rows(job, &prepared.sensitivity).1);
     let answer = RecoveredLoads {
+        reading_conditioning: beside.reading_conditioning,
         validation: beside.validation,
         comparison: beside.comparison,
         sections: Sections::from_loads(job, beside.sections),
@@ -155,8 +157,11 @@ fn recover_measured_loads(
     let strain = open_strain(work, job, measured)?;
     Ok(match strain {
         MeasuredStrain::Record(record) => {
+            let steps = record.conditioning_steps().to_vec();
+            work.findings.extend(report_conditioning(&steps));
             let (record, mut beside) =
                 work.stage("stream", |w| record::record(w, &task, &record, sink))?;
+            beside.reading_conditioning = steps;
             let of_files = section_files::count_files(work, &task)?;
             beside.sections.extend(of_files);
             (States::Record(Box::new(record)), beside)

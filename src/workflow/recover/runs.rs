@@ -244,6 +244,7 @@ pub(super) fn runs(
         validation,
         comparison,
         sections: Vec::new(),
+        reading_conditioning: Vec::new(),
     };
     Ok((runs, beside))
 }

@@ -48,7 +48,7 @@ fn with_frequencies(factors: [f64; 3]) -> Structure {
 }
 
 fn estimate(model: &(Sensitivity, Dynamics), open: bool, record: &[Vec<f64>]) -> EstimatedModes {
-    estimate_modes(&model.0, &model.1, open, (NOISE, record, RATE))
+    estimate_modes(&model.0, &model.1, open, (NOISE, 0.0), (record, RATE))
         .unwrap()
         .unwrap()
 }
@@ -90,11 +90,17 @@ fn frequencies_that_are_off_are_estimated_and_loads_hold_their_intervals() {
                 .step_by(97)
                 .count();
     }
-    println!("{inside} of {all} held, {before} before, {close} of 40 frequencies");
-    assert!(close >= 36, "{close} of 40 frequencies");
-    assert!(inside * 100 >= all * 92, "{inside} of {all}");
+    sds.sort_by(f64::total_cmp);
+    println!(
+        "{inside} of {all} held, {before} before, {close} of 40, {} {}",
+        sds[20], sds[39]
+    );
+    // 98.8 % of normal errors are within 2.5 standard deviations.
+    assert!(close >= 37, "{close} of 40 frequencies");
+    assert!(sds[20] < 0.008, "median sd {}", sds[20]);
+    assert!(inside * 100 >= all * 93, "{inside} of {all}");
     assert!(
-        before * 100 < all * 80,
+        before * 100 < all * 91,
         "{before} of {all} without the estimate"
     );
 }
@@ -109,7 +115,7 @@ fn a_frequency_far_off_contradicts_what_is_stated() {
         let record = simulate_record(&with_frequencies(factors), &waves, &mut random);
         let found = estimate(&model, false, &record);
         let sizes = found.deviations.iter().flatten().flatten();
-        let sizes = sizes.filter_map(|d| Some(d.standardised()?.abs()));
+        let sizes = sizes.filter_map(|d| Some(d.standard_deviations_off()?.abs()));
         (sizes.fold(0.0, f64::max), found.unexplained)
     };
     let (off, _) = worst([0.86, 1.0, 1.0]);
@@ -140,7 +146,7 @@ fn damping_is_estimated_and_a_wrong_one_is_contradicted() {
     assert!(found.unexplained < 0.01, "{}", found.unexplained);
     let stated = estimate(&model, false, &record);
     let sizes = stated.deviations.iter().flatten().flatten();
-    let sizes = sizes.filter_map(|d| Some(d.standardised()?.abs()));
+    let sizes = sizes.filter_map(|d| Some(d.standard_deviations_off()?.abs()));
     let off = sizes.fold(0.0, f64::max);
     assert!(
         off > 3.0 || stated.unexplained > 0.1,
@@ -153,6 +159,12 @@ fn damping_is_estimated_and_a_wrong_one_is_contradicted() {
 #[test]
 fn as_many_loads_as_gauges_estimate_nothing() {
     let (s, dynamics) = super::oscillator(0.02, 20.0);
-    let none = estimate_modes(&s, &dynamics, false, (0.1, &[vec![0.0; 3000]], 250.0));
+    let none = estimate_modes(
+        &s,
+        &dynamics,
+        false,
+        (0.1, 0.0),
+        (&[vec![0.0; 3000]], 250.0),
+    );
     assert_eq!(none, Ok(None));
 }

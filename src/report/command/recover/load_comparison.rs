@@ -2,6 +2,7 @@
 
 use crate::host::fault::Faults;
 use crate::host::output::Output;
+use crate::measured::conditioning_step::ConditioningStep;
 use crate::report::csv_cell;
 use crate::report::figure::{CrossPlot, cross_plot};
 use crate::report::page::{Block, Page, Section, number, table_section};
@@ -135,6 +136,9 @@ pub(super) fn add_sections(page: &mut Page, recovered: &RecoveredLoads) {
         added.push(section_table(sections));
         added.push(duty_cycle(sections));
     }
+    if !recovered.reading_conditioning.is_empty() {
+        added.push(conditioning_section(&recovered.reading_conditioning));
+    }
     let at = page.sections.len().min(1);
     page.sections.splice(at..at, added);
 }
@@ -189,6 +193,26 @@ fn comparison_section(comparison: &Comparison) -> Section {
             .to_owned(),
     ));
     Section::new("Recovered against recorded loads", blocks)
+}
+
+/// Returns the table of what `[conditioning]` changed, a row a step and gauge.
+fn conditioning_section(steps: &[ConditioningStep]) -> Section {
+    let row = |s: &ConditioningStep| {
+        vec![
+            s.step.replace('_', "-"),
+            s.gauge.clone(),
+            s.samples.to_string(),
+            number(s.rms_microstrain),
+        ]
+    };
+    let head = [
+        "step",
+        "gauge",
+        "samples changed",
+        "change, microstrain rms",
+    ];
+    let table = Block::table(&head, steps.iter().map(row).collect());
+    Section::new("Conditioning of the readings", vec![table])
 }
 
 fn section_table(sections: &Sections) -> Section {

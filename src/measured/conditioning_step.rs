@@ -1,0 +1,16 @@
+//! Change of readings by `[conditioning]`, as results state it.
+
+use serde::Serialize;
+
+/// Change of the readings of one gauge by one step of `[conditioning]`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ConditioningStep {
+    /// Step: `spikes`, `temperature`, `zero`, `drift`, `low_pass` or `high_pass`.
+    pub step: &'static str,
+    /// Name of the column, as the job names its gauge.
+    pub gauge: String,
+    /// Samples that changed.
+    pub samples: usize,
+    /// Root mean square of the change over the record, microstrain.
+    pub rms_microstrain: f64,
+}

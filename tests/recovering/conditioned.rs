@@ -1,0 +1,186 @@
+//! `[conditioning]`: readings with drift, spikes, an offset, apparent thermal strain and mains hum give the loads that were applied.
+
+use crate::drawn::Numbers;
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use strainbridge::host::context::InMemory;
+use strainbridge::{Context, Job};
+
+const RATE: f64 = 200.0;
+const SAMPLES: usize = 8000;
+const S: [[f64; 2]; 4] = [[0.10, 0.02], [0.02, 0.10], [0.05, 0.05], [0.08, -0.03]];
+const THERMAL: f64 = 1.4;
+const NOISE: f64 = 0.5;
+
+/// Loads, N: none in the first five seconds.
+fn loads(t: f64) -> [f64; 2] {
+    let moves = if t < 5.0 { 0.0 } else { 1.0 };
+    [
+        moves * 900.0 * (TAU * 0.7 * t).sin(),
+        moves * 500.0 * (TAU * 1.3 * t).cos(),
+    ]
+}
+
+fn temperature(t: f64) -> f64 {
+    21.0 + 6.0 * (t / 40.0).powi(2)
+}
+
+/// Faults of the logger by gauge: offset, drift per second, and amplitude of a hum of 50 Hz, microstrain.
+const FAULTS: [[f64; 3]; 4] = [
+    [30.0, 0.5, 2.0],
+    [-12.0, -0.3, 2.0],
+    [4.0, 0.0, 2.0],
+    [0.0, 0.8, 2.0],
+];
+
+/// Strain of a gauge with the faults that `on` leaves on: thermal strain, offset, drift, hum, spikes.
+fn record(on: [bool; 5]) -> String {
+    let mut numbers = Numbers(5);
+    let mut out = String::from("time,G1,G2,G3,G4,T1\n");
+    let [thermal, offset, drift, hum, spikes] = on;
+    for i in 0..SAMPLES {
+        let t = i as f64 / RATE;
+        let f = loads(t);
+        let _ = write!(out, "{t:.4}");
+        for (g, s) in S.iter().enumerate() {
+            let [zero, slope, wave] = FAULTS[g];
+            let mut strain = s[0] * f[0] + s[1] * f[1] + NOISE * numbers.draw_normal();
+            strain += f64::from(u8::from(thermal)) * THERMAL * temperature(t);
+            strain += f64::from(u8::from(offset)) * zero;
+            strain += f64::from(u8::from(drift)) * slope * t;
+            strain += f64::from(u8::from(hum)) * wave * (TAU * 50.0 * t).sin();
+            if spikes && i % 1000 == 250 + g {
+                strain += 800.0;
+            }
+            let _ = write!(out, ",{strain:.5}");
+        }
+        let _ = writeln!(out, ",{:.4}", temperature(t));
+    }
+    out
+}
+
+fn job(more: &str) -> String {
+    format!(
+        "units = \"m-kg-s\"\nload = [{{ name = \"left\" }}, {{ name = \"right\" }}]\nsensitivity = {{ file = \"s.csv\" }}\n\
+         measured = {{ strain = \"strain.csv\", noise_microstrain = {NOISE}, reference = \"none\" }}\n{more}"
+    )
+}
+
+fn files(on: [bool; 5], more: &str) -> InMemory {
+    let mut s = String::from("gauge,left,right\n");
+    for (g, row) in S.iter().enumerate() {
+        let _ = writeln!(s, "G{},{},{}", g + 1, row[0], row[1]);
+    }
+    InMemory::default()
+        .with_file("s.csv", s)
+        .with_file("strain.csv", record(on))
+        .with_file("job.toml", job(more))
+}
+
+/// Largest error of a load, the share of intervals that contain theirs, and the outcome as JSON.
+fn recover(on: [bool; 5], more: &str) -> (f64, f64, serde_json::Value) {
+    let files = files(on, more);
+    let job = Job::read("job.toml", &files).unwrap_or_else(|f| panic!("{f:?}"));
+    let got =
+        strainbridge::recover(&job, &Context::new(&files)).unwrap_or_else(|f| panic!("{f:?}"));
+    let history = got.answer.record().unwrap().history.as_ref().unwrap();
+    let (mut worst, mut inside, mut all) = (0.0_f64, 0, 0);
+    for row in history.rows() {
+        let expected = loads(row.time);
+        // At the step in the loads after five seconds a filter smears.
+        if (row.time - 5.0).abs() < 0.5 || row.time < 0.5 || row.time > 39.5 {
+            continue;
+        }
+        for (load, expected) in row.loads.iter().zip(expected) {
+            let [value, low, high] = load.unwrap();
+            worst = worst.max((value - expected).abs());
+            inside += usize::from((low..=high).contains(&expected));
+            all += 1;
+        }
+    }
+    let text = serde_json::to_string(&got.answer).unwrap();
+    (
+        worst,
+        f64::from(inside as u32) / f64::from(all),
+        serde_json::from_str(&text).unwrap(),
+    )
+}
+
+const ALL: &str = "[conditioning]\nspikes = true\ntemperature = { channel = \"T1\", microstrain_per_degC = 1.4 }\n\
+                   zero_s = [0.5, 4.5]\ndrift = \"linear\"\nlow_pass_hz = 20.0\n";
+
+#[test]
+fn faults_of_the_logger_are_removed_and_each_step_states_its_change() {
+    let on = [true, true, true, true, true];
+    let (raw, held, bare) = recover(on, "");
+    assert!(raw > 500.0 && held < 0.6, "{raw} {held}");
+    assert!(bare.get("conditioning").is_none());
+    let (worst, held, got) = recover(on, ALL);
+    // Waves of the loads have a least squares slope of their own: 900 N of 0.7 Hz make up to 1.5 N a second over 40 s, and the line follows it.
+    println!("{worst} {held}");
+    assert!(worst < 22.0, "{worst}");
+    assert!(held > 0.9, "{held}");
+    let steps = got["conditioning"].as_array().unwrap();
+    let named = |name: &'static str| steps.iter().filter(move |s| s["step"] == name);
+    for step in ["spikes", "temperature", "zero", "drift", "low_pass"] {
+        assert_eq!(named(step).count(), 4, "{step}: {got}");
+    }
+    assert!(named("spikes").all(|s| s["samples"] == 8), "{steps:?}");
+    // The drift of gauge G4 is 0.8 microstrain per second from the middle of the stretch of zero on.
+    let drift = named("drift").find(|s| s["gauge"] == "G4").unwrap();
+    let expected: f64 = (0..SAMPLES)
+        .map(|i| (0.8 * (i as f64 / RATE - 2.5)).powi(2))
+        .sum();
+    let expected = (expected / SAMPLES as f64).sqrt();
+    let off = drift["rms_microstrain"].as_f64().unwrap() / expected - 1.0;
+    assert!(off.abs() < 0.1, "{off}");
+}
+
+/// Without faults of the logger, conditioning changes the loads by less than their intervals.
+#[test]
+fn a_sound_record_keeps_its_loads() {
+    let (plain, _, _) = recover([false; 5], "");
+    let (worst, held, _) = recover(
+        [false; 5],
+        "[conditioning]\nspikes = true\nzero_s = [0.5, 4.5]\nlow_pass_hz = 20.0\n",
+    );
+    assert!(worst <= plain && held > 0.95, "{worst} {plain} {held}");
+}
+
+/// What the section cannot do is a fault of its line.
+#[test]
+fn what_conditioning_cannot_do_is_a_fault() {
+    let cases = [
+        ("zero_s = [30.0, 60.0]", "zero_s"),
+        ("zero_s = [1.0, 1.2]", "zero_s"),
+        ("zero_s = [4.0, 1.0]", "zero_s"),
+        ("low_pass_hz = 100.0", "low_pass_hz"),
+        ("low_pass_hz = 5.0\nhigh_pass_hz = 9.0", "high_pass_hz"),
+        (
+            "temperature = { channel = \"T9\", microstrain_per_degC = 1.4 }",
+            "temperature.channel",
+        ),
+        (
+            "temperature = { channel = \"T1\" }",
+            "temperature.microstrain_per_degC",
+        ),
+        ("drift = \"cubic\"", "drift"),
+    ];
+    for (text, key) in cases {
+        let files = files([false; 5], &format!("[conditioning]\n{text}\n"));
+        let run = |job: Job| strainbridge::recover(&job, &Context::new(&files)).map(|_| ());
+        let fault = Job::read("job.toml", &files).and_then(run).unwrap_err();
+        let said = format!("{fault:?}");
+        assert!(
+            said.contains(&format!("conditioning.{key}")),
+            "{text}: {said}"
+        );
+    }
+    let runs = files([false; 5], "[conditioning]\nspikes = true\n")
+        .with_file("strain.csv", "run,G1,G2,G3,G4\nR1,1,2,3,4\n");
+    let job = Job::read("job.toml", &runs).unwrap();
+    let fault = strainbridge::recover(&job, &Context::new(&runs))
+        .map(|_| ())
+        .unwrap_err();
+    assert!(format!("{fault:?}").contains("contains runs"), "{fault:?}");
+}
