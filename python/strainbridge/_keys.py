@@ -303,7 +303,7 @@ class ModelKeys(Section):
     """Nastran deck, or an OP2 that contains the mesh; path relative to the job; required."""
     mesh_error: _Key[Any]
     """Whether the built-in solver also solves a mesh of half the width (four times the grids, about five times the time). S is then the limit
-    of the strain for finer meshes, and `recover` and `place` include the uncertainty of this limit; default: true for shells, up to 15,000
+    of the strain for finer meshes, and `recover` and `place` include the uncertainty of this limit; default: true for shells, up to 13,000
     grids and loads that do not act directly on a shell."""
     results: _Key[Any]
     """OP2, HDF5 or punch files with strain of the unit loads; default: the built-in solver computes them."""
