@@ -1,4 +1,4 @@
-//! strainbridge turns a structure into its own load cell.
+//! strainbridge uses a structure as a load cell.
 //!
 //! Data flows one way, and so do imports (`tests/tidy/main.rs` checks it):
 //!

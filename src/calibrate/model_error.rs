@@ -225,7 +225,7 @@ fn of_gauge(
         }
     };
     let total: f64 = logs.iter().flatten().map(weight).sum();
-    // For each floor, the mean square of the gauge's own factor, times the probability of the floor.
+    // Entry for each floor: the mean square of the gauge's own factor at this floor, times the probability of the floor.
     let mut squares = [0.0; FLOORS.len()];
     for (square, logs) in squares.iter_mut().zip(&logs) {
         let each = logs.iter().zip(own);

@@ -89,7 +89,7 @@ impl BeamField {
         }
     }
 
-    /// Whether the result leaves the strain of this bar or beam between its stations open.
+    /// Returns whether the result states the strain of this bar or beam only at its stations, not between them.
     pub fn is_at_stations_alone(&self, beam: BeamIx) -> bool {
         self.stations_alone.contains(&beam)
     }

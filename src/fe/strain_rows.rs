@@ -45,7 +45,7 @@ pub enum Point {
     Recovery(usize),
 }
 
-/// Number of elements with strain in a case: shells, then bars.
+/// Returns the number of elements with strain in a case: shells plus bars.
 pub fn n_elements(case: &CaseResult) -> usize {
     case.shells.elements.len() + case.beams.elements.len()
 }

@@ -21,7 +21,7 @@ pub struct Offset {
 }
 
 impl Offset {
-    /// Creates a move along the axis of the gauge.
+    /// Creates an offset along the axis of the gauge.
     pub fn shift_along(length: f64) -> Self {
         Self {
             along: length,
@@ -29,7 +29,7 @@ impl Offset {
         }
     }
 
-    /// Creates a move across the axis of the gauge.
+    /// Creates an offset across the axis of the gauge.
     pub fn shift_across(length: f64) -> Self {
         Self {
             across: length,

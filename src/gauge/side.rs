@@ -35,7 +35,8 @@ pub(super) fn same_side(
 /// Cosine of the angle between two normals below which shells face neither the same nor opposite ways: 60 degrees.
 const FACING: f64 = 0.5;
 
-/// Returns the side of shell `other` that faces away from `side` of shell `from`, in space; `None` if their planes are across each other.
+/// Returns the side of shell `other` that faces opposite to `side` of shell `from`. `None` if the angle between their normals is 60 to 120
+/// degrees, or if a shell has no area.
 pub fn away_from(
     model: &Model,
     (from, side): (ShellIx, Surface),

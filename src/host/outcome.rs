@@ -206,7 +206,7 @@ impl StatedUnits {
         ])
     }
 
-    /// Creates the units of numbers in the unit system of the model.
+    /// Creates the units of an answer whose numbers are in the unit system of the model.
     pub fn of_model(system: UnitSystem) -> Self {
         Self::from_units(system, &ReportUnits::from_system(system))
     }

@@ -115,10 +115,10 @@ impl Output {
         unwritable_file_fault(&self.folder.join(name), e)
     }
 
-    /// Writes two files at the same time, each by its own `fill`.
+    /// Writes two files in parallel: `fill_one` writes the content of `one`, and `fill_two` the content of `two`.
     ///
     /// # Errors
-    /// A fault for the first file that cannot be renamed.
+    /// A fault for the first file that cannot be written.
     pub fn write_both(
         &mut self,
         (one, fill_one): (

@@ -353,7 +353,7 @@ fn units_that_contradict_each_other_are_faults_of_what_is_asked_for() {
         said.contains("`s` after the name, and `ms` as the unit of the column"),
         "{said}"
     );
-    // A millionth of a meganewton is not a millinewton.
+    // `MN` and `mN`, or `N` and `kN`, are different units: two units for one column are a fault.
     for [beside, below] in [["MN", "mN"], ["N", "kN"]] {
         let table = format!("run,LF.FZ [{beside}],LF.MX\n-,{below},N m\nR1,2,3\n");
         let named = format!("columns = {{ \"LF.FZ\" = \"LF.FZ [{beside}]\" }}\n");

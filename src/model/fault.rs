@@ -115,7 +115,7 @@ impl ModelFault {
             }
             // Solvers ignore a set of SPCADD or MPCADD that has no cards.
             FaultKind::Missing { what: "set", .. } => FaultWeight::Note,
-            // Shells need a thickness, and locations need grids and coordinate systems. Without another kind of element, results are still possible.
+            // Shells need a thickness, and locations need grids and coordinate systems. Without other unsupported cards, results are still usable.
             FaultKind::NotCarried { what, .. } => match what {
                 "grid" | "coordinate system" | "shell property" => FaultWeight::NotCarried,
                 _ => FaultWeight::Note,

@@ -105,7 +105,7 @@ impl Builder<'_> {
             let Some(g) = self.grid(s.point, &name, "S", s.at) else {
                 continue;
             };
-            // The load acts on the first component: on a grid, along the first axis of its displacement frame.
+            // SLOAD acts on the first component of a point. For a grid, this is a force along the first axis of its displacement frame.
             let v = self.cd_axes(g).row(0).transpose() * s.load;
             sets.entry(s.sid)
                 .or_default()

@@ -13,7 +13,7 @@ use super::newton;
 use super::relaxation_solution::{Active, FULL, RelaxationSolution, pulls};
 use crate::linalg::spd;
 
-/// Sum of the `s` largest group maxima, and the least of those `s`.
+/// Returns the sum of the `s` largest group maxima, and the smallest of these maxima. `d` yields pairs of group and value.
 pub fn top_sum(d: impl Iterator<Item = (u32, f64)>, n_groups: usize, s: usize) -> (f64, f64) {
     let mut best = vec![f64::NEG_INFINITY; n_groups];
     for (g, v) in d {

@@ -49,7 +49,7 @@ impl Sums {
         self.missing.whole + self.read_in_gaps.get(g).copied().unwrap_or(0)
     }
 
-    /// Both together.
+    /// Adds the sums and counts of `other`, and extends the extremes by the extremes of `other`.
     pub fn merge(&mut self, other: &Self) {
         self.missing.merge(&other.missing);
         let add = |a: &mut Vec<f64>, b: &[f64]| a.iter_mut().zip(b).for_each(|(x, y)| *x += y);

@@ -36,7 +36,7 @@ impl ColumnContents {
         }
     }
 
-    /// Examines rows, which follow each other in `values`.
+    /// Updates the contents of the columns with complete rows, stored one after another in `values`.
     pub fn look(&mut self, values: &[f64]) {
         for row in values.chunks_exact(self.first.len().max(1)) {
             self.rows += 1;

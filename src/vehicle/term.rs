@@ -319,7 +319,7 @@ impl Term {
     }
 }
 
-/// Returns the completed share, at `t_s`, of a change that begins at `at_s` and takes `over_s`.
+/// Returns the completed share (0 to 1) of a linear change at time `t_s`. The change begins at `at_s` and lasts `over_s`, all in seconds.
 pub fn share_done(at_s: f64, over_s: f64, t_s: f64) -> f64 {
     if over_s > 0.0 {
         ((t_s - at_s) / over_s).clamp(0.0, 1.0)

@@ -61,7 +61,7 @@ pub enum FloorError {
 }
 
 impl FloorError {
-    /// Returns the messages with their remedies: one for an error of the floor, one for each fault of the solver.
+    /// Returns pairs of message and remedy. A solver error gives one pair for each fault; every other error gives one pair.
     pub fn parts(&self) -> Vec<(String, String)> {
         match self {
             Self::OnALine { contacts } => vec![(

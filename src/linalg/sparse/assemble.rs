@@ -19,7 +19,8 @@ struct RemainingTerms<E> {
 }
 
 impl BlockMatrix {
-    /// Returns the sum of terms, which `term` forms from their numbers; `groups` are the groups of each term, all joined in the graph.
+    /// Returns the sum of all terms as a block matrix. `term(i)` computes term `i`, and `groups[i]` lists its groups of unknowns. `graph` must
+    /// connect all groups of a term.
     ///
     /// # Errors
     /// Every error of `term`, in the order of the terms.

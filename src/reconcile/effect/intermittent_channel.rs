@@ -4,7 +4,7 @@ use super::channel_fault::{ChannelFault, FaultScope, OnGauges};
 use super::{Correction, Extension};
 use crate::reconcile::strain::{StrainFrame, predict};
 
-/// Reading = 0 in some runs, strain in the others.
+/// Effect of a loose contact: the channel reads zero in some runs, and strain in the other runs.
 #[derive(Clone, Debug)]
 pub struct IntermittentChannel {
     /// By run: is the contact open?

@@ -189,7 +189,7 @@ fn a_zero_record_shows_noise_of_any_form() {
         let got = trial.recover();
         let (held, least) = trial.interval_coverage(&got);
         println!("held {held:.3}, least {least:.3}");
-        // With weights from 400 samples of 16 gauges, the true errors are 4 % larger than predicted.
+        // The weights come from 400 samples of 16 gauges, so the true errors are 4 % larger than predicted.
         assert!((0.93..0.97).contains(&held), "{held}");
         assert!(least > 0.9, "{least}");
     }

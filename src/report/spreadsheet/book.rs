@@ -38,7 +38,7 @@ impl From<u32> for Cell {
     }
 }
 
-/// A sheet: a header line, then rows.
+/// Sheet of a workbook: a header line, then rows.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Sheet {
     /// Name of the sheet, at most 31 characters.

@@ -44,7 +44,7 @@ impl Bias {
         let ratio = second / first;
         let at = sharpness(ratio);
         let of_first = share(at);
-        // Derivative of the share of the first step by the ratio of the steps. It is zero at the ends of the search.
+        // `moves` is the derivative of `of_first` with respect to `ratio`. It is set to zero at the ends of the search range.
         let h = 0.01;
         let turn = (ratio_of(at + h) - ratio_of(at - h)) / (2.0 * h);
         let within = at > ENDS[0] + h && at < ENDS[1] - h;

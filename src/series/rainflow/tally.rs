@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// noise doubles and triples it.
 pub const NOISE: [f64; 3] = [1.0, 2.0, 3.0];
 
-/// An extreme value.
+/// Extreme value of a history, and its sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Extreme {
     /// The value.

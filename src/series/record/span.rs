@@ -90,7 +90,7 @@ impl Scale {
     }
 }
 
-/// Samples that are missing between two.
+/// Gap of missing samples between two stored samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
     /// Stored rows before it.

@@ -295,7 +295,7 @@ fn missing_samples_are_gaps_and_not_invented() {
             "{i}"
         );
     }
-    // A time that jumps by years is not a gap but a wrong time.
+    // A jump of the time by years is a wrong time, not a gap.
     let far = open("time,a\n0.00,1\n0.01,1\n0.02,1\n900000000.03,1\n");
     assert!(matches!(far.err(), Some(SeriesError::Hole { .. })));
 }

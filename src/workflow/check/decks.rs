@@ -123,7 +123,7 @@ fn without_influence(
     cards: &BTreeMap<String, usize>,
     model: &Model,
 ) -> BTreeMap<&'static str, usize> {
-    // The name of the card is the first word, as in `MDLPRM OFFDEF`.
+    // The field `card` starts with the name of the card, as in `MDLPRM OFFDEF`.
     let acting = |name: &str| {
         let of_name = |u: &&UnsupportedCard| u.card.split(' ').next() == Some(name);
         let acting = model.unsupported_cards.iter().filter(of_name);

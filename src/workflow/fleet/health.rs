@@ -209,7 +209,8 @@ impl Sums {
         let variance = (self.squares / n - mean * mean).max(0.0);
         let [m, y, r, yy, yr, rr] = self.thinned;
         let (yy, yr, rr0) = (yy - y * y / m, yr - y * r / m, rr - r * r / m);
-        // Predicted without this gauge, its residual is larger by 1 / (1 - h). The prediction is the reading minus this residual.
+        // If the fit leaves this gauge out, its residual is larger by the factor 1 / (1 - h), with leverage h. The prediction is the reading minus
+        // this residual.
         let out = 1.0 / (1.0 - leverage).max(1e-3);
         let (with, own) = (yy - out * yr, yy - 2.0 * out * yr + out * out * rr0);
         GaugeDay {

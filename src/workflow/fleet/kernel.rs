@@ -81,7 +81,7 @@ impl Kernel {
     /// Computes the result of a record. Reports gauges that are missing (no column), dead or stuck, and recovers the loads from the other gauges.
     ///
     /// # Errors
-    /// The reason why loads can't be recovered.
+    /// Faults of the record that prevent the recovery of its loads.
     pub fn day(&self, record: &Record) -> Result<Day, Faults> {
         let mut findings = Vec::new();
         findings.extend(clock::check_time_steps("time", &record.clock));

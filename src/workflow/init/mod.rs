@@ -66,7 +66,7 @@ pub struct Proposal {
     pub purpose: Option<&'static str>,
 }
 
-/// A load or subcase that is not proposed.
+/// Load or subcase that `init` leaves out of the proposed job, with the reason.
 #[derive(Serialize)]
 pub struct NotProposed {
     /// Name of the load or subcase.

@@ -213,7 +213,7 @@ impl<'a> Tables<'a> {
         let (n_l, n_c) = (self.columns.len(), self.n_columns());
         let wired = |(g, plane): (usize, PlaneStrainRow)| match gauges[g].wiring {
             Wiring::Quarter => plane,
-            // A bending bridge reads the strain along its axis, and the shear of both sides cancels.
+            // A bending bridge reads the strain along its axis. The shear strains of its two sides cancel.
             Wiring::Bending => (0..n_l + 2)
                 .map(|c| influence[g * n_c + c])
                 .map(|a| [a, -POISSON * a, 0.0])

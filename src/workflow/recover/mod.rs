@@ -28,6 +28,7 @@ mod sink;
 mod task;
 mod trace;
 mod validation;
+mod vertical_loads;
 
 pub(crate) use calibration_range::record_beyond_calibration;
 

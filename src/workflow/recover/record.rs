@@ -17,6 +17,7 @@ use super::sink::{Block, RecordHead, RecordSink};
 use super::task::Task;
 use super::trace::Spans;
 use super::validation::{self, Channels, ValidationSums};
+use super::vertical_loads::check_vertical_sign;
 use crate::finding::Finding;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::finite_or_none;
@@ -120,7 +121,7 @@ pub(super) fn record(
     } = stream(work, (&record, channels.as_ref()), &head, sink)?;
     sink.end(sums.missing.samples())?;
     work.findings
-        .extend(beyond_calibration(task, &sensitivity, &head, &sums));
+        .extend(check_range_and_sign(task, &sensitivity, &head, &sums));
     let validation = match &channels {
         Some(c) => c.compare_gauges(&compared, head.filter.gain_of_all_gauges()),
         None => Vec::new(),
@@ -160,8 +161,8 @@ pub(super) fn record(
     Ok((answer(sensitivity, head, sums, spans, extras), beside))
 }
 
-/// Findings on loads beyond the range of a calibrated S, by the smallest and the largest load of the record.
-fn beyond_calibration(
+/// Returns the findings on loads beyond the range of a calibrated S, and on vertical loads that all pull, by the smallest and the largest load.
+fn check_range_and_sign(
     task: &Task,
     sensitivity: &Sensitivity,
     head: &RecordHead,
@@ -173,11 +174,15 @@ fn beyond_calibration(
     let sigma = head.filter.sigma(&ends);
     let factor = head.filter.coverage_factor();
     let halves: Vec<f64> = sigma.iter().map(|s| factor * s).collect();
-    calibration_range::record_beyond_calibration(
+    let high: Vec<f64> = sums.max.iter().zip(&halves).map(|(m, h)| m + h).collect();
+    let reversed = check_vertical_sign(task.job, "in the whole record", &high, &head.units);
+    let mut found = calibration_range::record_beyond_calibration(
         &calibration_range::with_range(task.job, sensitivity, &head.units),
         (&head.file, sums.missing.samples()),
         (&sums.min, &sums.max, &halves),
-    )
+    );
+    found.extend(reversed);
+    found
 }
 
 /// Adds the findings on files and on gaps; `blank` samples are blank for the filter of `[dynamic]` alone, which its own finding states.

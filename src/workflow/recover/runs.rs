@@ -9,6 +9,7 @@ use super::recorded_run_loads;
 use super::sections;
 use super::task::Task;
 use super::validation::{self, ValidationGauge};
+use super::vertical_loads::check_vertical_sign;
 use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::Faults;
 use crate::host::work::Work;
@@ -236,6 +237,14 @@ pub(super) fn runs(
     work.findings.extend(sums(task, &recovery, &units[..k]));
     let outside = calibration_range::of_runs(task, (&s, &readings), &recovery, &units[..k]);
     work.findings.extend(outside);
+    let high = |l: usize| {
+        let of_runs = recovery.runs.iter().map(|r| r.estimate.interval(l)[1]);
+        of_runs.fold(f64::NEG_INFINITY, |m, v| if v.is_nan() { f64::INFINITY } else { m.max(v) })
+    };
+    let high: Vec<f64> = (0..k).map(high).collect();
+    let states = format!("in all {} runs", recovery.runs.len());
+    work.findings
+        .extend(check_vertical_sign(task.job, &states, &high, &units[..k]));
     for run in &mut recovery.runs {
         run.estimate.add_sums(&names[k..], &combinations);
     }

@@ -221,7 +221,7 @@ fn about_damage(slope: f64) -> Finding {
     )
 }
 
-/// Returns the grids of the element of a row.
+/// Returns the corner grids of the shell, or the grids of the beam, of a result row.
 pub fn grids(model: &Model, row: &ResponseRow) -> Vec<GridIx> {
     match row.place {
         Place::Shell { shell, .. } => model

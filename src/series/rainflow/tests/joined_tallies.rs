@@ -381,7 +381,7 @@ fn the_interval_of_damage_holds_over_thirty_days_with_one_error_of_scale() {
         held_apart += usize::from((d.value - real).abs() < 1.96 * apart.sqrt());
     }
     let share = |n: usize| n as f64 / VEHICLES as f64;
-    // One standard deviation of a share of .95 over 1,000 trials is .7 %.
+    // The standard deviation of a share of 0.95 in 1,000 trials is 0.7 %.
     assert!((0.92..=0.98).contains(&share(held)), "{}", share(held));
     assert!(share(held_apart) < 0.6, "{}", share(held_apart));
 }

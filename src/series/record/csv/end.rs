@@ -201,7 +201,7 @@ mod tests {
             let cut = &text.as_bytes()[..text.len() - less];
             assert_eq!(unsure_end(cut), Some(start), "{less}");
         }
-        // Fields are missing, which the reader reports.
+        // The last row lacks fields. The reader, not this function, reports this fault.
         let cut = &text.as_bytes()[..text.len() - 7];
         assert_eq!(unsure_end(cut), None);
         let returns = text.replace('\n', "\r\n");
