@@ -309,7 +309,7 @@ fn of_runs(judged: &Recovery, half: &[f64]) -> Rows {
         }
         missing.gaps += 1;
         for (l, known) in missing.known_in_gaps.iter_mut().enumerate() {
-            *known += u64::from(r.tells(l));
+            *known += u64::from(r.determines_load(l));
         }
     }
     let loads = judged.runs.iter().flat_map(|r| r.estimate.values.clone());

@@ -22,7 +22,7 @@ const ANGLE_STEP: f64 = 0.05;
 const ANGLES: i32 = 1800;
 
 /// Log marginal likelihoods of a gauge's readings under each cause, in addition to the ordinary error of the model.
-struct Rivals {
+struct CauseEvidence {
     /// Wrong gain: the readings of all loads have one factor.
     gain: f64,
     /// Gauge turned by some angle.
@@ -44,9 +44,9 @@ pub(super) fn off_drawing(
     g: usize,
 ) -> Option<ShiftWord> {
     let changes = model.off_drawing.as_ref()?;
-    let rivals = Rivals::evaluate_gauge(model, changes, scales, evidence, error, g)?;
+    let rivals = CauseEvidence::evaluate_gauge(model, changes, scales, evidence, error, g)?;
     let beats = |own: f64, others: [f64; 3]| others.iter().all(|o| own > o + CLEAR);
-    let Rivals {
+    let CauseEvidence {
         gain,
         angle,
         place,
@@ -63,7 +63,7 @@ pub(super) fn off_drawing(
     })
 }
 
-impl Rivals {
+impl CauseEvidence {
     fn evaluate_gauge(
         model: &ModelPrior,
         changes: &OffDrawing,

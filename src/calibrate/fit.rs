@@ -60,7 +60,7 @@ fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
         state.lack = lack.covariance;
         left_out = held_out::leave_out(task, &state);
     }
-    let judged = held_out::judge(&left_out, state.scatter.dof);
+    let judged = held_out::test_coverage(&left_out, state.scatter.dof);
     let mut sensitivity = state.sensitivity(task, judged.factor);
     if let Some(uncertainty) = &mut sensitivity.uncertainty {
         uncertainty.is_tested = !left_out.is_empty();
@@ -107,7 +107,7 @@ fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
         range: CalibratedRange::from_runs(task, &state.used, &zero_of(task, &state.posterior)),
         model_error,
         shifts,
-        as_glued: installed_position::as_glued(task, &state, model_error),
+        as_glued: installed_position::estimate_installed_positions(task, &state, model_error),
         repeat_scatter_rel: state.scatter.dof.is_finite().then(|| state.scatter.rms()),
         noise_rel: task.noise / signal.sqrt(),
         left_out,

@@ -310,7 +310,7 @@ fn few_runs(scores: &[(f64, f64)], runs: usize, dof: f64) -> f64 {
 
 /// Returns the tally and the factor. The factor is the result of [`few_runs`]. If left-out runs are farther off than expected, in single loads or in
 /// a sum, it is at least the root of the largest ratio.
-pub(super) fn judge(left_out: &[LeftOut], dof: f64) -> Coverage {
+pub(super) fn test_coverage(left_out: &[LeftOut], dof: f64) -> Coverage {
     let suspect = suspects(left_out);
     let kept = || left_out.iter().filter(|l| !suspect.contains(&l.number));
     let mut scores =

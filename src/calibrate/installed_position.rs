@@ -5,13 +5,17 @@
 //! has the prior covariance `C`. The posterior of `u` is `E = K (m - r0)`, `Cov = C - K D' C + K V K'` with `K = C D (D' C D + E_e)^-1`.
 
 use super::state::State;
-use super::types::{AsGlued, Glue, ModelError, ModelPrior, Task};
+use super::types::{Glue, InstalledPositionEstimate, ModelError, ModelPrior, Task};
 use crate::linalg::Matrix;
 use crate::linalg::precision::Precision;
 use crate::linalg::spd::dot;
 
 /// Returns the posterior position, angle and gain of each gauge; empty without stated moves. `all`: error of the model from all gauges.
-pub(super) fn as_glued(task: &Task, state: &State, all: Option<ModelError>) -> Vec<AsGlued> {
+pub(super) fn estimate_installed_positions(
+    task: &Task,
+    state: &State,
+    all: Option<ModelError>,
+) -> Vec<InstalledPositionEstimate> {
     let (Some(model), Some(all)) = (&task.model, all) else {
         return Vec::new();
     };
@@ -20,7 +24,7 @@ pub(super) fn as_glued(task: &Task, state: &State, all: Option<ModelError>) -> V
     }
     let gauges = state.row_errors.iter().enumerate();
     let glued = gauges.map(|(g, error)| {
-        let mut glued = estimate_as_glued(model, state, g, error.common)?;
+        let mut glued = estimate_installed_position(model, state, g, error.common)?;
         // The gauge's own error was estimated from its readings, so that the stated value is the error of all gauges.
         glued.gain.stated = all.common;
         Some(glued)
@@ -28,7 +32,12 @@ pub(super) fn as_glued(task: &Task, state: &State, all: Option<ModelError>) -> V
     glued.collect::<Option<Vec<_>>>().unwrap_or_default()
 }
 
-fn estimate_as_glued(model: &ModelPrior, state: &State, g: usize, common: f64) -> Option<AsGlued> {
+fn estimate_installed_position(
+    model: &ModelPrior,
+    state: &State,
+    g: usize,
+    common: f64,
+) -> Option<InstalledPositionEstimate> {
     let k = state.scales.len();
     let prior = state.prior.get(g)?;
     let scaled = |m: &Matrix| -> Vec<f64> { (0..k).map(|l| m[(g, l)] * state.scales[l]).collect() };
@@ -66,7 +75,7 @@ fn estimate_as_glued(model: &ModelPrior, state: &State, g: usize, common: f64) -
         stated: sd[i],
     };
     let moves = model.moves.iter().enumerate();
-    Some(AsGlued {
+    Some(InstalledPositionEstimate {
         gain: estimate(0, 1.0),
         moves: moves.map(|(i, m)| (m.kind, estimate(i + 1, 0.0))).collect(),
     })

@@ -10,7 +10,6 @@
 //! `unknown_directions` finds the directions that runs with a known sum leave open. `lack_of_fit` tests terms beyond the straight line, `common_zero`
 //! models one of them, and `check` recovers check runs.
 
-mod as_glued;
 mod cause;
 mod check;
 mod common_zero;
@@ -21,6 +20,7 @@ mod fit;
 mod given_others;
 mod held_out;
 mod identical_columns;
+mod installed_gauges;
 mod installed_position;
 mod known_load_faults;
 mod label_exchange;
@@ -43,10 +43,10 @@ mod types;
 mod undetermined_combinations;
 mod unknown_directions;
 
-pub use as_glued::{GlueTolerance, calibrate_as_glued};
 pub use check::{CheckedRun, recover_checks};
 pub use dependence::{Dependence, depends_on};
 pub use fit::calibrate;
+pub use installed_gauges::{GlueTolerance, calibrate_installed_gauges};
 pub use next::{NextRun, next_runs};
 pub use types::*;
 pub use unknown_directions::known_of;

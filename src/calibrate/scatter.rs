@@ -197,7 +197,7 @@ impl Sample {
         let patterns = trace(&total).powi(2) / total.iter().map(|v| v * v).sum::<f64>();
         let chance = FisherSnedecor::new(of_between * patterns, of_within * patterns)
             .map_or(1.0, |f| f.sf(m / w));
-        if !(chance < ALIKE) {
+        if !(chance < SIMILAR_REPEATS_CHANCE) {
             return independent(scaled(&total, dof));
         }
         let squares: f64 = sizes.values().map(|s| s * s).sum();
@@ -218,7 +218,7 @@ impl Sample {
 }
 
 /// Chance below which repeats with such similar residuals are not independent.
-const ALIKE: f64 = 0.05;
+const SIMILAR_REPEATS_CHANCE: f64 = 0.05;
 
 impl Squares {
     fn from_residuals(runs: &[&RunResiduals], n: usize) -> Self {

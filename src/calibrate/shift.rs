@@ -20,7 +20,7 @@ const LIVE: f64 = 3.0;
 /// Largest difference from the row of a cause, over the change that the cause makes, at which the cause explains a row.
 const SAME: f64 = 0.3;
 /// Largest posterior sd, over the change that a cause makes, at which the runs separate the cause from no change.
-const TOLD: f64 = 0.2;
+const SEPARATED_SD_REL: f64 = 0.2;
 
 /// Row of a gauge for loads of unit size: from the model, and as calibrated with its covariance.
 struct Row {
@@ -63,7 +63,7 @@ impl Row {
         let sd = spd::dot(&spread, &change).max(0.0).sqrt() / size;
         let off = self.found.iter().zip(wanted).map(|(f, w)| (f - w).powi(2));
         let off = off.sum::<f64>().sqrt();
-        (size > 0.0 && sd < TOLD * size && off < SAME * size).then_some(off)
+        (size > 0.0 && sd < SEPARATED_SD_REL * size && off < SAME * size).then_some(off)
     }
 
     /// Returns the distance of the calibrated row from the model's row with reversed sign, if [`Row::explained_by`] accepts it.

@@ -3,7 +3,9 @@
 use super::posterior::{Equation, Posterior, solve};
 use super::prior::RowPrior;
 use super::types::{KnownRun, Task};
-use super::unknown_directions::{SPANNED, UNKNOWN, UnknownDirections, project_out, span_alike};
+use super::unknown_directions::{
+    SPANNED, UNKNOWN, UnknownDirections, have_equal_span, project_out,
+};
 use crate::linalg::{Matrix, dense, spd};
 
 /// Returns whether every load of a run is known to better than [`UNKNOWN`] of its size.
@@ -107,7 +109,7 @@ pub(super) fn from_parts(
             .collect();
         let alike = unknown.free.iter().zip(&lefts);
         let alike: Vec<Vec<f64>> = alike
-            .filter(|(other, _)| span_alike(free, other))
+            .filter(|(other, _)| have_equal_span(free, other))
             .map(|(_, left)| {
                 let mut left = left.clone();
                 project_out(&mut left, &explained);

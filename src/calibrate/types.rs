@@ -231,7 +231,7 @@ pub struct Calibration {
     /// By gauge: how far it moved.
     pub shifts: Vec<GaugeShift>,
     /// Installed position and gain by gauge; empty if no tolerance is stated.
-    pub as_glued: Vec<AsGlued>,
+    pub as_glued: Vec<InstalledPositionEstimate>,
     /// Scatter between repeats of one loading over the strain, root mean square over gauges; `None` without repeats.
     pub repeat_scatter_rel: Option<f64>,
     /// Noise over the strain, both root mean squares.
@@ -341,25 +341,25 @@ pub struct Glue {
 }
 
 /// Share of the stated sd from which on a value is undetermined.
-const TOLD: f64 = 0.7;
+const DETERMINED_SD_REL: f64 = 0.7;
 
 impl Glue {
     /// Returns whether the runs determine the value: they remove at least half of the stated variance.
     pub fn is_determined(&self) -> bool {
-        self.sigma < TOLD * self.stated
+        self.sigma < DETERMINED_SD_REL * self.stated
     }
 }
 
 /// Gain and installed position of a gauge.
 #[derive(Clone, Debug, PartialEq)]
-pub struct AsGlued {
+pub struct InstalledPositionEstimate {
     /// Factor on the gauge's readings.
     pub gain: Glue,
     /// Offset from the nominal position, for each move of the task.
     pub moves: Vec<(MoveKind, Glue)>,
 }
 
-impl AsGlued {
+impl InstalledPositionEstimate {
     /// Returns the size of a move from the runs; `None` if the task has no such move.
     pub fn find_move(&self, kind: MoveKind) -> Option<Glue> {
         self.moves.iter().find(|m| m.0 == kind).map(|m| m.1)

@@ -202,7 +202,7 @@ pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Fi
         format!(
             "with this S the gauges do not determine these loads. The half width of the 95 % interval in percent of the largest load is: {}{why}{}",
             each.join("; "),
-            told_sums(task, &told)
+            describe_determined_sums(task, &told)
         ),
         "add runs in which each of these loads acts alone, repeats, or gauges at places where they differ; or use combinations of loads only",
     );
@@ -210,7 +210,7 @@ pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Fi
 }
 
 /// Returns, as text, the task's sums of loads that are determined better than [`WIDE`] in half of the runs.
-fn told_sums(task: &Task, runs: &[&LoadEstimate]) -> String {
+fn describe_determined_sums(task: &Task, runs: &[&LoadEstimate]) -> String {
     let k = task.own_loads();
     let width = |terms: &[f64]| -> f64 {
         let terms = &terms[..k];

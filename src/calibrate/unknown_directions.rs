@@ -134,7 +134,7 @@ pub(super) fn project_out(x: &mut [f64], directions: &[Vec<f64>]) {
 }
 
 /// Returns whether two orthonormal sets have the same span.
-pub(super) fn span_alike(a: &[Vec<f64>], b: &[Vec<f64>]) -> bool {
+pub(super) fn have_equal_span(a: &[Vec<f64>], b: &[Vec<f64>]) -> bool {
     a.len() == b.len() && common_directions(a, b).len() == a.len()
 }
 

@@ -90,16 +90,16 @@ impl Voice {
         match (self.json, self.level) {
             (true, _) => {
                 let printed = is_printed(json.as_bytes());
-                say(&(findings + &paths));
+                write_to_stderr(&(findings + &paths));
                 printed
             }
             (false, Level::Quiet) => {
-                say(&findings);
+                write_to_stderr(&findings);
                 true
             }
             (false, _) => {
                 let printed = is_printed(answer.as_bytes());
-                say(&findings);
+                write_to_stderr(&findings);
                 printed && is_printed((next + &paths).as_bytes())
             }
         }
@@ -139,7 +139,7 @@ impl Voice {
     pub fn note(self, text: &str) {
         if self.level != Level::Quiet {
             let text = text_of(&wrap_lines(text, self.room.width, 4));
-            say(&self.printable_text(text));
+            write_to_stderr(&self.printable_text(text));
         }
     }
 
@@ -156,7 +156,7 @@ impl Voice {
             |(stage, s): (&String, &Value)| format!("{stage} {:.2} s", s.as_f64().unwrap_or(0.0));
         let list: Vec<String> = stages.iter().map(of).collect();
         let time = format!("time: {}", list.join(", "));
-        say(&text_of(&wrap_lines(&time, self.room.width, 4)));
+        write_to_stderr(&text_of(&wrap_lines(&time, self.room.width, 4)));
     }
 
     /// Prints faults on standard error; also as JSON on standard output if JSON is asked for.
@@ -178,7 +178,7 @@ impl Voice {
             true => format!("{}{total}\x1b[0m\n", colour(Severity::Error)),
             false => total + "\n",
         });
-        say(&text);
+        write_to_stderr(&text);
     }
 }
 
@@ -219,7 +219,7 @@ fn text_of(lines: &[String]) -> String {
     lines.iter().map(|l| format!("{l}\n")).collect()
 }
 
-fn say(text: &str) {
+fn write_to_stderr(text: &str) {
     // A closed pipe is not a fault of this program.
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
@@ -238,7 +238,7 @@ fn is_printed(text: &[u8]) -> bool {
     match out.write_all(text).and_then(|()| out.flush()) {
         // A closed pipe (`| head`) is not a fault of this program.
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
-            say(&format!(
+            write_to_stderr(&format!(
                 "standard output cannot be written ({e}): the printed text is incomplete\n"
             ));
             false

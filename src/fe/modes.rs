@@ -15,7 +15,7 @@ use crate::model::{Model, Vec3};
 use crate::stop::Stop;
 
 /// Accuracy of frequencies computed with a static solution, to test whether records are slow: a few parts in ten thousand for any spacing.
-const BESIDE_STATICS: Accuracy = Accuracy {
+const WITH_STATICS_ACCURACY: Accuracy = Accuracy {
     frequency: 2e-4,
     residual: f64::INFINITY,
 };
@@ -163,7 +163,7 @@ pub(super) fn frequencies(
 ) -> Result<Vec<f64>, FeError> {
     let wanted = ModeRequest {
         count,
-        accuracy: BESIDE_STATICS,
+        accuracy: WITH_STATICS_ACCURACY,
         shapes: false,
         stop,
     };

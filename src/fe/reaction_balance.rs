@@ -64,7 +64,7 @@ pub(super) fn check_balance(
 ) -> Result<Option<Finding>, FeError> {
     let model = prepared.model;
     let share = left.share();
-    if !(share > LIMIT) || told_otherwise(model) {
+    if !(share > LIMIT) || is_reported_elsewhere(model) {
         return Ok(None);
     }
     let rounding = estimate_rounding(prepared, elements, u)?;
@@ -105,7 +105,7 @@ pub(super) fn check_balance(
 }
 
 /// Returns whether another finding on the model already reports what takes force or moment in addition to the supports.
-fn told_otherwise(model: &Model) -> bool {
+fn is_reported_elsewhere(model: &Model) -> bool {
     model.joints.iter().any(gap_leaves_moment) || model.rigids.iter().any(held_off_axes)
 }
 

@@ -16,7 +16,7 @@ pub struct ElementDistance {
 }
 
 /// Returns the distance of a point from a shell; `None` if the shell has no area.
-pub fn beside_shell(model: &Model, ix: ShellIx, x: Vec3) -> Option<ElementDistance> {
+pub fn distance_to_shell(model: &Model, ix: ShellIx, x: Vec3) -> Option<ElementDistance> {
     let shell = model.shells.get(ix.us())?;
     let p = corners(model, shell)?;
     let pairs = p.iter().flat_map(|a| p.iter().map(move |b| (a - b).norm()));
@@ -29,7 +29,7 @@ pub fn beside_shell(model: &Model, ix: ShellIx, x: Vec3) -> Option<ElementDistan
 }
 
 /// Returns the distance of a point from a bar or beam.
-pub fn beside_beam(model: &Model, ix: BeamIx, x: Vec3) -> Option<ElementDistance> {
+pub fn distance_to_beam(model: &Model, ix: BeamIx, x: Vec3) -> Option<ElementDistance> {
     let beam = model.beams.get(ix.us())?;
     let end = |i: usize| Some(model.grids.get(beam.grids[i].us())?.x + beam.offsets[i]);
     let (a, along) = (end(0)?, end(1)? - end(0)?);

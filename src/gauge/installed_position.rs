@@ -40,7 +40,7 @@ impl Offset {
 
 /// Share of a step by which a foot may be off the requested point: `sin^2 20` on a smooth shell, at 20 degrees. An edge stopped a foot that is
 /// farther off.
-const BESIDE: f64 = 1.0 - SMOOTH * SMOOTH;
+const MAX_STEP_MISS_REL: f64 = 1.0 - SMOOTH * SMOOTH;
 
 /// Number of times that a step is halved if edges stop it on both sides.
 const HALVINGS: usize = 8;
@@ -142,7 +142,7 @@ impl<'m> NominalGauge<'m> {
             let off = x - self.at;
             let (a, c) = (off.dot(&axis), off.dot(&across));
             let beside = (a - unit.along * asked).hypot(c - unit.across * asked);
-            if beside > BESIDE * asked.abs() {
+            if beside > MAX_STEP_MISS_REL * asked.abs() {
                 return None;
             }
             Some((a * unit.along + c * unit.across, read(&gauge)?))

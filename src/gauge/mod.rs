@@ -23,7 +23,7 @@ mod unverified_elements;
 
 pub use arms::{Arm, Gauge, Spot, gauge_reading, shell_strain, strain_terms};
 pub use build::build;
-pub use element_distance::{ElementDistance, beside_beam, beside_shell};
+pub use element_distance::{ElementDistance, distance_to_beam, distance_to_shell};
 pub use error::GaugeError;
 pub use grid_average::SMOOTH;
 pub use installed_position::{NominalGauge, Offset};

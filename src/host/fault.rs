@@ -128,7 +128,7 @@ impl Faults {
         if list.is_empty() {
             Ok(())
         } else {
-            Err(Self(fold_alike(list)))
+            Err(Self(fold_similar_faults(list)))
         }
     }
 
@@ -137,7 +137,7 @@ impl Faults {
         if list.is_empty() {
             otherwise.into()
         } else {
-            Self(fold_alike(list))
+            Self(fold_similar_faults(list))
         }
     }
 
@@ -154,7 +154,7 @@ impl Faults {
 }
 
 /// Returns the faults, with similar faults folded. If many faults of a file and field differ in quoted values only, one fault replaces them.
-fn fold_alike(list: FaultList) -> FaultList {
+fn fold_similar_faults(list: FaultList) -> FaultList {
     /// Faults up to which each is listed.
     const FEW: usize = 3;
     let key = |f: &Fault| {

@@ -256,7 +256,7 @@ impl Output {
     ///
     /// # Errors
     /// As [`Output::commit`].
-    pub fn commit_beside(mut self, command: &str) -> Result<(), Faults> {
+    pub fn commit_with_earlier_files(mut self, command: &str) -> Result<(), Faults> {
         let _held = hold(&self.folder);
         self.check_spared(&[])?;
         let mut written = Manifest::read(&self.folder);

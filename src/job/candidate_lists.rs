@@ -54,7 +54,7 @@ pub(super) fn read_picked(inputs: &mut Inputs, job: &mut Job, faults: &mut Fault
 }
 
 /// Keys of a picked file that are none of its lists: they would not count.
-fn strangers(file: &str, text: &str, candidates: &mut Candidates) -> FaultList {
+fn report_unused_keys(file: &str, text: &str, candidates: &mut Candidates) -> FaultList {
     let known = lists(candidates).map(|l| l.0);
     let table: toml::Table = text.parse().unwrap_or_default();
     let below = table.get("candidates").and_then(toml::Value::as_table);
@@ -95,7 +95,7 @@ fn merge_candidates(job: &mut Job, named: &NamedFile, text: &str, faults: &mut F
         }
         return;
     };
-    faults.extend(strangers(file, text, &mut job.candidates));
+    faults.extend(report_unused_keys(file, text, &mut job.candidates));
     let mut c = Collector::new(file, text, faults);
     let mut picked = candidates_of(&mut c, section);
     for ((name, own), (_, other)) in lists(&mut job.candidates)

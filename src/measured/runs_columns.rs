@@ -361,7 +361,7 @@ pub fn known_column(
         );
         faults.push(Fault::with_line(&*t.file, 1, header, wrong, remedy));
     } else if unit != of_job {
-        let doubt = noise_in_doubt(job, runs, quantity, unit, of_job);
+        let doubt = find_ambiguous_noise(job, runs, quantity, unit, of_job);
         if let Some(fault) = doubt.filter(|f| !faults.contains(f)) {
             faults.push(fault);
         }
@@ -374,7 +374,7 @@ pub fn known_column(
 }
 
 /// Returns the fault of a noise in the job whose unit is ambiguous: the columns of the file have another unit than the job.
-fn noise_in_doubt(
+fn find_ambiguous_noise(
     job: &Job,
     runs: &Runs,
     quantity: Quantity,

@@ -152,7 +152,7 @@ pub(crate) fn reads_strain(job: &Job) -> bool {
 }
 
 /// Tests readings like [`subtract_and_test_zero`], for a job that may have no S yet: its readings are then tested against their noise alone.
-pub(crate) fn judged_to_learn(
+pub(crate) fn test_calibration_readings(
     work: &mut Work,
     job: &Job,
     measured: &Measured,

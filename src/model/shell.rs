@@ -332,9 +332,9 @@ fn projected_angle(axes: &Mat3, x: &[Vec3], normal: Vec3) -> f64 {
     };
     let e2 = normal.cross(&e1);
     // An axis within half a degree of the normal has no meaningful projection.
-    const STANDS: f64 = 0.01;
+    const MIN_PROJECTION: f64 = 0.01;
     let first = flat(axes.row(0).transpose());
-    let axis = if first.norm() > STANDS {
+    let axis = if first.norm() > MIN_PROJECTION {
         first
     } else {
         flat(axes.row(1).transpose())

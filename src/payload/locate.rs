@@ -82,7 +82,7 @@ pub fn locate(
 }
 
 /// Returns whether a run alone determines all unknowns.
-pub fn tells(model: &PayloadModel, run: &PayloadRun, spec: &WeighSpec) -> bool {
+pub fn determines_payload(model: &PayloadModel, run: &PayloadRun, spec: &WeighSpec) -> bool {
     let weights = vec![1.0; model.gauges.len()];
     solve_run(
         model,

@@ -90,7 +90,7 @@ pub(super) const SIGN_SIGMAS: f64 = 3.0;
 /// significantly below zero, or no payload: they would reduce the weight of every gauge.
 pub fn robust_payload(gauges: &[GaugeEstimates], spec: &RobustSpec) -> Option<RobustPayload> {
     let n_runs = gauges.iter().map(|g| g.estimates.len()).max()?;
-    let slack: Vec<f64> = (0..n_runs).map(|j| run_doubt(gauges, j)).collect();
+    let slack: Vec<f64> = (0..n_runs).map(|j| run_uncertainty(gauges, j)).collect();
     let own = |g: &GaugeEstimates, j: usize| {
         let p = g.estimates.get(j).copied().unwrap_or(f64::NAN);
         let sigma = g
@@ -132,7 +132,7 @@ pub fn robust_payload(gauges: &[GaugeEstimates], spec: &RobustSpec) -> Option<Ro
 
 /// Returns three standard deviations of the joint estimate of gauges with these standard deviations: an empty structure may read so far below zero.
 /// The weights are `1 / s`, so the mean of `n` has the standard deviation `sqrt(n) / sum(1 / s)`.
-pub(super) fn doubt(sigma: impl Iterator<Item = f64>) -> f64 {
+pub(super) fn joint_uncertainty(sigma: impl Iterator<Item = f64>) -> f64 {
     let (n, told) = sigma
         .filter(|s| *s > 0.0 && s.is_finite())
         .fold((0.0_f64, 0.0), |a, s| (a.0 + 1.0, a.1 + 1.0 / s));
@@ -144,8 +144,8 @@ pub(super) fn doubt(sigma: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Returns `doubt` of one run, or zero if no noise is stated.
-fn run_doubt(gauges: &[GaugeEstimates], j: usize) -> f64 {
-    doubt(gauges.iter().filter_map(|g| {
+fn run_uncertainty(gauges: &[GaugeEstimates], j: usize) -> f64 {
+    joint_uncertainty(gauges.iter().filter_map(|g| {
         let read = g.estimates.get(j)?.is_finite();
         g.sigma.as_ref()?.get(j).copied().filter(|_| read)
     }))

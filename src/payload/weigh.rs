@@ -2,11 +2,11 @@
 
 use super::by_calibration;
 use super::evidence::{PayloadModel, PayloadRun, Place, Refusal, Support, WeighSpec, WeighedRun};
-use super::locate::{Location, locate, tells};
+use super::locate::{Location, determines_payload, locate};
 use super::one_run::{Balance, PayloadFit};
 use super::robust::{
-    GaugeEstimates, GaugeVerdict, RobustSpec, SIGN_SIGMAS, cut_at_zero, doubt, robust_payload,
-    verdict_words,
+    GaugeEstimates, GaugeVerdict, RobustSpec, SIGN_SIGMAS, cut_at_zero, joint_uncertainty,
+    robust_payload, verdict_words,
 };
 use crate::estimate::NORMAL_95;
 use crate::estimate::weighted_median;
@@ -52,7 +52,10 @@ pub fn weigh(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     if has_strain && !has_wheels && spec.place == Place::Known && !is_correlated {
         return apply_calibration(model, runs, spec, by_strain(model, runs, spec));
     }
-    let told: Vec<bool> = runs.iter().map(|r| tells(model, r, spec)).collect();
+    let told: Vec<bool> = runs
+        .iter()
+        .map(|r| determines_payload(model, r, spec))
+        .collect();
     if told.contains(&false) && told.contains(&true) {
         let some = runs.iter().zip(&told).filter(|(_, t)| **t);
         let some: Vec<PayloadRun> = some.map(|(r, _)| r.clone()).collect();
@@ -315,7 +318,7 @@ fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     }
     let mut gauges = answer.gauges;
     for (g, v) in gauges.iter_mut().enumerate() {
-        say_weak(v, g, &out);
+        report_weak_gauge(v, g, &out);
     }
     Weighing {
         runs: out,
@@ -344,7 +347,7 @@ fn refused_by_itself(estimates: &[f64], sigma: &[f64], largest: f64) -> Option<R
     let Some(force) = median_of(estimates, sigma, |_| true) else {
         return Some(Refusal::Undetermined);
     };
-    if force < -doubt(pairs().map(|p| *p.1)) {
+    if force < -joint_uncertainty(pairs().map(|p| *p.1)) {
         return Some(Refusal::Negative { force });
     }
     (!pairs().any(possible)).then_some(Refusal::Undetermined)
@@ -461,14 +464,14 @@ fn verdicts(model: &PayloadModel, runs: &[WeighedRun], location: &Location) -> V
                 .map(|r| SIGN_SIGMAS * r.estimate_sigma.get(g).copied().unwrap_or(f64::NAN))
                 .collect();
             let mut v = verdict_words(&model.gauges[g], &estimates, &slack, &forces, good);
-            say_weak(&mut v, g, runs);
+            report_weak_gauge(&mut v, g, runs);
             v
         })
         .collect()
 }
 
 /// States in the reason of a used gauge that it is too weak to determine the payload alone.
-fn say_weak(v: &mut GaugeVerdict, g: usize, runs: &[WeighedRun]) {
+fn report_weak_gauge(v: &mut GaugeVerdict, g: usize, runs: &[WeighedRun]) {
     let share = runs
         .iter()
         .filter(|r| r.refused.is_none())

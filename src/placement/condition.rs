@@ -36,7 +36,7 @@ const MOST: [usize; 2] = [12_000, 1_500];
 /// Loads from which there are many.
 const MANY: usize = 12;
 /// Number of rows of a slot tested by eigenvalues, with few loads and with many.
-const JUDGED: [usize; 2] = [24, 6];
+const TESTED_ROWS: [usize; 2] = [24, 6];
 /// Share of the mean diagonal that is added to keep a layout without one gauge regular.
 const RIDGE: f64 = 1e-10;
 
@@ -63,7 +63,7 @@ pub fn find_least_condition(
         k,
         rows: &rows,
         base,
-        judged: JUDGED[many],
+        judged: TESTED_ROWS[many],
         excludes: &excludes,
     };
     let known: Vec<usize> = (0..layout.gauges.len()).collect();

@@ -20,13 +20,13 @@ pub struct Quality {
 }
 
 /// Computes leverages and standard deviations of a layout with prior information `prior` (`k x k`); `None` if it is singular.
-pub fn judge(c: &Candidates, gauges: &[Choice], prior: &[f64]) -> Option<Quality> {
+pub fn evaluate_layout(c: &Candidates, gauges: &[Choice], prior: &[f64]) -> Option<Quality> {
     let rows: Vec<Vec<f64>> = gauges.iter().map(|&g| c.row(g)).collect();
-    judge_rows(&rows, prior, c.n_loads())
+    evaluate_rows(&rows, prior, c.n_loads())
 }
 
 /// Computes the quality of rows over their standard deviation, columns times `expected`.
-pub fn judge_rows(rows: &[Vec<f64>], prior: &[f64], k: usize) -> Option<Quality> {
+pub fn evaluate_rows(rows: &[Vec<f64>], prior: &[f64], k: usize) -> Option<Quality> {
     let mut m = prior.to_vec();
     for r in rows {
         spd::add_outer(&mut m, r, 1.0);

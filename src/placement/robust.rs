@@ -111,7 +111,7 @@ fn improve(
                 .filter(|(q, _)| *q != slot)
                 .map(|(_, &r)| r)
                 .collect();
-            let Some((i, value)) = best_beside(active, prior, &rest, excludes) else {
+            let Some((i, value)) = find_best_addition(active, prior, &rest, excludes) else {
                 continue;
             };
             if value > now + LEAST_GAIN {
@@ -126,7 +126,7 @@ fn improve(
 }
 
 /// The row that leaves most after the worst loss when it joins `rest`.
-fn best_beside(
+fn find_best_addition(
     active: &Active,
     prior: &[f64],
     rest: &[usize],

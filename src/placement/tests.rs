@@ -374,7 +374,7 @@ fn losing_a_gauge_multiplies_the_determinant_by_one_less_its_leverage() {
             angle: 0.0,
         })
         .collect();
-    let q = quality::judge(&c, &all, &[0.0; 9]).unwrap();
+    let q = quality::evaluate_layout(&c, &all, &[0.0; 9]).unwrap();
     for i in 0..7 {
         let rest: Vec<Choice> = all
             .iter()
@@ -385,7 +385,7 @@ fn losing_a_gauge_multiplies_the_determinant_by_one_less_its_leverage() {
         let left = (log_det(&c, &rest, &[0.0; 9]) - log_det(&c, &all, &[0.0; 9])).exp();
         assert!((left - (1.0 - q.leverage[i])).abs() < 1e-12);
     }
-    let exact = quality::judge(&c, &all[..3], &[0.0; 9]).unwrap();
+    let exact = quality::evaluate_layout(&c, &all[..3], &[0.0; 9]).unwrap();
     assert_eq!(
         exact.worst_loss, 0.0,
         "as many gauges as loads: none may fail"

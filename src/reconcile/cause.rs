@@ -48,13 +48,17 @@ pub struct CauseOutcome {
 }
 
 /// Difference of log evidence below which two sets are indistinguishable.
-const ALIKE: f64 = 3.0;
+const INDISTINGUISHABLE_LOG_EVIDENCE: f64 = 3.0;
 /// Largest number of causes tested together; every further cause doubles the number of sets.
 const MOST: usize = 6;
 
 /// Computes the evidence of all sets of `causes` (the first six) over the fit runs. `noise` is one standard deviation of a reading, by channel. NaN
 /// readings are left out.
-pub fn weigh_causes(observations: &Observations, noise: &[f64], causes: &[Cause]) -> CauseOutcome {
+pub fn evaluate_cause_sets(
+    observations: &Observations,
+    noise: &[f64],
+    causes: &[Cause],
+) -> CauseOutcome {
     let causes = &causes[..causes.len().min(MOST)];
     let mut sets: Vec<CauseSet> = (0..1usize << causes.len())
         .map(|mask| {
@@ -62,7 +66,7 @@ pub fn weigh_causes(observations: &Observations, noise: &[f64], causes: &[Cause]
                 .iter()
                 .enumerate()
                 .filter(|(k, _)| (mask >> k) & 1 == 1);
-            weigh(
+            evaluate_cause_set(
                 observations,
                 noise,
                 &chosen.map(|c| c.1).collect::<Vec<_>>(),
@@ -81,7 +85,8 @@ pub fn weigh_causes(observations: &Observations, noise: &[f64], causes: &[Cause]
         };
     };
     let alike = |s: &&CauseSet| {
-        s.names.len() == best.names.len() && (penalised(&best) - penalised(s)).abs() < ALIKE
+        s.names.len() == best.names.len()
+            && (penalised(&best) - penalised(s)).abs() < INDISTINGUISHABLE_LOG_EVIDENCE
     };
     let rivals: Vec<CauseSet> = sets.iter().filter(alike).cloned().collect();
     let verdict = match (best.names.is_empty(), rivals.len()) {
@@ -179,7 +184,7 @@ fn scale_values(cause: &Cause) -> (Vec<f64>, f64) {
     )
 }
 
-fn weigh(observations: &Observations, noise: &[f64], causes: &[&Cause]) -> CauseSet {
+fn evaluate_cause_set(observations: &Observations, noise: &[f64], causes: &[&Cause]) -> CauseSet {
     let x: Vec<(Vec<f64>, f64)> = causes.iter().map(|c| scale_values(c)).collect();
     let at = |k: usize, r: usize| x[k].0.get(r).copied().unwrap_or(0.0);
     let mut out = CauseSet {

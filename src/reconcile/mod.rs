@@ -16,11 +16,11 @@ mod rules;
 mod search;
 pub mod strain;
 
-pub use cause::{Cause, CauseOutcome, CauseSet, weigh_causes};
+pub use cause::{Cause, CauseOutcome, CauseSet, evaluate_cause_sets};
 pub use observation::Observations;
 pub use outcome::{
-    ChannelGap, DetectionLimit, Gap, GapBasis, GapNumbers, LoadShift, Misfit, NamedEffect, Outcome,
-    Rival, SmoothAt, Verdict,
+    AlternativeExplanation, ChannelGap, DetectionLimit, Gap, GapBasis, GapNumbers, LoadShift,
+    Misfit, NamedEffect, Outcome, SmoothAt, Verdict,
 };
 pub use rules::{MotionRules, Rule, StrainRules};
 pub use search::{Addition, Breadth, ScoredSet, Scorer, search, search_near, settle};

@@ -50,7 +50,7 @@ pub struct NamedEffect {
 
 /// Alternative explanation.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rival {
+pub struct AlternativeExplanation {
     /// Ids with places.
     pub ids: Vec<String>,
     /// Log evidence of the identified set less the log evidence of this explanation.
@@ -223,7 +223,7 @@ pub struct Outcome {
     /// Effects replaced by a smooth model error that explains the data as well; empty if no such error exists.
     pub replaced: Vec<NamedEffect>,
     /// Alternative explanations, nearest first.
-    pub rivals: Vec<Rival>,
+    pub rivals: Vec<AlternativeExplanation>,
     /// Log evidence of the identified set (or best attempt) less the log evidence without effects.
     pub evidence: f64,
     /// Number of resampled run sets, out of 100, whose best set contains every effect of the identified set (or best attempt).

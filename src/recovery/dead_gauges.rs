@@ -132,7 +132,7 @@ fn is_dead(
 /// gauge is dead if its strain predicted from the used gauges changes by more than noise and model error. It is also dead if the mean of the
 /// predicted strain differs from the value by more. If the used gauges don't predict its strain, it is dead if any used gauge changes by more than
 /// noise.
-pub fn is_told_dead(
+pub fn is_shown_dead(
     s: &Sensitivity,
     used: &[usize],
     rows: &[&Vec<f64>],

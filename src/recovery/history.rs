@@ -1,6 +1,6 @@
 //! Records of any length: one estimate, samples streamed through it in blocks, constant memory.
 
-use super::dynamic::Doubt;
+use super::dynamic::ReadingCovariance;
 use super::errors::ErrorModel;
 use super::gain::Gain;
 use super::kernel::Samples;
@@ -34,7 +34,7 @@ pub struct Filter {
     typical: Vec<f64>,
     widening: Widening,
     /// Error of the readings in addition to these errors, sample by sample.
-    doubt: Option<Doubt>,
+    doubt: Option<ReadingCovariance>,
     /// Sums of loads that are listed after the loads.
     sums: Vec<Vec<(usize, f64)>>,
     /// Estimates by the set of gauges that read.
@@ -81,7 +81,7 @@ impl Filter {
     }
 
     /// Adds what readings are off by beyond these errors; before sums of loads are listed.
-    pub fn add_doubt(&mut self, doubt: Doubt) {
+    pub fn add_reading_covariance(&mut self, doubt: ReadingCovariance) {
         let noise = doubt.of_noise(&self.whole.used);
         self.whole = Arc::new(self.whole.with_noise(&noise));
         self.doubt = Some(doubt);

@@ -246,7 +246,12 @@ impl Projection {
     }
 
     /// All runs of a pattern together; `strain` and `loads` by run of the pattern.
-    pub fn judge(&self, pattern: &Pattern, strain: &[&[f64]], loads: &[Vec<f64>]) -> Option<Joint> {
+    pub fn test_pattern(
+        &self,
+        pattern: &Pattern,
+        strain: &[&[f64]],
+        loads: &[Vec<f64>],
+    ) -> Option<Joint> {
         let m = self.m();
         let together = self.joint_residuals(pattern, strain, loads)?;
         let runs = (strain.len() as f64 * self.share).round().max(1.0);

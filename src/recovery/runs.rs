@@ -162,7 +162,9 @@ fn recover_calibrated(
     findings.extend(load_determinacy::check(s, &runs));
     let told = runs.iter().flat_map(|r| {
         let values = r.estimate.values.iter().enumerate();
-        values.filter(|(l, _)| r.tells(*l)).map(|(l, v)| (l, *v))
+        values
+            .filter(|(l, _)| r.determines_load(*l))
+            .map(|(l, v)| (l, *v))
     });
     let typical = root_mean_squares(s.loads.len(), told);
     Recovery {

@@ -42,14 +42,16 @@ pub fn recover_samples_with_alternatives(
         (&beyond, Order::Samples),
         (FaultTreatment::AsMeasured, alternatives),
     );
-    if recovery.findings.iter().any(|f| f.code == NOT_SOLVABLE) && all_tell(s, errors, &recovery) {
+    if recovery.findings.iter().any(|f| f.code == NOT_SOLVABLE)
+        && determine_wanted_loads(s, errors, &recovery)
+    {
         recovery.findings.retain(|f| f.code != NOT_SOLVABLE);
     }
     recovery
 }
 
 /// Whether all gauges together determine the wanted loads.
-fn all_tell(s: &Sensitivity, errors: ErrorModel, recovery: &Recovery) -> bool {
+fn determine_wanted_loads(s: &Sensitivity, errors: ErrorModel, recovery: &Recovery) -> bool {
     let all: Vec<usize> = (0..s.gauges.len()).collect();
     let wanted = (0..s.loads.len()).filter(|&l| s.loads[l].wanted);
     Gain::new(s, &all, errors, 1.0, &recovery.typical)

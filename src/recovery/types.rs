@@ -63,7 +63,7 @@ pub struct RunEstimate {
 
 impl RunEstimate {
     /// Whether the readings determine load `l`; if not, its value is blank or arbitrary.
-    pub fn tells(&self, l: usize) -> bool {
+    pub fn determines_load(&self, l: usize) -> bool {
         let value = self.estimate.values.get(l);
         value.is_some_and(|v| v.is_finite()) && self.estimate.sigma(l).is_finite()
     }

@@ -20,7 +20,7 @@ pub const NOT_SOLVABLE: &str = "run-not-solvable";
 /// Probability below which a sum of squares counts as larger than stated errors or scatter.
 pub(super) const SIGNIFICANT: f64 = 1e-3;
 /// Probability below which it is certainly larger.
-pub(super) const BEYOND_DOUBT: f64 = 1e-6;
+pub(super) const CERTAIN_CHANCE: f64 = 1e-6;
 /// Residual over readings (root mean squares): a right model with the wrong mesh is below this limit, a missing load is above.
 const EXPLAINED_LIMIT: f64 = 0.05;
 /// `sqrt(chi2 / dof)` below which a misfit is small relative to stated errors, whatever its share.
@@ -87,7 +87,7 @@ pub(super) fn check(
     }
     let judged = test_patterns(s, readings, (solved, beyond, share), errors);
     let joints: Vec<&Joint> = judged.iter().map(|j| &j.joint).collect();
-    let mut evidence = weigh(s, runs, &joints);
+    let mut evidence = combine_tests(s, runs, &joints);
     if !beyond.is_empty() {
         // Errors that all samples share are overestimated, so small residuals are not evidence.
         evidence.low = 1.0;
@@ -190,7 +190,7 @@ fn test_patterns<'a>(
             .iter()
             .map(|&i| solved.runs[i].estimate.values.clone())
             .collect();
-        let joint = projection.judge(pattern, &strain, &loads)?;
+        let joint = projection.test_pattern(pattern, &strain, &loads)?;
         Some(PatternTest {
             pattern,
             gain,
@@ -213,7 +213,7 @@ fn bound_shared_covariance(pattern: &Pattern, beyond: &[AddedCovariance]) -> Opt
 }
 
 /// Combines all tests, each against its share of the probability (Bonferroni).
-fn weigh(s: &Sensitivity, runs: &[RunEstimate], joints: &[&Joint]) -> Evidence {
+fn combine_tests(s: &Sensitivity, runs: &[RunEstimate], joints: &[&Joint]) -> Evidence {
     let ratio = |chi2: f64, dof: usize| (chi2 / dof.max(1) as f64).sqrt();
     let (chi2, dof) = runs
         .iter()
@@ -278,7 +278,7 @@ impl Sizes {
         let bad = pairs
             .iter()
             .filter(|(_, r)| {
-                each * chance(r.chi2, r.dof) < BEYOND_DOUBT
+                each * chance(r.chi2, r.dof) < CERTAIN_CHANCE
                     && (r.chi2 / r.dof.max(1) as f64).sqrt() > BIRGE_LIMIT
             })
             .filter(|pair| share(&[**pair]) > EXPLAINED_LIMIT)
@@ -327,7 +327,7 @@ fn size_finding(evidence: &Evidence, sizes: &Sizes, errors: ErrorModel) -> Optio
         _ => format!("noise of {noise} microstrain"),
     };
     let excess = evidence.excess;
-    let beyond = evidence.high < BEYOND_DOUBT && excess > BIRGE_LIMIT;
+    let beyond = evidence.high < CERTAIN_CHANCE && excess > BIRGE_LIMIT;
     if beyond && (sizes.share > EXPLAINED_LIMIT || !sizes.bad.is_empty()) {
         let subject = if sizes.bad.is_empty() || sizes.bad.len() == sizes.n {
             "all runs".to_owned()
@@ -372,7 +372,7 @@ fn size_finding(evidence: &Evidence, sizes: &Sizes, errors: ErrorModel) -> Optio
             .with_numbers(excess, 1.0),
         );
     }
-    (evidence.low < BEYOND_DOUBT).then(|| {
+    (evidence.low < CERTAIN_CHANCE).then(|| {
         Finding::new(
             Severity::Info,
             "residual-below-stated-errors",

@@ -228,7 +228,7 @@ impl DeckModel {
     }
 
     /// Returns a fault if results contain elements that this deck lacks, and no ENDDATA shows that the deck is complete.
-    pub fn cut_beside(&self, findings: &[Finding]) -> Option<Fault> {
+    pub fn find_truncation(&self, findings: &[Finding]) -> Option<Fault> {
         let lacking = findings.iter().find(|f| f.code == "element-not-in-deck")?;
         self.ends_open().then(|| self.open_end(lacking.clause()))
     }

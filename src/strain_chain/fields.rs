@@ -127,7 +127,7 @@ fn of_loads<'a>(job: &Job, cases: impl Iterator<Item = &'a CaseResult>) -> Vec<L
 /// # Errors
 /// Faults of the deck, unreadable results, loads without a case.
 pub fn read_fields(work: &mut Work, job: &Job, at: WantedAt) -> Result<Fields, Faults> {
-    read_fields_beside(work, job, at, None)
+    read_fields_with_additional_loads(work, job, at, None)
 }
 
 /// Reads the model like [`read_fields`], and solves for the additional loads `beside` with the same matrix factor. Elastic modes are then left out,
@@ -135,7 +135,7 @@ pub fn read_fields(work: &mut Work, job: &Job, at: WantedAt) -> Result<Fields, F
 ///
 /// # Errors
 /// Every error of [`read_fields`] and of `beside`.
-pub fn read_fields_beside(
+pub fn read_fields_with_additional_loads(
     work: &mut Work,
     job: &Job,
     at: WantedAt,

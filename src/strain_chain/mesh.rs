@@ -221,7 +221,7 @@ fn point_load<'a>(model: &Model, mut loads: impl Iterator<Item = &'a UnitLoad>) 
 ///
 /// # Errors
 /// Loads that cannot be solved on the finer mesh.
-pub fn take_out_beside(
+pub fn subtract_from_additional_loads(
     work: &mut Work,
     job: &Job,
     (deck, known): (&DeckModel, Option<&MeshError>),

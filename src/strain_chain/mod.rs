@@ -26,12 +26,12 @@ mod units;
 
 pub use alternative_rows::{alternative_rows, alternatives_of};
 pub use covariance::{covariance_bytes, read_covariance};
-pub use fields::{AdditionalUnitLoads, Fields, read_fields, read_fields_beside};
+pub use fields::{AdditionalUnitLoads, Fields, read_fields, read_fields_with_additional_loads};
 pub use gauges::{lay_gauges, not_laid, without_strain};
 pub use given_sensitivity::read_given;
 pub use mesh::{
     GaugeMeshError, LoadMeshError, WantedAt, coarse_at_gauges, left_in_reading, left_squared,
-    mesh_errors, refined_mesh, take_out_beside,
+    mesh_errors, refined_mesh, subtract_from_additional_loads,
 };
 pub use specs::corrected_spec_of;
 pub use stated_noise::stated_noise;
@@ -82,14 +82,14 @@ impl JobSensitivity {
 /// # Errors
 /// Every fault of these stages.
 pub fn prepare(work: &mut Work, job: &Job) -> Result<JobSensitivity, Faults> {
-    prepare_beside(work, job, None)
+    prepare_with_additional_loads(work, job, None)
 }
 
 /// Returns S like [`prepare`], and solves the model for the additional loads `beside` if the built-in solver computes S ([`Fields::beside`]).
 ///
 /// # Errors
 /// Every error of [`prepare`] and of `beside`.
-pub fn prepare_beside(
+pub fn prepare_with_additional_loads(
     work: &mut Work,
     job: &Job,
     beside: Option<AdditionalUnitLoads<'_>>,
@@ -100,7 +100,8 @@ pub fn prepare_beside(
         // With a calibrated S, the fields of the model are still needed for responses and pictures.
         let (fields, gauges) = match &job.model {
             Some(_) if has_covariance(job) => {
-                let fields = read_fields_beside(work, job, WantedAt::Gauges, beside)?;
+                let fields =
+                    read_fields_with_additional_loads(work, job, WantedAt::Gauges, beside)?;
                 let mut gauges = lay_gauges(work, job, &fields)?;
                 gauges.retain(|g| sensitivity.gauges.contains(&g.name));
                 (Some(fields), gauges)
@@ -117,7 +118,7 @@ pub fn prepare_beside(
             mesh_error: Vec::new(),
         }
     } else {
-        let fields = read_fields_beside(work, job, WantedAt::Gauges, beside)?;
+        let fields = read_fields_with_additional_loads(work, job, WantedAt::Gauges, beside)?;
         let gauges = lay_gauges(work, job, &fields)?;
         let mut sensitivity = from_cases(&gauges, &fields.load_cases(job))
             .map_err(|missing| without_strain(job, &missing))?;

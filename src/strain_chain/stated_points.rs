@@ -3,7 +3,9 @@
 use crate::estimate::NORMAL_95;
 use crate::fe::strain_tensor::Surface;
 use crate::finding::{Finding, Severity};
-use crate::gauge::{BetweenSkins, beside_beam, beside_shell, between_skins, nearest_skin};
+use crate::gauge::{
+    BetweenSkins, between_skins, distance_to_beam, distance_to_shell, nearest_skin,
+};
 use crate::host::words::format_number;
 use crate::job::{Job, JobGauge, StatedPlace};
 use crate::model::{Model, ShellIx, Vec3};
@@ -42,7 +44,7 @@ fn stated_points(model: &Model, g: &JobGauge) -> impl Iterator<Item = Vec3> + us
 fn at_skins(model: &Model, g: &JobGauge) -> Option<(ShellIx, BetweenSkins)> {
     let on_element = |ix: ShellIx| {
         stated_points(model, g)
-            .filter_map(|x| Some((beside_shell(model, ix, x)?.distance, x)))
+            .filter_map(|x| Some((distance_to_shell(model, ix, x)?.distance, x)))
             .min_by(|a, b| a.0.total_cmp(&b.0))
             .map(|(_, x)| x)
     };
@@ -145,8 +147,10 @@ fn point_tolerance(job: &Job) -> f64 {
 /// exceeds the size of the element, else a warning. The strain of the element is used.
 fn off_their_elements(model: &Model, job: &Job) -> Vec<Finding> {
     let beside = |g: &JobGauge, x: Vec3| match g.place {
-        StatedPlace::Element(id) => beside_shell(model, model.shell_ix(id)?, x),
-        StatedPlace::BeamPoint { element, .. } => beside_beam(model, model.beam_ix(element)?, x),
+        StatedPlace::Element(id) => distance_to_shell(model, model.shell_ix(id)?, x),
+        StatedPlace::BeamPoint { element, .. } => {
+            distance_to_beam(model, model.beam_ix(element)?, x)
+        }
         StatedPlace::Position(..) | StatedPlace::Unstated => None,
     };
     let unit = job.units.unit(Quantity::Length).name;

@@ -130,7 +130,7 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
     let mut solution = work.stage("strain", |_| {
         solution_from_results(&deck.model, &named, &options)
     });
-    if let Some(cut) = deck.cut_beside(&solution.findings) {
+    if let Some(cut) = deck.find_truncation(&solution.findings) {
         return Err(cut.into());
     }
     if let Some(other) = other_element_types(&solution.findings) {

@@ -4,7 +4,9 @@ use super::hidden;
 use super::hidden::generator::{Background, EFFECTS, UNMODELLED, hide};
 use super::hidden::judge::{Answer, judge};
 use strainbridge::reconcile::effect::{Member, library};
-use strainbridge::reconcile::strain::{FoundAnew, StrainFrame, examine, predict, proof_residuals};
+use strainbridge::reconcile::strain::{
+    ReestimatedUnknowns, StrainFrame, examine, predict, proof_residuals,
+};
 use strainbridge::reconcile::{GapBasis, Outcome, Verdict};
 
 fn case(name: &str) -> Option<(StrainFrame, serde_json::Value)> {
@@ -163,7 +165,10 @@ fn an_effect_of_size_zero_explains_nothing_of_the_gap() {
                 effect,
                 parameters: &neutral,
             }];
-            for anew in [FoundAnew::Amplitudes, FoundAnew::AmplitudesAndLoads] {
+            for anew in [
+                ReestimatedUnknowns::Amplitudes,
+                ReestimatedUnknowns::AmplitudesAndLoads,
+            ] {
                 let gap = proof_residuals(&frame, &member, &[], anew)
                     .expect("a covariance")
                     .numbers();

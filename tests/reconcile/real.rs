@@ -3,7 +3,7 @@
 use super::hidden::{self, plain_frame};
 use std::path::Path;
 use strainbridge::reconcile::strain::{GaugeFacts, PayloadWeight, StrainFrame, Wiring, examine};
-use strainbridge::reconcile::{Cause, Observations, Verdict, weigh_causes};
+use strainbridge::reconcile::{Cause, Observations, Verdict, evaluate_cause_sets};
 
 /// Columns of a record by name, rows in time.
 fn record(dir: &Path, file: &str) -> (Vec<String>, Vec<Vec<f64>>) {
@@ -88,7 +88,7 @@ fn on_stage_means_of_the_bridge_settlement_and_temperature_are_rivals_and_the_lo
         Window(AFTER, 0.0, 1e9, true),
     ];
     let (observations, causes) = bridge(&dir, &stages, &[]);
-    let outcome = weigh_causes(&observations, &NOISE, &causes);
+    let outcome = evaluate_cause_sets(&observations, &NOISE, &causes);
     assert_eq!(outcome.verdict, Verdict::Unknown);
     let rivals: Vec<String> = outcome.rivals.iter().map(|r| r.names.join("+")).collect();
     assert_eq!(rivals.len(), 2, "{rivals:?}");
@@ -128,7 +128,7 @@ fn with_the_lowering_record_the_settlement_is_named_and_the_temperature_is_not()
         (1..7).map(|k| Window(LOWERED, 60.0 * f64::from(k), 60.0 * f64::from(k + 1), true)),
     );
     let (observations, causes) = bridge(&dir, &windows, &[4, 7, 9, 13, 16]);
-    let outcome = weigh_causes(&observations, &NOISE, &causes);
+    let outcome = evaluate_cause_sets(&observations, &NOISE, &causes);
     assert_eq!(outcome.verdict, Verdict::Named);
     assert_eq!(outcome.sets[0].names, ["settlement"]);
     let of = |names: &[&str]| {

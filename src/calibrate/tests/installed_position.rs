@@ -164,7 +164,8 @@ fn trial(seed: u64) -> Trial {
         position: POSITION,
         angle_rad: ANGLE,
     };
-    let found = calibrate_as_glued(&task, tolerance, |g, o| Some(row(sites[g], o))).unwrap();
+    let found =
+        calibrate_installed_gauges(&task, tolerance, |g, o| Some(row(sites[g], o))).unwrap();
     let new = [0.7, -0.4, 0.9, 0.6];
     let readings = Readings {
         run: "new".into(),

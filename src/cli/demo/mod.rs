@@ -50,7 +50,7 @@ pub(super) const FOLDER: &str = "strainbridge-demo";
 #[derive(Serialize)]
 pub struct Story {
     /// Chapters of the story.
-    steps: Vec<StepTold>,
+    steps: Vec<ChapterSummary>,
     /// Effects that `reconcile` named.
     named: Vec<String>,
     /// The effect that was hidden.
@@ -67,7 +67,7 @@ pub struct Story {
 
 /// A chapter in `result.json`.
 #[derive(Serialize)]
-struct StepTold {
+struct ChapterSummary {
     command: &'static str,
     folder: &'static str,
     words: String,
@@ -339,7 +339,7 @@ fn run_story(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         step,
     });
     let off = run_payload_and_respond(folder, work, &mut story, &corrected, &measured)?;
-    let step = |c: &Chapter| StepTold {
+    let step = |c: &Chapter| ChapterSummary {
         command: c.command,
         folder: c.folder,
         words: c.words.clone(),
@@ -366,7 +366,7 @@ fn in_words(hidden: &str) -> String {
 fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, Faults> {
     let mut out = Output::begin(folder)?;
     out.write_bytes(name, text.as_bytes())?;
-    out.commit_beside(INPUTS)?;
+    out.commit_with_earlier_files(INPUTS)?;
     Ok(folder.join(name))
 }
 

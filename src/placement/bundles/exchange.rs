@@ -6,7 +6,7 @@ use crate::linalg::spd;
 use crate::placement::coordinate_exchange::LEAST_GAIN;
 
 /// Number of exchange candidates that are evaluated exactly.
-const JUDGED: usize = 24;
+const EVALUATED_EXCHANGES: usize = 24;
 
 /// Fills the budget, then exchanges single bundles until no exchange improves the criterion.
 pub(super) fn improve(
@@ -109,7 +109,7 @@ fn rank_bundles(
         })
         .collect();
     keyed.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    keyed.truncate(JUDGED);
+    keyed.truncate(EVALUATED_EXCHANGES);
     keyed.into_iter().map(|x| x.1).collect()
 }
 

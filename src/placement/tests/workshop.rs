@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::placement::exchange::Effort;
-use crate::placement::quality::{influence, judge_rows, reserve};
+use crate::placement::quality::{evaluate_rows, influence, reserve};
 use crate::placement::relaxation_solution::Active;
 use crate::placement::{Loss, robust};
 
@@ -188,7 +188,7 @@ fn fewer_gauges_than_loads_are_placed_where_load_sizes_are_known() {
         assert!(got.proved && got.log_det >= best - 1e-9, "trial {trial}");
         let rows: Vec<Vec<f64>> = got.gauges.iter().map(|&g| c.row(g)).collect();
         assert!(
-            judge_rows(&rows, &spec.prior, 5)
+            evaluate_rows(&rows, &spec.prior, 5)
                 .unwrap()
                 .sigma
                 .iter()

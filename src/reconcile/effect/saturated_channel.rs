@@ -15,11 +15,11 @@ impl SaturatedChannel {
     /// Returns one effect for every gauge with two or more readings at its largest magnitude for which the model predicts more.
     pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         /// Readings held at a limit differ by noise only: five standard deviations.
-        const ALIKE: f64 = 5.0;
+        const AT_LIMIT_SD: f64 = 5.0;
         let predicted = predict(frame, &[]);
         let mut out = Vec::new();
         for gauge in 0..frame.n_gauges() {
-            let near = ALIKE * frame.noise_of(gauge);
+            let near = AT_LIMIT_SD * frame.noise_of(gauge);
             let read: Vec<f64> = (0..frame.n_runs())
                 .map(|r| frame.observations.value(r, gauge).abs())
                 .filter(|v| v.is_finite())

@@ -3,7 +3,7 @@
 
 use super::change::Change;
 use super::design::BinEquation;
-use super::evidence::{beside_shaking, evidence};
+use super::evidence::{evidence, evidence_outside_shaking};
 use super::fit::{Effort, fit};
 use super::frame::MotionFrame;
 use super::motion_fit::MotionFit;
@@ -31,7 +31,7 @@ pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<ScoredSet<MotionFit
     let best = scorer.with_own_constants(best);
     all.retain(|s| s.set != best.set);
     all.push(best.clone());
-    let beside = |fit: &MotionFit| beside_shaking(scorer.frame, fit);
+    let beside = |fit: &MotionFit| evidence_outside_shaking(scorer.frame, fit);
     let of_best = with_own_background(scorer, &best).log_evidence;
     for &member in &best.set {
         let own = &candidates[member];

@@ -78,7 +78,7 @@ impl Candidate {
     }
 
     /// Returns whether the effect changes everything at once, too much for a linear prediction of its gain.
-    pub fn is_upheaval(&self) -> bool {
+    pub fn is_dominant_fault(&self) -> bool {
         matches!(
             self.shapes.first(),
             Some(Change::Swap { .. } | Change::Flip { .. })

@@ -48,7 +48,7 @@ pub fn evidence(frame: &MotionFrame, candidates: &[Candidate], fit: &MotionFit) 
 }
 
 /// Returns the log evidence from data other than the shaken part of the record: means of accelerometers, sizes of channel faults.
-pub fn beside_shaking(frame: &MotionFrame, fit: &MotionFit) -> f64 {
+pub fn evidence_outside_shaking(frame: &MotionFrame, fit: &MotionFit) -> f64 {
     -0.5 * zeros(frame, fit) - channel_fault_cost(frame, fit)
 }
 

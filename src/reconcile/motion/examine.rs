@@ -10,7 +10,6 @@ use super::effect::library;
 use super::fit::{Effort, fit};
 use super::frame::MotionFrame;
 use super::gap::fitted_gap;
-use super::judge::conclude;
 use super::motion_fit::MotionFit;
 use super::noise::Background;
 use super::outcome::MotionOutcome;
@@ -19,6 +18,7 @@ use super::ranked_sets::RankedEffectSets;
 use super::scorer::MotionScorer;
 use super::sound::outcome_of_dead;
 use super::unexplained_background::{of_fit, power, unexplained_background};
+use super::verdict::conclude;
 use crate::reconcile::search::{Breadth, ScoredSet, Scorer, search, search_near, settle};
 use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::motion::VehicleError;
@@ -94,8 +94,11 @@ fn search_effect_sets(
     let mut all = Vec::new();
     let mut best = None;
     let found = upheavals(scorer, &null);
-    let whole =
-        |s: &ScoredSet<MotionFit>| s.set.iter().any(|&c| scorer.candidates[c].is_upheaval());
+    let whole = |s: &ScoredSet<MotionFit>| {
+        s.set
+            .iter()
+            .any(|&c| scorer.candidates[c].is_dominant_fault())
+    };
     if let Some(first) = found.first().filter(|s| whole(s)) {
         best = Some(first.clone());
         all = found;
@@ -185,7 +188,7 @@ fn upheavals(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<ScoredSet<Motio
         .candidates
         .iter()
         .enumerate()
-        .filter(|(_, c)| c.is_upheaval() || c.overturns())
+        .filter(|(_, c)| c.is_dominant_fault() || c.overturns())
         .filter_map(tried)
         .collect();
     found.sort_by(|a, b| a.1.chi2.total_cmp(&b.1.chi2));

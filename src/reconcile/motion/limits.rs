@@ -198,7 +198,7 @@ fn is_upright(fit: &MotionFit) -> bool {
 
 /// Returns whether every effect with a size exceeds its own scatter by three and a half standard deviations. This equals the evidence that a name
 /// requires, odds of 400.
-pub fn stands_out(rules: &MotionRules, fit: &MotionFit) -> bool {
+pub fn effects_exceed_scatter(rules: &MotionRules, fit: &MotionFit) -> bool {
     let least = (2.0 * rules.decisive).sqrt();
     fit.parts.iter().zip(&fit.sizes).all(|(p, sizes)| {
         let neutral = match p.shape {

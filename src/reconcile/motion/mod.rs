@@ -26,7 +26,6 @@ pub mod floor;
 pub mod frame;
 pub mod gap;
 pub mod gap_profile;
-pub mod judge;
 pub mod limits;
 pub mod moments;
 pub mod motion_fit;
@@ -43,6 +42,7 @@ pub mod sits;
 mod sound;
 pub mod unexplained_background;
 mod unproven_effects;
+pub mod verdict;
 mod zeros;
 
 pub use examine::examine;

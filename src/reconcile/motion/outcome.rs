@@ -3,7 +3,7 @@
 use super::change::Change;
 use super::gap::{Proof, RecordGap};
 use crate::finding::Finding;
-use crate::reconcile::outcome::{Gap, Rival, Verdict};
+use crate::reconcile::outcome::{AlternativeExplanation, Gap, Verdict};
 use crate::vehicle::adjustment::Adjustment;
 
 /// A named effect of motion.
@@ -50,7 +50,7 @@ pub struct MotionOutcome {
     /// Corrections of channels with the named effects included: corrections of the job and corrections found.
     pub corrections: Vec<Adjustment>,
     /// Other explanations, nearest first.
-    pub rivals: Vec<Rival>,
+    pub rivals: Vec<AlternativeExplanation>,
     /// Log evidence of the best set less the log evidence without effects.
     pub evidence: f64,
     /// Log evidence needed to name an effect.

@@ -441,7 +441,7 @@ impl Scorer for MotionScorer<'_> {
     }
 
     fn is_compatible_pair(&self, a: usize, b: usize) -> bool {
-        let whole = |c: usize| self.candidates[c].is_upheaval();
+        let whole = |c: usize| self.candidates[c].is_dominant_fault();
         // A low-pass filter already delays the channel. With an additional delay of either sign, it would represent filters that are not in the
         // library.
         let filtered_and_late = |a: usize, b: usize| {

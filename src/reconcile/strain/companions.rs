@@ -1,10 +1,10 @@
 //! Effects of a set that its evidence does not require.
 
+use super::alternatives::WORTH_NAMING;
 use super::explanation::{discrepancy, ids, is_unmodelled, named_part};
 use super::frame::StrainFrame;
 use super::likelihood::Fit;
 use super::own_covariance::{own_evidence, under_own_covariance, with_members};
-use super::rivals::WORTH_NAMING;
 use crate::reconcile::effect::{Candidate, Discrepancy, full_id};
 use crate::reconcile::search::ScoredSet;
 use rayon::prelude::*;

@@ -100,7 +100,7 @@ pub fn covariance(
     for pattern in &columns {
         add_outer(&mut block, pattern, frame.load_noise * frame.load_noise);
     }
-    let doubt = frame.relative_doubt();
+    let doubt = frame.relative_uncertainty();
     let known = frame.nuisance_amplitudes();
     for u in unknown.iter().chain(&known) {
         let correlation = u.amplitudes.correlation;

@@ -3,12 +3,12 @@
 use super::explanation::{is_unmodelled, named_part};
 use super::frame::StrainFrame;
 use super::input_fault_search::wrong_records;
-use super::judge::{adequacy_of, at_floor, judge};
 use super::likelihood::{Fit, Likelihood};
 use super::own_covariance::best_by_own_covariance;
 use super::sizes_found::effects_with_sizes;
 use super::smooth_alternative::smooth_instead;
 use super::validation::{Proofs, validate_set};
+use super::verdict::{adequacy_of, at_floor, test_best_set};
 use crate::finding::Finding;
 use crate::reconcile::effect::{Candidate, Discrepancy, library};
 use crate::reconcile::outcome::{Outcome, Verdict};
@@ -131,23 +131,23 @@ fn examine_candidates(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome 
         all.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
         all.dedup_by(|a, b| a.set == b.set);
         if let Some(found) = found {
-            return judged_beside_smooth(&proofs, candidates, all, found);
+            return test_with_smooth_alternative(&proofs, candidates, all, found);
         }
     }
     let best = without_needless_noise(frame, candidates, &all, best);
     let best = without_needless_names(&proofs, candidates, &all, best);
-    judged_beside_smooth(&proofs, candidates, all, best)
+    test_with_smooth_alternative(&proofs, candidates, all, best)
 }
 
 /// Tests `best`, or the smooth error of the model if it explains as much.
-fn judged_beside_smooth(
+fn test_with_smooth_alternative(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
     mut all: Vec<ScoredSet<Fit>>,
     best: ScoredSet<Fit>,
 ) -> Outcome {
     let Some(smooth) = smooth_instead(proofs.frame, candidates, &best) else {
-        return judge(proofs, candidates, &all, &best);
+        return test_best_set(proofs, candidates, &all, &best);
     };
     let replaced = effects_with_sizes(proofs.frame, candidates, &best);
     if all.iter().all(|s| s.set != best.set) {
@@ -157,7 +157,7 @@ fn judged_beside_smooth(
     all.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
     Outcome {
         replaced,
-        ..judge(proofs, candidates, &all, &smooth)
+        ..test_best_set(proofs, candidates, &all, &smooth)
     }
 }
 

@@ -226,7 +226,7 @@ impl StrainFrame {
 
     /// Returns the relative error by gauge, 1 sd, of the strain from an effect with amplitudes. It combines the stated uncertainty, `scatter` and the
     /// uncertainty of a calibrated S, over the wheel loads.
-    pub fn relative_doubt(&self) -> Vec<f64> {
+    pub fn relative_uncertainty(&self) -> Vec<f64> {
         let (n_c, n_l) = (self.n_columns(), self.n_loads());
         let power = |m: &[f64], g: usize| -> f64 {
             let row = m.iter().skip(g * n_c).take(n_l);

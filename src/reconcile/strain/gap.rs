@@ -14,7 +14,7 @@ use crate::reconcile::outcome::{ChannelGap, Gap, GapBasis, GapNumbers};
 /// Unknowns of a run that are estimated from one half of its gauges (odd or even number in file order). The other half tests them. The gap before,
 /// the gap after and the expected residual use the same unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FoundAnew {
+pub enum ReestimatedUnknowns {
     /// Amplitudes of the active effects and of the nuisance loads. The gap before has no effect amplitudes, since an effect of size zero has none.
     Amplitudes,
     /// The amplitudes, and the errors of the recorded wheel loads.
@@ -220,7 +220,7 @@ impl<'a> ValidationPredictor<'a> {
     /// Returns the patterns whose amplitudes are estimated. The fit runs determine amplitudes that repeat: m = T B P r, M = T - T B P B' T. B
     /// contains the patterns over the readings of the fit runs, and T the variances of the repeating amplitudes. P is the precision of the fit runs
     /// and r their residual.
-    fn patterns(&self, anew: FoundAnew) -> Patterns {
+    fn patterns(&self, anew: ReestimatedUnknowns) -> Patterns {
         let mut values = Vec::new();
         let (mut steady, mut scatter) = (Vec::new(), Vec::new());
         let known = self.frame.nuisance_amplitudes();
@@ -229,7 +229,7 @@ impl<'a> ValidationPredictor<'a> {
             steady.extend(u.amplitudes.kinds.iter().map(|&k| u.steady_variance(k)));
             scatter.extend(u.amplitudes.kinds.iter().map(|&k| u.scatter_variance(k)));
         }
-        if anew == FoundAnew::AmplitudesAndLoads {
+        if anew == ReestimatedUnknowns::AmplitudesAndLoads {
             let state = StrainState::from_members(self.frame, self.members);
             let [n_g, _, n_c] = state.shape;
             let column = |l: usize| {
@@ -316,7 +316,7 @@ struct ProofRun<'a> {
 }
 
 impl<'a> Proof<'a> {
-    fn new(told: &'a ValidationPredictor<'a>, anew: FoundAnew) -> Self {
+    fn new(told: &'a ValidationPredictor<'a>, anew: ReestimatedUnknowns) -> Self {
         Self {
             patterns: told.patterns(anew),
             told,
@@ -415,7 +415,7 @@ pub fn proof_residuals(
     finer: &StrainFrame,
     members: &[Member<'_>],
     unknown: &[SizedAmplitudes],
-    anew: FoundAnew,
+    anew: ReestimatedUnknowns,
 ) -> Option<ValidationResiduals> {
     let before = proof_residuals_before(finer, &[anew])?.pop()?;
     verdict_after_removal(finer, members, unknown, &[(anew, before)])?.pop()
@@ -424,11 +424,11 @@ pub fn proof_residuals(
 /// Returns the residuals of the proof runs by the analyst's model, for each of `anew`. They do not depend on the active effects.
 pub(super) fn proof_residuals_before(
     finer: &StrainFrame,
-    anew: &[FoundAnew],
+    anew: &[ReestimatedUnknowns],
 ) -> Option<Vec<Vec<f64>>> {
     let own = finer.as_modelled();
     let told = ValidationPredictor::new(finer, &[], &[])?;
-    let of = |anew: &FoundAnew| {
+    let of = |anew: &ReestimatedUnknowns| {
         let without = Proof::new(&told, *anew);
         let runs = finer.observations.proof_runs().into_iter();
         runs.flat_map(|run| without.run(&own, run).residual_and_floor().0)
@@ -442,11 +442,11 @@ pub(super) fn verdict_after_removal(
     finer: &StrainFrame,
     members: &[Member<'_>],
     unknown: &[SizedAmplitudes],
-    ways: &[(FoundAnew, Vec<f64>)],
+    ways: &[(ReestimatedUnknowns, Vec<f64>)],
 ) -> Option<Vec<ValidationResiduals>> {
     let own = finer.as_modelled();
     let told = ValidationPredictor::new(finer, members, unknown)?;
-    let of = |(anew, before): &(FoundAnew, Vec<f64>)| {
+    let of = |(anew, before): &(ReestimatedUnknowns, Vec<f64>)| {
         let with = Proof::new(&told, *anew);
         let mut out = ValidationResiduals::default();
         for run in finer.observations.proof_runs() {

@@ -1,6 +1,7 @@
 //! The static strain path: frame, exact prediction, covariance, evidence.
 
 mod adequacy;
+mod alternatives;
 mod bias;
 mod calibration_scatter;
 mod companions;
@@ -13,7 +14,6 @@ mod extended_strain_model;
 mod frame;
 mod gap;
 mod input_fault_search;
-mod judge;
 mod likelihood;
 mod neighbours;
 mod next;
@@ -27,7 +27,6 @@ mod recovered_loads;
 mod recurring_effects;
 mod remains;
 mod resampled_runs;
-mod rivals;
 mod scorer;
 mod screen;
 mod size;
@@ -37,6 +36,7 @@ mod state;
 mod tolerance;
 mod unproven_effects;
 mod validation;
+mod verdict;
 
 pub use adequacy::{Adequacy, adequacy, deviate};
 pub use covariance::{Selection, covariance, read_patterns};
@@ -46,7 +46,7 @@ pub use frame::{
     GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, NuisanceLoad, PayloadWeight, PlaneStrainRow,
     Scatter, StiffnessOf, StiffnessSignature, StrainFrame, WheelForces, Wiring,
 };
-pub use gap::{FoundAnew, ValidationResiduals, proof_residuals};
+pub use gap::{ReestimatedUnknowns, ValidationResiduals, proof_residuals};
 pub use input_fault_search::gauges_installed_otherwise;
 pub use likelihood::{Fit, Likelihood};
 pub use nuisance::ground_patterns;

@@ -16,7 +16,7 @@ const CHANCE: f64 = 1e-3;
 /// Probability that a zero which only scatters about its former value is identified as moved.
 const MOVED: f64 = 0.01;
 /// Limit of a slope, in standard deviations of the stated uncertainty of a gauge's influence. A model error exceeds it at one gauge in a thousand.
-const DOUBTS: f64 = 3.3;
+const MAX_SLOPE_SD: f64 = 3.3;
 
 /// Zero that a set identifies as drifting and that does not drift.
 pub(super) struct NoDrift {
@@ -41,13 +41,13 @@ pub(super) fn no_drift(
         let own = e.kind() == FaultKind::Zero && !e.parameters().is_empty();
         own && e.amplitudes(frame).is_some()
     };
-    let doubt = frame.relative_doubt();
+    let doubt = frame.relative_uncertainty();
     scored.set.iter().find_map(|&c| {
         let candidate = candidates.get(c).filter(|c| scatters(c))?;
         let &[gauge] = candidate.effect.gauges().as_slice() else {
             return None;
         };
-        let read = beside_others(frame, candidates, scored, c, gauge);
+        let read = split_reading(frame, candidates, scored, c, gauge);
         let id = full_id(candidate.effect.as_ref());
         let doubt = doubt.get(gauge).copied().unwrap_or(0.0);
         let words = if read.bends() {
@@ -55,7 +55,7 @@ pub(super) fn no_drift(
                 "the drift of {id} is a curved function of the load. This indicates an amplifier near its limit or a gauge that yields, \
                  not a drifted zero"
             )
-        } else if read.goes_with_load(DOUBTS * doubt) {
+        } else if read.goes_with_load(MAX_SLOPE_SD * doubt) {
             format!("the drift of {id} is proportional to the load. This indicates a wrong gain, not a drifted zero")
         } else if read.has_not_moved() {
             format!("the drift of {id} scatters about zero. This indicates noise of this gauge alone, not a drifted zero")
@@ -77,7 +77,7 @@ struct ReadingSplit {
 }
 
 /// Returns the reading of `gauge`, split into the prediction with all members except `but` and the remaining reading.
-fn beside_others(
+fn split_reading(
     frame: &StrainFrame,
     candidates: &[Candidate],
     scored: &ScoredSet<Fit>,

@@ -4,7 +4,7 @@ use super::explanation::{ids, is_unmodelled, named_part};
 use super::frame::StrainFrame;
 use super::likelihood::Fit;
 use super::own_covariance::under_own_covariance;
-use super::resampled_runs::{DRAWINGS, drawings_won};
+use super::resampled_runs::{RESAMPLED_SETS, count_resampled_wins};
 use crate::reconcile::effect::Candidate;
 use crate::reconcile::search::ScoredSet;
 
@@ -40,13 +40,13 @@ impl Recurrence {
         for none in [known(&[]), known(&noise).or(scored.as_ref())] {
             contest.extend(none.filter(|s| contest.iter().all(|k| k.set != s.set)));
         }
-        let won = drawings_won(frame, candidates, &contest);
+        let won = count_resampled_wins(frame, candidates, &contest);
         let holds = |c: &usize| {
             let holding = contest.iter().zip(&won);
             let holding = holding.filter(|(s, _)| s.set.contains(c));
             holding.map(|(_, won)| won).sum::<usize>()
         };
-        let stands = |c: &usize| holds(c) as f64 >= frame.rules.drawings * DRAWINGS as f64;
+        let stands = |c: &usize| holds(c) as f64 >= frame.rules.drawings * RESAMPLED_SETS as f64;
         let standing: Vec<usize> = names.iter().copied().filter(stands).collect();
         let doubt = if standing.len() == names.len() {
             None
@@ -58,8 +58,8 @@ impl Recurrence {
                 unsure.map(|c| format!("{} in {}", ids(candidates, &[*c]).concat(), holds(c)));
             let told: Vec<String> = told.collect();
             Some(format!(
-                "fewer than {:.0} of {DRAWINGS} resampled run sets contain each of these effects, and they are not reported: {}",
-                frame.rules.drawings * DRAWINGS as f64,
+                "fewer than {:.0} of {RESAMPLED_SETS} resampled run sets contain each of these effects, and they are not reported: {}",
+                frame.rules.drawings * RESAMPLED_SETS as f64,
                 told.join(", ")
             ))
         };
@@ -111,7 +111,7 @@ fn seldom_ahead(candidates: &[Candidate], contest: &[&ScoredSet<Fit>], won: &[us
     others.sort_by_key(|o| std::cmp::Reverse(o.0));
     let told: Vec<String> = others.iter().map(|(w, s)| format!("{s} in {w}")).collect();
     format!(
-        "{names} explains most of the gap, but is the best set in {first} of {DRAWINGS} resampled run sets only; {}",
+        "{names} explains most of the gap, but is the best set in {first} of {RESAMPLED_SETS} resampled run sets only; {}",
         told.join(", ")
     )
 }

@@ -12,7 +12,7 @@ use crate::reconcile::effect::Candidate;
 use crate::reconcile::search::ScoredSet;
 
 /// Number of resampled run sets. It determines a share of wins to five in a hundred.
-pub(super) const DRAWINGS: usize = 100;
+pub(super) const RESAMPLED_SETS: usize = 100;
 
 /// Returns, by set, the number of 100 resampled run sets in which it has the highest log evidence. Each run set contains as many runs as were fitted,
 /// drawn with replacement.
@@ -20,7 +20,7 @@ pub(super) const DRAWINGS: usize = 100;
 /// A win counts for the first set if its densities and the winner's differ by less than odds of twenty to one over all runs. In the log evidence on a
 /// resampled run set, the log density of each run counts as often as the run is drawn. Parameters and sizes stay as fitted. Only the full evidence
 /// contains the correlation between runs. Runs with an effect of single runs are in every resampled run set, since no other run shows this effect.
-pub(super) fn drawings_won(
+pub(super) fn count_resampled_wins(
     frame: &StrainFrame,
     candidates: &[Candidate],
     sets: &[&ScoredSet<Fit>],
@@ -60,7 +60,7 @@ pub(super) fn drawings_won(
         (0..all.len()).max_by(|a, b| all[*a].total_cmp(&all[*b]))
     };
     let mut won = vec![0; sets.len()];
-    for _ in 0..DRAWINGS {
+    for _ in 0..RESAMPLED_SETS {
         let mut counts: Vec<usize> = (0..runs.len())
             .map(|k| usize::from(touched.contains(&k)))
             .collect();

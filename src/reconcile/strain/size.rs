@@ -53,7 +53,7 @@ impl RunBlocks {
         Self {
             blocks: runs.iter().map(block).collect(),
             n_gauges: frame.n_gauges(),
-            doubt: frame.relative_doubt(),
+            doubt: frame.relative_uncertainty(),
         }
     }
 

@@ -2,7 +2,9 @@
 
 use super::explanation::Explanation;
 use super::frame::StrainFrame;
-use super::gap::{FoundAnew, ValidationResiduals, proof_residuals_before, verdict_after_removal};
+use super::gap::{
+    ReestimatedUnknowns, ValidationResiduals, proof_residuals_before, verdict_after_removal,
+};
 use super::likelihood::{Fit, Likelihood};
 use crate::reconcile::effect::Candidate;
 use crate::reconcile::outcome::{ChannelGap, Gap, GapBasis};
@@ -19,12 +21,15 @@ pub(super) type ValidationResidualPair = [ValidationResiduals; 2];
 struct ValidationFold {
     frame: StrainFrame,
     /// Residuals under the analyst's model in the order of [`ValidationResidualPair`]. Empty if the covariance has no factor.
-    ways: Vec<(FoundAnew, Vec<f64>)>,
+    ways: Vec<(ReestimatedUnknowns, Vec<f64>)>,
 }
 
 impl ValidationFold {
     fn from_frame(frame: StrainFrame) -> Self {
-        let ways = [FoundAnew::Amplitudes, FoundAnew::AmplitudesAndLoads];
+        let ways = [
+            ReestimatedUnknowns::Amplitudes,
+            ReestimatedUnknowns::AmplitudesAndLoads,
+        ];
         let before = proof_residuals_before(&frame, &ways).unwrap_or_default();
         Self {
             ways: ways.into_iter().zip(before).collect(),

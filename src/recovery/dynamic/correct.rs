@@ -1,9 +1,9 @@
 //! A record put at rest, stretch by stretch between its gaps.
 
 use super::block::Block;
-use super::doubt::Doubt;
 use super::kernel::Kernel;
 use super::plant::Plant;
+use super::reading_covariance::ReadingCovariance;
 use super::types::{Dynamics, Unfit};
 use crate::sensitivity::Sensitivity;
 use std::collections::BTreeMap;
@@ -31,7 +31,7 @@ pub struct AtRest {
     /// Variance of the noise of a quasi-static reading over the variance of a reading's noise, mean of the gauges, if all gauges read.
     pub noise_share: f64,
     /// Further error of quasi-static readings, beyond this noise.
-    pub doubt: Doubt,
+    pub doubt: ReadingCovariance,
     /// Mean square error of loads recovered without this correction, by load of S; NaN where no sample is known.
     pub motion: Vec<f64>,
     /// Mean square of the loads about their mean, by load of S; NaN where no sample is known.
@@ -84,7 +84,7 @@ pub fn readings_at_rest(
     let (reach, noise_share) = whole.map_or((0, 0.0), |k| {
         (k.reach, k.noise.trace() / readings.len().max(1) as f64)
     });
-    let mut doubt = Doubt::new(readings.len(), samples, window(dynamics, rate_hz));
+    let mut doubt = ReadingCovariance::new(readings.len(), samples, window(dynamics, rate_hz));
     for (used, kernel) in stretches.sets.iter().zip(&kernels) {
         let Some(kernel) = kernel else { continue };
         let variance = noise * noise;

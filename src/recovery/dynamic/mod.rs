@@ -20,17 +20,17 @@
 
 mod block;
 mod correct;
-mod doubt;
 mod estimate;
 mod kernel;
 mod normal_equations;
 mod plant;
+mod reading_covariance;
 mod residual_courses;
 mod types;
 
 pub use correct::{AtRest, readings_at_rest, window};
-pub use doubt::{AddedCovariance, Doubt, triangle};
 pub use estimate::{Deviation, EstimatedModes, estimate_modes};
+pub use reading_covariance::{AddedCovariance, ReadingCovariance, triangle};
 pub use types::{Dynamics, ElasticMode, Unfit};
 
 #[cfg(test)]

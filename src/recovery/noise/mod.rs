@@ -14,7 +14,7 @@ use super::errors::ErrorModel;
 use super::gain::Gain;
 use super::residuals::complement;
 use super::types::Readings;
-use super::verdict::{BEYOND_DOUBT, SIGNIFICANT};
+use super::verdict::{CERTAIN_CHANCE, SIGNIFICANT};
 use crate::estimate::{chi_square_tail, effective_rows, independent_share};
 use crate::finding::{Finding, Severity};
 use crate::linalg::{Matrix, dense, spd};
@@ -353,7 +353,7 @@ impl Residuals {
             let gains = others.map(|o| fits.chance_of_gain(&white, o));
             let chance = gains.fold(fits.chance(&white), f64::min);
             // If no form fits, samples without load give no finding, because the readings under load are tested as well.
-            let is_wrong = !self.is_unloaded && chance < BEYOND_DOUBT && self.can_be_too_narrow();
+            let is_wrong = !self.is_unloaded && chance < CERTAIN_CHANCE && self.can_be_too_narrow();
             return is_wrong.then(|| ShownNoise {
                 noise: None,
                 finding: Some(self.report_undetermined_noise(errors)),

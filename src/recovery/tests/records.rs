@@ -275,7 +275,11 @@ fn samples_whose_gauges_never_tell_a_load_leave_that_to_the_record_unless_no_gau
     let said = |s: &Sensitivity| {
         let samples = half_without_b(s).into_iter().skip(1).step_by(2).collect();
         let got = recover_samples(s, samples, NOISE);
-        assert!(got.runs.iter().all(|r| r.tells(0) && !r.tells(1)));
+        assert!(
+            got.runs
+                .iter()
+                .all(|r| r.determines_load(0) && !r.determines_load(1))
+        );
         got.findings.iter().any(|f| f.code == NOT_SOLVABLE)
     };
     assert!(!said(&s));

@@ -94,7 +94,7 @@ fn the_chi_square_of_right_jobs_is_that_of_its_degrees_of_freedom() {
             .iter()
             .map(|r| r.estimate.values.clone())
             .collect();
-        let joint = projection.judge(pattern, &strain, &loads).unwrap();
+        let joint = projection.test_pattern(pattern, &strain, &loads).unwrap();
         dof = joint.dof;
         sum += joint.chi2 - dof as f64;
         square += (joint.chi2 - dof as f64).powi(2);

@@ -8,13 +8,15 @@ use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
 use crate::report::page::{KeyNumber, Page};
-use crate::report::strain::{GLUED_COLUMNS, calibrate_page, glued_csv, sensitivity_csv};
+use crate::report::strain::{
+    GLUED_COLUMNS, calibrate_page, sensitivity_csv, write_installed_positions,
+};
 use crate::strain_chain::covariance_bytes;
 use crate::units::{MICROSTRAIN, Quantity, half_width, number, percent};
 use crate::workflow::calibrate::{CalibratedSensitivity, CheckLoad, LeftOutLoad, calibrated_job};
 
 /// Table of the gauges at their installed positions, as determined from the runs. A job can name it as its gauges.
-const GLUED: &str = "gauges_as_glued.csv";
+const INSTALLED_GAUGES_FILE: &str = "gauges_as_glued.csv";
 
 impl Report for Outcome<CalibratedSensitivity> {
     const FILES: &'static [&'static str] = &[
@@ -110,9 +112,12 @@ impl Report for Outcome<CalibratedSensitivity> {
         if !self.glued.is_empty() {
             let length = self.job.units.unit(Quantity::Length).name;
             let unit = |u: &'static str| if u == "L" { length } else { u };
-            out.declare(GLUED, GLUED_COLUMNS.map(|(c, u)| (c, unit(u))));
-            out.write(GLUED, |w| {
-                glued_csv(w, &self.job, &self.calibration.gauges, &self.glued)
+            out.declare(
+                INSTALLED_GAUGES_FILE,
+                GLUED_COLUMNS.map(|(c, u)| (c, unit(u))),
+            );
+            out.write(INSTALLED_GAUGES_FILE, |w| {
+                write_installed_positions(w, &self.job, &self.calibration.gauges, &self.glued)
             })?;
         }
         write_page(out, self)

@@ -13,7 +13,7 @@ use crate::workflow::fleet::{
 /// Files listed on the page; `result.json` has all.
 const LISTED: usize = 500;
 /// Vehicles with figures of their own.
-const DRAWN: usize = 12;
+const VEHICLES_WITH_FIGURES: usize = 12;
 /// Digits of a digest on the page; pointed at, it shows all.
 const SHORT: usize = 16;
 
@@ -31,10 +31,10 @@ pub(super) fn page(o: &Outcome<Fleet>) -> Page {
     sections.push(vehicles(o));
     sections.extend(damage_comparison_section(o));
     sections.extend(o.mission.as_ref().map(mission));
-    for v in o.vehicles.iter().take(DRAWN) {
+    for v in o.vehicles.iter().take(VEHICLES_WITH_FIGURES) {
         sections.extend([days(v, o.slope), health(v)]);
     }
-    if let Some(left) = o.vehicles.len().checked_sub(DRAWN + 1) {
+    if let Some(left) = o.vehicles.len().checked_sub(VEHICLES_WITH_FIGURES + 1) {
         let text = format!("{} more vehicles are in result.json.", left + 1);
         sections.push(Section::new("Other vehicles", vec![Block::Text(text)]));
     }

@@ -100,7 +100,7 @@ fn fields(found: &Outcome<Reconciliation>) -> Vec<(&'static str, String)> {
             "{} before, {} after{floor}, on {}",
             percent(gap.before),
             percent(gap.after),
-            judged_on(gap)
+            describe_gap_basis(gap)
         );
         out.push(("gap", words));
     }
@@ -137,7 +137,7 @@ fn confidence(found: &Reconciliation) -> Option<String> {
 }
 
 /// Returns the data on which the gap was tested: number of runs, or kind of data of a record (held out, cross-validated, fitted).
-fn judged_on(gap: &GapFound) -> String {
+fn describe_gap_basis(gap: &GapFound) -> String {
     let runs = gap.strain.map(|s| format!("{} runs", s.basis));
     let record = gap.judged_by.map(|p| p.words().to_owned());
     runs.or(record).unwrap_or_default()

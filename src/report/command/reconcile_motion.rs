@@ -9,7 +9,7 @@ use crate::host::output::Output;
 use crate::reconcile::motion::gap::EquationGap;
 use crate::reconcile::motion::sits::{GapSits, Stretch};
 use crate::reconcile::motion::{MotionEffect, MotionOutcome};
-use crate::reconcile::{Rival, Verdict};
+use crate::reconcile::{AlternativeExplanation, Verdict};
 use crate::report::covariance::covariance_block;
 use crate::report::figure::gap_by_channel;
 use crate::report::page::{Block, Page, Section, number, table_section};
@@ -64,7 +64,7 @@ pub(super) fn motion_page(outcome: &Outcome<Reconciliation>, found: &MotionPart)
         gap_section(&found.outcome),
     ];
     sections.extend(scatter_section(found));
-    sections.extend(rival_section(&found.outcome));
+    sections.extend(alternatives_section(&found.outcome));
     sections.push(Section::new(
         "Remaining gap",
         vec![
@@ -309,8 +309,8 @@ fn scatter_section(found: &MotionPart) -> Option<Section> {
     (!blocks.is_empty()).then(|| Section::new("Scatter before and after", blocks))
 }
 
-fn rival_section(outcome: &MotionOutcome) -> Option<Section> {
-    let row = |r: &Rival| {
+fn alternatives_section(outcome: &MotionOutcome) -> Option<Section> {
+    let row = |r: &AlternativeExplanation| {
         vec![
             r.ids.join(" + "),
             format!("{:.1}", r.evidence_difference),

@@ -9,7 +9,7 @@ const ACROSS: f64 = 261.0;
 /// spaces.
 const PER_CHARACTER: f64 = 0.44 * 25.4 / 72.0;
 /// Space next to a column, mm.
-const BESIDE: f64 = 3.0;
+const COLUMN_SPACE_MM: f64 = 3.0;
 /// Characters after which a cell goes on in the next line.
 const WRAPPED: usize = 26;
 /// Sizes of type tried, points.
@@ -97,7 +97,7 @@ fn characters(table: &Table, column: usize) -> usize {
 }
 
 fn width(characters: usize, size: f64) -> f64 {
-    characters as f64 * size * PER_CHARACTER + BESIDE
+    characters as f64 * size * PER_CHARACTER + COLUMN_SPACE_MM
 }
 
 /// Whether a column contains numbers, which are right-aligned.

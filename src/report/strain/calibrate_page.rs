@@ -16,7 +16,7 @@ pub fn calibrate_page(title: &str, answer: &CalibratedSensitivity, findings: &[F
     sections.extend(errors_of_left_out(answer));
     sections.extend(checks(answer));
     sections.extend([residuals(answer), lack_of_fit(answer), left_out(answer)]);
-    sections.extend(as_glued(answer));
+    sections.extend(installed_positions_section(answer));
     sections.push(gauges(answer));
     Page::new(
         title,
@@ -239,7 +239,7 @@ fn left_out(answer: &CalibratedSensitivity) -> Section {
 }
 
 /// Where gauges sit; `None` where no tolerance was stated.
-fn as_glued(answer: &CalibratedSensitivity) -> Option<Section> {
+fn installed_positions_section(answer: &CalibratedSensitivity) -> Option<Section> {
     let all = &answer.calibration.gauges;
     all.iter().find(|g| g.as_glued.is_some())?;
     let size = |s: Option<GlueSummary>| match s {

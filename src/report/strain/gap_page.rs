@@ -64,7 +64,7 @@ pub fn reconcile_page(report: &GapReport<'_>) -> Page {
     }
     sections.extend(smooth_section(outcome));
     if !outcome.rivals.is_empty() {
-        sections.push(rivals(outcome));
+        sections.push(alternatives_section(outcome));
     }
     let moved: Vec<Vec<String>> = outcome
         .loads
@@ -352,8 +352,8 @@ fn effect(e: &NamedEffect) -> Vec<String> {
     ]
 }
 
-fn rivals(outcome: &Outcome) -> Section {
-    let row = |r: &crate::reconcile::Rival| {
+fn alternatives_section(outcome: &Outcome) -> Section {
+    let row = |r: &crate::reconcile::AlternativeExplanation| {
         let apart = if r.indistinguishable { "no" } else { "yes" };
         vec![
             r.ids.join(" + "),

@@ -2,7 +2,9 @@
 
 use crate::job::{Job, StatedPlace};
 use crate::report::csv_cell;
-use crate::workflow::calibrate::{AsGluedSummary, CalibratedGauge, GlueSummary, GluedGauge};
+use crate::workflow::calibrate::{
+    CalibratedGauge, GlueSummary, InstalledGauge, InstalledPositionSummary,
+};
 use std::io::{self, Write};
 
 /// Columns with their units; `L` is the job's length.
@@ -39,11 +41,11 @@ pub const COLUMNS: [(&str, &str); 26] = [
 ///
 /// # Errors
 /// Errors of `out`.
-pub fn glued_csv(
+pub fn write_installed_positions(
     out: &mut dyn Write,
     job: &Job,
     gauges: &[CalibratedGauge],
-    glued: &[Option<GluedGauge>],
+    glued: &[Option<InstalledGauge>],
 ) -> io::Result<()> {
     writeln!(out, "{}", COLUMNS.map(|c| c.0).join(","))?;
     for (named, glued) in gauges.iter().zip(glued) {
@@ -61,7 +63,7 @@ pub fn glued_csv(
 }
 
 /// `element` to `transverse_sensitivity`.
-fn on_shell(g: &GluedGauge) -> [String; 16] {
+fn on_shell(g: &InstalledGauge) -> [String; 16] {
     let word = |v: f64| v.to_string();
     let blank = String::new;
     let element = if g.by_position {
@@ -114,7 +116,7 @@ fn on_bar(job: &Job, name: &str, gain: f64) -> [String; 16] {
 }
 
 /// Returns the cells of the sizes from `along` on, and the list of the sizes that the data determine.
-fn sizes(found: &AsGluedSummary) -> Vec<String> {
+fn sizes(found: &InstalledPositionSummary) -> Vec<String> {
     let named = [
         ("along", found.along),
         ("across", found.across),

@@ -16,7 +16,7 @@ pub use fields::strains_page;
 pub use gap_page::{ADDED, GapReport, RunStrain, reconcile_page};
 pub use gluing_page::gluing_page;
 pub use gluing_sheet::gluing_sheet_md;
-pub use installed_positions::{COLUMNS as GLUED_COLUMNS, glued_csv};
+pub use installed_positions::{COLUMNS as GLUED_COLUMNS, write_installed_positions};
 pub use pages::{HowMany, RecoveredRun, RecoveryPage, place_page, recover_page, sensitivity_page};
 pub use points::gauges_vtu;
 pub use solution::solution_page;

@@ -28,7 +28,7 @@ pub fn asked_force(found: &Identification, motion: &Motion, l: usize) -> Option<
 }
 
 /// Returns the links whose forces the record determines. Without a scale of forces, coefficients are ratios to a mass and not forces.
-pub(super) fn links_told(found: &Identification) -> impl Iterator<Item = usize> + '_ {
+pub(super) fn find_determined_links(found: &Identification) -> impl Iterator<Item = usize> + '_ {
     let v = &found.vehicle;
     let told = |i: usize| found.scaled[i] && found.values[i].is_finite();
     let all_told = move |l: &usize| (0..v.links[*l].terms.len()).all(|t| told(v.term_index(*l, t)));
@@ -41,7 +41,7 @@ pub fn restoring_curves(found: &Identification, motion: &Motion) -> Vec<Curve> {
     const BINS: usize = 41;
     let forces = link_forces(&found.vehicle, &found.values, motion);
     let mut out = Vec::new();
-    for l in links_told(found) {
+    for l in find_determined_links(found) {
         let link = &found.vehicle.links[l];
         let d = &motion.stretch[l];
         let asked = asked_force(found, motion, l);

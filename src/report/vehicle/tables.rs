@@ -1,6 +1,6 @@
 //! Tables of an identification.
 
-use super::restoring_forces::{asked_force, links_told};
+use super::restoring_forces::{asked_force, find_determined_links};
 use crate::vehicle::chassis::{ChassisForce, LeafSeat, SpringForce, split_leaf};
 use crate::vehicle::identify::Identification;
 use crate::vehicle::loads::{LoadHistory, link_forces};
@@ -76,7 +76,7 @@ pub fn write_restoring_force(found: &Identification, motion: &Motion) -> String 
     let mut out = String::from("link,stretch,rate,force_model,force_measured,samples\n");
     let v = &found.vehicle;
     let forces = link_forces(v, &found.values, motion);
-    for l in links_told(found) {
+    for l in find_determined_links(found) {
         let link = &v.links[l];
         let (d, r) = (&motion.stretch[l], &motion.rate[l]);
         let largest = |x: &[f64]| x.iter().fold(0.0f64, |a, b| a.max(b.abs()));

@@ -101,7 +101,7 @@ mod tests {
 
     /// Reference values from random simulation, accurate to three digits. Each comes from 60,000 to four million parabolas at a random place between
     /// samples (seeded splitmix64 and Box and Muller).
-    const DRAWN: [(f64, f64); 6] = [
+    const SIMULATED_RISES: [(f64, f64); 6] = [
         (0.125, 0.0158),
         (0.5, 0.2076),
         (1.0, 0.607),
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn the_rise_of_an_extreme_is_that_of_drawn_parabolas() {
-        for (x, drawn) in DRAWN {
+        for (x, drawn) in SIMULATED_RISES {
             assert!(
                 (rise(x) / drawn - 1.0).abs() < 1.0 / 12.0,
                 "{x}: {} {drawn}",

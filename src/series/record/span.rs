@@ -18,7 +18,7 @@ pub(super) const LISTED: usize = 1000;
 /// Steps whose mean is the rate of the logger there: twenty, so that their mean is known well where times are rounded.
 const WINDOW: usize = 20;
 /// Share of their mean by which steps of one rate differ: none is twice as long, as it is where a sample is lost.
-const ALIKE: f64 = 0.25;
+const SAME_STEP_REL: f64 = 0.25;
 /// Share by which another rate differs from the usual one: clocks drift by far less.
 const OTHER: f64 = 0.1;
 
@@ -262,7 +262,7 @@ impl Walk {
         let (from, to) = (*window.first()?, *window.last()?);
         let mean = (to - from) / WINDOW as f64;
         let step = |w: &[f64]| w.last().zip(w.first()).map_or(0.0, |(b, a)| b - a);
-        let alike = (ALIKE * mean).max(EVEN * mean + 2.0 * rounding);
+        let alike = (SAME_STEP_REL * mean).max(EVEN * mean + 2.0 * rounding);
         let is_alike = |w: &[f64]| (step(w) - mean).abs() <= alike;
         // Both ends of each mean are rounded.
         let off = OTHER * usual + 4.0 * rounding / WINDOW as f64;

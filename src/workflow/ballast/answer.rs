@@ -261,7 +261,7 @@ pub(super) fn far_beyond(
 const MATCHED: f64 = 0.02;
 
 /// Reports the findings on the masses.
-pub(super) fn judge(
+pub(super) fn report_mass_findings(
     work: &mut Work,
     task: &Task,
     run: &str,

@@ -94,7 +94,7 @@ pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<BallastAnswer>, Faults
     let after = work.stage("solve completed deck", |s| {
         completed_deck::solve_completed(s, &task, &edited)
     })?;
-    answer::judge(&mut work, &task, &run, &measured, &after, &fit, &spec);
+    answer::report_mass_findings(&mut work, &task, &run, &measured, &after, &fit, &spec);
     work.findings
         .extend(answer::far_beyond(&task, &run, &before, &fit));
     let sized = answer::BallastSizing {

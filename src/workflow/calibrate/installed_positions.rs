@@ -1,7 +1,7 @@
 //! Rows of S for gauges whose installed position differs slightly from the nominal position.
 
-use super::outcome::{AsGluedSummary, CalibratedGauge, GlueSummary, GluedGauge};
-use crate::calibrate::{AsGlued, GlueTolerance, MoveKind, OffDrawing};
+use super::outcome::{CalibratedGauge, GlueSummary, InstalledGauge, InstalledPositionSummary};
+use crate::calibrate::{GlueTolerance, InstalledPositionEstimate, MoveKind, OffDrawing};
 use crate::finding::{Finding, Severity, list_few};
 use crate::gauge::{CornerRows, Gauge, NominalGauge, Offset, centre, gauge_reading};
 use crate::host::fault::{Fault, Faults};
@@ -107,7 +107,11 @@ impl<'a> Sites<'a> {
     }
 
     /// Where a gauge was found; `None` for one on a bar.
-    pub fn locate_gauge(&self, gauge: usize, glued: &AsGlued) -> Option<GluedGauge> {
+    pub fn locate_gauge(
+        &self,
+        gauge: usize,
+        glued: &InstalledPositionEstimate,
+    ) -> Option<InstalledGauge> {
         let of = |kind| glued.find_move(kind).map_or(0.0, |m| m.value);
         let drawn = self.gauges.get(gauge)?.as_ref()?;
         let bridge = self.bridges.get(gauge)?;
@@ -116,7 +120,7 @@ impl<'a> Sites<'a> {
             across: of(MoveKind::Across),
             angle_rad: of(MoveKind::Turned),
         })?;
-        Some(GluedGauge {
+        Some(InstalledGauge {
             gauge,
             at,
             by_position: self.corners == CornerRows::Present,
@@ -199,7 +203,7 @@ pub(super) fn off_drawing(
 }
 
 /// Returns the installed position and gain of a gauge from the runs, in job units of length and degrees.
-pub(super) fn summary(glued: &AsGlued) -> AsGluedSummary {
+pub(super) fn summary(glued: &InstalledPositionEstimate) -> InstalledPositionSummary {
     let of = |kind, unit: f64| {
         glued.find_move(kind).map(|m| GlueSummary {
             value: m.value * unit,
@@ -207,7 +211,7 @@ pub(super) fn summary(glued: &AsGlued) -> AsGluedSummary {
             told: m.is_determined(),
         })
     };
-    AsGluedSummary {
+    InstalledPositionSummary {
         along: of(MoveKind::Along, 1.0),
         across: of(MoveKind::Across, 1.0),
         angle_deg: of(MoveKind::Turned, 1f64.to_degrees()),
@@ -221,7 +225,7 @@ pub(super) fn summary(glued: &AsGlued) -> AsGluedSummary {
 
 /// Returns a note on positions, angles and gains that the runs do not determine; `None` if the runs determine all of them.
 pub(super) fn report_undetermined_values(gauges: &[CalibratedGauge]) -> Option<Finding> {
-    type Size = fn(&AsGluedSummary) -> Option<GlueSummary>;
+    type Size = fn(&InstalledPositionSummary) -> Option<GlueSummary>;
     let sizes: [(&str, Size); 4] = [
         ("place along the axis", |a| a.along),
         ("place across it", |a| a.across),

@@ -7,14 +7,14 @@ mod job_file;
 mod known_loads;
 mod outcome;
 mod payloads;
+mod reported_calibration;
 mod run_selection;
-mod said;
 
 pub use job_file::calibrated_job;
 pub use outcome::*;
 
 use crate::calibrate::{
-    CommonZero, KnownRun, ModelPrior, Task, calibrate_as_glued, recover_checks,
+    CommonZero, KnownRun, ModelPrior, Task, calibrate_installed_gauges, recover_checks,
 };
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
@@ -25,7 +25,9 @@ use crate::job::{Job, JobLoad, LoadRole, Measured, Reference, Runs, Terms};
 use crate::linalg::Matrix;
 use crate::measured::faults::no_gauge_column;
 use crate::measured::strain_table::StrainTable;
-use crate::measured::zero::{ZeroedTable, judged_to_learn, read_zeroed, reads_strain, some_left};
+use crate::measured::zero::{
+    ZeroedTable, read_zeroed, reads_strain, some_left, test_calibration_readings,
+};
 use crate::recovery::Readings;
 use crate::sensitivity::{Load, Sensitivity};
 use crate::strain_chain::named_results::check_tables;
@@ -106,7 +108,9 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<CalibratedSensitivit
     };
     let found = work
         .stage("calibrate", |_| match &sites {
-            Some((t, sites)) => calibrate_as_glued(&task, *t, |g, offset| sites.row(g, offset)),
+            Some((t, sites)) => {
+                calibrate_installed_gauges(&task, *t, |g, offset| sites.row(g, offset))
+            }
             None => crate::calibrate::calibrate(&task),
         })
         .map_err(|wrong| {
@@ -119,22 +123,27 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<CalibratedSensitivit
         })?;
     work.findings.extend(found.findings.iter().cloned());
     work.findings
-        .extend(said::report_unchecked_loads(&task, &listed));
+        .extend(reported_calibration::report_unchecked_loads(&task, &listed));
     work.findings
-        .extend(said::report_uneven_loads(&task, &found, &listed));
+        .extend(reported_calibration::report_uneven_loads(
+            &task, &found, &listed,
+        ));
     let units = &listed.units[..task.loads.len()];
-    let next = work.stage("next run", |_| said::next_run(&task, &found, units));
+    let next = work.stage("next run", |_| {
+        reported_calibration::next_run(&task, &found, units)
+    });
     let dependence = known
         .column
         .as_ref()
-        .map(|column| said::dependence(&task, &found, column));
+        .map(|column| reported_calibration::dependence(&task, &found, column));
     work.findings.extend(
         dependence
             .iter()
             .flatten()
             .filter_map(DependenceSummary::finding),
     );
-    let mut calibration = said::words(&task, &found, &listed, next, dependence.flatten());
+    let mut calibration =
+        reported_calibration::words(&task, &found, &listed, next, dependence.flatten());
     let checks: Vec<KnownRun> = known.checks.iter().map(as_run).collect();
     let checked = recover_checks(&found, task.noise, &checks);
     calibration.checks = checks::compare_check_loads(&checked, &listed);
@@ -239,7 +248,7 @@ fn read(
     let known = known_loads::read_known(work, job, (runs, measured), names, &s.loads, origin)?;
     check_readings(job, measured, &zeroed.table, &s.gauges)?;
     let read = zeroed.readings(&s.gauges);
-    let strain = judged_to_learn(work, job, measured, &s.gauges, read);
+    let strain = test_calibration_readings(work, job, measured, &s.gauges, read);
     some_left(&zeroed.table.file, &strain)?;
     Ok((known, strain))
 }

@@ -25,7 +25,7 @@ pub struct CalibratedSensitivity {
     pub model: Option<Matrix>,
     /// Gauges at their installed positions, `None` for gauges on bars; empty if `[calibration]` states no tolerance.
     #[serde(skip)]
-    pub glued: Vec<Option<GluedGauge>>,
+    pub glued: Vec<Option<InstalledGauge>>,
     /// Complete result of the calibration.
     #[serde(skip)]
     pub found: Calibration,
@@ -113,14 +113,14 @@ pub struct CalibratedGauge {
     /// `none`, `gain`, `angle`, `place`, `sign`, `dead`, `exchanged`, `undetermined`.
     pub looks_like: &'static str,
     /// Installed position and gain from the runs; null if `[calibration]` states no tolerance.
-    pub as_glued: Option<AsGluedSummary>,
+    pub as_glued: Option<InstalledPositionSummary>,
 }
 
 /// Offset of a gauge from its nominal position along and across its axis (job units), and its rotation (degrees, right-handed about the element's
 /// normal). A value is null if no tolerance is stated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[allow(missing_docs)]
-pub struct AsGluedSummary {
+pub struct InstalledPositionSummary {
     pub along: Option<GlueSummary>,
     pub across: Option<GlueSummary>,
     pub angle_deg: Option<GlueSummary>,
@@ -141,7 +141,7 @@ pub struct GlueSummary {
 
 /// Gauge on the model at its installed position, as determined from the runs.
 #[derive(Clone, Debug)]
-pub struct GluedGauge {
+pub struct InstalledGauge {
     /// There.
     pub gauge: Gauge,
     /// Position on the reference surface, basic frame.

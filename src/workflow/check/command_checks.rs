@@ -32,7 +32,7 @@ pub(super) fn ask(work: &mut Work, job: &Job, grids: usize) -> Result<(), Faults
     match measured {
         Some(measured) if !placed && (solves || job.sensitivity.is_some()) => {
             let prepared = prepare(work, job)?;
-            recover::judged_alone(work, job, measured, &prepared)
+            recover::recover_for_findings(work, job, measured, &prepared)
         }
         _ if !solves => Ok(()),
         // A job without places may be meant for `solve` alone.

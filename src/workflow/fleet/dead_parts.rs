@@ -48,7 +48,11 @@ pub(super) fn blank_of(dead: &[DeadPart]) -> Vec<(usize, Range<usize>)> {
 }
 
 /// Returns one finding for each dead part of the record, and adds the parts to the gauges.
-pub(super) fn told_dead(dead: &[DeadPart], gauges: &mut [GaugeDay], clock: &Clock) -> Vec<Finding> {
+pub(super) fn report_dead_parts(
+    dead: &[DeadPart],
+    gauges: &mut [GaugeDay],
+    clock: &Clock,
+) -> Vec<Finding> {
     let mut out = Vec::new();
     for (g, gives, span) in dead {
         let Some(gauge) = gauges.get_mut(*g) else {

@@ -1,7 +1,7 @@
 //! Evaluation of one record, without files or messages, on the threads of the current pool.
 
 use super::day::{Day, GaugeDay, LoadDay};
-use super::dead_parts::{blank_of, dead_parts, told_dead};
+use super::dead_parts::{blank_of, dead_parts, report_dead_parts};
 use super::exchange::find_exchange;
 use super::health::Health;
 use super::record_recovery::{Part, RecordRecovery, UnderWay, count_pieces};
@@ -18,7 +18,7 @@ use crate::measured::faults::record_fault;
 use crate::measured::gauge_columns::find_gauge_columns;
 use crate::recovery::ErrorModel;
 use crate::recovery::clock;
-use crate::recovery::dead_gauges::is_told_dead;
+use crate::recovery::dead_gauges::is_shown_dead;
 use crate::recovery::history::{Filter, SampleLoads};
 use crate::recovery::{MissingReadings, Sums, UNEXPLAINED, Widening, check_gaps};
 use crate::sensitivity::{GaugeNoise, Sensitivity};
@@ -102,7 +102,7 @@ impl Kernel {
         let judged = std::mem::take(&mut pass.judged);
         let mut ends = judged.ends();
         let time_s = |i| record.clock.time_s(i);
-        let (mut widened, noise) = self.judge(&r, judged, time_s, &mut findings);
+        let (mut widened, noise) = self.test_samples(&r, judged, time_s, &mut findings);
         if noise.is_some()
             && let Some(filter) = widened.take()
         {
@@ -131,7 +131,7 @@ impl Kernel {
         let known = missing.whole + missing.known_in_gaps.iter().max().copied().unwrap_or(0);
         let mut gauges = pass.health.days(&r.sensitivity.gauges, leverage);
         let hours = |samples: f64| samples / record.clock.rate_hz / 3600.0;
-        findings.extend(told_dead(&dead, &mut gauges, &record.clock));
+        findings.extend(report_dead_parts(&dead, &mut gauges, &record.clock));
         gauges.extend(r.silent.iter().map(|name| GaugeDay::without_readings(name)));
         let place = |g: &GaugeDay| self.sensitivity.gauges.iter().position(|n| *n == g.name);
         gauges.sort_by_key(place);
@@ -189,7 +189,7 @@ impl Kernel {
 
     /// Tests samples of the record as `recover` does and adds the findings. Returns the estimate with the intervals that the residuals require, and
     /// the noise of the gauges. `None` if the stated errors remain valid, or if no interval is reliable.
-    fn judge(
+    fn test_samples(
         &self,
         r: &RecordRecovery,
         judged: TestedSamples,
@@ -335,7 +335,7 @@ impl Kernel {
         }
         let (errors, factor) = (self.errors, self.noise_factor);
         for (gives, (g, ..)) in given.iter_mut().zip(found) {
-            let dead = || is_told_dead(&self.sensitivity, &used, &rows, *g, errors, factor);
+            let dead = || is_shown_dead(&self.sensitivity, &used, &rows, *g, errors, factor);
             if *gives == Gives::OneValue && !dead() {
                 *gives = Gives::Signal;
             }

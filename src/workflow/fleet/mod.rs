@@ -347,7 +347,7 @@ fn evaluate_files(
         }
         files.push(file);
     }
-    work.findings.extend(told_replaced(&replaced));
+    work.findings.extend(report_replaced_records(&replaced));
     // A shard keeps the request, because other parts of the records are still missing.
     if spec.shard.is_none() && files.iter().all(|f| kept.holds(f)) {
         let _ = std::fs::remove_file(asked);
@@ -372,7 +372,7 @@ enum Came {
 }
 
 /// Returns the finding that results were replaced: a record was written again, or a record of another folder has the same path.
-fn told_replaced(paths: &[String]) -> Option<Finding> {
+fn report_replaced_records(paths: &[String]) -> Option<Finding> {
     let n = paths.len();
     (n > 0).then(|| {
         Finding::new(

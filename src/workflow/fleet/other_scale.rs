@@ -12,7 +12,7 @@ use crate::units::MICROSTRAIN;
 /// is 1.3. Temperature changes the noise of amplifiers by some per cent.
 const FROM: f64 = 1.25;
 /// Largest ratio of a gauge's factor to the median factor: second differences of a thousand readings determine white noise to 3 %.
-const ALIKE: f64 = 1.06;
+const COMMON_FACTOR_RATIO: f64 = 1.06;
 /// Smallest share of the gauges with the common factor. Other gauges may be dead or exchanged on that day.
 const SHARE: f64 = 0.75;
 /// Smallest number of gauges with the common factor. Fewer gauges agree by chance.
@@ -39,7 +39,7 @@ fn logs<'a>(of: impl Iterator<Item = &'a Vec<Option<f64>>>) -> Vec<Vec<Option<f6
 fn common_factor(logs: &[Vec<Option<f64>>], day: usize) -> Option<f64> {
     let known: Vec<f64> = logs.iter().filter_map(|g| *g.get(day)?).collect();
     let middle = median(known.clone())?;
-    let alike = |v: &&f64| (**v - middle).abs() < ALIKE.ln();
+    let alike = |v: &&f64| (**v - middle).abs() < COMMON_FACTOR_RATIO.ln();
     let n = known.iter().filter(alike).count();
     (n >= GAUGES && n as f64 >= SHARE * logs.len() as f64).then_some(middle)
 }
@@ -64,7 +64,7 @@ pub(super) fn in_other_scale(v: &VehicleAnswer, errors: &ErrorModel) -> Option<F
     let quiet = factors
         .iter()
         .flatten()
-        .filter(|f| f.abs() < ALIKE.ln())
+        .filter(|f| f.abs() < COMMON_FACTOR_RATIO.ln())
         .count();
     if quiet < DAYS - 1 || 2 * quiet < v.days.len() {
         return None;

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// from the electronics.
 pub(super) const TIMES: f64 = 100.0;
 /// Largest ratio between the changes of noise and scatter, in either direction.
-const ALIKE: f64 = 5.0;
+const SAME_CHANGE_RATIO: f64 = 5.0;
 /// Share of the stated noise below which no reading's noise falls.
 const OF_STATED: f64 = 0.3;
 
@@ -70,7 +70,7 @@ fn factor(
         median(of.collect())
     };
     let (scatter, noise) = (share(0)?, share(1)?);
-    let apart = (scatter / noise).ln().abs() < ALIKE.ln();
+    let apart = (scatter / noise).ln().abs() < SAME_CHANGE_RATIO.ln();
     let far = (scatter > TIMES && noise > TIMES) || (scatter * TIMES < 1.0 && noise * TIMES < 1.0);
     let stated = errors.noise / MICROSTRAIN * OF_STATED;
     let quiet = median(v.gauges.iter().filter_map(|g| *g.noise.get(day)?).collect())?;

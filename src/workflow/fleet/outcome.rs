@@ -385,7 +385,7 @@ impl Fleet {
             let dead = v.gauges.iter();
             out.extend(dead.filter_map(|g| g.dead_days_finding(&v.name, v.days.len())));
             out.extend(v.gain_changes());
-            out.extend(in_doubt(v));
+            out.extend(report_unreliable_damage(v));
             out.extend(v.loads.iter().filter_map(|l| known_in_part(v, l)));
             out.extend(v.loads.iter().filter_map(|l| mostly_noise(&v.name, l)));
         }
@@ -429,7 +429,7 @@ fn known_in_part(v: &VehicleAnswer, l: &VehicleLoadAnswer) -> Option<Finding> {
 }
 
 /// Returns the finding with the share of a vehicle's damage that comes from days with unreliable loads.
-fn in_doubt(v: &VehicleAnswer) -> Option<Finding> {
+fn report_unreliable_damage(v: &VehicleAnswer) -> Option<Finding> {
     let first = v.doubtful_days.first()?;
     let share = |l: &VehicleLoadAnswer| format!("{} {:.1} %", l.load, 100.0 * l.doubtful_share);
     let shares: Vec<String> = v.loads.iter().map(share).collect();

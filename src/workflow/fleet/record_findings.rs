@@ -89,14 +89,15 @@ pub(super) fn of_records(files: &[FileHead], status: &[Status], days_in: DayOrde
                 _ => vehicle,
             };
             let [of, all] = [vehicle, ""].map(|v| records.get(v).copied().unwrap_or(0));
-            is_told(&alike, of, all).then(|| combine_alike_findings(vehicle, subject, &alike, of))
+            is_reported(&alike, of, all)
+                .then(|| combine_equal_findings(vehicle, subject, &alike, of))
         })
         .collect()
 }
 
 /// Returns whether a finding is reported. `alike.n` of `of` records have it, and the fleet has `all` records. A fleet of correct records gives an
 /// alarm with the same probability as one correct record, for any number of vehicles.
-fn is_told(alike: &FindingGroup, of: usize, all: usize) -> bool {
+fn is_reported(alike: &FindingGroup, of: usize, all: usize) -> bool {
     let is_of = |list: &[&str]| list.contains(&alike.first.code);
     if is_of(&BY_CHANCE) && !alike.certain {
         // A finding is reported if too many records have it, or if one record has it with a probability too small for the whole fleet.
@@ -118,7 +119,7 @@ fn by_chance(n: usize, of: usize) -> f64 {
 }
 
 /// Returns the finding of records with the same code and subject, with their number and the first of them.
-fn combine_alike_findings(
+fn combine_equal_findings(
     vehicle: &str,
     subject: &str,
     alike: &FindingGroup,
@@ -153,7 +154,7 @@ mod tests {
     use super::*;
     use crate::finding::Severity;
 
-    fn is_told_of(n: usize, certain: bool, chance: f64, [of, all]: [usize; 2]) -> bool {
+    fn is_group_reported(n: usize, certain: bool, chance: f64, [of, all]: [usize; 2]) -> bool {
         let first = Finding::new(Severity::Error, GAUGE_SUSPECT, "G", "", "");
         let alike = FindingGroup {
             n,
@@ -164,13 +165,13 @@ mod tests {
             first: &first,
             vehicles: BTreeSet::new(),
         };
-        is_told(&alike, of, all)
+        is_reported(&alike, of, all)
     }
 
     /// Correct records of a year give an alarm as rarely as one correct record. A wrong gauge is suspect in more of them.
     #[test]
     fn a_suspect_on_a_few_of_many_days_is_chance_and_on_more_is_told() {
-        let told = |n, certain, chance, of| is_told_of(n, certain, chance, [of, of]);
+        let told = |n, certain, chance, of| is_group_reported(n, certain, chance, [of, of]);
         assert!(told(1, false, 1.0, 1));
         // By chance, 1.8 of 365 records have such a finding.
         assert!(!told(4, false, 1.0, 365));
@@ -186,7 +187,7 @@ mod tests {
     fn a_fleet_of_right_vehicles_alarms_as_seldom_as_one() {
         for (vehicles, days) in [(1, 1), (1000, 1), (1000, 2), (1000, 20), (100, 365)] {
             let all = vehicles * days;
-            let told = |n: &usize| is_told_of(*n, false, 1.0, [days, all]);
+            let told = |n: &usize| is_group_reported(*n, false, 1.0, [days, all]);
             let chance = (1..=days).find(told).map_or(0.0, |n| {
                 let binomial = Binomial::new(ALARM, days as u64).unwrap();
                 binomial.sf(n as u64 - 1) * vehicles as f64
@@ -199,7 +200,7 @@ mod tests {
             assert!(days < 20 || told(&days), "{vehicles} {days}");
         }
         // Among 20,000 records, one record with a probability of 3e-5 is no alarm, and one with 1e-8 is an alarm.
-        assert!(!is_told_of(1, false, 3e-5, [20, 20_000]));
-        assert!(is_told_of(1, false, 1e-8, [20, 20_000]));
+        assert!(!is_group_reported(1, false, 3e-5, [20, 20_000]));
+        assert!(is_group_reported(1, false, 1e-8, [20, 20_000]));
     }
 }

@@ -9,7 +9,7 @@ use crate::sensitivity::Sensitivity;
 use std::collections::BTreeMap;
 
 /// Number of samples that are tested, equal to the number on which recovery tests its gauges. More samples give no more information.
-const JUDGED: usize = 200;
+const TESTED_SAMPLES: usize = 200;
 /// Smallest share of samples unlike the calibration (at least two samples) that is reported. One in a thousand correct samples is unlike by chance.
 const UNLIKE: f64 = 0.05;
 
@@ -36,7 +36,9 @@ pub struct TestedSamples {
 impl TestedSamples {
     /// Creates a selection without samples for a record of `samples`.
     pub fn new(n_gauges: usize, n_loads: usize, samples: usize) -> Self {
-        let spread = JUDGED.saturating_sub(2 * n_loads).max(JUDGED / 2);
+        let spread = TESTED_SAMPLES
+            .saturating_sub(2 * n_loads)
+            .max(TESTED_SAMPLES / 2);
         let none = Extreme {
             at: 0,
             value: f64::NEG_INFINITY,
@@ -239,7 +241,7 @@ mod tests {
         };
         let (whole, cut) = (judge(samples), judge(33));
         assert_eq!(format!("{whole:?}"), format!("{cut:?}"));
-        assert!((150..=JUDGED).contains(&(whole.spread.len() + whole.extremes.len())));
+        assert!((150..=TESTED_SAMPLES).contains(&(whole.spread.len() + whole.extremes.len())));
         assert_eq!((whole.extremes[0].at, whole.extremes[3].at), (777, 4001));
         assert_eq!(whole.extremes[0].strain, strain[3 * 777..3 * 778]);
     }

@@ -288,7 +288,7 @@ fn read_strained(
         if let Some(twice) = repeated.iter().find(|r| r.is_of_strain()) {
             return Err(Fault::new(&*name, "results", twice.words(&[&name]), HOLD_ONCE).into());
         }
-        if let Some(cut) = deck.cut_beside(&solution.findings) {
+        if let Some(cut) = deck.find_truncation(&solution.findings) {
             return Err(cut.into());
         }
         // The job reports results that a file lacks, and leaves them out.

@@ -1,7 +1,7 @@
 //! The answer of `payload`.
 
-use super::judge::words;
 use super::model::Parts;
+use super::payload_findings::words;
 use super::readings::{NetReading, Readings};
 use super::task::Task;
 use crate::host::outcome::{Answer, finite_or_none};

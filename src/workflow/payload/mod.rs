@@ -3,8 +3,8 @@
 mod answer;
 mod calibration_range;
 mod faults;
-mod judge;
 mod model;
+mod payload_findings;
 mod readings;
 mod stated_payload;
 mod task;
@@ -99,11 +99,11 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<WeighedPayloads>, Faul
     let parts = model::model_of(&mut work, &mut task, use_strain)?;
     let mut readings =
         readings::runs_of(&mut work, &task, &parts.model, use_strain, use_reactions)?;
-    judge::readings(&mut work, &task, &parts, &mut readings.runs);
+    payload_findings::readings(&mut work, &task, &parts, &mut readings.runs);
     let runs = &readings.runs;
     let spec = spec_of(&task, &parts, runs);
     let weighing = work.stage("weigh", |_| weigh(&parts.model, runs, &spec));
-    judge::findings(&mut work, &task, &parts, runs, &spec, &weighing);
+    payload_findings::findings(&mut work, &task, &parts, runs, &spec, &weighing);
     let outside = calibration_range::findings(&task, &parts, &weighing);
     work.findings.extend(outside);
     faults::search(&mut work, &task, &parts, runs, (&spec, &weighing));

@@ -19,7 +19,7 @@ use crate::payload::PayloadModel;
 use crate::sensitivity::{Sensitivity, Uncertainty, check_separability};
 use crate::strain_chain::built_in_solver::{stands_on_wheels, support_of_job, unit_loads_kept};
 use crate::strain_chain::job_deck::read_deck;
-use crate::strain_chain::{Fields, JobSensitivity, has_covariance, take_out_beside};
+use crate::strain_chain::{Fields, JobSensitivity, has_covariance, subtract_from_additional_loads};
 use crate::units::MICROSTRAIN;
 
 /// The payload model, together with the data that the report plots.
@@ -235,7 +235,7 @@ fn build_supported_model(
         unit_loads_kept(w, made, (fields.model(), support), &loads)
     })?;
     let known = (&fields.deck, fields.mesh_error.as_ref());
-    take_out_beside(work, job, known, (&loads, &mut solution.cases))?;
+    subtract_from_additional_loads(work, job, known, (&loads, &mut solution.cases))?;
     let [_, b, c] = place.axes();
     let at = fields.model().grids.get(grid.us());
     let at = at.map_or_else(Vec3::zeros, |g| g.x);
@@ -292,7 +292,7 @@ fn build_model_on_wheels(
         .map_err(|e| floor_fault(job, &e))?;
     if let Some(fields) = prepared.and_then(|p| p.fields.as_ref()) {
         let known = (&fields.deck, fields.mesh_error.as_ref());
-        take_out_beside(work, job, known, (&loads, &mut standing.others))?;
+        subtract_from_additional_loads(work, job, known, (&loads, &mut standing.others))?;
     }
     let at = model.grids.get(grid.us()).map_or_else(Vec3::zeros, |g| g.x);
     let n = wheels.grids.len();

@@ -348,7 +348,7 @@ fn strain(
             }
         }
     }
-    judge_net(work, task, model, &runs);
+    report_weak_gauges(work, task, model, &runs);
     Ok(runs)
 }
 
@@ -450,7 +450,12 @@ fn by_gauge(table: &StrainTable, model: &PayloadModel) -> Vec<Vec<f64>> {
 }
 
 /// The gauges too weak for the job in every run.
-fn judge_net(work: &mut Work, task: &Task, model: &PayloadModel, runs: &[(String, Vec<Net>)]) {
+fn report_weak_gauges(
+    work: &mut Work,
+    task: &Task,
+    model: &PayloadModel,
+    runs: &[(String, Vec<Net>)],
+) {
     let mut weak: Vec<&str> = Vec::new();
     let mut best = f64::INFINITY;
     for (g, name) in model.gauges.iter().enumerate() {

@@ -2,14 +2,14 @@
 
 use super::choose::choose_once;
 use super::chosen_layout::ChoiceRefusal;
-use super::judge::{chosen_as_recovered, in_job_order, sigma_of, terms_listed};
+use super::layout_findings::{chosen_as_recovered, in_job_order, sigma_of, terms_listed};
 use super::outcome::{BoughtSigma, CurvePoint};
 use super::pool::Kind;
 use super::task::Task;
 use crate::finding::{Finding, Severity};
 use crate::host::outcome::finite_or_none;
 use crate::linalg::{Matrix, dense};
-use crate::placement::quality::judge_rows;
+use crate::placement::quality::evaluate_rows;
 use crate::placement::{PlaceError, Spec};
 use crate::workflow::recover::ListedLoads;
 
@@ -45,7 +45,7 @@ pub(super) fn curve(
             }
         };
         let rows: Vec<Vec<f64>> = chosen.channels.iter().map(|c| c.row.clone()).collect();
-        let Some(q) = judge_rows(&rows, &spec.prior, k) else {
+        let Some(q) = evaluate_rows(&rows, &spec.prior, k) else {
             left_out.push(gauges);
             continue;
         };

@@ -1,7 +1,7 @@
 //! The gauges that the job already has, by the same measures.
 
 use super::job_gauge_rows::gluing_variance;
-use super::judge::{as_recovered, in_job_order, sigma_rows};
+use super::layout_findings::{as_recovered, in_job_order, sigma_rows};
 use super::outcome::{InstalledLayout, InstalledQuality, WorstLoss};
 use super::task::Task;
 use crate::finding::{Finding, Severity, list_few};
@@ -9,7 +9,7 @@ use crate::host::fault::Faults;
 use crate::host::outcome::finite_or_none;
 use crate::host::work::Work;
 use crate::placement::candidates::Candidates;
-use crate::placement::quality::judge_rows;
+use crate::placement::quality::evaluate_rows;
 use crate::placement::{self, Spec, place};
 use crate::strain_chain::lay_gauges;
 use crate::workflow::recover::list_load_columns;
@@ -50,7 +50,7 @@ pub(super) fn evaluate_installed(
     let read = task.rows_of(&gauges, &s, job.placement.model_uncertainty_rel, &[]);
     let over_noise = |row: &Vec<f64>| row.iter().map(|v| v / noise).collect();
     let rows: Vec<Vec<f64>> = read.strain.iter().map(over_noise).collect();
-    let Some(q) = judge_rows(&rows, &spec.prior, k).map(|q| in_job_order(q, order)) else {
+    let Some(q) = evaluate_rows(&rows, &spec.prior, k).map(|q| in_job_order(q, order)) else {
         return Ok(Some(InstalledLayout {
             gauges: gauges.len(),
             rank: Some(s.rank()),

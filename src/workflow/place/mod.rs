@@ -5,7 +5,7 @@ mod chosen_layout;
 mod curve;
 mod installed_gauges;
 mod job_gauge_rows;
-mod judge;
+mod layout_findings;
 mod misfits;
 mod outcome;
 mod pool;
@@ -27,7 +27,7 @@ use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Outcome, StatedUnits, finite_or_none};
 use crate::host::work::Work;
 use crate::job::Job;
-use crate::placement::quality::{judge_rows, reserve};
+use crate::placement::quality::{evaluate_rows, reserve};
 use crate::recovery::check_planned;
 use crate::sensitivity::{Sensitivity, check_separability, common_shells};
 use crate::strain_chain::named_results::check_tables;
@@ -118,7 +118,7 @@ fn lay_out_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutO
     }
     let rows: Vec<Vec<f64>> = chosen.channels.iter().map(|c| c.row.clone()).collect();
     let Some(quality) =
-        judge_rows(&rows, &spec.prior, k).map(|q| judge::in_job_order(q, &task.order))
+        evaluate_rows(&rows, &spec.prior, k).map(|q| layout_findings::in_job_order(q, &task.order))
     else {
         let singular = crate::placement::PlaceError::Singular {
             gauges: spec.gauges,
@@ -144,15 +144,16 @@ fn lay_out_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutO
     };
     work.findings
         .extend(check_separability(&s.without_prior_loads()));
-    judge::judge_layout(work, job, &chosen, &quality, &spec, &gauges, k);
-    let recovered = judge::chosen_as_recovered(&task, &spec, &chosen.channels);
-    let as_glued = judge::as_glued(job, &quality, k);
-    let load_sigma = judge::sigma_rows(job, &listed, recovered.as_deref(), &as_glued, &task.scales);
+    layout_findings::report_layout_findings(work, job, &chosen, &quality, &spec, &gauges, k);
+    let recovered = layout_findings::chosen_as_recovered(&task, &spec, &chosen.channels);
+    let as_glued = layout_findings::installed_covariance(job, &quality, k);
+    let load_sigma =
+        layout_findings::sigma_rows(job, &listed, recovered.as_deref(), &as_glued, &task.scales);
     let in_job_units = load_sigma.iter().zip(units);
     let planned: Vec<f64> = in_job_units.map(|(l, u)| l.sigma / u.factor).collect();
     let planned = check_planned(&s, &planned);
     work.findings
-        .extend(planned.map(|f| judge::with_unit_loads(job, f)));
+        .extend(planned.map(|f| layout_findings::with_unit_loads(job, f)));
     let how_many = if job.placement.curve.is_empty() {
         Vec::new()
     } else {

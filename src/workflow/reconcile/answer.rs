@@ -33,7 +33,7 @@ pub struct Reconciliation {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub best_attempt: Option<Vec<EffectFound>>,
     /// Other explanations, nearest first.
-    pub rivals: Vec<RivalFound>,
+    pub rivals: Vec<AlternativeSummary>,
     /// Difference between model and measurement on data that were not fitted.
     pub gap: GapFound,
     /// Log evidence of the named set (or best attempt) less the log evidence of no effect.
@@ -130,7 +130,7 @@ pub struct SlopeFound {
 
 /// Another explanation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RivalFound {
+pub struct AlternativeSummary {
     /// Ids with places, joined by ` + `.
     pub id: String,
     /// Places, joined by ` + `; `None` for causes.
@@ -368,8 +368,8 @@ pub(super) fn first_finite(list: &[f64]) -> Option<f64> {
     list.first().copied().filter(|x| x.is_finite())
 }
 
-impl From<&crate::reconcile::Rival> for RivalFound {
-    fn from(r: &crate::reconcile::Rival) -> Self {
+impl From<&crate::reconcile::AlternativeExplanation> for AlternativeSummary {
+    fn from(r: &crate::reconcile::AlternativeExplanation) -> Self {
         let place = |id: &String| id.split_once(':').map(|p| p.1.to_owned());
         let places: Vec<String> = r.ids.iter().filter_map(place).collect();
         Self {

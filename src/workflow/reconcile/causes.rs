@@ -1,6 +1,6 @@
 //! Readings compared with causes that are measured in every run, if no model gives their strain: `[reconcile] causes`.
 
-use super::answer::{EffectFound, GapFound, Reconciliation, RivalFound, SlopeFound};
+use super::answer::{AlternativeSummary, EffectFound, GapFound, Reconciliation, SlopeFound};
 use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
@@ -8,7 +8,7 @@ use crate::job::table::read_table;
 use crate::job::{Job, Reconcile};
 use crate::measured::runs_columns::{asked_column, note_unread_runs, run_column, take_units};
 use crate::measured::runs_file::given_loads;
-use crate::reconcile::{Cause, CauseOutcome, CauseSet, Observations, Verdict, weigh_causes};
+use crate::reconcile::{Cause, CauseOutcome, CauseSet, Observations, Verdict, evaluate_cause_sets};
 use crate::strain_chain::stated_noise;
 
 /// Compares the causes of the job.
@@ -27,7 +27,9 @@ pub(super) fn answer(
         Some(stated) => stated.sd().iter().map(|sd| noise * sd).collect(),
         None => vec![noise; observations.n_channels()],
     };
-    let outcome = work.stage("search", |_| weigh_causes(observations, &noise, &causes));
+    let outcome = work.stage("search", |_| {
+        evaluate_cause_sets(observations, &noise, &causes)
+    });
     if !outcome.rivals.is_empty() {
         let names: Vec<String> = outcome.rivals.iter().map(|r| r.names.join(" + ")).collect();
         work.findings.push(Finding::new(
@@ -47,7 +49,7 @@ pub(super) fn answer(
         named: named.map_or(Vec::new(), |b| b.names.clone()),
         effects: named.map_or(Vec::new(), |b| effects(b, observations)),
         best_attempt: None,
-        rivals: rivals(&outcome),
+        rivals: list_alternatives(&outcome),
         gap: GapFound {
             metric: "RMS(reading - prediction) / RMS(reading), cross-validated: the prediction of each run is the mean of the other runs, each \
              channel over its range"
@@ -74,9 +76,9 @@ pub(super) fn answer(
 }
 
 /// Returns the sets that are indistinguishable from the best one; without such sets, all sets of causes except the best one.
-fn rivals(outcome: &CauseOutcome) -> Vec<RivalFound> {
+fn list_alternatives(outcome: &CauseOutcome) -> Vec<AlternativeSummary> {
     let evidence = outcome.sets.first().map_or(0.0, |b| b.log_evidence);
-    let rival = |s: &CauseSet| RivalFound {
+    let rival = |s: &CauseSet| AlternativeSummary {
         id: s.names.join(" + "),
         place: None,
         evidence_difference: evidence - s.log_evidence,

@@ -23,7 +23,9 @@ use crate::reconcile::strain::{GaugeFacts, PlaneStrainRow, Wiring};
 use crate::sensitivity::from_cases;
 use crate::stop::Stop;
 use crate::strain_chain::built_in_solver::{support_of_job, unit_loads_kept};
-use crate::strain_chain::{Fields, JobSensitivity, alternatives_of, lay_gauges, prepare_beside};
+use crate::strain_chain::{
+    Fields, JobSensitivity, alternatives_of, lay_gauges, prepare_with_additional_loads,
+};
 use crate::units::KILO;
 use std::collections::BTreeMap;
 
@@ -58,7 +60,7 @@ pub(super) fn read(
         fields: Some(mut fields),
         gauges,
         ..
-    } = prepare_beside(work, &on_own_mesh(job), Some(&columns))?
+    } = prepare_with_additional_loads(work, &on_own_mesh(job), Some(&columns))?
     else {
         return Err(Faults::from(Fault::new(
             &*job.file,

@@ -12,7 +12,7 @@ use crate::strain_chain::unit_loads;
 use crate::units::KILO;
 
 /// Side loads and moments that a wheel may transmit in addition to the wanted load.
-const BESIDES: [Component; 5] = [
+const SIDE_COMPONENTS: [Component; 5] = [
     Component::FX,
     Component::FY,
     Component::MX,
@@ -53,7 +53,7 @@ impl SignatureLoads {
         let mut besides = Vec::new();
         for (name, grid) in &wheels {
             // A side load that is a nuisance load of the job is not a missing effect.
-            for c in BESIDES
+            for c in SIDE_COMPONENTS
                 .into_iter()
                 .filter(|c| !has_nuisance(job, model, *grid, *c))
             {

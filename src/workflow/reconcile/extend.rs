@@ -304,14 +304,14 @@ fn runs_with(frame: &StrainFrame, effects: &[NamedEffect], state: &StrainState) 
             .collect(),
         payload: match acts {
             true => rows().map(acting).collect(),
-            false => payload_noted(frame, effects),
+            false => correct_recorded_payload(frame, effects),
         },
     }
 }
 
 /// Returns the payload of every run with identified errors of the records corrected. The condition is that the payload weight acts in no run and no
 /// column contains it.
-fn payload_noted(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<[f64; 3]> {
+fn correct_recorded_payload(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<[f64; 3]> {
     let at = |run: &String| frame.observations.runs.iter().position(|r| r == run);
     let mut out = frame.payload.clone();
     for e in effects {

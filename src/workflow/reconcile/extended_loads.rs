@@ -29,9 +29,9 @@ const COMPONENTS: [Component; 5] = [
 /// Moment of the payload per weight if no place is recorded: half a metre off its grid, one standard deviation.
 const OFF_GRID_M: f64 = 0.5;
 /// Error of a recorded payload mass, one standard deviation, as a share: two per cent of a vehicle's scale.
-const NOTED: f64 = 0.02;
+const RECORDED_MASS_REL: f64 = 0.02;
 /// Error of a recorded payload place, m, one standard deviation.
-const NOTED_PLACE_M: f64 = 0.05;
+const RECORDED_PLACE_M: f64 = 0.05;
 
 /// Side loads of the effects, by the grids of the job's wheels.
 pub(super) fn side_loads(job: &Job, effects: &[NamedEffect]) -> Vec<SideLoad> {
@@ -126,9 +126,9 @@ pub(super) fn entries(job: &Job, frame: &StrainFrame, side: &[SideLoad]) -> Vec<
         // `recover` reads the payload of each run from the runs file. These sizes cover its remaining uncertainty.
         let weight = heaviest * job.gravity_m_s2() / KILO;
         let placed = frame.payload.iter().any(|p| p[1] != 0.0 || p[2] != 0.0);
-        let off = if placed { NOTED_PLACE_M } else { OFF_GRID_M };
+        let off = if placed { RECORDED_PLACE_M } else { OFF_GRID_M };
         for (component, size) in [
-            (Component::FZ, weight * NOTED),
+            (Component::FZ, weight * RECORDED_MASS_REL),
             (Component::MX, weight * off),
             (Component::MY, weight * off),
         ] {

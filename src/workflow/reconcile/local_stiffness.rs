@@ -229,7 +229,7 @@ struct Residual {
 impl Residual {
     fn from_frame(frame: &StrainFrame) -> Self {
         let nominal = StrainState::from_nominal_model(frame);
-        let doubt = frame.relative_doubt();
+        let doubt = frame.relative_uncertainty();
         let runs = frame.observations.fit_runs();
         let entries = frame
             .observations

@@ -2,8 +2,8 @@
 
 use super::added_motion::added_to_motion;
 use super::answer::{
-    DetectableSize, EffectFound, GapFound, MotionPart, Reconciliation, ReducedChi2, RivalFound,
-    Simulation, SizeFound, WheelMisfit, first_finite,
+    AlternativeSummary, DetectableSize, EffectFound, GapFound, MotionPart, Reconciliation,
+    ReducedChi2, Simulation, SizeFound, WheelMisfit, first_finite,
 };
 use super::extend::effect_not_in_model;
 use super::extended_model::ExtendedModel;
@@ -103,7 +103,11 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciliation, Fault
         named: outcome.effects.iter().map(|e| e.id.clone()).collect(),
         effects: list(&outcome.effects),
         best_attempt: Some(list(&outcome.best_attempt)),
-        rivals: outcome.rivals.iter().map(RivalFound::from).collect(),
+        rivals: outcome
+            .rivals
+            .iter()
+            .map(AlternativeSummary::from)
+            .collect(),
         gap: gap_found(&outcome),
         evidence: Some(outcome.evidence),
         reduced_chi2: Some(ReducedChi2 {

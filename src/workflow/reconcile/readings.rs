@@ -82,7 +82,7 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
             "hold out a third of the runs with `hold_out`",
         ));
     }
-    judge(work, measured, &table.file, &noise_factor, &mut out)?;
+    test_readings(work, measured, &table.file, &noise_factor, &mut out)?;
     Ok(out)
 }
 
@@ -90,7 +90,7 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
 ///
 /// # Errors
 /// One fault where no reading is left.
-fn judge(
+fn test_readings(
     work: &mut Work,
     measured: &Measured,
     file: &str,

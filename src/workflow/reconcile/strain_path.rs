@@ -1,8 +1,8 @@
 //! Strain: frame, verdict, extended model.
 
 use super::answer::{
-    DetectableSize, EffectFound, GapFound, Reconciliation, ReducedChi2, RivalFound, SizeFound,
-    StrainGap, StrainPart, first_finite,
+    AlternativeSummary, DetectableSize, EffectFound, GapFound, Reconciliation, ReducedChi2,
+    SizeFound, StrainGap, StrainPart, first_finite,
 };
 use super::deck_frame::{self, DeckFrame};
 use super::described_effects::effect_of;
@@ -118,7 +118,11 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciliation, Fault
         named: outcome.effects.iter().map(|e| e.id.clone()).collect(),
         effects: list(&outcome.effects),
         best_attempt: Some(list(&outcome.best_attempt)),
-        rivals: outcome.rivals.iter().map(RivalFound::from).collect(),
+        rivals: outcome
+            .rivals
+            .iter()
+            .map(AlternativeSummary::from)
+            .collect(),
         gap: gap_found(&outcome),
         evidence: Some(outcome.evidence),
         reduced_chi2: Some(ReducedChi2 {

@@ -40,7 +40,7 @@ pub(super) fn without_dead_parts(
         false => check(s, &looked, task.errors, task.noise_factor),
     };
     work.findings
-        .extend(stands_still(&record, &still_parts(&looked)));
+        .extend(report_constant_parts(&record, &still_parts(&looked)));
     let (mut parts, mut blanked) = (Vec::new(), Vec::new());
     for dead in &stuck {
         let span = record.extent(dead)?;
@@ -84,7 +84,7 @@ pub(crate) fn silent_in_part(gauge: &str, gives: Gives, [from, to]: [f64; 2]) ->
 }
 
 /// Returns the warning of parts in which no gauge changes. The record does not show whether the structure is at standstill or the logger failed.
-fn stands_still(record: &Record, parts: &[[usize; 2]]) -> Option<Finding> {
+fn report_constant_parts(record: &Record, parts: &[[usize; 2]]) -> Option<Finding> {
     let [first, last] = *parts.first()?;
     let [from, to] = [first, last].map(|i| record.time_s(i));
     let others = match parts.len() {

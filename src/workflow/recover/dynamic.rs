@@ -10,8 +10,8 @@ use crate::host::work::Work;
 use crate::job::{Damping, Dynamic};
 use crate::measured::record::Record;
 use crate::recovery::dynamic::{
-    AtRest, Deviation, Doubt, Dynamics, ElasticMode, EstimatedModes, Unfit, estimate_modes,
-    readings_at_rest, triangle, window,
+    AtRest, Deviation, Dynamics, ElasticMode, EstimatedModes, ReadingCovariance, Unfit,
+    estimate_modes, readings_at_rest, triangle, window,
 };
 use crate::sensitivity::Sensitivity;
 use crate::strain_chain::built_in_solver::{ElasticModes, cases_of_job, faults_of, modes_kept};
@@ -81,7 +81,7 @@ pub(super) struct QuasiStaticRecord {
     /// Noise variance of a reading, in units of the variance of a reading as measured.
     pub noise_factor: f64,
     /// Covariance of the readings beyond that noise.
-    pub doubt: Doubt,
+    pub doubt: ReadingCovariance,
     /// Number of samples after which noise is independent.
     pub apart: usize,
     /// Number of samples that are blank in the quasi-static record only.

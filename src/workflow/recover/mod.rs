@@ -187,7 +187,7 @@ fn open_strain(work: &mut Work, job: &Job, measured: &Measured) -> Result<Measur
 ///
 /// # Errors
 /// As [`recover_into`].
-pub(super) fn judged_alone(
+pub(super) fn recover_for_findings(
     work: &mut Work,
     job: &Job,
     measured: &Measured,

@@ -10,7 +10,9 @@ use super::dead_parts::{MaskedRecord, without_dead_parts};
 use super::dynamic::{Motion, remove_vibration};
 use super::files;
 use super::listed_loads::{ListedLoads, list_load_columns};
-use super::record_tests::{check_times, content, judge, judge_at_rest, spread};
+use super::record_tests::{
+    check_times, content, recover_quasi_static_samples, recover_tested_samples, spread,
+};
 use super::runs::find_identical_readings;
 use super::sections;
 use super::sink::{Block, RecordHead, RecordSink};
@@ -25,7 +27,7 @@ use crate::host::work::Work;
 use crate::job::LoadFile;
 use crate::measured::record::Record;
 use crate::measured::zero::no_zero_runs;
-use crate::recovery::dynamic::Doubt;
+use crate::recovery::dynamic::ReadingCovariance;
 use crate::recovery::history::Filter;
 use crate::recovery::{Gain, Readings, Recovery, Sums, check_gaps, reading_plausibility};
 use crate::sensitivity::Sensitivity;
@@ -73,12 +75,12 @@ pub(super) fn record(
     let (judged, errors, at_rest, motion, blank) = match rested {
         Some(r) => {
             let readings = spread((r.noise_factor, r.apart), &r.record, &zero)?;
-            let judged = judge_at_rest(task, &sensitivity, readings, &r.doubt);
+            let judged = recover_quasi_static_samples(task, &sensitivity, readings, &r.doubt);
             let errors = (r.noise_factor, Some(r.doubt));
             (judged, errors, Some(r.record), Some(r.motion), r.blank)
         }
         None => {
-            let judged = judge(work, task, &sensitivity, readings);
+            let judged = recover_tested_samples(work, task, &sensitivity, readings);
             (judged, (task.noise_factor, None), None, None, 0)
         }
     };
@@ -250,7 +252,7 @@ pub(super) fn look(
 /// Returns the filter that estimates every sample. Its typical loads and the widening of its intervals come from samples spread over the record.
 fn filter(
     work: &mut Work,
-    (task, (noise_factor, doubt)): (&Task, (f64, Option<Doubt>)),
+    (task, (noise_factor, doubt)): (&Task, (f64, Option<ReadingCovariance>)),
     judged: Recovery,
     s: &Sensitivity,
     zero: Vec<f64>,
@@ -268,7 +270,7 @@ fn filter(
     );
     let mut filter = filter.ok_or_else(|| sensitivity_fault(task))?;
     if let Some(doubt) = doubt {
-        filter.add_doubt(doubt);
+        filter.add_reading_covariance(doubt);
     }
     filter.combine(combinations);
     Ok(filter)

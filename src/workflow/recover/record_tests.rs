@@ -7,7 +7,7 @@ use super::task::Task;
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::measured::record::Record;
-use crate::recovery::dynamic::Doubt;
+use crate::recovery::dynamic::ReadingCovariance;
 use crate::recovery::history::Filter;
 use crate::recovery::{Readings, Recovery, clock, recover_samples_with_alternatives};
 use crate::sensitivity::Sensitivity;
@@ -16,16 +16,16 @@ use crate::strain_chain::built_in_solver::{first_mode_of, support_of_job};
 use rayon::prelude::*;
 
 /// Number of samples on which the residual of a long record is tested.
-const JUDGED: usize = 200;
+const TESTED_SAMPLES: usize = 200;
 /// Largest number of samples at which a record that is read in one piece is tested in full.
-const JUDGED_OF_SHORT: usize = 2000;
+const FULLY_TESTED_SAMPLES: usize = 2000;
 /// Samples from which typical loads are taken for the weights of a stated model error.
 const TYPICAL: usize = 20_000;
 /// Pieces whose content is looked at.
 const LOOKED_AT: usize = 8;
 
 /// Recovers samples spread over the record, and tests the wanted loads, the gauges and the intervals.
-pub(super) fn judge(
+pub(super) fn recover_tested_samples(
     work: &mut Work,
     task: &Task,
     s: &Sensitivity,
@@ -37,11 +37,11 @@ pub(super) fn judge(
 }
 
 /// Recovers quasi-static samples, each with its number, and tests loads, gauges and intervals. `doubt` is the covariance of their errors.
-pub(super) fn judge_at_rest(
+pub(super) fn recover_quasi_static_samples(
     task: &Task,
     s: &Sensitivity,
     readings: Vec<(usize, Readings)>,
-    doubt: &Doubt,
+    doubt: &ReadingCovariance,
 ) -> Recovery {
     let beyond = |(i, r): &(usize, Readings)| {
         let reads = |g: &usize| r.strain[*g].is_finite();
@@ -81,8 +81,8 @@ pub(super) fn spread(
     let spread = pieces.min(10);
     // A short record is tested on all of its samples, as if they were runs.
     let each = match pieces {
-        1 => JUDGED_OF_SHORT,
-        _ => JUDGED.div_ceil(spread.max(1)),
+        1 => FULLY_TESTED_SAMPLES,
+        _ => TESTED_SAMPLES.div_ceil(spread.max(1)),
     };
     for p in 0..spread {
         let piece = p * pieces / spread;

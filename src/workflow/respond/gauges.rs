@@ -151,7 +151,7 @@ pub(super) fn check(
         out.rows.push(row);
     }
     work.findings
-        .extend(judge(&out.rows, measured.noise_microstrain));
+        .extend(check_prediction(&out.rows, measured.noise_microstrain));
     Ok(out)
 }
 
@@ -161,7 +161,7 @@ fn not_compared(why: &str, remedy: &str) -> Finding {
 }
 
 /// Returns a finding if the loads do not reproduce the measured strain.
-fn judge(rows: &[GaugeCheck], noise_microstrain: f64) -> Option<Finding> {
+fn check_prediction(rows: &[GaugeCheck], noise_microstrain: f64) -> Option<Finding> {
     let beyond = |share: f64| -> Vec<&str> {
         let off = rows.iter().filter(|r| {
             r.residual_rms > share * r.measured_rms && r.residual_rms > 3.0 * noise_microstrain

@@ -133,7 +133,7 @@ fn compute_response(work: &mut Work, job: &Job) -> Result<StressResponse, Faults
             "name shells, bars or beams of the deck",
         )));
     }
-    say_findings(work, job, fields.model(), &rows, &peaks, &order);
+    report_findings(work, job, fields.model(), &rows, &peaks, &order);
     let check = gauges::check(work, job, &prepared, &states)?;
     let u = factor(job.units, job.report_units.stress);
     let entry = |i: &usize| {
@@ -235,7 +235,7 @@ pub fn grids(model: &Model, row: &ResponseRow) -> Vec<GridIx> {
     }
 }
 
-fn say_findings(
+fn report_findings(
     work: &mut Work,
     job: &Job,
     model: &Model,

@@ -13,7 +13,7 @@ const MULTIPLES: usize = 6;
 /// Largest deviation of a mains frequency from its nominal value, a share.
 const WANDER: f64 = 0.005;
 /// Power of a line over the mean of its neighbourhood: noise of a dozen bins exceeds this in one job of a million.
-const STANDS_OUT: f64 = 16.0;
+const LINE_POWER_RATIO: f64 = 16.0;
 
 pub(super) fn candidates(frame: &MotionFrame, motion: &Motion) -> Vec<Candidate> {
     let mut out: Vec<Candidate> = Vec::new();
@@ -96,5 +96,5 @@ fn line(
         })
         .collect();
     let mean = sides.iter().sum::<f64>() / sides.len() as f64;
-    (power(f) > STANDS_OUT * mean).then_some(f)
+    (power(f) > LINE_POWER_RATIO * mean).then_some(f)
 }

@@ -1,7 +1,7 @@
 //! The difference of log evidence that a measurement is expected to bring between two explanations.
 
+use super::alternative_misfit::residual_of_other;
 use super::parameter_information::{ParameterInformation, Rows};
-use super::rival_misfit::residual_of_other;
 use super::view::{RecordEquations, View, Weight};
 use crate::linalg::tall::{Triangle, solve, triangle};
 use crate::reconcile::motion::design::Bins;

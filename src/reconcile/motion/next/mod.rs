@@ -4,11 +4,11 @@
 //! over noise is the expected difference of log evidence ([`evidence_gain`]). [`measurement`] lists the possible measurements. [`view`] and, at rest,
 //! [`bench`] give the predictions of an explanation.
 
+mod alternative_misfit;
 mod bench;
 mod evidence_gain;
 mod measurement;
 mod parameter_information;
-mod rival_misfit;
 mod view;
 
 use self::evidence_gain::expected_evidence;

@@ -63,7 +63,7 @@ pub fn runs(
             let is_known = known[r].iter().any(|k| k.0 == l);
             let row = row_of(&reading.run).filter(|row| !is_known && !taught(row));
             let recorded = row.and_then(|row| row.loads_si.get(&load.name));
-            let Some(recorded) = recorded.filter(|_| found.tells(l)) else {
+            let Some(recorded) = recorded.filter(|_| found.determines_load(l)) else {
                 continue;
             };
             let sigma = found.estimate.sigma(l) * unit.factor;

@@ -99,7 +99,7 @@ fn lift_off(work: &mut Work, task: &Task, parts: &Parts, run: &PayloadRun, r: &W
 }
 
 /// Adds a warning if the readings do not determine a free place.
-fn place_told(work: &mut Work, spec: &WeighSpec, r: &WeighedRun) {
+fn report_undetermined_place(work: &mut Work, spec: &WeighSpec, r: &WeighedRun) {
     let (axes, _) = r.ellipse();
     let room = spec.region.map_or(f64::INFINITY, |v| {
         (v[0][1] - v[0][0]).max(v[1][1] - v[1][0]) / 2.0
@@ -243,7 +243,7 @@ pub(super) fn findings(
         }
         lift_off(work, task, parts, run, r);
         if spec.place == Place::Free {
-            place_told(work, spec, r);
+            report_undetermined_place(work, spec, r);
         } else if let (Some(arms), false) = (&parts.model.arms, run.reactions.is_empty()) {
             check_stated_place(work, task, spec, arms, run, r);
         }

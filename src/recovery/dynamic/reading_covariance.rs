@@ -9,7 +9,7 @@ use crate::linalg::Matrix;
 /// mean square for every window of time. Its sources are one standard deviation of each mode's frequency and damping, and modes outside the model.
 /// The errors of one mode are common to all gauges, loads and samples.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Doubt {
+pub struct ReadingCovariance {
     /// Number of gauges.
     n: usize,
     /// Samples of a window.
@@ -47,7 +47,7 @@ pub fn triangle(n: usize) -> usize {
     n * (n + 1) / 2
 }
 
-impl Doubt {
+impl ReadingCovariance {
     /// Nothing yet, of `n` gauges and so many samples.
     pub(super) fn new(n: usize, samples: usize, window: usize) -> Self {
         let windows = samples.div_ceil(window.max(1));

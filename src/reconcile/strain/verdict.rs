@@ -1,6 +1,9 @@
 //! Verdict on the best set of effects: whether it is named, and its alternative explanations.
 
 use super::adequacy::{Adequacy, adequacy, deviate_estimated};
+use super::alternatives::{
+    AlternativeSet, WORTH_NAMING, find_alternative_sets, report_alternatives, without_own,
+};
 use super::companions::without_companions;
 use super::detect::find_detectable_sizes;
 use super::explanation::{Explanation, discrepancy, is_unmodelled, named_part};
@@ -15,8 +18,7 @@ use super::prediction::predict;
 use super::recovered_loads::loads_before_after;
 use super::recurring_effects::Recurrence;
 use super::remains::{remains, sits};
-use super::resampled_runs::DRAWINGS;
-use super::rivals::{RivalSet, WORTH_NAMING, rival_sets, rivals_told, without_own};
+use super::resampled_runs::RESAMPLED_SETS;
 use super::sizes_found::effects_with_sizes;
 use super::smooth_alternative::{curve, is_smooth};
 use super::unproven_effects::remove_unproven;
@@ -117,7 +119,7 @@ fn best_of_names<'a>(
 
 /// Tests the best set and returns the outcome. Effects are removed from fit and gap if they do not recur in resampled run sets, or do not reduce
 /// the gap on validation runs. The smaller set is tested against its own expected residual.
-pub(super) fn judge(
+pub(super) fn test_best_set(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
     all: &[ScoredSet<Fit>],
@@ -129,7 +131,7 @@ pub(super) fn judge(
     let (fewer, needless) = without_companions(frame, candidates, best)
         .map_or((None, None), |(set, words)| (Some(set), Some(words)));
     let best = fewer.as_ref().unwrap_or(best);
-    let mut rivals = rival_sets(frame, candidates, all, best);
+    let mut rivals = find_alternative_sets(frame, candidates, all, best);
     // The best set is compared under its own covariance, as the alternative explanations are.
     let level = |s: &ScoredSet<Fit>| own_evidence(frame, candidates, s);
     let alike = ScoredSet {
@@ -196,7 +198,7 @@ pub(super) fn judge(
         None if verdict == Verdict::Unknown => look_again(&after),
         None => "none needed".into(),
     };
-    let rivals = rivals_told(proofs, candidates, &rivals, level);
+    let rivals = report_alternatives(proofs, candidates, &rivals, level);
     let left = remains(
         frame,
         &explained.members,
@@ -253,7 +255,7 @@ struct EffectSetChecks<'a> {
     candidates: &'a [Candidate],
     best: &'a ScoredSet<Fit>,
     attempt: &'a [NamedEffect],
-    rivals: &'a [RivalSet],
+    rivals: &'a [AlternativeSet],
     /// Log evidence of the set under its own covariance.
     level: f64,
     /// Log evidence lost with the removed effects.
@@ -280,11 +282,16 @@ fn checks_of(set: &EffectSetChecks<'_>) -> [Check; 10] {
         // The removed effect explains the fitted runs that much better, but does not predict other runs better. The cause then has a form that the
         // library lacks.
         Check::unless(set.taken_out.clone().filter(|_| set.lost > WORTH_NAMING)),
-        Check::from_condition(wins as f64 >= rules.drawings * DRAWINGS as f64, || {
-            set.standing.doubt.clone().unwrap_or_else(|| {
-                format!("{wins} of {DRAWINGS} resampled run sets contain every effect of it")
-            })
-        }),
+        Check::from_condition(
+            wins as f64 >= rules.drawings * RESAMPLED_SETS as f64,
+            || {
+                set.standing.doubt.clone().unwrap_or_else(|| {
+                    format!(
+                        "{wins} of {RESAMPLED_SETS} resampled run sets contain every effect of it"
+                    )
+                })
+            },
+        ),
         Check::unless(describe_better_alternative(
             (set.attempt.len(), set.level),
             [rules.indistinguishable, rules.decisive],

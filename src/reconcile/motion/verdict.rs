@@ -7,7 +7,7 @@ use super::detection_limits::smallest_sizes;
 use super::effect_units::unit_of_change;
 use super::fit::{Effort, fit};
 use super::gap::{Proof, RecordGap, fitted_gap, proof, proof_gap};
-use super::limits::{beyond_tolerance, stands_out};
+use super::limits::{beyond_tolerance, effects_exceed_scatter};
 use super::motion_fit::MotionFit;
 use super::next::next_measurement;
 use super::noise::Background;
@@ -17,7 +17,7 @@ use super::scorer::MotionScorer;
 use super::sentences::remains;
 use super::unproven_effects::remove_unproven;
 use crate::reconcile::checks::{Check, describe_better_alternative, reasons, verdict};
-use crate::reconcile::outcome::{Gap, GapBasis, Rival, Verdict};
+use crate::reconcile::outcome::{AlternativeExplanation, Gap, GapBasis, Verdict};
 use crate::reconcile::rules::MotionRules;
 use crate::reconcile::search::{ScoredSet, settle};
 use crate::vehicle::motion::VehicleError;
@@ -96,12 +96,12 @@ pub(super) fn conclude(
     let taken = |g: &Option<RecordGap>| g.as_ref().map_or(0.0, |g| g.gap * g.gap);
     let excess = (taken(&before.fitted) - taken(&after.fitted)).max(0.0);
     let gap = gap_of(&before.proof, &after.proof, proof(frame, &best.fit));
-    let rivals = rivals(scorer, &best, &all);
+    let rivals = list_alternatives(scorer, &best, &all);
     let checks = [
         Check::from_condition(evidence > rules.decisive, || {
             "its evidence is not decisive".into()
         }),
-        Check::from_condition(stands_out(rules, &best.fit), || {
+        Check::from_condition(effects_exceed_scatter(rules, &best.fit), || {
             "the size of one of its effects does not exceed its own scatter".into()
         }),
         Check::from_condition(after.at_floor(rules, excess), || {
@@ -267,7 +267,9 @@ fn find_nameable_set(
         })
     };
     let fine = |s: &ScoredSet<MotionFit>| {
-        material(s) && beyond_tolerance(frame, &s.fit) && stands_out(&frame.rules, &s.fit)
+        material(s)
+            && beyond_tolerance(frame, &s.fit)
+            && effects_exceed_scatter(&frame.rules, &s.fit)
     };
     if fine(&best) {
         return best;
@@ -313,11 +315,11 @@ fn effects_of(scorer: &MotionScorer, fit: &MotionFit) -> Vec<MotionEffect> {
 }
 
 /// Returns the first of [`other_sets`] as alternative explanations.
-fn rivals(
+fn list_alternatives(
     scorer: &MotionScorer,
     best: &ScoredSet<MotionFit>,
     all: &[ScoredSet<MotionFit>],
-) -> Vec<Rival> {
+) -> Vec<AlternativeExplanation> {
     /// Largest number of alternative explanations in the outcome.
     const MOST: usize = 4;
     let ids = |s: &ScoredSet<MotionFit>| {
@@ -337,7 +339,7 @@ fn rivals(
         .take(MOST)
         .map(|s| {
             let difference = best.log_evidence - s.log_evidence;
-            Rival {
+            AlternativeExplanation {
                 ids: s
                     .set
                     .iter()

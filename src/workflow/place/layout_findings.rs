@@ -111,7 +111,7 @@ pub(super) fn chosen_as_recovered(
 }
 
 /// Returns the covariance of the loads of a chosen layout, with the tolerances of installation in its rows and the error of the model.
-pub(super) fn as_glued(job: &Job, q: &Quality, k: usize) -> Vec<f64> {
+pub(super) fn installed_covariance(job: &Job, q: &Quality, k: usize) -> Vec<f64> {
     let mut out = q.covariance.clone();
     let model = job.placement.model_uncertainty_rel.powi(2);
     out.iter_mut().step_by(k + 1).for_each(|v| *v += model);
@@ -171,7 +171,7 @@ const STRAIN: f64 = 2000.0;
 const PLACE: f64 = 1.0;
 
 /// Adds the findings on the requirements for the installation.
-fn judge_workshop(work: &mut Work, job: &Job, placed: &[PlacedGauge]) {
+fn report_installation_findings(work: &mut Work, job: &Job, placed: &[PlacedGauge]) {
     let strained = placed
         .iter()
         .filter(|g| g.expected_microstrain > STRAIN)
@@ -260,7 +260,7 @@ fn check_budgets<'a>(
 }
 
 /// Findings on the layout.
-pub(super) fn judge_layout(
+pub(super) fn report_layout_findings(
     work: &mut Work,
     job: &Job,
     layout: &ChosenLayout,
@@ -269,7 +269,7 @@ pub(super) fn judge_layout(
     placed: &[PlacedGauge],
     k: usize,
 ) {
-    judge_workshop(work, job, placed);
+    report_installation_findings(work, job, placed);
     if q.worst_loss == 0.0 {
         work.findings.push(Finding::new(
             Severity::Warning,

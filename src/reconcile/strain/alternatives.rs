@@ -7,7 +7,7 @@ use super::own_covariance::{under_own_covariance, with_members};
 use super::smooth_alternative::is_smooth;
 use super::validation::{Proofs, validate_set};
 use crate::reconcile::effect::Candidate;
-use crate::reconcile::outcome::Rival;
+use crate::reconcile::outcome::AlternativeExplanation;
 use crate::reconcile::search::ScoredSet;
 use rayon::prelude::*;
 
@@ -15,16 +15,16 @@ use rayon::prelude::*;
 pub(super) const WORTH_NAMING: f64 = 25.0;
 
 /// Alternative set of effects with its ids.
-pub(super) type RivalSet = (Vec<String>, ScoredSet<Fit>);
+pub(super) type AlternativeSet = (Vec<String>, ScoredSet<Fit>);
 
 /// Returns the alternative explanations of a set of log evidence `level`, with their gaps.
-pub(super) fn rivals_told(
+pub(super) fn report_alternatives(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
-    rivals: &[RivalSet],
+    rivals: &[AlternativeSet],
     level: f64,
-) -> Vec<Rival> {
-    let one = |(ids, s): &RivalSet| Rival {
+) -> Vec<AlternativeExplanation> {
+    let one = |(ids, s): &AlternativeSet| AlternativeExplanation {
         ids: ids.clone(),
         evidence_difference: level - s.log_evidence,
         gap_after: validate_set(proofs, candidates, s).0.after,
@@ -35,12 +35,12 @@ pub(super) fn rivals_told(
 
 /// Returns alternative sets with at most as many identified effects as the best set, nearest first. The number is not limited if the best set
 /// contains a curve. Each set has its own covariance, like the best set.
-pub(super) fn rival_sets(
+pub(super) fn find_alternative_sets(
     frame: &StrainFrame,
     candidates: &[Candidate],
     all: &[ScoredSet<Fit>],
     best: &ScoredSet<Fit>,
-) -> Vec<RivalSet> {
+) -> Vec<AlternativeSet> {
     const MOST: usize = 5;
     /// Number of sets tried: twice as many, since sets change their order under their own covariance.
     const TRIED: usize = 2 * MOST;
@@ -85,7 +85,7 @@ pub(super) fn rival_sets(
 pub(super) fn without_own(
     candidates: &[Candidate],
     best: &ScoredSet<Fit>,
-    rivals: &mut Vec<RivalSet>,
+    rivals: &mut Vec<AlternativeSet>,
 ) {
     let mut seen = vec![sorted_ids(candidates, &best.set)];
     rivals.retain(|r| {

@@ -24,7 +24,7 @@ const STEP: f64 = 0.5;
 ///
 /// # Errors
 /// As [`calibrate`].
-pub fn calibrate_as_glued(
+pub fn calibrate_installed_gauges(
     task: &Task,
     tolerance: GlueTolerance,
     row: impl Fn(usize, [f64; 3]) -> Option<Vec<f64>>,
