@@ -135,9 +135,11 @@ class ConditioningKeys(Section):
     spikes: _Key[Any]
     """Single samples far off the line through their neighbours are replaced by that line, and counted; default: false."""
     temperature: _Key[Any]
-    """Apparent strain that follows a temperature channel is subtracted; default: none."""
+    """Apparent strain that follows a temperature channel is subtracted, relative to the mean temperature in `zero_s`, or to the first sample;
+    default: none."""
     zero_s: _Key[Any]
-    """Stretch of the record, [start, end], whose mean is zero for each gauge; it replaces [measured] `zero` [s]; default: none."""
+    """Stretch of the record, [start, end], whose mean is zero for each gauge; it replaces [measured] `zero`, and needs 100 independent readings
+    [s]; default: none."""
 
 
 class CorrectionKeys(Section):
@@ -572,8 +574,8 @@ class Keys:
     compare: _Key[CompareKeys]
     """Recorded loads that `recover` compares its loads with."""
     conditioning: _Key[ConditioningKeys]
-    """Changes of the readings of a record before anything else, in the order of these keys. `result.json` states what each step changed;
-    default: none."""
+    """Changes of the readings of a record after [[correction]] and before anything else, in the order of these keys. `result.json` states what
+    each step changed; default: none."""
     correction: _Key[Items[CorrectionKeys]]
     """Known fault of a channel, corrected in every reading and record of the job."""
     dynamic: _Key[DynamicKeys]

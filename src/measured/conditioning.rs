@@ -3,19 +3,20 @@
 use super::conditioning_step::ConditioningStep;
 use super::faults::record_fault;
 use super::record::Record;
-use crate::estimate::median;
 use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, Faults};
-use crate::job::{Job, ReadingConditioning, TemperatureCompensation};
+use crate::job::{Job, ReadingConditioning, Reference, TemperatureCompensation};
 use crate::series::butterworth::{Passes, filter_without_phase};
-use crate::series::detrend::{line, mean, rms};
+use crate::series::detrend::{mean, rms};
 use crate::series::quality::find_spikes;
 use crate::units::MICROSTRAIN;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Samples that a stretch of zero needs: its noise is then below a tenth of the noise of a reading.
+/// Independent readings that a stretch of zero needs: the error of the mean is then below a tenth of the noise of a reading.
 const LEAST_ZERO: usize = 100;
+/// Numbers of a record that are held in memory: 0.8 GB of readings.
+const MOST_NUMBERS: usize = 100_000_000;
 
 /// Readings of a record while they are conditioned.
 struct Conditioner {
@@ -30,6 +31,12 @@ impl Conditioner {
     fn apply(&mut self, step: &'static str, change: impl Fn(&mut [f64]) + Sync) {
         let of_column = |column: &mut Vec<f64>| -> (usize, f64) {
             let before = column.clone();
+            // A gauge with one constant value has no signal: the search for such gauges must still find it.
+            let mut read = before.iter().filter(|v| v.is_finite());
+            let first = read.next();
+            if step != "zero" && read.all(|v| Some(v) == first) {
+                return (0, 0.0);
+            }
             change(column);
             let changes: Vec<f64> = (column.iter().zip(&before))
                 .map(|(a, b)| a - b)
@@ -51,31 +58,47 @@ impl Conditioner {
     }
 }
 
-/// Returns the record with the readings that the job's `[conditioning]` makes of it; `record` itself without the section.
+/// Returns the record with the readings that the job's `[conditioning]` makes of the columns `wanted`; `record` itself without the section.
+/// `[[correction]]` is applied first, and not again afterwards.
 ///
 /// # Errors
-/// A temperature channel that the record lacks, a stretch of zero beyond the record, a zero file next to such a stretch, a corner above half of the
-/// sample rate, or a record without uniform time steps.
-pub(super) fn condition(job: &Job, record: Record) -> Result<Record, Faults> {
+/// A temperature channel that the record lacks or that is a gauge, a stretch of zero beyond the record or with too few readings, two zeros, a corner
+/// above half of the sample rate, or a record that is too long.
+pub(super) fn condition(job: &Job, record: Record, wanted: &[String]) -> Result<Record, Faults> {
     let Some(asked) = &job.conditioning else {
         return Ok(record);
     };
-    let fault = |key: &str, wrong: String, remedy: &str| {
+    let fault = |key: &str, (wrong, remedy): (String, &str)| {
         let field = format!("conditioning.{key}");
         Faults::from(Fault::with_line(
             &*job.file, asked.line, field, wrong, remedy,
         ))
     };
-    let temperature = asked.temperature.as_ref().map(|t| t.channel.as_str());
-    let record = record.with_all_uncorrected_strain(temperature);
-    let (first_s, step_s) = record.first_and_step();
-    let zero = match asked.zero_s {
-        Some(times) => Some(
-            zero_samples(job, &record, times)
-                .map_err(|(wrong, remedy)| fault("zero_s", wrong, remedy))?,
-        ),
+    two_zeros(job, asked).map_err(|(key, wrong)| fault(key, wrong))?;
+    let temperature = match &asked.temperature {
+        Some(t) => {
+            let measured = temperature_of(&record, t, wanted);
+            let field = "temperature.channel";
+            Some((
+                t,
+                measured.map_err(|e| e.unwrap_or_else(|wrong| fault(field, wrong)))?,
+            ))
+        }
         None => None,
     };
+    let record = record.with_wanted_strain(job, wanted);
+    let (first_s, step_s) = record.first_and_step();
+    let samples = record.clock().samples;
+    if samples.saturating_mul(record.n_columns()) > MOST_NUMBERS {
+        let wrong = format!("the record has {samples} samples, which must be held in memory");
+        return Err(fault(
+            "",
+            (
+                wrong,
+                "cut the record into parts of at most 100 million readings",
+            ),
+        ));
+    }
     for (key, corner) in [
         ("low_pass_hz", asked.low_pass_hz),
         ("high_pass_hz", asked.high_pass_hz),
@@ -87,29 +110,21 @@ pub(super) fn condition(job: &Job, record: Record) -> Result<Record, Faults> {
             );
             return Err(fault(
                 key,
-                wrong,
-                "state a lower frequency, or sample faster",
+                (wrong, "state a lower frequency, or sample faster"),
             ));
         }
     }
-    let temperature = match &asked.temperature {
-        Some(t) => Some((
-            t,
-            temperature_of(&record, t).map_err(|e| match e {
-                Some(unreadable) => unreadable.into(),
-                None => fault(
-                    "temperature.channel",
-                    format!("the record has no numeric channel `{}`", t.channel),
-                    "name a column of the strain file",
-                ),
-            })?,
-        )),
-        None => None,
-    };
     let mut work = Conditioner {
         readings: record.columns()?,
         names: record.names_read(),
         steps: Vec::new(),
+    };
+    let zero = match asked.zero_s {
+        Some(times) => {
+            let zero = zero_samples(&record, times, asked.low_pass_hz, &work);
+            Some(zero.map_err(|wrong| fault("zero_s", wrong))?)
+        }
+        None => None,
     };
     let asked_of = (asked, zero.as_ref(), step_s);
     run_steps(
@@ -118,6 +133,33 @@ pub(super) fn condition(job: &Job, record: Record) -> Result<Record, Faults> {
         temperature.as_ref().map(|(t, v)| (*t, &**v)),
     );
     record.with_conditioned_readings(work.readings, (first_s, step_s), work.steps)
+}
+
+/// Refuses steps that remove static strain in a job that subtracts a zero or adds a reference state itself.
+fn two_zeros(
+    job: &Job,
+    asked: &ReadingConditioning,
+) -> Result<(), (&'static str, (String, &'static str))> {
+    let measured = job.measured.as_ref();
+    let has_zero = measured.is_some_and(|m| m.zero.is_some());
+    let has_reference = measured.is_some_and(|m| m.reference != Reference::None);
+    let common = job.sensitivity.as_ref();
+    let has_common = common.is_some_and(|s| s.common_zero.is_some());
+    let remedy = "delete one of them";
+    if has_zero && asked.zero_s.is_some() {
+        let wrong = "[measured] states a zero file too: only one of them can be zero";
+        return Err(("zero_s", (wrong.to_owned(), remedy)));
+    }
+    if has_zero && asked.temperature.is_some() {
+        let wrong = "the temperature of the zero file in [measured] is not known";
+        let remedy = "state `zero_s` instead of the zero file, or compensate the readings before";
+        return Err(("temperature", (wrong.to_owned(), remedy)));
+    }
+    if asked.high_pass_hz.is_some() && (has_zero || has_reference || has_common) {
+        let wrong = "the filter removes static strain, and the job subtracts a zero or adds a reference state";
+        return Err(("high_pass_hz", (wrong.to_owned(), remedy)));
+    }
+    Ok(())
 }
 
 /// Runs the steps in their order.
@@ -182,30 +224,28 @@ fn run_steps(
     }
 }
 
-/// Returns the slope of the least squares line per sample; missing samples count as the median.
+/// Returns the slope of the least squares line through the samples that are read, per sample.
 fn slope_of(x: &[f64]) -> f64 {
-    if x.iter().all(|v| v.is_finite()) {
-        return line(x).1;
+    let read = || x.iter().enumerate().filter(|(_, v)| v.is_finite());
+    let n = read().count() as f64;
+    let middle = read().map(|(i, _)| i as f64).sum::<f64>() / n;
+    let level = read().map(|(_, v)| v).sum::<f64>() / n;
+    let (mut sxy, mut sxx) = (0.0, 0.0);
+    for (i, v) in read() {
+        let d = i as f64 - middle;
+        sxy += d * (v - level);
+        sxx += d * d;
     }
-    let read: Vec<f64> = x.iter().copied().filter(|v| v.is_finite()).collect();
-    let middle = median(read).unwrap_or(0.0);
-    let filled: Vec<f64> = x
-        .iter()
-        .map(|v| if v.is_finite() { *v } else { middle })
-        .collect();
-    line(&filled).1
+    if sxx > 0.0 { sxy / sxx } else { 0.0 }
 }
 
 /// Returns the samples of the stretch of zero.
 fn zero_samples(
-    job: &Job,
     record: &Record,
     [from, to]: [f64; 2],
+    low_pass_hz: Option<f64>,
+    work: &Conditioner,
 ) -> Result<Range<usize>, (String, &'static str)> {
-    if job.measured.as_ref().is_some_and(|m| m.zero.is_some()) {
-        let wrong = "[measured] states a zero file too: only one of them can be zero".to_owned();
-        return Err((wrong, "delete `zero_s`, or `zero` in [measured]"));
-    }
     let (samples, (first_s, step_s)) = (record.clock().samples, record.first_and_step());
     let last_s = first_s + step_s * samples.saturating_sub(1) as f64;
     if from < first_s - 0.5 * step_s || to > last_s + 0.5 * step_s {
@@ -214,24 +254,56 @@ fn zero_samples(
     }
     let at = |t: f64| ((t - first_s) / step_s).round().max(0.0) as usize;
     let range = at(from)..(at(to) + 1).min(samples);
-    if range.len() < LEAST_ZERO {
-        let wrong = format!(
-            "[{from}, {to}] s contains {} samples, and a zero needs {LEAST_ZERO}",
-            range.len()
-        );
-        return Err((wrong, "state a longer stretch without loads"));
+    // Noise below a corner is independent in steps of half its period.
+    let independent = low_pass_hz.map_or(1.0, |f| (2.0 * f * step_s).min(1.0));
+    let least = (LEAST_ZERO as f64 / independent).ceil() as usize;
+    for (name, column) in work.names.iter().zip(&work.readings) {
+        let read = column[range.clone()].iter().filter(|v| v.is_finite());
+        let n = read.count();
+        // A gauge without any reading is reported elsewhere.
+        if n < least && column.iter().any(|v| v.is_finite()) {
+            let wrong = format!(
+                "[{from}, {to}] s contains {n} readings of gauge {name}, and a zero needs {least}"
+            );
+            return Err((wrong, "state a longer stretch without loads"));
+        }
     }
     Ok(range)
 }
 
-/// Returns the temperature of every sample; missing ones have the last value before. `Err(None)` without such a channel.
+/// Returns the temperature of every sample in degrees Celsius or Kelvin; missing ones have the last value before.
 fn temperature_of(
     record: &Record,
     compensation: &TemperatureCompensation,
-) -> Result<Vec<f64>, Option<Fault>> {
-    let read = record.raw_column(&compensation.channel).ok_or(None)?;
-    let mut values = read.map_err(|e| Some(record_fault(record.file(), &e)))?;
-    let first = values.iter().copied().find(|v| v.is_finite()).ok_or(None)?;
+    wanted: &[String],
+) -> Result<Vec<f64>, Result<Faults, (String, &'static str)>> {
+    let channel = &compensation.channel;
+    let wrong = |wrong: String, remedy: &'static str| Err(Err((wrong, remedy)));
+    if wanted.contains(channel) {
+        let wrong_name = format!("`{channel}` is a gauge of the job");
+        return wrong(wrong_name, "name the column of the temperature");
+    }
+    let (Some(unit), Some(read)) = (record.unit_of(channel), record.raw_column(channel)) else {
+        return wrong(
+            format!(
+                "the record has no numeric channel `{channel}` that is sampled with the gauges"
+            ),
+            "name a column of the strain file",
+        );
+    };
+    if !["", "degC", "\u{b0}C", "deg C", "C", "K"].contains(&unit) {
+        return wrong(
+            format!("the unit of channel `{channel}` is `{unit}`"),
+            "export the temperature in degC",
+        );
+    }
+    let mut values = read.map_err(|e| Ok(record_fault(record.file(), &e).into()))?;
+    let Some(first) = values.iter().copied().find(|v| v.is_finite()) else {
+        return wrong(
+            format!("channel `{channel}` has no number"),
+            "name a column with temperatures",
+        );
+    };
     let mut last = first;
     for v in &mut values {
         if v.is_finite() {

@@ -70,7 +70,8 @@ fn open_first_sheet(
     let wanted = wanted_columns(inputs, job);
     if is_record(&bytes) {
         let of_file = (named.given.as_str(), measured.time_unit_s);
-        let record = conditioning::condition(job, Record::open(job, of_file, bytes, &wanted)?)?;
+        let record =
+            conditioning::condition(job, Record::open(job, of_file, bytes, &wanted)?, &wanted)?;
         return Ok(MeasuredStrain::Record(Box::new(record)));
     }
     let table = read_strain(inputs, job, named, &wanted);

@@ -32,8 +32,10 @@ pub(crate) struct Record {
     columns: Vec<(Option<usize>, Channel)>,
     /// Readings that are taken for none: column that is read, and samples.
     blank: Vec<(usize, Range<usize>)>,
-    /// Changes of the readings by `[conditioning]`.
-    conditioning: Vec<ConditioningStep>,
+    /// Changes of the readings by `[conditioning]`, which follows the corrections; `None` for a record without it.
+    conditioning: Option<Vec<ConditioningStep>>,
+    /// Times of the samples, as the file states them.
+    clock: Clock,
 }
 
 impl Record {
@@ -47,13 +49,20 @@ impl Record {
         bytes: FileBytes,
         wanted: &[String],
     ) -> Result<Self, Faults> {
-        let options = Options {
+        let mut options = Options {
             declared_hz: None,
             time_unit_s,
             wanted: wanted.to_vec(),
         };
+        let temperature = job
+            .conditioning
+            .as_ref()
+            .and_then(|c| c.temperature.as_ref());
+        if let Some(t) = temperature.filter(|_| !wanted.is_empty()) {
+            options.wanted.push(t.channel.clone());
+        }
         let inner = open_record(Arc::new(bytes), &options).map_err(|e| record_fault(file, &e))?;
-        let columns = find_gauge_columns(file, inner.columns(), &options.wanted)?;
+        let columns = find_gauge_columns(file, inner.columns(), wanted)?;
         let gauge = |c: &StrainColumn| column_of(&job.corrections, &c.name).to_owned();
         let micro = |c: &StrainColumn| c.microstrain.unwrap_or(f64::NAN);
         Ok(Self {
@@ -62,13 +71,22 @@ impl Record {
             micro: columns.iter().map(micro).collect(),
             columns: Vec::new(),
             blank: Vec::new(),
-            conditioning: Vec::new(),
+            conditioning: None,
+            clock: inner.clock.clone(),
             inner: Arc::new(inner),
         })
     }
 
-    /// Returns the record with only these columns.
-    pub fn with_columns(self, columns: Vec<(Option<usize>, Channel)>) -> Self {
+    /// Returns the record with only these columns. Conditioned readings are corrected already.
+    pub fn with_columns(self, mut columns: Vec<(Option<usize>, Channel)>) -> Self {
+        if self.conditioning.is_some() {
+            for (_, channel) in &mut columns {
+                *channel = Channel {
+                    ignore: channel.ignore,
+                    ..Channel::without_correction()
+                };
+            }
+        }
         Self { columns, ..self }
     }
 
@@ -82,14 +100,18 @@ impl Record {
         self.with_columns(columns)
     }
 
-    /// Returns the record with all columns of strain but `except` read without corrections.
-    pub fn with_all_uncorrected_strain(self, except: Option<&str>) -> Self {
-        let is_read =
-            |c: &usize| !self.micro[*c].is_nan() && Some(self.names[*c].as_str()) != except;
-        let strain = (0..self.names.len()).filter(is_read);
-        let columns = strain
-            .map(|c| (Some(c), Channel::without_correction()))
-            .collect();
+    /// Returns the record with the columns `wanted` read, with their corrections; with all columns of strain if `wanted` is empty.
+    pub fn with_wanted_strain(self, job: &Job, wanted: &[String]) -> Self {
+        let is_read = |c: &usize| {
+            let name = column_of(&job.corrections, &self.names[*c]);
+            let asked = wanted.is_empty() || wanted.iter().any(|w| w == name);
+            asked
+                && !self.micro[*c].is_nan()
+                && !channel_of(&job.corrections, &self.names[*c]).ignore
+        };
+        let columns = (0..self.names.len()).filter(is_read);
+        let columns = columns.map(|c| (Some(c), channel_of(&job.corrections, &self.names[c])));
+        let columns = columns.collect();
         self.with_columns(columns)
     }
 
@@ -103,18 +125,29 @@ impl Record {
         times: (f64, f64),
         conditioning: Vec<ConditioningStep>,
     ) -> Result<Self, Faults> {
-        let names = self.names_read();
-        let record = self.with_readings(readings, times)?;
+        let mut names = self.names_read();
+        let mut record = self.with_readings(readings, times)?;
+        // Columns that are not read keep their names, so that columns without a gauge are reported.
+        let others = self.names.iter().filter(|n| !names.contains(n));
+        let others: Vec<String> = others.cloned().collect();
+        record.micro.resize(names.len() + others.len(), f64::NAN);
+        names.extend(others);
         Ok(Self {
             names,
-            conditioning,
+            conditioning: Some(conditioning),
             ..record
         })
     }
 
     /// Returns the change of the readings by `[conditioning]`.
     pub fn conditioning_steps(&self) -> &[ConditioningStep] {
-        &self.conditioning
+        self.conditioning.as_deref().unwrap_or_default()
+    }
+
+    /// Returns the unit of a column as the file states it; `None` if no column has the name.
+    pub fn unit_of(&self, name: &str) -> Option<&str> {
+        let column = self.names.iter().position(|n| n == name)?;
+        self.inner.columns().get(column).map(|c| c.unit.as_str())
     }
 
     /// Returns the numbers of a column as the file contains them; `None` if no column has the name.
@@ -248,6 +281,7 @@ impl Record {
             columns: (0..n).map(|c| (Some(c), as_it_is)).collect(),
             blank: Vec::new(),
             conditioning: self.conditioning.clone(),
+            clock: self.clock.clone(),
         })
     }
 
@@ -258,12 +292,12 @@ impl Record {
 
     /// Time of a sample, s.
     pub fn time_s(&self, sample: usize) -> f64 {
-        self.inner.clock.time_s(sample)
+        self.clock.time_s(sample)
     }
 
     /// Returns the times of the samples.
     pub fn clock(&self) -> &Clock {
-        &self.inner.clock
+        &self.clock
     }
 
     /// Time of the first sample and between samples, s.

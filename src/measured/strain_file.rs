@@ -1,7 +1,7 @@
 //! A strain file as a table: a column a gauge, a row a run (`run`) or a sample (`time`).
 
 use super::conditioning::refuse_runs;
-use super::strain_table::StrainTable;
+use super::strain_table::{StrainRows, StrainTable};
 use super::strain_text::strain_from_text;
 use crate::host::fault::Faults;
 use crate::host::files::Inputs;
@@ -21,16 +21,14 @@ pub fn read_strain(
     named: &NamedFile,
     wanted: &[String],
 ) -> Result<StrainTable, Faults> {
-    if job
-        .measured
-        .as_ref()
-        .is_some_and(|m| m.strain.given == named.given)
-    {
-        refuse_runs(job, &named.given)?;
-    }
     let text = inputs.read_named_text(job, named)?;
     let mut table = strain_from_text(&named.given, &text, wanted)?;
     check_corrected(job, named, &table.gauges)?;
+    let measured = job.measured.as_ref();
+    let is_strain = measured.is_some_and(|m| m.strain.given == named.given);
+    if is_strain && !matches!(table.rows, StrainRows::Times(_)) {
+        refuse_runs(job, &named.given)?;
+    }
     table.put_right(&job.corrections);
     table.leave_out(&job.reserved);
     Ok(table)

@@ -198,14 +198,12 @@ impl Projection {
 
     /// `T M(f, g) T'`, by rows.
     fn model_error_covariance(&self, f: &[f64], g: &[f64]) -> Vec<f64> {
+        let errors = &self.errors;
         let m = self.m();
         let by_gauge: Vec<f64> = self
             .s
             .row_iter()
-            .map(|row| {
-                self.errors
-                    .model_error_covariance(row.iter().copied(), f, g)
-            })
+            .map(|row| errors.model_error_covariance(row.iter().copied(), f, g))
             .collect();
         let mut out = vec![0.0; m * m];
         for a in 0..m {
@@ -357,10 +355,8 @@ impl Projection {
         let m = self.m();
         let trace = |c: &[f64]| (0..m).map(|a| c[a * m + a]).sum::<f64>();
         let noise = trace(&self.noise_covariance) * loads.len() as f64;
-        let model: f64 = loads
-            .iter()
-            .map(|f| trace(&self.model_error_covariance(f, f)))
-            .sum();
+        let of_loads = |f: &Vec<f64>| trace(&self.model_error_covariance(f, f));
+        let model: f64 = loads.iter().map(of_loads).sum();
         model / (model + noise)
     }
 
@@ -379,10 +375,8 @@ impl Projection {
         let d = dense::svd(&Matrix::from_fn(runs, k, |i, l| loads[i][l]))?;
         let least = d.s.first().copied().unwrap_or(0.0) * EMPTY;
         let held = d.s.iter().filter(|s| **s > least && **s > 0.0).count();
-        let z: Vec<Vec<f64>> = strain
-            .iter()
-            .map(|y| self.project_strain(pattern, y))
-            .collect();
+        let project = |y: &&[f64]| self.project_strain(pattern, y);
+        let z: Vec<Vec<f64>> = strain.iter().map(project).collect();
         let together = (TOGETHER / m.max(1)).clamp(1, held.max(1)).min(held);
         let sets = std::iter::once((0..together).collect::<Vec<_>>())
             .chain((together..held).map(|j| vec![j]));

@@ -215,20 +215,28 @@ fn check_clipped(c: &Channel, kind: Kind) -> Option<Finding> {
 }
 
 /// Returns the single samples that are far off the line through their neighbours, in ascending order, and the distance that a sample needs for it.
+///
+/// The second difference of a single sample `h` off a smooth course is `h`, `-h / 2` at both neighbours and 0 next to these. Waves of any frequency
+/// differ from that.
 pub fn find_spikes(x: &[f64]) -> (Vec<usize>, f64) {
     let bend: Vec<f64> = x.windows(3).map(|w| w[1] - 0.5 * (w[0] + w[2])).collect();
-    let sizes = bend.iter().map(|v| v.abs()).filter(|v| v.is_finite());
-    let sigma = 1.4826 * median(sizes.collect()).unwrap_or(0.0);
-    let is_spike = |w: &[f64]| {
-        let beside = w[0].abs().max(w[2].abs());
-        w[1].abs() > SPIKE_SIGMA * sigma && w[1].abs() > 1.5 * beside
+    let size = |limit: f64| {
+        let sizes = bend.iter().map(|v| v.abs());
+        1.4826 * median(sizes.filter(|v| v.is_finite() && *v > limit).collect()).unwrap_or(0.0)
     };
-    let spikes = bend.windows(3).enumerate().filter(|(_, w)| is_spike(w));
-    let found = spikes.map(|(i, _)| i + 2).collect();
-    (
-        if sigma > 0.0 { found } else { Vec::new() },
-        SPIKE_SIGMA * sigma,
-    )
+    // More than half of the samples of a coarse reading at rest have no second difference at all.
+    let sigma = if size(-1.0) > 0.0 {
+        size(-1.0)
+    } else {
+        size(0.0)
+    };
+    let is_spike = |w: &[f64]| {
+        let next = |v: f64| (-0.75..-0.25).contains(&(v / w[2]));
+        let far = |v: f64| v.abs() < 0.25 * w[2].abs();
+        w[2].abs() > SPIKE_SIGMA * sigma && next(w[1]) && next(w[3]) && far(w[0]) && far(w[4])
+    };
+    let spikes = bend.windows(5).enumerate().filter(|(_, w)| is_spike(w));
+    (spikes.map(|(i, _)| i + 3).collect(), SPIKE_SIGMA * sigma)
 }
 
 /// Reports single samples far off the line through their neighbours.

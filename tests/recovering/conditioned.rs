@@ -147,6 +147,39 @@ fn a_sound_record_keeps_its_loads() {
     assert!(worst <= plain && held > 0.95, "{worst} {plain} {held}");
 }
 
+/// Corrections come before conditioning, and once: a zero, thermal strain and an offset of a gauge that is corrected are those of the strain.
+#[test]
+fn corrections_are_applied_once_and_before_conditioning() {
+    let more = "[[correction]]\ngauge = \"G1\"\nsign = -1\noffset_microstrain = 300.0\n";
+    let on = [true, true, false, false, false];
+    let change = |text: &str| -> String {
+        let mut lines = text.lines();
+        let mut out = format!("{}\n", lines.next().unwrap());
+        for line in lines {
+            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+            let strain: f64 = cells[1].parse().unwrap();
+            cells[1] = format!("{:.5}", 300.0 - strain);
+            out += &format!("{}\n", cells.join(","));
+        }
+        out
+    };
+    let section = "[conditioning]\nzero_s = [0.5, 4.5]\ntemperature = { channel = \"T1\", microstrain_per_degC = 1.4 }\n";
+    let (plain, _, _) = recover(on, section);
+    let files = files(on, &format!("{more}{section}")).with_file("strain.csv", change(&record(on)));
+    let job = Job::read("job.toml", &files).unwrap_or_else(|f| panic!("{f:?}"));
+    let got =
+        strainbridge::recover(&job, &Context::new(&files)).unwrap_or_else(|f| panic!("{f:?}"));
+    let history = got.answer.record().unwrap().history.as_ref().unwrap();
+    let far = |row: &strainbridge::workflow::recover::HistoryRow| {
+        let expected = loads(row.time);
+        let both = row.loads.iter().zip(expected);
+        both.map(|(l, e)| (l.unwrap()[0] - e).abs())
+            .fold(0.0, f64::max)
+    };
+    let worst = history.rows().map(|r| far(&r)).fold(0.0, f64::max);
+    assert!(worst < 1.5 * plain, "{worst} {plain}");
+}
+
 /// What the section cannot do is a fault of its line.
 #[test]
 fn what_conditioning_cannot_do_is_a_fault() {
@@ -165,6 +198,10 @@ fn what_conditioning_cannot_do_is_a_fault() {
             "temperature.microstrain_per_degC",
         ),
         ("drift = \"cubic\"", "drift"),
+        (
+            "temperature = { channel = \"G2\", microstrain_per_degC = 1.4 }",
+            "temperature.channel",
+        ),
     ];
     for (text, key) in cases {
         let files = files([false; 5], &format!("[conditioning]\n{text}\n"));
@@ -176,6 +213,35 @@ fn what_conditioning_cannot_do_is_a_fault() {
             "{text}: {said}"
         );
     }
+    // A step that removes static strain next to a zero file, a temperature in another unit, and a section of another file.
+    let two = |conditioning: &str, more: &str, field: &str| {
+        let text = format!("{more}[conditioning]\n{conditioning}\n");
+        let files = files([false; 5], &text)
+            .with_file("zero.csv", record([false; 5]))
+            .with_file(
+                "strain.csv",
+                record([false; 5]).replacen("T1", "T1 [degF]", 1),
+            );
+        let zero = job(&text).replace("reference =", "zero = \"zero.csv\", reference =");
+        let files = if more.is_empty() && field != "temperature.channel" {
+            files.with_file("job.toml", zero)
+        } else {
+            files
+        };
+        let run = |job: Job| strainbridge::recover(&job, &Context::new(&files)).map(|_| ());
+        let fault = Job::read("job.toml", &files).and_then(run).unwrap_err();
+        assert!(
+            format!("{fault:?}").contains(field),
+            "{conditioning}: {fault:?}"
+        );
+    };
+    let thermal = "temperature = { channel = \"T1\", microstrain_per_degC = 1.4 }";
+    two("zero_s = [0.5, 4.5]", "", "conditioning.zero_s");
+    two("high_pass_hz = 0.1", "", "conditioning.high_pass_hz");
+    two(thermal, "", "conditioning.temperature");
+    two(thermal, "", "temperature.channel");
+    let section = "[[section]]\nname = \"A\"\nfile = \"strain.csv\"\n";
+    two("spikes = true", section, "section.file");
     let runs = files([false; 5], "[conditioning]\nspikes = true\n")
         .with_file("strain.csv", "run,G1,G2,G3,G4\nR1,1,2,3,4\n");
     let job = Job::read("job.toml", &runs).unwrap();

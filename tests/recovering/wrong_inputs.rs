@@ -464,16 +464,18 @@ fn wheels_that_all_pull_are_a_warning_and_wheels_that_push_are_not() {
     use strainbridge::host::context::InMemory;
     use strainbridge::{Context, Job};
     let codes = |strain: &str| -> Vec<&'static str> {
-        let loads = ["L", "M", "R"].map(|name| {
-            format!("[[load]]\nname = \"{name}\"\ngrid = 1\ncomponent = \"FZ\"\n")
-        });
+        let loads = ["L", "M", "R"]
+            .map(|name| format!("[[load]]\nname = \"{name}\"\ngrid = 1\ncomponent = \"FZ\"\n"));
         let job = format!(
             "units = \"m-kg-s\"\nsensitivity = {{ file = \"s.csv\" }}\nmeasured = {{ strain = \"strain.csv\", noise_microstrain = 1.0 }}\n{}",
             loads.concat()
         );
         let files = InMemory::default()
             .with_file("job.toml", job)
-            .with_file("s.csv", "gauge,L,M,R\nG1,0.1,0,0\nG2,0,0.1,0\nG3,0,0,0.1\nG4,0.05,0.05,0\n")
+            .with_file(
+                "s.csv",
+                "gauge,L,M,R\nG1,0.1,0,0\nG2,0,0.1,0\nG3,0,0,0.1\nG4,0.05,0.05,0\n",
+            )
             .with_file("strain.csv", format!("run,G1,G2,G3,G4\n{strain}"));
         let job = Job::read("job.toml", &files).unwrap_or_else(|f| panic!("{f:?}"));
         let got = strainbridge::recover(&job, &Context::new(&files));

@@ -19,6 +19,30 @@ pub(super) fn resolve_conditioning(c: &mut Collector, job: &RawJob) -> Option<Re
             "filter the accelerations before, or state `band_hz`",
         );
     }
+    if let Some(file) = job.section.iter().find_map(|s| s.value().file.as_ref()) {
+        let wrong = "[conditioning] acts on the strain file, and this section is another file";
+        c.fault(
+            file,
+            "section.file",
+            wrong,
+            "state sections of the strain file by their times, or delete [conditioning]",
+        );
+    }
+    if let (Some(at), Some(dynamic)) = (&raw.low_pass_hz, &job.dynamic)
+        && let Some(up_to) = &dynamic.value().up_to_hz
+        && at.value() < up_to.value()
+    {
+        let wrong = format!(
+            "the filter removes loads below `up_to_hz` of [dynamic], {} Hz",
+            up_to.value()
+        );
+        c.fault(
+            at,
+            "conditioning.low_pass_hz",
+            wrong,
+            "state at least `up_to_hz`",
+        );
+    }
     if let Some(at) = &raw.zero_s {
         let [from, to] = *at.value();
         if !(from < to && from.is_finite() && to.is_finite()) {

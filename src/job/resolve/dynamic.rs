@@ -35,6 +35,11 @@ pub(super) fn resolve_dynamic(
         &raw.damping_uncertainty_rel,
         "dynamic.damping_uncertainty_rel",
     );
+    if let (Some(Damping::Estimate), Some(at)) = (&damping, &raw.damping_uncertainty_rel) {
+        let wrong = "the damping is estimated from the record: its uncertainty follows from it";
+        let remedy = "delete this line, or state the damping";
+        c.fault(at, "dynamic.damping_uncertainty_rel", wrong, remedy);
+    }
     Some(Dynamic {
         up_to_hz: up_to?,
         damping: damping?,

@@ -7,10 +7,10 @@ pub struct ReadingConditioning {
     pub spikes: bool,
     /// Strain that follows a temperature channel.
     pub temperature: Option<TemperatureCompensation>,
-    /// Stretch of the record whose mean is zero, s.
-    pub zero_s: Option<[f64; 2]>,
     /// Whether the least squares line of each channel over the record is subtracted.
     pub linear_drift: bool,
+    /// Stretch of the record whose mean is zero, s.
+    pub zero_s: Option<[f64; 2]>,
     /// Corner of the low-pass filter, Hz.
     pub low_pass_hz: Option<f64>,
     /// Corner of the high-pass filter, Hz.

@@ -34,7 +34,11 @@ const OPEN: f64 = 1.5;
 /// Least standard deviation of the strain of a mode at a gauge, share of it: what a mesh that was not fitted to measured shapes is off by.
 const SHAPE: f64 = 0.01;
 /// Blocks of the record that are used, evenly spaced.
-const MOST_BLOCKS: usize = 64;
+const MOST_BLOCKS: usize = 16;
+/// Largest number of parameters: more modes in the band take minutes, and neighbours are then indistinguishable.
+const MOST_PARAMETERS: usize = 40;
+/// Largest damping, share of critical: a mode beyond does not vibrate.
+const LARGEST_DAMPING: f64 = 0.95;
 
 /// Estimated deviation of a parameter of a mode from its stated value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,6 +103,7 @@ pub fn estimate_modes(
         shape_sd: model_rel.max(SHAPE),
         readings,
         rate_hz,
+        means: readings.iter().map(|x| finite_mean(x)).collect(),
         spans: Stretches::from_readings(readings, readings.first().map_or(0, Vec::len))
             .of_all_gauges(),
     };
@@ -109,7 +114,7 @@ pub fn estimate_modes(
         .flat_map(|m| [(m, 0), (m, 1)])
         .filter(|(m, kind)| stated(*m)[*kind] > 0.0)
         .collect();
-    if parameters.is_empty() {
+    if parameters.is_empty() || parameters.len() > MOST_PARAMETERS {
         return Ok(None);
     }
     let starts: &[f64] = if open_damping { &STARTS } else { &[] };
@@ -122,6 +127,12 @@ pub fn estimate_modes(
         return Ok(None);
     };
     Ok(Some(problem.solve(first)?))
+}
+
+/// Returns the mean of the finite values, 0 without any.
+fn finite_mean(x: &[f64]) -> f64 {
+    let read = || x.iter().filter(|v| v.is_finite());
+    read().sum::<f64>() / read().count().max(1) as f64
 }
 
 /// Parameters, mode and kind (0 frequency, 1 damping), with their prior.
@@ -145,14 +156,22 @@ impl Problem<'_> {
             return Ok(self.normal(&zero)?.map(|normal| (zero, normal)));
         }
         let mut best: Option<(f64, Normal)> = None;
+        let mut first_error = None;
         for damping in dampings {
             self.set_damping(*damping);
-            let Some(normal) = self.normal(&zero)? else {
-                return Ok(None);
-            };
-            if best.as_ref().is_none_or(|b| normal.squares < b.1.squares) {
-                best = Some((*damping, normal));
+            // A structure with little damping may ring longer than the record or the filter.
+            match self.normal(&zero) {
+                Ok(Some(n)) if best.as_ref().is_none_or(|b| n.squares < b.1.squares) => {
+                    best = Some((*damping, n));
+                }
+                Ok(_) => {}
+                Err(e) => {
+                    first_error.get_or_insert(e);
+                }
             }
+        }
+        if let (None, Some(e)) = (&best, first_error) {
+            return Err(e);
         }
         Ok(best.map(|(damping, normal)| {
             self.set_damping(damping);
@@ -182,7 +201,7 @@ impl Problem<'_> {
                 mode.hz *= x.exp();
                 mode.work.iter_mut().for_each(|w| *w *= (2.0 * x).exp());
             } else {
-                mode.damping *= x.exp();
+                mode.damping = (mode.damping * x.exp()).min(LARGEST_DAMPING);
             }
         }
         out
@@ -240,7 +259,9 @@ impl Problem<'_> {
         let mut dynamics = self.with_parameters(x);
         let mut deviations = vec![[None; 2]; dynamics.modes.len()];
         for (i, &(mode, kind)) in self.parameters.iter().enumerate() {
-            let sd = posterior.covariance[(i, i)].max(0.0).sqrt();
+            // Where the search stopped before the best estimate, the distance to it is uncertainty too.
+            let off = posterior.mean[i] - x[i];
+            let sd = (posterior.covariance[(i, i)].max(0.0) + off * off).sqrt();
             deviations[mode][kind] = Some(Deviation {
                 log: x[i],
                 sd,
@@ -254,9 +275,12 @@ impl Problem<'_> {
         EstimatedModes {
             dynamics,
             deviations,
+            // A residual that exceeds the motion of the modes comes from elsewhere: noise, or a load that is not listed.
             unexplained: match above(normal.squares_without) {
-                0.0 => 0.0,
-                without => above(normal.squares) / without,
+                without if without > 0.0 && above(normal.squares) < normal.squares_of_motion => {
+                    (above(normal.squares) / without).min(1.0)
+                }
+                _ => 0.0,
             },
             over_noise: normal.squares / noise,
         }

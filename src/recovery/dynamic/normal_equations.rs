@@ -23,6 +23,8 @@ pub(super) struct Normal {
     /// Sum of squares of the residual, without modes too.
     pub squares: f64,
     pub squares_without: f64,
+    /// Sum of squares of the part of the residual that the modes remove.
+    pub squares_of_motion: f64,
     /// Gradient of each part of the record, after the best linear step.
     pub gradients: Vec<Vector>,
     /// Covariance of the gradient from errors of the modes' strain, `p x p`.
@@ -148,6 +150,7 @@ impl Normal {
             right: whole.view((0, p), (p, 1)).column(0).into_owned(),
             squares: whole[(p, p)].max(0.0),
             squares_without: whole[(p + 1, p + 1)].max(0.0),
+            squares_of_motion: whole[(p, p)] + whole[(p + 1, p + 1)] - 2.0 * whole[(p, p + 1)],
             gradients: Vec::new(),
             by_shape: all.shape_covariance(&regression, &shapes.strain, shapes.sd),
             freedom: all.samples * (n - k) as f64,

@@ -20,6 +20,8 @@ pub(super) struct Record<'a> {
     pub shape_sd: f64,
     pub readings: &'a [Vec<f64>],
     pub rate_hz: f64,
+    /// Mean of the finite readings by gauge: motion has none, and it may be the zero of the gauge.
+    pub means: Vec<f64>,
     /// Stretches in which all gauges read.
     pub spans: Vec<Range<usize>>,
 }
@@ -98,8 +100,11 @@ impl<'a> View<'a> {
         let kernel = self.kernel;
         let begin = wanted.start - kernel.reach;
         let last = span.end - 1;
-        let spectra: Vec<Spectrum> = (self.record.readings.iter())
-            .map(|channel| spectrum(kernel.length, |i| channel[(begin + i).min(last)]))
+        let channels = self.record.readings.iter().zip(&self.record.means);
+        let spectra: Vec<Spectrum> = channels
+            .map(|(channel, mean)| {
+                spectrum(kernel.length, |i| channel[(begin + i).min(last)] - mean)
+            })
             .collect();
         let loads = kernel.loads_of(&spectra);
         // A transform as short as the band allows.

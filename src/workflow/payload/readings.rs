@@ -456,18 +456,14 @@ fn report_weak_gauges(
     model: &PayloadModel,
     runs: &[(String, Vec<Net>)],
 ) {
-    let mut weak: Vec<&str> = Vec::new();
-    let mut best = f64::INFINITY;
+    let (mut weak, mut best) = (Vec::new(), f64::INFINITY);
     for (g, name) in model.gauges.iter().enumerate() {
-        let loaded = runs
-            .iter()
-            .filter(|r| Some(&r.0) != task.payload.unloaded.as_ref());
-        let most = loaded
-            .map(|r| r.1[g].signal_to_noise())
-            .filter(|s| s.is_finite())
-            .fold(0.0, f64::max);
+        let unloaded = task.payload.unloaded.as_ref();
+        let loaded = runs.iter().filter(|r| Some(&r.0) != unloaded);
+        let ratios = loaded.map(|r| r.1[g].signal_to_noise());
+        let most = ratios.filter(|s| s.is_finite()).fold(0.0, f64::max);
         if most < WEAK {
-            weak.push(name);
+            weak.push(name.as_str());
             best = best.min(most);
         }
     }

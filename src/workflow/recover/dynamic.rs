@@ -16,6 +16,7 @@ use crate::recovery::dynamic::{
 use crate::sensitivity::Sensitivity;
 use crate::strain_chain::built_in_solver::{ElasticModes, cases_of_job, faults_of, modes_kept};
 use crate::strain_chain::deck::DeckModel;
+use crate::units::number;
 use serde::Serialize;
 
 /// Modes are solved up to at least this factor times the highest wanted frequency, and all solved modes are used. The next mode exceeds its
@@ -169,7 +170,7 @@ pub(super) fn remove_vibration(
     ));
     let contradicted = estimated
         .as_ref()
-        .and_then(|e| contradiction(&stated, e, &task.measured.strain.given));
+        .and_then(|e| contradiction((&stated, open), e, &task.measured.strain.given));
     work.findings.extend(contradicted);
     Ok(Some(QuasiStaticRecord {
         noise_factor: task.noise_factor - 1.0 + rested.noise_share,
@@ -332,17 +333,22 @@ impl ModeInUse {
             damping: used.damping,
             damping_low,
             damping_high,
-            estimated: used != stated,
+            estimated: used.hz != stated.hz || used.damping_sd < 0.7 * stated.damping_sd,
         }
     }
 }
 
 /// Returns the error that the record contradicts the modes. A frequency or a damping then differs from its stated value by more than its stated
 /// uncertainty. Otherwise, no frequency and damping of the modes explains the vibration.
-fn contradiction(stated: &Dynamics, found: &EstimatedModes, file: &str) -> Option<Finding> {
+fn contradiction(
+    (stated, open_damping): (&Dynamics, bool),
+    found: &EstimatedModes,
+    file: &str,
+) -> Option<Finding> {
     let off = |(j, by_kind): (usize, &[Option<Deviation>; 2])| {
         let of_kind = |(kind, d): (usize, &Option<Deviation>)| {
-            let d = d.as_ref()?;
+            // Nobody stated a damping that is estimated.
+            let d = d.as_ref().filter(|_| kind == 0 || !open_damping)?;
             let off = d.standard_deviations_off()?.abs();
             (off > OFF_BY).then(|| (off, j, kind, *d))
         };
@@ -353,25 +359,23 @@ fn contradiction(stated: &Dynamics, found: &EstimatedModes, file: &str) -> Optio
     let worst = modes.max_by(|a, b| a.0.total_cmp(&b.0));
     let what = match worst {
         Some((off, j, kind, deviation)) => {
-            let mode = &stated.modes[j];
-            let [frequency, damping] = [
-                deviation.log.exp() * mode.hz,
-                deviation.log.exp() * mode.damping,
-            ];
-            let half = NORMAL_95 * deviation.sd;
+            let (mode, used) = (&stated.modes[j], &found.dynamics.modes[j]);
+            let half = |value: f64| number(NORMAL_95 * deviation.sd * value);
             let shown = match kind {
                 0 => format!(
-                    "mode {} vibrates at {frequency:.4} ± {:.2} Hz in the record and at {:.4} Hz in the model",
+                    "mode {} vibrates at {} ± {} Hz in the record and at {} Hz in the model",
                     j + 1,
-                    frequency * half,
-                    mode.hz
+                    number(used.hz),
+                    half(used.hz),
+                    number(mode.hz)
                 ),
                 _ => format!(
-                    "mode {} at {:.4} Hz has a damping of {damping:.3} ± {:.3} in the record and a stated damping of {:.3}",
+                    "mode {} at {} Hz has a damping of {} ± {} in the record and a stated damping of {}",
                     j + 1,
-                    mode.hz,
-                    damping * half,
-                    mode.damping
+                    number(mode.hz),
+                    number(used.damping),
+                    half(used.damping),
+                    number(mode.damping)
                 ),
             };
             format!("{shown}, a difference of {off:.1} stated standard deviations, limit {OFF_BY}")

@@ -239,7 +239,9 @@ pub(super) fn runs(
     work.findings.extend(outside);
     let high = |l: usize| {
         let of_runs = recovery.runs.iter().map(|r| r.estimate.interval(l)[1]);
-        of_runs.fold(f64::NEG_INFINITY, |m, v| if v.is_nan() { f64::INFINITY } else { m.max(v) })
+        of_runs.fold(f64::NEG_INFINITY, |m, v| {
+            if v.is_nan() { f64::INFINITY } else { m.max(v) }
+        })
     };
     let high: Vec<f64> = (0..k).map(high).collect();
     let states = format!("in all {} runs", recovery.runs.len());

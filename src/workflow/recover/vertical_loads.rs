@@ -20,7 +20,8 @@ pub(super) fn check_vertical_sign(
     let is_vertical = |l: &usize| {
         let load = &job.loads[*l];
         let component = Component::FZ;
-        let vertical = matches!(load.acts, LoadActs::AtGrid { component: c, cid: 0, .. } if c == component);
+        let vertical =
+            matches!(load.acts, LoadActs::AtGrid { component: c, cid: 0, .. } if c == component);
         vertical && load.role == LoadRole::Wanted
     };
     let vertical: Vec<usize> = (0..job.loads.len().min(high.len()))
@@ -29,7 +30,9 @@ pub(super) fn check_vertical_sign(
     if vertical.len() < LEAST_LOADS || !vertical.iter().all(|l| high[*l] < 0.0) {
         return None;
     }
-    let nearest = vertical.into_iter().max_by(|a, b| high[*a].total_cmp(&high[*b]))?;
+    let nearest = vertical
+        .into_iter()
+        .max_by(|a, b| high[*a].total_cmp(&high[*b]))?;
     let (name, unit) = (&job.loads[nearest].name, units.get(nearest)?);
     Some(Finding::new(
         Severity::Warning,

@@ -105,6 +105,31 @@ fn frequencies_that_are_off_are_estimated_and_loads_hold_their_intervals() {
     );
 }
 
+/// Zeros of the gauges are no vibration: offsets of thousands of times the noise change neither the estimate nor the explained share.
+#[test]
+fn offsets_of_the_gauges_change_nothing() {
+    let mut random = ChaCha8Rng::seed_from_u64(34);
+    let model = STRUCTURE.build_model(UP_TO, [0.02, 0.2]);
+    let waves = broad_waves(&mut random);
+    let real = with_frequencies([1.03, 0.98, 1.0]);
+    let record = simulate_record(&real, &waves, &mut random);
+    let mut off = record.clone();
+    for (g, channel) in off.iter_mut().enumerate() {
+        let offset = 3000.0 * NOISE * (g as f64 - 1.7);
+        channel.iter_mut().for_each(|v| *v += offset);
+    }
+    let [plain, with_offsets] = [&record, &off].map(|r| estimate(&model, false, r));
+    assert!(
+        with_offsets.unexplained < 0.01,
+        "{}",
+        with_offsets.unexplained
+    );
+    for j in 0..2 {
+        let [a, b] = [&plain, &with_offsets].map(|e| e.deviations[j][0].unwrap());
+        assert!((a.log - b.log).abs() < 0.1 * a.sd, "{a:?} {b:?}");
+    }
+}
+
 /// A frequency that is 14 % off contradicts a stated 2 %; one within its stated uncertainty does not.
 #[test]
 fn a_frequency_far_off_contradicts_what_is_stated() {
