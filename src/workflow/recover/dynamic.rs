@@ -350,7 +350,7 @@ fn contradiction(
             // Nobody stated a damping that is estimated.
             let d = d.as_ref().filter(|_| kind == 0 || !open_damping)?;
             let off = d.standard_deviations_off()?.abs();
-            (off > OFF_BY).then(|| (off, j, kind, *d))
+            (off > OFF_BY).then_some((off, j, kind, *d))
         };
         let worst = by_kind.iter().enumerate().filter_map(of_kind);
         worst.max_by(|a, b| a.0.total_cmp(&b.0))
