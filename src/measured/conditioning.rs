@@ -15,6 +15,9 @@ use std::ops::Range;
 
 /// Independent readings that a stretch of zero needs: the error of the mean is then below a tenth of the noise of a reading.
 const LEAST_ZERO: usize = 100;
+/// A stretch of one value is constant from this part of the record on, and from this number of samples.
+const CONSTANT_SHARE: usize = 20;
+const CONSTANT_SAMPLES: usize = 10;
 /// Numbers of a record that are held in memory: 0.8 GB of readings.
 const MOST_NUMBERS: usize = 100_000_000;
 
@@ -27,6 +30,41 @@ struct Conditioner {
 }
 
 impl Conditioner {
+    /// Blanks long stretches in which one gauge reads a constant value while most of the others vary: the gauge or its wire is dead there. A filter
+    /// or a subtracted temperature would hide it. A gauge that is constant throughout is left to the search for gauges without a signal.
+    fn blank_constant_stretches(&mut self) {
+        let samples = self.readings.first().map_or(0, Vec::len);
+        let least = (samples / CONSTANT_SHARE).max(CONSTANT_SAMPLES);
+        let mut dead: Vec<(usize, Range<usize>)> = Vec::new();
+        for (g, column) in self.readings.iter().enumerate() {
+            let mut first = 0;
+            for stretch in column.chunk_by(|a, b| a == b) {
+                let span = first..first + stretch.len();
+                first = span.end;
+                if span.len() < least || span.len() == samples {
+                    continue;
+                }
+                let others = self.readings.iter().enumerate().filter(|(o, _)| *o != g);
+                let varies = |x: &[f64]| x.windows(2).any(|w| w[0] != w[1]);
+                let varying = others.filter(|(_, x)| varies(&x[span.clone()])).count();
+                if 2 * varying > self.readings.len() - 1 {
+                    dead.push((g, span));
+                }
+            }
+        }
+        for (g, span) in dead {
+            let column = &mut self.readings[g];
+            let value = column[span.start] / MICROSTRAIN;
+            column[span.clone()].fill(f64::NAN);
+            self.steps.push(ConditioningStep {
+                step: "constant",
+                gauge: self.names[g].clone(),
+                samples: span.len(),
+                rms_microstrain: value.abs() * (span.len() as f64 / samples as f64).sqrt(),
+            });
+        }
+    }
+
     /// Applies a change to every column; a column that does not change is not listed.
     fn apply(&mut self, step: &'static str, change: impl Fn(&mut [f64]) + Sync) {
         let of_column = |column: &mut Vec<f64>| -> (usize, f64) {
@@ -70,6 +108,7 @@ pub(super) fn condition(job: &Job, record: Record, wanted: &[String]) -> Result<
     };
     let fault = |key: &str, (wrong, remedy): (String, &str)| {
         let field = format!("conditioning.{key}");
+        let field = field.trim_end_matches('.');
         Faults::from(Fault::with_line(
             &*job.file, asked.line, field, wrong, remedy,
         ))
@@ -103,6 +142,10 @@ pub(super) fn condition(job: &Job, record: Record, wanted: &[String]) -> Result<
         ("low_pass_hz", asked.low_pass_hz),
         ("high_pass_hz", asked.high_pass_hz),
     ] {
+        if let Some(corner) = corner.filter(|f| f * step_s * (samples as f64) < 1.0) {
+            let wrong = format!("the record is shorter than one period of {corner} Hz");
+            return Err(fault(key, (wrong, "state a higher frequency")));
+        }
         if let Some(corner) = corner.filter(|f| !(f * step_s < 0.5)) {
             let wrong = format!(
                 "{corner} Hz is not below half of the sample rate, {:.4} Hz",
@@ -119,6 +162,7 @@ pub(super) fn condition(job: &Job, record: Record, wanted: &[String]) -> Result<
         names: record.names_read(),
         steps: Vec::new(),
     };
+    work.blank_constant_stretches();
     let zero = match asked.zero_s {
         Some(times) => {
             let zero = zero_samples(&record, times, asked.low_pass_hz, &work);
@@ -132,7 +176,8 @@ pub(super) fn condition(job: &Job, record: Record, wanted: &[String]) -> Result<
         asked_of,
         temperature.as_ref().map(|(t, v)| (*t, &**v)),
     );
-    record.with_conditioned_readings(work.readings, (first_s, step_s), work.steps)
+    let channel = asked.temperature.as_ref().map(|t| t.channel.as_str());
+    record.with_conditioned_readings(work.readings, (first_s, step_s), (work.steps, channel))
 }
 
 /// Refuses steps that remove static strain in a job that subtracts a zero or adds a reference state itself.
@@ -257,15 +302,19 @@ fn zero_samples(
     // Noise below a corner is independent in steps of half its period.
     let independent = low_pass_hz.map_or(1.0, |f| (2.0 * f * step_s).min(1.0));
     let least = (LEAST_ZERO as f64 / independent).ceil() as usize;
+    let filtered = low_pass_hz.map_or("", |_| " with this `low_pass_hz`");
     for (name, column) in work.names.iter().zip(&work.readings) {
         let read = column[range.clone()].iter().filter(|v| v.is_finite());
         let n = read.count();
         // A gauge without any reading is reported elsewhere.
         if n < least && column.iter().any(|v| v.is_finite()) {
             let wrong = format!(
-                "[{from}, {to}] s contains {n} readings of gauge {name}, and a zero needs {least}"
+                "[{from}, {to}] s contains {n} readings of gauge {name}, and a zero needs {least}{filtered}"
             );
-            return Err((wrong, "state a longer stretch without loads"));
+            return Err((
+                wrong,
+                "state a longer stretch without loads, or [[correction]] ignore = true for this gauge",
+            ));
         }
     }
     Ok(range)
@@ -291,7 +340,8 @@ fn temperature_of(
             "name a column of the strain file",
         );
     };
-    if !["", "degC", "\u{b0}C", "deg C", "C", "K"].contains(&unit) {
+    let known = ["", "degc", "\u{b0}c", "deg c", "deg_c", "celsius", "c", "k"];
+    if !known.contains(&unit.to_lowercase().as_str()) {
         return wrong(
             format!("the unit of channel `{channel}` is `{unit}`"),
             "export the temperature in degC",

@@ -5,7 +5,7 @@ use serde::Serialize;
 /// Change of the readings of one gauge by one step of `[conditioning]`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ConditioningStep {
-    /// Step: `spikes`, `temperature`, `zero`, `drift`, `low_pass` or `high_pass`.
+    /// Step: `constant`, `spikes`, `temperature`, `drift`, `zero`, `low_pass` or `high_pass`.
     pub step: &'static str,
     /// Name of the column, as the job names its gauge.
     pub gauge: String,

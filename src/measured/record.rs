@@ -115,7 +115,7 @@ impl Record {
         self.with_columns(columns)
     }
 
-    /// Returns the record with conditioned readings, strain, a column for each column that is read.
+    /// Returns the record with conditioned readings, strain, a column for each column that is read; `except` is a column that it no longer has.
     ///
     /// # Errors
     /// A record without samples.
@@ -123,12 +123,15 @@ impl Record {
         &self,
         readings: Vec<Vec<f64>>,
         times: (f64, f64),
-        conditioning: Vec<ConditioningStep>,
+        (conditioning, except): (Vec<ConditioningStep>, Option<&str>),
     ) -> Result<Self, Faults> {
         let mut names = self.names_read();
         let mut record = self.with_readings(readings, times)?;
         // Columns that are not read keep their names, so that columns without a gauge are reported.
-        let others = self.names.iter().filter(|n| !names.contains(n));
+        let others = self
+            .names
+            .iter()
+            .filter(|n| !names.contains(n) && Some(n.as_str()) != except);
         let others: Vec<String> = others.cloned().collect();
         record.micro.resize(names.len() + others.len(), f64::NAN);
         names.extend(others);

@@ -180,6 +180,34 @@ fn corrections_are_applied_once_and_before_conditioning() {
     assert!(worst < 1.5 * plain, "{worst} {plain}");
 }
 
+/// A gauge that is dead in a part of the record is blank there before a filter hides it, and the loads come from the others.
+#[test]
+fn a_gauge_that_is_dead_for_a_while_is_blank_there() {
+    let text = record([false; 5]);
+    let mut dead = String::new();
+    for (i, line) in text.lines().enumerate() {
+        let mut cells: Vec<&str> = line.split(',').collect();
+        if (2200..4000).contains(&i) {
+            cells[2] = "12.7";
+        }
+        dead += &format!("{}\n", cells.join(","));
+    }
+    let files =
+        files([false; 5], "[conditioning]\nlow_pass_hz = 20.0\n").with_file("strain.csv", dead);
+    let job = Job::read("job.toml", &files).unwrap_or_else(|f| panic!("{f:?}"));
+    let got =
+        strainbridge::recover(&job, &Context::new(&files)).unwrap_or_else(|f| panic!("{f:?}"));
+    let steps = &got.answer.reading_conditioning;
+    let blank = steps.iter().find(|s| s.step == "constant").unwrap();
+    assert_eq!((blank.gauge.as_str(), blank.samples), ("G2", 1800));
+    let history = got.answer.record().unwrap().history.as_ref().unwrap();
+    for row in history.rows().filter(|r| (12.0..19.0).contains(&r.time)) {
+        for (load, expected) in row.loads.iter().zip(loads(row.time)) {
+            assert!((load.unwrap()[0] - expected).abs() < 25.0, "{}", row.time);
+        }
+    }
+}
+
 /// What the section cannot do is a fault of its line.
 #[test]
 fn what_conditioning_cannot_do_is_a_fault() {

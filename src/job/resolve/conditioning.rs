@@ -30,17 +30,17 @@ pub(super) fn resolve_conditioning(c: &mut Collector, job: &RawJob) -> Option<Re
     }
     if let (Some(at), Some(dynamic)) = (&raw.low_pass_hz, &job.dynamic)
         && let Some(up_to) = &dynamic.value().up_to_hz
-        && at.value() < up_to.value()
+        && *at.value() < 1.5 * *up_to.value()
     {
         let wrong = format!(
-            "the filter removes loads below `up_to_hz` of [dynamic], {} Hz",
+            "the filter attenuates loads below `up_to_hz` of [dynamic], {} Hz",
             up_to.value()
         );
         c.fault(
             at,
             "conditioning.low_pass_hz",
             wrong,
-            "state at least `up_to_hz`",
+            "state at least 1.5 times `up_to_hz`",
         );
     }
     if let Some(at) = &raw.zero_s {

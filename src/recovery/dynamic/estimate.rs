@@ -35,7 +35,7 @@ const OPEN: f64 = 1.5;
 const SHAPE: f64 = 0.01;
 /// Blocks of the record that are used, evenly spaced.
 const MOST_BLOCKS: usize = 16;
-/// Largest number of parameters: more modes in the band take minutes, and neighbours are then indistinguishable.
+/// Largest number of parameters, those of the lowest modes: more take minutes, and neighbouring modes are then indistinguishable.
 const MOST_PARAMETERS: usize = 40;
 /// Largest damping, share of critical: a mode beyond does not vibrate.
 const LARGEST_DAMPING: f64 = 0.95;
@@ -113,8 +113,9 @@ pub fn estimate_modes(
         .filter(in_band)
         .flat_map(|m| [(m, 0), (m, 1)])
         .filter(|(m, kind)| stated(*m)[*kind] > 0.0)
+        .take(MOST_PARAMETERS)
         .collect();
-    if parameters.is_empty() || parameters.len() > MOST_PARAMETERS {
+    if parameters.is_empty() {
         return Ok(None);
     }
     let starts: &[f64] = if open_damping { &STARTS } else { &[] };

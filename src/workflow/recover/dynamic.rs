@@ -333,7 +333,8 @@ impl ModeInUse {
             damping: used.damping,
             damping_low,
             damping_high,
-            estimated: used.hz != stated.hz || used.damping_sd < 0.7 * stated.damping_sd,
+            estimated: used.frequency_sd < 0.7 * stated.frequency_sd
+                || used.damping_sd < 0.7 * stated.damping_sd,
         }
     }
 }
