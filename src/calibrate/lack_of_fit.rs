@@ -61,7 +61,7 @@ pub(super) struct LackOfFitTest {
     pub covariance: Vec<f64>,
 }
 
-/// Tests a fit.
+/// Tests whether a fit lacks terms, and returns the significant terms with their covariance.
 pub(super) fn check(task: &Task, state: &State) -> LackOfFitTest {
     let loadings = loadings(task, state);
     let candidates = candidates(task);

@@ -7,8 +7,8 @@
 
 use crate::linalg::{Matrix, dense, spd};
 
-/// Returns the addition to the scatter, `n x n` by rows, that widens the intervals of loads to the scatter of other runs. Returns `None` if the
-/// intervals are wide enough.
+/// Returns the addition to the scatter, `n x n` by rows, that widens the intervals of loads. They then include the scatter of runs outside the
+/// calibration. Returns `None` if the intervals are wide enough.
 ///
 /// The addition is `(k - 1) U H U'`. It changes no estimate, because it is in the span of S. The factor is `k = tr(H^-1 V) / rank`,
 /// `V = H U' C^-1 A C^-1 U H / (1 - p / dof)^2` with the sample `A`. `V` is at most `U' A U`, the scatter of loads without any correction.

@@ -18,7 +18,7 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// Returns the channel whose readings are right as they are.
+    /// Returns the correction that changes no reading: offset 0, factor 1.
     pub fn without_correction() -> Self {
         Self {
             offset: 0.0,

@@ -2,7 +2,7 @@
 //!
 //! Used where a placement changes its information matrix thousands of times; `k` is the number of loads (6 to 60).
 
-/// Lower Cholesky factor `L` with `L L' = a`, or `None` where `a` is not positive definite to working precision.
+/// Returns the lower Cholesky factor `L` with `L L' = a`, or `None` if `a` is not positive definite to working precision.
 #[inline(always)]
 pub fn cholesky(a: &[f64], k: usize) -> Option<Vec<f64>> {
     let mut l = vec![0.0; k * k];

@@ -59,7 +59,7 @@ pub(crate) fn unknown_columns<'a>(header: &'a [String], gauges: &[String]) -> Ve
     unknown.map(String::as_str).collect()
 }
 
-/// A warning of columns of strain that S has no row for; `of_file` goes before its message.
+/// Returns a warning about strain columns that belong to no gauge. `of_file` is the start of the message.
 pub(crate) fn strain_without_gauge(
     of_file: &str,
     header: &[String],

@@ -31,7 +31,7 @@ pub struct RunRow {
     pub line: u32,
 }
 
-/// Reads the runs of `[runs]`, with the load names of the job: its loads, or the columns of a given S.
+/// Reads the runs of `[runs]`. The load columns have the names of the job's loads, or of the columns of a given S.
 ///
 /// # Errors
 /// Every fault: missing columns, unknown or contradicting units, fields that are not numbers or do not fit their quantity, runs named twice.

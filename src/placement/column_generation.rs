@@ -31,7 +31,7 @@ impl Groups {
         }
     }
 
-    /// Returns the candidates that a pass reports.
+    /// Returns whether a pass over the candidates reports every angle of a place or only the best one.
     pub fn report(&self) -> Report {
         match self {
             Groups::Rows => Report::EachAngle,

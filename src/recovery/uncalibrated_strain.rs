@@ -12,7 +12,8 @@ use crate::sensitivity::{Sensitivity, Uncertainty};
 /// Code of a run that no combination of the loads explains.
 pub const CODE: &str = "run-unlike-calibration";
 
-/// Chance of `chi2` over `dof` at least as large, where the covariance behind it was estimated with `from` degrees of freedom.
+/// Returns the probability that chi-square with `dof` degrees of freedom is at least `chi2`. Its covariance was estimated with `from` degrees of
+/// freedom (infinite: known covariance).
 pub fn chance_estimated(chi2: f64, dof: usize, from: f64) -> f64 {
     if !from.is_finite() || dof == 0 {
         return chance(chi2, dof);

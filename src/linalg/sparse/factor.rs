@@ -70,7 +70,7 @@ impl<'a> Factor<'a> {
         .factor(&mut values)?;
         let mut lost = found.lost;
         lost.sort_unstable();
-        // The factor contains springs at these unknowns, and so must the matrix that residuals are computed with.
+        // The factor contains springs at these unknowns. The matrix that computes the residuals needs the same springs.
         for &unknown in &lost {
             matrix.add_to_place(symbolic, unknown, 1.0);
         }

@@ -291,7 +291,7 @@ pub fn reference(design: &Design, equation: usize, values: &[f64]) -> f64 {
     size(&measured_quantity(design, equation, values))
 }
 
-/// Returns the measured quantity of an equation: its outside force, or mass times acceleration if no outside force acts.
+/// Returns the measured quantity of an equation: the external force, or mass times acceleration if no external force acts.
 pub fn measured_quantity(design: &Design, equation: usize, values: &[f64]) -> Bins {
     let e = &design.equations[equation];
     if size(&e.target) > 0.0 {

@@ -28,7 +28,7 @@ const IN_TEXT: usize = 48;
 /// Maximum number of rows of a table and lines of a text on paper. The files contain all of them.
 const MOST_ROWS: usize = 2000;
 
-/// The page for the template.
+/// Returns the content of a page as JSON for the Typst template.
 pub(super) fn content(page: &Page, origin: &Origin) -> Value {
     let findings: Vec<Value> = page.worst_first().into_iter().map(finding).collect();
     let units: Vec<[String; 2]> = origin

@@ -146,7 +146,7 @@ fn cut_and_mutated_files_are_refused_or_read_but_never_panic() {
 #[test]
 fn a_file_with_half_a_frame_more_is_refused_by_name() {
     let mut bytes = file();
-    // Replace the key of the last 128-byte record of the header that contains one.
+    // Replace the key in the last 128-byte record of the header that contains a key.
     let records = read_header(&bytes).unwrap().start / 128;
     let free = (0..records).rev().find(|i| bytes[128 * i] != 0).unwrap();
     let record = &mut bytes[128 * free..128 * (free + 1)];

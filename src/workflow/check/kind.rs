@@ -36,7 +36,7 @@ pub(super) fn kind_of(name: &str, bytes: &[u8]) -> Kind {
         return Kind::Table;
     }
     if let Some(kind) = binary_kind(bytes) {
-        // Text tables may have two bytes a character, and then look like binary files.
+        // A text table with two bytes for each character (UTF-16) looks like a binary file.
         return match ends(TABLES) {
             true => Kind::Table,
             false => Kind::Other(kind),

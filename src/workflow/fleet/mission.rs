@@ -33,7 +33,7 @@ pub struct MissionLoad {
     pub between_days_at_most: f64,
 }
 
-/// A kind of days.
+/// Days of one kind in the mission, with their share and their records.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KindAnswer {
     /// Name of the kind of days.

@@ -38,10 +38,10 @@ use std::sync::Arc;
 /// Pieces in memory at a time.
 const GROUP: usize = 8;
 
-/// Recovers the loads of a record; they go to `sink` as they come.
+/// Recovers the loads of a record piece by piece, and passes each piece to `sink`.
 ///
 /// # Errors
-/// A record that can't be read; what `sink` refuses.
+/// A record that can't be read, or an error of `sink`.
 pub(super) fn record(
     work: &mut Work,
     task: &Task,

@@ -90,7 +90,7 @@ pub(super) fn parts<'a>(job: &'a Job, clock: &Clock) -> Result<Vec<Part<'a>>, Fa
     let mut out = Vec::new();
     let step = 1.0 / clock.rate_hz;
     let end_s = clock.start_s + clock.samples as f64 * step;
-    // Times are rounded, so a millionth of a step is ignored.
+    // Stated times are rounded. A time up to a millionth of a step after a sample selects this sample.
     let place = |t: f64| (((t - clock.start_s) / step - 1e-6).ceil()).max(0.0) as usize;
     for section in &job.sections {
         let SectionExtent::Times([from, to]) = section.extent else {

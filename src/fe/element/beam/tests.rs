@@ -63,7 +63,7 @@ fn a_load_along_a_beam_whose_neutral_axis_is_off_the_line_bends_it() {
         &beam(&sections, [0.0; 2]).stiffness().unwrap(),
         [1000.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     );
-    // The force acts 4 below (y) and 3 above (z) the neutral axis: moments of force times distance about it.
+    // The force acts 4 mm below (y) and 3 mm above (z) the neutral axis. The moments about this axis are force times distance.
     let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-9, "{a} for {b}");
     close(u[5], 1000.0 * 4.0 * l / (e * 3600.0));
     close(u[4], 1000.0 * 3.0 * l / (e * 900.0));

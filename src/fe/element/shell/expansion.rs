@@ -43,7 +43,7 @@ pub(super) fn turn_strain([e1, e2, g]: [f64; 3], angle: f64) -> [f64; 3] {
     ]
 }
 
-/// Strain given in x and y, seen in axes that lie at `angle` from x.
+/// Returns the strain in axes at `angle` (radians) from x, from the strain in x and y.
 pub(crate) fn in_axes_at(strain: [f64; 3], angle: f64) -> [f64; 3] {
     turn_strain(strain, -angle)
 }
