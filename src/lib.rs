@@ -38,13 +38,13 @@
 //! # std::fs::write(folder.join("truck.toml"), format!("{text}\n{layout}"))?;
 //! # std::env::set_current_dir(&folder)?;
 //! let job = Job::read("truck.toml", &Disk)?; // every fault with file:line
-//! let cx = Context::new(&Disk).store(&Folder::beside(&job));
+//! let cx = Context::new(&Disk).store(&Folder::from_job(&job));
 //! let plan = strainbridge::place(&job, &cx)?;
 //! for g in &plan.gauges {
 //!     println!("{} {} {:.1} deg", g.name, g.element, g.angle_deg);
 //! }
 //! let loads = strainbridge::recover(&job, &cx)?; // runs, sigma, units, findings
-//! assert!(loads.findings.worst() < Some(Severity::Error));
+//! assert!(loads.findings.worst_severity() < Some(Severity::Error));
 //! # assert_eq!(plan.gauges.len(), 12);
 //! # assert!(folder.join("truck.cache").is_dir(), "solutions are stored next to the job");
 //! # std::env::set_current_dir(examples)?;

@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 /// let of_findings = [Severity::Info, Severity::Warning, Severity::Info];
 /// assert_eq!(of_findings.iter().max(), Some(&Severity::Warning));
 /// assert!(Severity::Warning < Severity::Error);
-/// assert_eq!(Severity::named("error"), Some(Severity::Error));
-/// assert_eq!(Severity::named("fatal"), None);
+/// assert_eq!(Severity::parse_name("error"), Some(Severity::Error));
+/// assert_eq!(Severity::parse_name("fatal"), None);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -24,7 +24,7 @@ use crate::model::{Mat3, Model, Shell, Vec3};
 /// ```
 /// use nastran::bdf::{MemoryLoader, read_deck};
 /// use strainbridge::fe::{LoadCase, solve_cases};
-/// use strainbridge::gauge::{CornerRows, GaugeSpec, build, reading};
+/// use strainbridge::gauge::{CornerRows, GaugeSpec, build, gauge_reading};
 /// use strainbridge::model::Model;
 ///
 /// # const DECK: &str = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,10.,0.,0.\nGRID,3,,10.,10.,0.
@@ -39,9 +39,9 @@ use crate::model::{Mat3, Model, Shell, Vec3};
 /// let shell = model.shell_ix(1).unwrap();
 /// let e = 10.0 / 10.0 / 1000.0; // force over area over modulus
 /// for (degrees, expected) in [(0.0_f64, e), (90.0, -0.25 * e), (45.0, e * 0.75 / 2.0)] {
-///     let spec = GaugeSpec { angle_rad: degrees.to_radians(), ..GaugeSpec::on("G1", shell) };
+///     let spec = GaugeSpec { angle_rad: degrees.to_radians(), ..GaugeSpec::place_on_shell("G1", shell) };
 ///     let (channels, _) = build(&model, &spec, CornerRows::Present)?;
-///     let strain = reading(&channels[0], &solution.cases[0]).unwrap();
+///     let strain = gauge_reading(&channels[0], &solution.cases[0]).unwrap();
 ///     assert!((strain - expected).abs() < 1e-9 * e);
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())

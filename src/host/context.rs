@@ -78,7 +78,7 @@ impl Files for Disk {
 /// use std::path::Path;
 /// use strainbridge::host::context::{Files, InMemory};
 ///
-/// let files = InMemory::default().with("runs.csv", "run,left\n").with("runs.csv", "run,right\n");
+/// let files = InMemory::default().with_file("runs.csv", "run,left\n").with_file("runs.csv", "run,right\n");
 /// // A later file replaces an earlier one of the same path.
 /// assert_eq!(&files.load(Path::new("runs.csv"))?[..], b"run,right\n");
 /// assert!(files.load(Path::new("other.csv")).is_err());
@@ -164,7 +164,7 @@ impl Progress for SilentProgress {}
 ///
 /// # const ROD: &str = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1000.,0.,0.,,23456\nCROD,1,1,1,2
 /// # PROD,1,1,100.\nMAT1,1,210000.,,.3\nSPC1,1,123456,1\nFORCE,2,2,,2100.,1.,0.,0.\nENDDATA\n";
-/// let files = InMemory::default().with("rod.bdf", ROD);
+/// let files = InMemory::default().with_file("rod.bdf", ROD);
 /// let stages = Stages(Mutex::default());
 /// let cx = Context::new(&files).store(&Memory::default()).progress(&stages);
 /// let rod = solve_deck(Path::new("rod.bdf"), Default::default(), &cx)?;

@@ -13,14 +13,14 @@ use std::fmt;
 /// ```
 /// use strainbridge::Fault;
 ///
-/// let fault = Fault::at("job.toml", 7, "load.grid", "grid 12 is not in the deck", "name a grid of the deck");
+/// let fault = Fault::with_line("job.toml", 7, "load.grid", "grid 12 is not in the deck", "name a grid of the deck");
 /// assert_eq!(fault.line, Some(7));
 /// assert_eq!(
 ///     fault.to_string(),
 ///     "job.toml:7: load.grid: grid 12 is not in the deck: name a grid of the deck"
 /// );
 /// // A fault of a whole file has no line, and editors jump to the first one.
-/// let fault = Fault::of("job.toml", "model", "the job has no [model]", "name the deck");
+/// let fault = Fault::new("job.toml", "model", "the job has no [model]", "name the deck");
 /// assert!(fault.line.is_none() && fault.to_string().starts_with("job.toml:1: model: "));
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -110,7 +110,7 @@ pub type FaultList = Vec<Fault>;
 /// use strainbridge::{Faults, Job};
 ///
 /// const JOB: &str = "units = \"m-kg-s\"\ncolour = \"red\"\nmeasured = { noise_microstrain = \"1\" }\n";
-/// let files = InMemory::default().with("job.toml", JOB);
+/// let files = InMemory::default().with_file("job.toml", JOB);
 /// let faults: Faults = Job::read("job.toml", &files).unwrap_err();
 /// assert!(faults.len() >= 2, "both lines are reported at once");
 /// assert!(faults.iter().any(|f| f.line == Some(2) && f.field == "colour"));

@@ -17,13 +17,13 @@ const BLOCKED: usize = 64;
 /// use strainbridge::linalg::cholesky::Cholesky;
 ///
 /// let covariance = [4.0, 2.0, 2.0, 3.0]; // det = 8
-/// let factor = Cholesky::of(&covariance, 2).unwrap();
+/// let factor = Cholesky::from_covariance(&covariance, 2).unwrap();
 /// assert!((factor.log_det() - 8.0_f64.ln()).abs() < 1e-12);
 /// let x = factor.solve(&[8.0, 8.0]); // C x = b
 /// assert!((4.0 * x[0] + 2.0 * x[1] - 8.0).abs() < 1e-12);
 /// assert!((2.0 * x[0] + 3.0 * x[1] - 8.0).abs() < 1e-12);
 /// // Correlations above 1 are impossible.
-/// assert!(Cholesky::of(&[1.0, 2.0, 2.0, 1.0], 2).is_none());
+/// assert!(Cholesky::from_covariance(&[1.0, 2.0, 2.0, 1.0], 2).is_none());
 /// ```
 #[derive(Clone, Debug)]
 pub struct Cholesky {

@@ -37,7 +37,7 @@ impl Model {
     /// # CQUAD4,7,1,1,2,3,4\nPSHELL,1,1,.1,1,,1\nMAT1,1,2.1+11,,.3,7850.\nENDDATA\n";
     /// let deck = read_deck("plate.bdf", DECK.into(), &mut MemoryLoader::default());
     /// let (coarse, _) = Model::from_deck(&deck);
-    /// let fine = coarse.refined().unwrap();
+    /// let fine = coarse.refine_shells().unwrap();
     /// assert!(fine.is_whole() && fine.children.len() == 1);
     /// assert_eq!((fine.model.shells.len(), fine.model.grids.len()), (4, 9));
     /// // Division changes neither mass nor centre of gravity by more than the rule of the shell.

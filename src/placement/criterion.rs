@@ -19,7 +19,7 @@ use crate::linalg::spd;
 /// use strainbridge::placement::Criterion;
 ///
 /// let m = [4.0, 1.0, 1.0, 2.0]; // det = 7
-/// let value = |c: Criterion| c.at(&m, 2).unwrap().value;
+/// let value = |c: Criterion| c.evaluate_at(&m, 2).unwrap().value;
 /// assert!((value(Criterion::D) - 7.0_f64.ln()).abs() < 1e-12);
 /// // Only the second column is wanted: det M over the entry of the nuisance column.
 /// assert!((value(Criterion::Ds(1)) - (7.0_f64 / 4.0).ln()).abs() < 1e-12);
@@ -27,7 +27,7 @@ use crate::linalg::spd;
 /// let a = value(Criterion::Linear(vec![1.0, 0.0, 0.0, 1.0]));
 /// assert!((a + 2.0 * (6.0_f64 / 7.0).ln()).abs() < 1e-12);
 /// // The slope of ln det M is M^-1.
-/// let slope = Criterion::D.at(&m, 2).unwrap().slope(2);
+/// let slope = Criterion::D.evaluate_at(&m, 2).unwrap().slope(2);
 /// assert!((slope[0] - 2.0 / 7.0).abs() < 1e-12 && (slope[1] + 1.0 / 7.0).abs() < 1e-12);
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]

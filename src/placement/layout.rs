@@ -108,7 +108,7 @@ impl std::error::Error for PlaceError {}
 ///
 /// let rows = [[1.0, 0.0], [0.0, 1.0], [3.0, 0.0], [0.0, 2.0], [2.0, 2.0]];
 /// let fill = |place: usize, row: &mut [f64]| row.copy_from_slice(&rows[place]);
-/// let candidates = Candidates::from_rows(2, rows.len(), Scatter::uniform(1.0), fill);
+/// let candidates = Candidates::from_rows(2, rows.len(), Scatter::with_uniform_noise(1.0), fill);
 /// let layout = place(&candidates, &Spec::new(3, 2))?;
 /// let mut chosen: Vec<u32> = layout.gauges.iter().map(|g| g.place).collect();
 /// chosen.sort_unstable();

@@ -28,7 +28,7 @@ use crate::sensitivity::{Sensitivity, Uncertainty};
 ///
 /// let s = Sensitivity {
 ///     gauges: ["G1", "G2", "G3"].map(str::to_owned).to_vec(),
-///     loads: vec![Load::named("left"), Load::named("right")],
+///     loads: vec![Load::from_name("left"), Load::from_name("right")],
 ///     values: 1e-6 * Matrix::from_row_slice(3, 2, &[1.0, 0.0, 0.0, 1.0, 1.0, 1.0]),
 ///     uncertainty: None,
 ///     noise: None,

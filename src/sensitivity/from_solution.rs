@@ -120,7 +120,7 @@ fn cause(gauge: &Gauge, case: &CaseResult) -> NoStrainCause {
 ///     let spec = GaugeSpec { place, ..GaugeSpec::on(name, ShellIx(0)) };
 ///     gauges.extend(build(&model, &spec, CornerRows::Absent)?.0);
 /// }
-/// let tip = LoadCaseOf { load: Load::named("tip"), applied: 500.0, case: &solution.cases[0] };
+/// let tip = LoadCaseOf { load: Load::from_name("tip"), applied: 500.0, case: &solution.cases[0] };
 /// let s = from_cases(&gauges, &[tip]).unwrap();
 /// let root = -1000.0 * 10.0 / (210_000.0 * 20_000.0); // -L c / (E I), strain per newton
 /// assert!((s.values[(0, 0)] / root - 1.0).abs() < 1e-9);

@@ -22,7 +22,7 @@ const NAMED_SHARE: f64 = 0.1;
 ///
 /// let s = |values: &[f64]| Sensitivity {
 ///     gauges: ["G1", "G2", "G3"].map(str::to_owned).to_vec(),
-///     loads: vec![Load::named("left"), Load::named("right")],
+///     loads: vec![Load::from_name("left"), Load::from_name("right")],
 ///     values: Matrix::from_row_slice(3, 2, values),
 ///     uncertainty: None,
 ///     noise: None,

@@ -167,15 +167,15 @@ impl SampledSignals<'_> {
 /// # Example
 /// The clock of the second recorder is 0.25 s ahead of the first one:
 /// ```
-/// use strainbridge::series::shift::{Sampled, ShiftRules, estimate_shift};
+/// use strainbridge::series::shift::{SampledSignals, ShiftRules, estimate_shift};
 ///
 /// // A sum of sines without a common period, sampled at two rates.
 /// let signal = |t: f64| ((1.3 * t).sin() + (3.1 * t).sin() + (7.7 * t + 0.5).sin()) as f32;
 /// let fixed = [(0..2000).map(|i| signal(f64::from(i) / 50.0)).collect()];
 /// let moving = [(0..2500).map(|i| signal(f64::from(i) / 64.0 - 0.25)).collect()];
 /// let shift = estimate_shift(
-///     Sampled { start_s: 0.0, rate_hz: 50.0, signals: &fixed },
-///     Sampled { start_s: 0.0, rate_hz: 64.0, signals: &moving },
+///     SampledSignals { start_s: 0.0, rate_hz: 50.0, signals: &fixed },
+///     SampledSignals { start_s: 0.0, rate_hz: 64.0, signals: &moving },
 ///     &ShiftRules::default(),
 /// )
 /// .unwrap();

@@ -153,7 +153,7 @@ pub fn modes(job: &Job, count: usize, cx: &Context) -> Result<Outcome<Modes>, Fa
 ///
 /// const DECK: &str = "SOL 103\nCEND\nSPC = 1\nBEGIN BULK\nGRID,1,,0.,0.,0.,,23456\nGRID,2,,1.,0.,0.,,123456
 /// CELAS2,1,8000.,1,1,2,1\nCONM2,2,1,,2.\nSPC1,1,123456,2\nENDDATA\n";
-/// let files = InMemory::default().with("oscillator.bdf", DECK);
+/// let files = InMemory::default().with_file("oscillator.bdf", DECK);
 /// let found = modes_of_deck(Path::new("oscillator.bdf"), 1, &Context::new(&files))?;
 /// let exact = (8000.0_f64 / 2.0).sqrt() / TAU;
 /// assert!((found.modes[0].hz / exact - 1.0).abs() < 1e-9);

@@ -78,7 +78,7 @@ impl Answer for ComputedSensitivity {
 /// load = [{ name = "tip", grid = 2, component = "FZ" }]
 /// gauge = [{ name = "root", element = 1, point = "C", station = 0.0 }]
 /// "#;
-/// let files = InMemory::default().with("cantilever.bdf", DECK).with("job.toml", JOB);
+/// let files = InMemory::default().with_file("cantilever.bdf", DECK).with_file("job.toml", JOB);
 /// let found = sensitivity(&Job::read("job.toml", &files)?, &Context::new(&files))?;
 /// let s = found.prepared.sensitivity.values[(0, 0)]; // strain per newton
 /// let (l, c, e, i) = (1000.0, 10.0, 210_000.0, 20_000.0);

@@ -137,7 +137,7 @@ struct Task {
 /// model = { deck = "cantilever.bdf" }
 /// load = [{ name = "tip", grid = 2, component = "FZ" }]
 /// "#;
-/// let files = InMemory::default().with("cantilever.bdf", DECK).with("job.toml", JOB);
+/// let files = InMemory::default().with_file("cantilever.bdf", DECK).with_file("job.toml", JOB);
 /// let solved = solve(&Job::read("job.toml", &files)?, Default::default(), &Context::new(&files))?;
 /// let tip = solved.solution.cases[0].displacement[1][2];
 /// let exact = 1000.0_f64.powi(3) / (3.0 * 210_000.0 * 20_000.0);
@@ -175,7 +175,7 @@ pub fn solve(
 /// const ROD: &str = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK
 /// GRID,1,,0.,0.,0.\nGRID,2,,1000.,0.,0.,,23456\nCROD,1,1,1,2\nPROD,1,1,100.\nMAT1,1,210000.,,.3
 /// SPC1,1,123456,1\nFORCE,2,2,,2100.,1.,0.,0.\nENDDATA\n";
-/// let files = InMemory::default().with("rod.bdf", ROD);
+/// let files = InMemory::default().with_file("rod.bdf", ROD);
 /// let solved = solve_deck(Path::new("rod.bdf"), Default::default(), &Context::new(&files))?;
 /// let end = solved.solution.cases[0].displacement[1][0];
 /// assert!((end - 2100.0 * 1000.0 / (210_000.0 * 100.0)).abs() < 1e-12);

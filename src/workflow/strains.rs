@@ -75,7 +75,7 @@ impl Answer for Strains {
 /// #     format!("{:<72}{:>8}\n", format!("{:<18}{slots}", if i == 0 { "         1" } else { "-CONT-" }), 1)
 /// # });
 /// # let punch = head.concat() + &lines.collect::<String>();
-/// let files = InMemory::default().with("bar.bdf", DECK).with("bar.pch", punch);
+/// let files = InMemory::default().with_file("bar.bdf", DECK).with_file("bar.pch", punch);
 /// let found = strains(Path::new("bar.bdf"), &["bar.pch".into()], &Context::new(&files))?;
 /// assert_eq!(found.subcase_ids, [1]);
 /// let bar = found.model.beam_ix(1).unwrap();

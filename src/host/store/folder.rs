@@ -21,10 +21,10 @@ const MOST_BYTES: u64 = 4 << 30;
 /// # const ROD: &str = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1000.,0.,0.,,23456\nCROD,1,1,1,2
 /// # PROD,1,1,100.\nMAT1,1,210000.,,.3\nSPC1,1,123456,1\nFORCE,2,2,,2100.,1.,0.,0.\nENDDATA\n";
 /// # let path = std::env::temp_dir().join(format!("strainbridge-folder-{}", std::process::id()));
-/// let folder = Folder::at(&path);
+/// let folder = Folder::new(&path);
 /// assert_eq!(folder.size().0, 0);
 ///
-/// let files = InMemory::default().with("rod.bdf", ROD);
+/// let files = InMemory::default().with_file("rod.bdf", ROD);
 /// let cx = Context::new(&files).store(&folder);
 /// let solved = solve_deck(Path::new("rod.bdf"), Default::default(), &cx)?;
 /// let again = solve_deck(Path::new("rod.bdf"), Default::default(), &cx)?;

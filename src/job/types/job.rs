@@ -41,7 +41,7 @@ use std::path::PathBuf;
 /// model = { deck = "frame.bdf" }
 /// load = [{ name = "LF.FZ", grid = 71, component = "FZ" }]
 /// "#;
-/// let job = Job::read("job.toml", &InMemory::default().with("job.toml", JOB))?;
+/// let job = Job::read("job.toml", &InMemory::default().with_file("job.toml", JOB))?;
 /// assert_eq!(job.units, UnitSystem::MmTS);
 /// assert_eq!(job.loads[0].name, "LF.FZ");
 /// // Standard gravity is 9.80665 m/s^2, and the unit of length is the millimetre.

@@ -21,7 +21,7 @@ use rayon::prelude::*;
 /// let symbolic = Symbolic::analyse(&graph, &[1, 1, 1])?; // one unknown for each point
 /// let groups = pairs.map(<[u32]>::to_vec);
 /// let k = 50.0;
-/// let matrix = BlockMatrix::assembled(&symbolic, &graph, &groups, |i| {
+/// let matrix = BlockMatrix::assemble_terms(&symbolic, &graph, &groups, |i| {
 ///     Ok::<_, ()>(DenseTerm {
 ///         groups: groups[i].clone(),
 ///         offsets: (0..=groups[i].len()).collect(),

@@ -20,7 +20,7 @@ pub struct Knee {
 /// ```
 /// use strainbridge::series::rainflow::{Knee, Law};
 ///
-/// let line = Law::straight(5.0);
+/// let line = Law::from_slope(5.0);
 /// // A fifth more range does 1.2^5 = 2.49 times the damage.
 /// assert!((line.damage(12.0) / line.damage(10.0) - 1.2_f64.powi(5)).abs() < 1e-12);
 /// let bent = Law { knee: Some(Knee { range: 10.0, slope: 9.0 }), ..line };

@@ -61,7 +61,7 @@ use crate::workflow::recover::list_load_columns;
 /// #     runs += &format!("R{r},{},{}\n", f[0], f[1]);
 /// #     strain += &format!("R{r},{},{},{}\n", eps[0], eps[1], eps[2]);
 /// # }
-/// let files = InMemory::default().with("job.toml", JOB).with("runs.csv", runs).with("strain.csv", strain);
+/// let files = InMemory::default().with_file("job.toml", JOB).with_file("runs.csv", runs).with_file("strain.csv", strain);
 /// let found = calibrate(&Job::read("job.toml", &files)?, &Context::new(&files))?;
 /// for (g, row) in s.iter().enumerate() {
 ///     for (l, expected) in row.iter().enumerate() {

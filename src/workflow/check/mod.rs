@@ -34,7 +34,7 @@ use std::path::{Path, PathBuf};
 /// use strainbridge::{Context, check};
 ///
 /// let deck = "SOL 101\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCROD,1,7,1,2\nCONM2,2,3,,1.\nENDDATA\n";
-/// let files = InMemory::default().with("rod.bdf", deck);
+/// let files = InMemory::default().with_file("rod.bdf", deck);
 /// let found = check(&["rod.bdf".into()], &Context::new(&files))?;
 /// // Line 6 names property 7 and line 7 names grid 3, which the deck does not contain.
 /// let faults: Vec<String> = found.faults.iter().map(ToString::to_string).collect();

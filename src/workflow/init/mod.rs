@@ -112,7 +112,7 @@ impl Answer for Proposal {
 /// # const DECK: &str = "SOL 101\nCEND\nSPC = 1\nSUBCASE 1\n LABEL = left\n LOAD = 2\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,100.,0.,0.
 /// # GRID,3,,100.,20.,0.\nGRID,4,,0.,20.,0.\nGRID,5,,200.,0.,0.\nGRID,6,,200.,20.,0.\nCQUAD4,1,1,1,2,3,4\nCQUAD4,2,1,2,5,6,3
 /// # PSHELL,1,1,2.,1,,1\nMAT1,1,210000.,,.3,7.85-9\nSPC1,1,123456,1,4\nFORCE,2,5,,10.,0.,0.,1.\nENDDATA\n";
-/// let files = InMemory::default().with("strip.bdf", DECK);
+/// let files = InMemory::default().with_file("strip.bdf", DECK);
 /// let proposed = init(Path::new("strip.bdf"), &[], Path::new(""), &Context::new(&files))?;
 /// assert_eq!(proposed.loads.len(), 1);
 ///

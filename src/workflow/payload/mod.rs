@@ -52,9 +52,9 @@ use task::Task;
 /// payload = { grid = 9, position = "free", use = ["reactions"] }
 /// "#;
 /// let files = InMemory::default()
-///     .with("table.bdf", DECK)
-///     .with("job.toml", JOB)
-///     .with("runs.csv", "run,front,left,right\nR1,500.0,200.0,300.0\n");
+///     .with_file("table.bdf", DECK)
+///     .with_file("job.toml", JOB)
+///     .with_file("runs.csv", "run,front,left,right\nR1,500.0,200.0,300.0\n");
 /// let found = payload(&Job::read("job.toml", &files)?, &Context::new(&files))?;
 /// let p = &found.payload[0];
 /// assert!((p.mass.unwrap() - 1000.0 / 9.80665).abs() < 1e-6);

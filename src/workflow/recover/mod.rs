@@ -86,9 +86,9 @@ use crate::strain_chain::{Conditioning, JobSensitivity};
 /// measured = { strain = "strain.csv", noise_microstrain = 1.0 }
 /// "#;
 /// let files = InMemory::default()
-///     .with("job.toml", JOB)
-///     .with("s.csv", "gauge,left,right\nG1,0.10,0.02\nG2,0.02,0.10\nG3,0.05,0.05\n")
-///     .with("strain.csv", "run,G1,G2,G3\nR1,221,139,151\n");
+///     .with_file("job.toml", JOB)
+///     .with_file("s.csv", "gauge,left,right\nG1,0.10,0.02\nG2,0.02,0.10\nG3,0.05,0.05\n")
+///     .with_file("strain.csv", "run,G1,G2,G3\nR1,221,139,151\n");
 /// let found = recover(&Job::read("job.toml", &files)?, &Context::new(&files))?;
 /// let runs = found.runs().unwrap();
 /// for (load, truth) in runs.loads.iter().zip([2000.0, 1000.0]) {

@@ -135,9 +135,9 @@ pub struct StudiedLoad {
 /// study = { layouts = ["given"], trials = 400, errors = [{ kind = "absolute-normal", size = 1.0 }] }
 /// "#;
 /// let files = InMemory::default()
-///     .with("job.toml", JOB)
-///     .with("s.csv", "gauge,left,right\nG1,0.1,0.0\nG2,0.0,0.1\n")
-///     .with("strain.csv", "run,G1,G2\nR1,10,10\n");
+///     .with_file("job.toml", JOB)
+///     .with_file("s.csv", "gauge,left,right\nG1,0.1,0.0\nG2,0.0,0.1\n")
+///     .with_file("strain.csv", "run,G1,G2\nR1,10,10\n");
 /// let found = study(&Job::read("job.toml", &files)?, &Context::new(&files))?;
 /// for load in &found.study[0].loads {
 ///     // The standard deviation of 400 trials errs by 3.5 %, one standard deviation.
