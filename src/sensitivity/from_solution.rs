@@ -117,7 +117,7 @@ fn cause(gauge: &Gauge, case: &CaseResult) -> NoStrainCause {
 /// let mut gauges = Vec::new();
 /// for (name, station) in [("root", 0.0), ("middle", 0.5), ("end", 1.0)] {
 ///     let place = GaugePlace::Beam { beam, point: 0, station };
-///     let spec = GaugeSpec { place, ..GaugeSpec::on(name, ShellIx(0)) };
+///     let spec = GaugeSpec { place, ..GaugeSpec::place_on_shell(name, ShellIx(0)) };
 ///     gauges.extend(build(&model, &spec, CornerRows::Absent)?.0);
 /// }
 /// let tip = LoadCaseOf { load: Load::from_name("tip"), applied: 500.0, case: &solution.cases[0] };

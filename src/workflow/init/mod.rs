@@ -117,7 +117,7 @@ impl Answer for Proposal {
 /// assert_eq!(proposed.loads.len(), 1);
 ///
 /// // The text is a job that reads without faults.
-/// let files = files.with(&proposed.path, proposed.text.as_str());
+/// let files = files.with_file(&proposed.path, proposed.text.as_str());
 /// let job = Job::read(&proposed.path, &files)?;
 /// assert_eq!(job.loads[0].name, proposed.loads[0]);
 /// # Ok::<(), strainbridge::Faults>(())
