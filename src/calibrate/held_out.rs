@@ -295,7 +295,7 @@ fn expected_ratio(dof: f64) -> f64 {
 /// Returns the factor for scatter estimated from runs. A few left-out runs that are far off need not be significant. The variance of the intervals
 /// relative to the scatter is its posterior mean, `(dof + runs z2) / (dof + runs)`, at least 1. The scatter, known with `dof` degrees of freedom,
 /// contributes 1. The left-out runs contribute `z2`, their largest mean square. The more runs there are, the less the factor adds to the test of
-/// [`judge`].
+/// [`test_coverage`].
 ///
 /// # Reference
 /// A. Gelman and others, Bayesian Data Analysis (3rd ed., 2013), section 2.6: a variance with a scaled inverse chi-square prior.

@@ -7,7 +7,7 @@ use std::fmt;
 
 /// Fault of an input, printed as `file:line: field: what is wrong: what to do`.
 ///
-/// [`shorten_names`](crate::finding::shorten_names) shortens long names in its text.
+/// [`shorten_names`] shortens long names in its text.
 ///
 /// # Example
 /// ```

@@ -35,7 +35,7 @@ pub(super) fn find_determined_links(found: &Identification) -> impl Iterator<Ite
     (0..v.links.len()).filter(all_told)
 }
 
-/// Returns the mean force of every link that the record determines, by bins of its stretch. The force is from the model, and from [`asked_force`] if
+/// Returns the mean force of every link that the record determines, by bins of its stretch. The force is from the model, and from `asked_force` if
 /// known.
 pub fn restoring_curves(found: &Identification, motion: &Motion) -> Vec<Curve> {
     const BINS: usize = 41;

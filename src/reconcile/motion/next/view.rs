@@ -108,8 +108,8 @@ impl View {
 /// Forms the equations of motion of a further drive.
 ///
 /// The motion is the present one with the same filter at every channel, less the channel errors that explain its residual under one explanation
-/// ([`super::rival_misfit`]). It obeys that explanation to first order in the difference of two explanations. The residual of the other explanation
-/// is the difference of the forces of both at that motion.
+/// ([`super::alternative_misfit`]). It obeys that explanation to first order in the difference of two explanations. The residual of the other
+/// explanation is the difference of the forces of both at that motion.
 fn form_drive_equations(
     frame: &MotionFrame,
     measurement: &Measurement,
