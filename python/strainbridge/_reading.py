@@ -98,7 +98,7 @@ class Deck:
                 flat = {c: np.ascontiguousarray(v, dtype=np.float64).ravel() for c, v in columns.items()}
                 changed[name] = flat
         written = []
-        for i, (name, data) in enumerate(self._native.edited(to.parent, to.stem, changed)):
+        for i, (name, data) in enumerate(self._native.edit_files(to.parent, to.stem, changed)):
             file = to if i == 0 else to.parent / name
             file.write_bytes(bytes(data))
             written.append(os.fspath(file))
