@@ -2,12 +2,13 @@
 
 use super::conditioning_step::ConditioningStep;
 use super::faults::record_fault;
-use super::record::Record;
+use super::record::{MOST_NUMBERS, Record};
 use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, Faults};
 use crate::job::{Job, ReadingConditioning, Reference, TemperatureCompensation};
+use crate::recovery::dead_gauges::shortest_part;
 use crate::series::butterworth::{Passes, filter_without_phase};
-use crate::series::detrend::{mean, rms};
+use crate::series::detrend::{finite_mean, line, mean, rms};
 use crate::series::quality::find_spikes;
 use crate::units::MICROSTRAIN;
 use rayon::prelude::*;
@@ -15,11 +16,6 @@ use std::ops::Range;
 
 /// Independent readings that a stretch of zero needs: the error of the mean is then below a tenth of the noise of a reading.
 const LEAST_ZERO: usize = 100;
-/// A stretch of one value is constant from this part of the record on, and from this number of samples.
-const CONSTANT_SHARE: usize = 20;
-const CONSTANT_SAMPLES: usize = 10;
-/// Numbers of a record that are held in memory: 0.8 GB of readings.
-const MOST_NUMBERS: usize = 100_000_000;
 
 /// Readings of a record while they are conditioned.
 struct Conditioner {
@@ -34,7 +30,7 @@ impl Conditioner {
     /// or a subtracted temperature would hide it. A gauge that is constant throughout is left to the search for gauges without a signal.
     fn blank_constant_stretches(&mut self) {
         let samples = self.readings.first().map_or(0, Vec::len);
-        let least = (samples / CONSTANT_SHARE).max(CONSTANT_SAMPLES);
+        let least = shortest_part(samples);
         let mut dead: Vec<(usize, Range<usize>)> = Vec::new();
         for (g, column) in self.readings.iter().enumerate() {
             let mut first = 0;
@@ -113,7 +109,7 @@ pub(super) fn condition(job: &Job, record: Record, wanted: &[String]) -> Result<
             &*job.file, asked.line, field, wrong, remedy,
         ))
     };
-    two_zeros(job, asked).map_err(|(key, wrong)| fault(key, wrong))?;
+    refuse_two_zeros(job, asked).map_err(|(key, wrong)| fault(key, wrong))?;
     let temperature = match &asked.temperature {
         Some(t) => {
             let measured = temperature_of(&record, t, wanted);
@@ -181,7 +177,7 @@ pub(super) fn condition(job: &Job, record: Record, wanted: &[String]) -> Result<
 }
 
 /// Refuses steps that remove static strain in a job that subtracts a zero or adds a reference state itself.
-fn two_zeros(
+fn refuse_two_zeros(
     job: &Job,
     asked: &ReadingConditioning,
 ) -> Result<(), (&'static str, (String, &'static str))> {
@@ -223,11 +219,7 @@ fn run_steps(
     if let Some((compensation, measured)) = temperature {
         let reference = match zero {
             Some(zero) => mean(&measured[zero.clone()]),
-            None => measured
-                .iter()
-                .copied()
-                .find(|t| t.is_finite())
-                .unwrap_or(0.0),
+            None => measured.first().copied().unwrap_or(0.0),
         };
         let factor = compensation.microstrain_per_deg_c * MICROSTRAIN;
         work.apply("temperature", |x| {
@@ -238,23 +230,15 @@ fn run_steps(
     if asked.linear_drift {
         let at = zero.map_or(0.0, |z| 0.5 * (z.start + z.end) as f64);
         work.apply("drift", |x| {
-            let slope = slope_of(x);
+            let slope = line(x).1;
             let all = x.iter_mut().enumerate();
             all.for_each(|(i, v)| *v -= slope * (i as f64 - at));
         });
     }
     if let Some(zero) = zero {
         work.apply("zero", |x| {
-            let read: Vec<f64> = x[zero.clone()]
-                .iter()
-                .copied()
-                .filter(|v| v.is_finite())
-                .collect();
-            let offset = if read.is_empty() {
-                f64::NAN
-            } else {
-                mean(&read)
-            };
+            // A gauge without a reading in the stretch has none at all.
+            let offset = finite_mean(&x[zero.clone()]);
             x.iter_mut().for_each(|v| *v -= offset);
         });
     }
@@ -267,21 +251,6 @@ fn run_steps(
             work.apply(step, |x| filter_without_phase(x, passes, corner * step_s));
         }
     }
-}
-
-/// Returns the slope of the least squares line through the samples that are read, per sample.
-fn slope_of(x: &[f64]) -> f64 {
-    let read = || x.iter().enumerate().filter(|(_, v)| v.is_finite());
-    let n = read().count() as f64;
-    let middle = read().map(|(i, _)| i as f64).sum::<f64>() / n;
-    let level = read().map(|(_, v)| v).sum::<f64>() / n;
-    let (mut sxy, mut sxx) = (0.0, 0.0);
-    for (i, v) in read() {
-        let d = i as f64 - middle;
-        sxy += d * (v - level);
-        sxx += d * d;
-    }
-    if sxx > 0.0 { sxy / sxx } else { 0.0 }
 }
 
 /// Returns the samples of the stretch of zero.

@@ -19,6 +19,9 @@ use crate::units::MICROSTRAIN;
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
+/// Largest number of readings of a record, and of their errors, that are held in memory: 0.8 GB.
+pub(crate) const MOST_NUMBERS: usize = 100_000_000;
+
 /// A record whose columns are read as strain.
 #[derive(Clone)]
 pub(crate) struct Record {

@@ -11,6 +11,11 @@ use crate::series::constant_columns::Gives;
 const PART: usize = 20;
 /// Samples of a part at least.
 const LEAST: usize = 10;
+
+/// Returns the number of samples in a row with one value from which on a gauge is tested for a dead part, of `samples` samples.
+pub fn shortest_part(samples: usize) -> usize {
+    (samples / PART).max(LEAST)
+}
 /// Least change of the strain predicted from the other gauges, in standard deviations of noise and model error. A working gauge shows such a change,
 /// however coarsely its reading is rounded.
 const CHANGES: f64 = 3.0;
@@ -38,7 +43,7 @@ pub fn check(
     noise_factor: f64,
 ) -> Vec<DeadGaugeSpan> {
     let n = s.gauges.len();
-    let least = (samples.len() / PART).max(LEAST);
+    let least = shortest_part(samples.len());
     let of_gauge = |g: usize| {
         let runs = runs_of(samples, g, least).into_iter();
         runs.map(move |(gives, run)| (g, gives, run))

@@ -24,16 +24,23 @@ pub fn without_mean(x: &[f64]) -> Vec<f64> {
     x.iter().map(|v| v - m).collect()
 }
 
-/// Offset and slope per sample of the least-squares line through x over 0, 1, 2 ..
+/// Returns the mean of the finite values; 0 without any.
+pub fn finite_mean(x: &[f64]) -> f64 {
+    let read = || x.iter().filter(|v| v.is_finite());
+    read().sum::<f64>() / read().count().max(1) as f64
+}
+
+/// Returns offset and slope per sample of the least-squares line through the finite samples of x over 0, 1, 2 .. The slope is 0 with fewer than two.
 pub fn line(x: &[f64]) -> (f64, f64) {
-    let n = x.len() as f64;
-    if x.len() < 2 {
-        return (mean(x), 0.0);
+    let read = || x.iter().enumerate().filter(|(_, v)| v.is_finite());
+    let n = read().count() as f64;
+    let m = finite_mean(x);
+    if n < 2.0 {
+        return (m, 0.0);
     }
-    let middle = (n - 1.0) / 2.0;
-    let m = mean(x);
+    let middle = read().map(|(i, _)| i as f64).sum::<f64>() / n;
     let (mut sxy, mut sxx) = (0.0, 0.0);
-    for (i, v) in x.iter().enumerate() {
+    for (i, v) in read() {
         let d = i as f64 - middle;
         sxy += d * (v - m);
         sxx += d * d;
