@@ -208,7 +208,7 @@ fn a_gauge_that_is_dead_for_a_while_is_blank_there() {
     }
 }
 
-/// What the section cannot do is a fault of its line.
+/// Faults of the section name their key: times beyond the record, corners, channels, two zeros, runs.
 #[test]
 fn what_conditioning_cannot_do_is_a_fault() {
     let cases = [

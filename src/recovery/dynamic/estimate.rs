@@ -15,30 +15,13 @@ use super::kernel::Kernel;
 use super::normal_equations::{Normal, Products, Shapes};
 use super::plant::Plant;
 use super::residual_courses::{Record, View};
+use super::rules::RULES;
 use super::types::{BAND_END, Dynamics, Unfit};
 use crate::linalg::{Matrix, Vector};
 use crate::sensitivity::Sensitivity;
+use crate::series::detrend::finite_mean;
 use rayon::prelude::*;
 use std::ops::Range;
-
-/// Steps of the method of Gauss and Newton at most.
-const STEPS: usize = 10;
-/// A step below this share of every standard deviation ends the search.
-const CONVERGED: f64 = 0.05;
-/// Largest change in one step of the logarithm of a frequency and of a damping, within which the response is nearly linear in them.
-const LONGEST_STEP: [f64; 2] = [0.1, 0.7];
-/// Damping from which an estimate without a stated value starts; the start with the smallest residual is taken.
-const STARTS: [f64; 4] = [0.01, 0.03, 0.1, 0.3];
-/// One standard deviation of the logarithm of a damping without a stated value, about the start: a factor of 4.5 either way.
-const OPEN: f64 = 1.5;
-/// Least standard deviation of the strain of a mode at a gauge, share of it: what a mesh that was not fitted to measured shapes is off by.
-const SHAPE: f64 = 0.01;
-/// Blocks of the record that are used, evenly spaced.
-const MOST_BLOCKS: usize = 16;
-/// Largest number of parameters, those of the lowest modes: more take minutes, and neighbouring modes are then indistinguishable.
-const MOST_PARAMETERS: usize = 40;
-/// Largest damping, share of critical: a mode beyond does not vibrate.
-const LARGEST_DAMPING: f64 = 0.95;
 
 /// Estimated deviation of a parameter of a mode from its stated value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,12 +78,15 @@ pub fn estimate_modes(
     }
     let mut prior = dynamics.clone();
     if open_damping {
-        prior.modes.iter_mut().for_each(|m| m.damping_sd = OPEN);
+        prior
+            .modes
+            .iter_mut()
+            .for_each(|m| m.damping_sd = RULES.open_sd);
     }
     let record = Record {
         s,
         noise,
-        shape_sd: model_rel.max(SHAPE),
+        shape_sd: model_rel.max(RULES.shape_sd),
         readings,
         rate_hz,
         means: readings.iter().map(|x| finite_mean(x)).collect(),
@@ -113,12 +99,12 @@ pub fn estimate_modes(
         .filter(in_band)
         .flat_map(|m| [(m, 0), (m, 1)])
         .filter(|(m, kind)| stated(*m)[*kind] > 0.0)
-        .take(MOST_PARAMETERS)
+        .take(RULES.parameters)
         .collect();
     if parameters.is_empty() {
         return Ok(None);
     }
-    let starts: &[f64] = if open_damping { &STARTS } else { &[] };
+    let starts: &[f64] = if open_damping { &RULES.starts } else { &[] };
     let mut problem = Problem {
         record,
         prior,
@@ -128,12 +114,6 @@ pub fn estimate_modes(
         return Ok(None);
     };
     Ok(Some(problem.solve(first)?))
-}
-
-/// Returns the mean of the finite values, 0 without any.
-fn finite_mean(x: &[f64]) -> f64 {
-    let read = || x.iter().filter(|v| v.is_finite());
-    read().sum::<f64>() / read().count().max(1) as f64
 }
 
 /// Parameters, mode and kind (0 frequency, 1 damping), with their prior.
@@ -202,7 +182,7 @@ impl Problem<'_> {
                 mode.hz *= x.exp();
                 mode.work.iter_mut().for_each(|w| *w *= (2.0 * x).exp());
             } else {
-                mode.damping = (mode.damping * x.exp()).min(LARGEST_DAMPING);
+                mode.damping = (mode.damping * x.exp()).min(RULES.largest_damping);
             }
         }
         out
@@ -211,9 +191,10 @@ impl Problem<'_> {
     /// Runs the method of Gauss and Newton.
     fn solve(&self, (mut x, mut normal): (Vector, Normal)) -> Result<EstimatedModes, Unfit> {
         let mut posterior = self.posterior(&x, &normal);
-        for _ in 0..STEPS {
+        for _ in 0..RULES.steps {
             let mut step = &posterior.mean - &x;
-            let limit = |(of, (_, kind)): (&f64, &(usize, usize))| (of / LONGEST_STEP[*kind]).abs();
+            let limit =
+                |(of, (_, kind)): (&f64, &(usize, usize))| (of / RULES.longest_step[*kind]).abs();
             let longest = step
                 .iter()
                 .zip(&self.parameters)
@@ -221,7 +202,7 @@ impl Problem<'_> {
                 .fold(1.0, f64::max);
             step /= longest;
             let small = |(i, of): (usize, &f64)| {
-                of.abs() <= CONVERGED * posterior.covariance[(i, i)].sqrt()
+                of.abs() <= RULES.converged * posterior.covariance[(i, i)].sqrt()
             };
             if step.iter().enumerate().all(small) {
                 break;
@@ -346,7 +327,7 @@ impl Problem<'_> {
                 firsts.map(move |first| (span.clone(), first..(first + hop).min(last)))
             })
             .collect();
-        let every = blocks.len().div_ceil(MOST_BLOCKS).max(1);
+        let every = blocks.len().div_ceil(RULES.blocks).max(1);
         let used: Vec<_> = blocks.iter().step_by(every).collect();
         let products: Vec<Products> = (used.par_iter())
             .flat_map_iter(|(span, wanted)| view.products(span, wanted, used.len()))

@@ -26,11 +26,13 @@ mod normal_equations;
 mod plant;
 mod reading_covariance;
 mod residual_courses;
+mod rules;
 mod types;
 
 pub use correct::{AtRest, readings_at_rest, window};
 pub use estimate::{Deviation, EstimatedModes, estimate_modes};
 pub use reading_covariance::{AddedCovariance, ReadingCovariance, triangle};
+pub use rules::RULES;
 pub use types::{Dynamics, ElasticMode, Unfit};
 
 #[cfg(test)]

@@ -4,13 +4,11 @@ use super::block::{Spectrum, spectrum, time_history};
 use super::kernel::Kernel;
 use super::normal_equations::Products;
 use super::plant::Plant;
+use super::rules::RULES;
 use crate::linalg::{Complex, Matrix};
 use crate::sensitivity::Sensitivity;
 use rayon::prelude::*;
 use std::ops::Range;
-
-/// Parts of the record whose gradients are compared.
-const PARTS: usize = 64;
 
 /// Record to estimate from.
 pub(super) struct Record<'a> {
@@ -159,7 +157,7 @@ impl<'a> View<'a> {
             })
             .collect();
         let without = self.residual_without_modes(&spectra, &course);
-        let parts = PARTS.div_ceil(n_blocks);
+        let parts = RULES.parts.div_ceil(n_blocks);
         let length = kept.len().div_ceil(parts).max(1);
         (0..kept.len())
             .step_by(length)

@@ -85,7 +85,7 @@ fn ranks(part: &Part, at: &[Vec3]) -> Vec<u8> {
 
 /// Merges the grids in each cube of width `h` into one.
 ///
-/// Of the grids of the highest rank in a cube, the one nearest to their mean represents all grids of the cube. Borders therefore keep their places,
+/// Replaces the grids of a cube by the one of the highest rank that is nearest to the mean of its rank. Borders therefore keep their places,
 /// and no gaps open between parts that meet.
 fn merge_grids_in_cubes(part: &Part, at: &[Vec3], rank: &[u8], lo: Vec3, h: f64) -> PartMesh {
     let cube = |x: &Vec3| ((x - lo) / h).map(|v| v.floor() as i64);

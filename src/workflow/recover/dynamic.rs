@@ -8,9 +8,9 @@ use crate::gauge::gauge_reading;
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::job::{Damping, Dynamic};
-use crate::measured::record::Record;
+use crate::measured::record::{MOST_NUMBERS, Record};
 use crate::recovery::dynamic::{
-    AtRest, Deviation, Dynamics, ElasticMode, EstimatedModes, ReadingCovariance, Unfit,
+    AtRest, Deviation, Dynamics, ElasticMode, EstimatedModes, RULES, ReadingCovariance, Unfit,
     estimate_modes, readings_at_rest, triangle, window,
 };
 use crate::sensitivity::Sensitivity;
@@ -27,18 +27,6 @@ const FIRST_MODES: usize = 16;
 const MOST_MODES: usize = 256;
 /// Factor on the number of modes expected in the band, which assumes that they are as dense as the modes below.
 const MARGIN: f64 = 1.25;
-/// Damping from which an estimate starts; the search tries others.
-const START_DAMPING: f64 = 0.03;
-/// Standard deviations by which a mode may differ from its stated frequency or damping: 3 in 1,000 modes differ by more if these are right.
-const OFF_BY: f64 = 3.0;
-/// Share of the mean square of the vibration in the residual that the modes may leave: a third of its amplitude.
-const UNEXPLAINED: f64 = 0.1;
-/// Mean square of the residual over mean square of the noise from which the residual is vibration.
-const OVER_NOISE: f64 = 2.0;
-/// Largest number of values of a record in memory. They are the readings and their errors, 0.8 GB together, and the quasi-static readings in
-/// addition.
-const MOST_NUMBERS: usize = 100_000_000;
-
 /// Vibration that was removed from a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Motion {
@@ -263,8 +251,8 @@ fn dynamics(
         };
         s.gauges.iter().map(at).collect()
     };
-    // If the record determines the damping, any start value is suitable.
-    let damping_at = |hz: f64| asked.damping.stated_at(hz).unwrap_or(START_DAMPING);
+    // The estimate sets a damping that is not stated.
+    let damping_at = |hz: f64| asked.damping.stated_at(hz).unwrap_or(f64::NAN);
     let modes = (0..solved.hz.len())
         .map(|j| {
             let of_load = |l: &usize| work_of[*l][j] / job.loads[*l].applied;
@@ -351,7 +339,7 @@ fn contradiction(
             // Nobody stated a damping that is estimated.
             let d = d.as_ref().filter(|_| kind == 0 || !open_damping)?;
             let off = d.standard_deviations_off()?.abs();
-            (off > OFF_BY).then_some((off, j, kind, *d))
+            (off > RULES.contradicted_sd).then_some((off, j, kind, *d))
         };
         let worst = by_kind.iter().enumerate().filter_map(of_kind);
         worst.max_by(|a, b| a.0.total_cmp(&b.0))
@@ -379,13 +367,18 @@ fn contradiction(
                     number(mode.damping)
                 ),
             };
-            format!("{shown}, a difference of {off:.1} stated standard deviations, limit {OFF_BY}")
+            format!(
+                "{shown}, a difference of {off:.1} stated standard deviations, limit {}",
+                RULES.contradicted_sd
+            )
         }
-        None if found.unexplained > UNEXPLAINED && found.over_noise > OVER_NOISE => format!(
-            "no frequency and damping of the modes explains {:.0} % of the mean square of the vibration in the residual, limit {:.0} %",
-            100.0 * found.unexplained,
-            100.0 * UNEXPLAINED
-        ),
+        None if found.unexplained > RULES.unexplained && found.over_noise > RULES.over_noise => {
+            format!(
+                "no frequency and damping of the modes explains {:.0} % of the mean square of the vibration in the residual, limit {:.0} %",
+                100.0 * found.unexplained,
+                100.0 * RULES.unexplained
+            )
+        }
         None => return None,
     };
     Some(Finding::new(

@@ -1,0 +1,48 @@
+//! Limits of the estimate of modes from a record, each with its reason.
+
+/// Limits of the estimate of modes.
+pub struct EstimateRules {
+    /// Steps of the method of Gauss and Newton at most: from twice a frequency or damping off, five suffice.
+    pub steps: usize,
+    /// A step below this share of every standard deviation ends the search.
+    pub converged: f64,
+    /// Largest change in one step of the logarithm of a frequency and of a damping, within which the response is nearly linear in them.
+    pub longest_step: [f64; 2],
+    /// Damping from which an estimate without a stated value starts; the start with the smallest residual is taken. From steel frames to dampers.
+    pub starts: [f64; 4],
+    /// One standard deviation of the logarithm of a damping without a stated value: a factor of 4.5 either way, which joins the starts.
+    pub open_sd: f64,
+    /// Least standard deviation of the strain of a mode at a gauge, share of it: the error of a mesh that was not fitted to measured shapes.
+    pub shape_sd: f64,
+    /// Blocks of the record that are used, evenly spaced: with more, the errors of the strain of the modes dominate.
+    pub blocks: usize,
+    /// Parts of the record whose gradients are compared: their scatter is then known to a tenth.
+    pub parts: usize,
+    /// Largest number of parameters, those of the lowest modes: more take minutes, and neighbouring modes are then indistinguishable.
+    pub parameters: usize,
+    /// Largest damping, share of critical: a mode beyond does not vibrate.
+    pub largest_damping: f64,
+    /// Standard deviations by which a mode may differ from its stated frequency or damping: 3 in 1,000 modes differ by more if these are right.
+    pub contradicted_sd: f64,
+    /// Share of the mean square of the vibration in the residual that the modes may leave: a third of its amplitude.
+    pub unexplained: f64,
+    /// Mean square of the residual over that of the noise from which on the residual is vibration.
+    pub over_noise: f64,
+}
+
+/// Limits in use.
+pub const RULES: EstimateRules = EstimateRules {
+    steps: 10,
+    converged: 0.05,
+    longest_step: [0.1, 0.7],
+    starts: [0.01, 0.03, 0.1, 0.3],
+    open_sd: 1.5,
+    shape_sd: 0.01,
+    blocks: 16,
+    parts: 64,
+    parameters: 40,
+    largest_damping: 0.95,
+    contradicted_sd: 3.0,
+    unexplained: 0.1,
+    over_noise: 2.0,
+};
