@@ -3,6 +3,7 @@
 use super::conditioning_step::ConditioningStep;
 use super::faults::record_fault;
 use super::record::{MOST_NUMBERS, Record};
+use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, Faults};
 use crate::job::{Job, ReadingConditioning, Reference, TemperatureCompensation};
@@ -10,7 +11,7 @@ use crate::recovery::dead_gauges::shortest_part;
 use crate::series::butterworth::{Passes, filter_without_phase};
 use crate::series::detrend::{finite_mean, line, mean, rms};
 use crate::series::quality::find_spikes;
-use crate::units::MICROSTRAIN;
+use crate::units::{MICROSTRAIN, number};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -57,6 +58,7 @@ impl Conditioner {
                 gauge: self.names[g].clone(),
                 samples: span.len(),
                 rms_microstrain: value.abs() * (span.len() as f64 / samples as f64).sqrt(),
+                error_microstrain: None,
             });
         }
     }
@@ -88,6 +90,7 @@ impl Conditioner {
                 gauge: gauge.clone(),
                 samples,
                 rms_microstrain: rms,
+                error_microstrain: None,
             }));
     }
 }
@@ -229,11 +232,19 @@ fn run_steps(
     }
     if asked.linear_drift {
         let at = zero.map_or(0.0, |z| 0.5 * (z.start + z.end) as f64);
+        let errors = work.readings.par_iter().map(|x| line_error(x, at));
+        let errors: Vec<f64> = errors.collect();
         work.apply("drift", |x| {
             let slope = line(x).1;
             let all = x.iter_mut().enumerate();
             all.for_each(|(i, v)| *v -= slope * (i as f64 - at));
         });
+        for (name, error) in work.names.iter().zip(errors) {
+            let mut of_gauge = work.steps.iter_mut();
+            let step = of_gauge.find(|s| s.step == "drift" && s.gauge == *name);
+            step.into_iter()
+                .for_each(|s| s.error_microstrain = Some(error / MICROSTRAIN));
+        }
     }
     if let Some(zero) = zero {
         work.apply("zero", |x| {
@@ -251,6 +262,20 @@ fn run_steps(
             work.apply(step, |x| filter_without_phase(x, passes, corner * step_s));
         }
     }
+}
+
+/// Returns the largest change of the least squares line at the sample farthest from `at`, where it is zero, if up to a fifth of the record is left
+/// out at either end. A line that loads tilt depends on where the record begins and ends.
+fn line_error(x: &[f64], at: f64) -> f64 {
+    let n = x.len();
+    let farthest = at.max(n as f64 - 1.0 - at);
+    let whole = line(x).1;
+    let shorter = (1..=8).flat_map(|k| {
+        let cut = n * k / 40;
+        [&x[cut..], &x[..n - cut]]
+    });
+    let change = |part: &[f64]| (line(part).1 - whole).abs() * farthest;
+    shorter.map(change).fold(0.0, f64::max)
 }
 
 /// Returns the samples of the stretch of zero.
@@ -348,6 +373,30 @@ pub(super) fn refuse_runs(job: &Job, file: &str) -> Result<(), Faults> {
     Err(Fault::with_line(&*job.file, asked.line, "conditioning", wrong, remedy).into())
 }
 
+/// Returns the warning that loads tilt the line of drift of some gauges by more than the 95 % interval of a reading with `noise`, strain.
+pub fn report_doubtful_drift(steps: &[ConditioningStep], noise: f64) -> Option<Finding> {
+    let limit = NORMAL_95 * noise / MICROSTRAIN;
+    let error = |s: &ConditioningStep| s.error_microstrain.filter(|e| *e > limit);
+    let tilted: Vec<&ConditioningStep> = steps.iter().filter(|s| error(s).is_some()).collect();
+    let largest = tilted.iter().filter_map(|s| error(s)).fold(0.0, f64::max);
+    let gauges: Vec<&str> = tilted.iter().map(|s| s.gauge.as_str()).collect();
+    (!gauges.is_empty()).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "corrections-applied",
+            list_few(&gauges),
+            format!(
+                "the subtracted drift changes by up to {} microstrain with the begin and the end of the record, limit {}: loads tilt the line. \
+                 The intervals do not contain this error",
+                number(largest),
+                number(limit)
+            ),
+            "record the unloaded structure again at the end, or state `drift = \"none\"`",
+        )
+        .with_numbers(largest, limit)
+    })
+}
+
 /// Returns a note on the steps that changed readings; `None` without any.
 pub fn report_conditioning(steps: &[ConditioningStep]) -> Option<Finding> {
     let mut names: Vec<&str> = steps.iter().map(|s| s.step).collect();
@@ -365,9 +414,9 @@ pub fn report_conditioning(steps: &[ConditioningStep]) -> Option<Finding> {
         n => format!("{n} spikes are replaced; "),
     };
     let message = format!(
-        "[conditioning] changed the readings in these steps: {}; {spikes}the largest change is {:.4} microstrain rms, by `{}` at gauge {}",
+        "[conditioning] changed the readings in these steps: {}; {spikes}the largest change is {} microstrain rms, by `{}` at gauge {}",
         names.join(", "),
-        largest.rms_microstrain,
+        number(largest.rms_microstrain),
         largest.step,
         largest.gauge
     );

@@ -4,7 +4,7 @@ use crate::drawn::Numbers;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use strainbridge::host::context::InMemory;
-use strainbridge::{Context, Job};
+use strainbridge::{Context, Job, Severity};
 
 const RATE: f64 = 200.0;
 const SAMPLES: usize = 8000;
@@ -134,6 +134,27 @@ fn faults_of_the_logger_are_removed_and_each_step_states_its_change() {
     let expected = (expected / SAMPLES as f64).sqrt();
     let off = drift["rms_microstrain"].as_f64().unwrap() / expected - 1.0;
     assert!(off.abs() < 0.1, "{off}");
+}
+
+/// The line of a drift that loads tilt by more than the noise is a warning: its error is in no interval. Without loads it is none.
+#[test]
+fn a_drift_that_loads_tilt_is_a_warning() {
+    let section = "[conditioning]\ndrift = \"linear\"\n";
+    let codes = |strain: String| -> Vec<(&'static str, Severity)> {
+        let files = files([false; 5], section).with_file("strain.csv", strain);
+        let job = Job::read("job.toml", &files).unwrap_or_else(|f| panic!("{f:?}"));
+        let got = strainbridge::recover(&job, &Context::new(&files));
+        let got = got.unwrap_or_else(|f| panic!("{f:?}"));
+        got.findings.iter().map(|f| (f.code, f.severity)).collect()
+    };
+    let warned = ("corrections-applied", Severity::Warning);
+    // The first five seconds of a record, without loads, and all of it, where 900 N swing in 24 cycles.
+    let drifting = record([false, false, true, false, false]);
+    let idle: Vec<&str> = drifting.lines().take(1000).collect();
+    let found = codes(format!("{}\n", idle.join("\n")));
+    assert!(!found.contains(&warned), "{found:?}");
+    let found = codes(drifting);
+    assert!(found.contains(&warned), "{found:?}");
 }
 
 /// Without faults of the logger, conditioning changes the loads by less than their intervals.

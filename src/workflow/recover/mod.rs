@@ -59,7 +59,7 @@ use crate::host::fault::Faults;
 use crate::host::outcome::{Outcome, StatedUnits};
 use crate::host::work::Work;
 use crate::job::{Job, Measured};
-use crate::measured::conditioning::report_conditioning;
+use crate::measured::conditioning::{report_conditioning, report_doubtful_drift};
 use crate::measured::noise::prepare_with_noise;
 use crate::measured::{self, MeasuredStrain};
 use crate::recovery::{Readings, Recovery};
@@ -160,6 +160,8 @@ fn recover_measured_loads(
         MeasuredStrain::Record(record) => {
             let steps = record.conditioning_steps().to_vec();
             work.findings.extend(report_conditioning(&steps));
+            let noise = task.errors.noise_variance(1.0).sqrt();
+            work.findings.extend(report_doubtful_drift(&steps, noise));
             let (record, mut beside) =
                 work.stage("stream", |w| record::record(w, &task, &record, sink))?;
             beside.reading_conditioning = steps;
