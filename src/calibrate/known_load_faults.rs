@@ -5,7 +5,7 @@ use super::start::is_known;
 use super::types::{GaugeShift, KnownRun, ShiftWord, Task};
 use crate::finding::{Finding, Severity};
 use crate::input_faults::{
-    FaultTreatment, InputFault, Inputs, KnownLoads, RecordedRuns, Rules,
+    Channels, FaultTreatment, InputFault, Inputs, KnownLoads, RecordedRuns, Rules,
     findings_of_recorded_loads, search_faults,
 };
 
@@ -32,8 +32,9 @@ pub(super) fn wrong_loads(task: &Task, used: &[usize], wrongly_wired: Vec<usize>
     findings_of_recorded_loads(&runs, "the runs file")
 }
 
-/// Returns the findings on gauges for which known loads show an offset, another unit, or the same reading in all runs. Without a model there are
-/// none. `shifts` contains the faults that the rows of S show. S includes the effect of these faults, so that no finding is an error.
+/// Returns the findings on gauges for which known loads show an offset, another unit, a reversed sign, each other's readings, or the same reading in
+/// all runs. Without a model there are none. `shifts` contains the faults that the rows of S show. S includes an offset, a unit and a constant
+/// reading, so that these are warnings. A sign or an exchange that the rows of S do not show is an error: S is between the model and the readings.
 pub(super) fn wrong_gauges(task: &Task, used: &[usize], shifts: &[GaugeShift]) -> Vec<Finding> {
     let Some(model) = &task.model else {
         return Vec::new();
@@ -66,7 +67,11 @@ pub(super) fn wrong_gauges(task: &Task, used: &[usize], shifts: &[GaugeShift]) -
     let is_new = |f: &InputFault| {
         let kind = matches!(
             f,
-            InputFault::Offset(..) | InputFault::Unit(..) | InputFault::Stuck(_)
+            InputFault::Offset(..)
+                | InputFault::Unit(..)
+                | InputFault::Stuck(_)
+                | InputFault::Sign(Channels::One(_))
+                | InputFault::Exchanged(..)
         );
         let of = f.gauges();
         kind && of
@@ -75,7 +80,10 @@ pub(super) fn wrong_gauges(task: &Task, used: &[usize], shifts: &[GaugeShift]) -
     };
     let new = found.iter().filter(|f| is_new(&f.fault));
     new.map(|f| Finding {
-        severity: Severity::Warning,
+        severity: match f.fault {
+            InputFault::Sign(_) | InputFault::Exchanged(..) => Severity::Error,
+            _ => Severity::Warning,
+        },
         ..f.finding(&task.gauges, FaultTreatment::AsMeasured)
     })
     .collect()

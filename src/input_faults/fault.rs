@@ -58,6 +58,18 @@ pub struct AlternativeRows {
     pub applies: Vec<bool>,
 }
 
+impl AlternativeRows {
+    /// Returns the rows of these gauges, in their order.
+    pub fn of_gauges(&self, gauges: &[usize]) -> Self {
+        let k = self.rows.ncols();
+        Self {
+            fault: self.fault,
+            rows: Matrix::from_fn(gauges.len(), k, |i, l| self.rows[(gauges[i], l)]),
+            applies: gauges.iter().map(|g| self.applies[*g]).collect(),
+        }
+    }
+}
+
 /// Remedy if all readings have the opposite sign.
 pub const SIGN_OF_ALL: &str =
     "check the sign of the channels; if so, write a [[correction]] with sign = -1 for each gauge";

@@ -133,7 +133,7 @@ impl RecordedRuns<'_> {
 /// For each gauge, `y_r = sum_l c_l e_l(r)` is solved for the factors `c_l` by least squares, with `e_l` the strain of load `l` by the model. All
 /// loads have one factor if the runs do not separate them. The factor of a load is the median over gauges, weighted by its strain there. Exchanged
 /// records are searched for pair by pair. A fault counts only if undoing it leaves at most a quarter of the sum of squares. For exchanged records the
-/// limit is a fiftieth.
+/// limit is a fiftieth. If no fault of single loads counts, one factor for all loads is tried.
 pub fn faults_of_recorded_loads(runs: &RecordedRuns) -> Vec<RecordFault> {
     let k = runs.loads.len();
     let as_recorded = runs.differences(&vec![1.0; k]);
@@ -161,7 +161,7 @@ pub fn faults_of_recorded_loads(runs: &RecordedRuns) -> Vec<RecordFault> {
         return vec![RecordFault::Exchanged(pairs, by_exchange)];
     }
     if by_factor > UNDONE {
-        return Vec::new();
+        return common_unit(runs, base).into_iter().collect();
     }
     let unit = (!units.is_empty()).then_some(RecordFault::Unit(units));
     let sign = (!signs.is_empty()).then_some(RecordFault::Sign(signs));
@@ -172,6 +172,29 @@ pub fn faults_of_recorded_loads(runs: &RecordedRuns) -> Vec<RecordFault> {
 pub fn findings_of_recorded_loads(runs: &RecordedRuns, file: &str) -> Vec<Finding> {
     let faults = faults_of_recorded_loads(runs);
     faults.iter().map(|f| finding(runs, file, f)).collect()
+}
+
+/// Returns the fault that all loads, or all readings, are in another unit, by one factor for all gauges and loads. Readings that are too small for
+/// their noise determine no factor of a single load, but still this one: `c = sum y m / sum m^2` with the strain `m` of the model, sd
+/// `noise / sqrt(sum m^2)`. `base` is the sum of squares with the loads as recorded.
+fn common_unit(runs: &RecordedRuns, base: f64) -> Option<RecordFault> {
+    let k = runs.loads.len();
+    let without_loads = runs.differences(&vec![0.0; k]);
+    let as_recorded = runs.differences(&vec![1.0; k]);
+    let each = without_loads.iter().zip(&as_recorded);
+    let each = each.map(|(y, d)| (y.2, y.2 - d.2));
+    let (product, model) = each.fold((0.0, 0.0), |(p, m), (y, of_model)| {
+        (p + y * of_model, m + of_model * of_model)
+    });
+    let c = product / model;
+    let is_determined = c.abs() > DETERMINED * runs.noise / model.sqrt();
+    let is_small = c.abs() < 1.0 / UNIT.max(1.0 + 4.0 * runs.model_rel);
+    if !(is_determined && is_small) || squares(&runs.differences(&vec![c; k])) > UNDONE * base {
+        return None;
+    }
+    let acts = |l: &usize| runs.gauges().any(|g| runs.answer(g, *l) > 0.0);
+    let acting = (0..k).filter(acts);
+    Some(RecordFault::Unit(acting.map(|l| (l, c)).collect()))
 }
 
 /// Returns load and factor of each load whose factor the readings determine.

@@ -3,6 +3,7 @@
 use super::fault::{AlternativeRows, Channels, DetectedFault, InputFault, Inputs};
 use crate::estimate::{chi_square_tail, median};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 
 /// How well readings fit, by one measure of their errors.
 pub trait Misfit: Sync {
@@ -73,7 +74,7 @@ pub struct Rules {
     pub dead: [f64; 2],
     /// How close a factor comes to a power of ten to be a unit.
     pub near: f64,
-    /// Gauges that are tried for a cause, and for an exchange with each other.
+    /// Gauges that are tried for a cause, and for an exchange with every other gauge.
     pub tried: usize,
     /// Faults looked for one after the other.
     pub most: usize,
@@ -219,8 +220,8 @@ impl Search<'_> {
         let reads = |g: &usize| inputs.strain.iter().any(|r| r[*g].is_finite());
         let gauges: Vec<usize> = (0..n).filter(reads).collect();
         let mut order: Vec<(usize, InputFit)> = gauges
-            .into_par_iter()
-            .map(|g| (g, self.try_fault(inputs, InputFault::Unlike(g), 2).fit))
+            .par_iter()
+            .map(|&g| (g, self.try_fault(inputs, InputFault::Unlike(g), 2).fit))
             .filter(|(_, fit)| fit.dof > 0)
             .collect();
         order.sort_by(|a, b| a.1.reduced_chi2().total_cmp(&b.1.reduced_chi2()));
@@ -237,7 +238,7 @@ impl Search<'_> {
             tried.extend(self.causes(inputs, now, *g, without));
         }
         tried.extend(self.of_all(inputs, now, scale, &least));
-        tried.extend(self.exchange(inputs, now, &order, &tried));
+        tried.extend(self.exchanges(inputs, now, (&gauges, &order), &tried));
         let best = (tried.iter()).min_by(|a, b| {
             let by_rank = a.rank.cmp(&b.rank);
             by_rank.then(a.fit.chi2.total_cmp(&b.fit.chi2))
@@ -358,36 +359,43 @@ impl Search<'_> {
             .collect()
     }
 
-    /// Returns the exchange of two gauges that explains more than any fault of one.
-    fn exchange(
+    /// Returns the exchanges of two gauges that explain more than any fault of one, the best first. One gauge of each pair is in `order`: the other
+    /// may agree with the loads that the exchanged readings give.
+    fn exchanges(
         &self,
         inputs: &Inputs,
         now: &InputFit,
-        order: &[(usize, InputFit)],
+        (gauges, order): (&[usize], &[(usize, InputFit)]),
         singles: &[CandidateFault],
-    ) -> Option<CandidateFault> {
-        let gauges: Vec<usize> = order.iter().map(|o| o.0).collect();
-        let pairs: Vec<(usize, usize)> = (gauges.iter().enumerate())
-            .flat_map(|(i, a)| gauges[i + 1..].iter().map(move |b| (*a.min(b), *a.max(b))))
+    ) -> Vec<CandidateFault> {
+        let pairs: BTreeSet<(usize, usize)> = order
+            .iter()
+            .flat_map(|(a, _)| gauges.iter().map(move |b| (*a.min(b), *a.max(b))))
+            .filter(|(a, b)| a != b)
             .collect();
-        let tried = pairs
+        let mut tried: Vec<CandidateFault> = pairs
             .into_par_iter()
-            .map(|(a, b)| self.try_fault(inputs, InputFault::Exchanged(a, b), 0));
-        let best = tried.min_by(|x, y| x.fit.chi2.total_cmp(&y.fit.chi2))?;
-        let InputFault::Exchanged(a, b) = best.fault else {
-            return None;
+            .map(|(a, b)| self.try_fault(inputs, InputFault::Exchanged(a, b), 0))
+            .collect();
+        tried.sort_by(|x, y| x.fit.chi2.total_cmp(&y.fit.chi2));
+        let Some(InputFault::Exchanged(a, b)) = tried.first().map(|t| t.fault) else {
+            return Vec::new();
         };
         let silent = InputFault::Unlike(a).correct_inputs(inputs, &[]);
         let both = self
             .misfit
             .fit(&InputFault::Unlike(b).correct_inputs(&silent, &[]));
+        if both.dof == 0 {
+            return Vec::new();
+        }
         let own = 8.0 * inputs.strain.len() as f64 * both.reduced_chi2().max(1.0);
         let limit = both.chi2 + own.max(self.rules.cause_leaves * (now.chi2 - both.chi2));
         let of_one = singles
             .iter()
             .map(|t| t.fit.chi2)
             .fold(f64::INFINITY, f64::min);
-        (both.dof > 0 && best.fit.chi2 < limit && best.fit.chi2 < of_one.max(own)).then_some(best)
+        tried.retain(|t| t.fit.chi2 < limit && t.fit.chi2 < of_one.max(own));
+        tried
     }
 }
 

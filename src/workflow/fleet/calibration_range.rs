@@ -1,4 +1,4 @@
-//! Loads of a record compared with the range of their calibration.
+//! Loads of a record compared with the range of their calibration, and with the sign of vertical loads.
 
 use super::kernel::Kernel;
 use crate::finding::Finding;
@@ -7,8 +7,9 @@ use crate::recovery::outside_calibration::CalibratedLoad;
 use crate::workflow::recover::record_beyond_calibration;
 
 impl Kernel {
-    /// Findings on loads beyond the range of a calibrated S; `ends` are the smallest and the largest value of each load, report units.
-    pub(super) fn beyond_calibration(
+    /// Returns the findings on loads beyond the range of a calibrated S, and on vertical loads that all pull. `ends` are the smallest and the largest
+    /// value of each load, report units.
+    pub(super) fn check_range_and_sign(
         &self,
         filter: &Filter,
         ends: &[[f64; 2]],
@@ -36,6 +37,12 @@ impl Kernel {
             })
             .collect();
         let of = ("record", samples as u64);
-        record_beyond_calibration(&loads, of, (&min, &max, &halves))
+        let mut found = record_beyond_calibration(&loads, of, (&min, &max, &halves));
+        let high: Vec<f64> = max.iter().zip(&halves).map(|(m, h)| m + h).collect();
+        found.extend(
+            self.vertical
+                .check_sign("in the whole record", &high, units),
+        );
+        found
     }
 }

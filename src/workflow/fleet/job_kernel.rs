@@ -14,8 +14,8 @@ use crate::measured::zero::zero_of;
 use crate::sensitivity::check_separability;
 use crate::series::rainflow::{Knee, Law};
 use crate::strain_chain::named_results::check_tables;
-use crate::strain_chain::stated_errors;
-use crate::workflow::recover::list_load_columns;
+use crate::strain_chain::{alternative_rows, stated_errors};
+use crate::workflow::recover::{VerticalLoads, list_load_columns};
 
 /// Classes up to the expected size of a load.
 const CLASSES: f64 = 32.0;
@@ -86,7 +86,12 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
     let errors = stated_errors(measured, s, prepared.fields.as_ref());
     let loads = prepared.sensitivity.loads.iter();
     let ranges = loads.map(|l| calibrated_range(job, &l.name)).collect();
+    let fields = prepared.fields.as_ref();
+    let alternatives = alternative_rows(work, job, fields, &prepared.sensitivity.gauges);
+    let vertical = VerticalLoads::of_job(job);
     Ok(Kernel {
+        alternatives,
+        vertical,
         ranges,
         sensitivity: prepared.sensitivity,
         zero,

@@ -2,7 +2,6 @@
 
 use super::day::{Day, GaugeDay, LoadDay};
 use super::dead_parts::{blank_of, dead_parts, report_dead_parts};
-use super::exchange::find_exchange;
 use super::health::Health;
 use super::record_recovery::{Part, RecordRecovery, UnderWay, count_pieces};
 use super::sample_tests::{TestedSamples, findings_of};
@@ -10,6 +9,7 @@ use super::scale::{noise_of, scales};
 use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, Faults};
 use crate::host::files::may_be_cut;
+use crate::input_faults::AlternativeRows;
 use crate::job::StrainCorrection;
 use crate::job::correct::{Channel, channel_of, column_of, columns_wanted};
 use crate::linalg::Matrix;
@@ -27,7 +27,7 @@ use crate::series::constant_columns::{ColumnContents, Gives};
 use crate::series::rainflow::{Counter, Law, Marks};
 use crate::series::record::Record;
 use crate::units::MICROSTRAIN;
-use crate::workflow::recover::{ListedLoads, silent_throughout};
+use crate::workflow::recover::{ListedLoads, VerticalLoads, silent_throughout};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
 use std::ops::ControlFlow;
@@ -59,6 +59,10 @@ pub struct Kernel {
     pub errors: ErrorModel,
     /// Noise variance of a reading less zero, in units of the variance of a single reading.
     pub noise_factor: f64,
+    /// Rows of S that gauges would have on the other surface or with an angle in radians, for all gauges of S.
+    pub alternatives: Vec<AlternativeRows>,
+    /// Vertical loads of the job.
+    pub(super) vertical: VerticalLoads,
     /// Range of each load of S in its calibration, job units; `None` where the job states none.
     pub ranges: Vec<Option<[f64; 2]>>,
     /// Loads of S, then sums of loads, whose cycles are counted, with their units.
@@ -112,7 +116,7 @@ impl Kernel {
             ends = pass.judged.ends();
         }
         let filter = widened.as_ref().unwrap_or(&r.filter);
-        findings.extend(self.beyond_calibration(filter, &ends, record.clock.samples));
+        findings.extend(self.check_range_and_sign(filter, &ends, record.clock.samples));
         let scales = scales(&r, filter, pass.missing.whole, &pass.by_gauges);
         let loads = pass.counters.into_iter().zip(&self.listed.names);
         let loads = loads
@@ -196,21 +200,16 @@ impl Kernel {
         time_s: impl Fn(usize) -> f64,
         findings: &mut Vec<Finding>,
     ) -> (Option<Filter>, Option<GaugeNoise>) {
-        let samples = judged.spread();
         let (errors, factor) = (self.errors, self.noise_factor);
-        let judgements = judged.recover_loads(&r.sensitivity, errors, factor, time_s);
+        let installed = self.alternatives.iter().map(|a| a.of_gauges(&r.used));
+        let installed: Vec<AlternativeRows> = installed.collect();
+        let judgements = judged.recover_loads((&r.sensitivity, &installed), errors, factor, time_s);
         let Some(first) = judgements.first() else {
             return (None, None);
         };
         let (widening, noise) = (first.widening.clone(), first.noise.clone());
         let found = findings_of(judgements);
         let explained = found.iter().all(|f| f.code != UNEXPLAINED);
-        let named = |f: &Finding| f.code == "inputs-exchanged";
-        if !explained && !found.iter().any(named) {
-            let rows = samples.iter().map(Vec::as_slice);
-            let pair = find_exchange(&r.sensitivity, rows, self.errors.noise);
-            findings.extend(pair.map(|e| e.finding(&r.sensitivity.gauges)));
-        }
         findings.extend(found);
         if !explained || (widening == Widening::none() && noise.is_none()) {
             return (None, None);

@@ -9,7 +9,6 @@ pub mod day;
 mod days;
 mod dead_parts;
 mod drift;
-mod exchange;
 mod gauge_history;
 mod health;
 mod job_kernel;

@@ -2,8 +2,10 @@
 //! extremes of each load, which determine the range to the power of the S-N slope. A single wrong sample can be an extreme.
 
 use crate::finding::{Finding, Severity, list_few};
+use crate::input_faults::AlternativeRows;
 use crate::recovery::{
-    ErrorModel, NOT_SOLVABLE, Readings, Recovery, UNEXPLAINED, recover_samples, uncalibrated_strain,
+    Alternatives, ErrorModel, NOT_SOLVABLE, Readings, Recovery, UNEXPLAINED,
+    recover_samples_with_alternatives, uncalibrated_strain,
 };
 use crate::sensitivity::Sensitivity;
 use std::collections::BTreeMap;
@@ -119,21 +121,16 @@ impl TestedSamples {
         ends.collect()
     }
 
-    /// Returns the samples spread over the record, strain less zero.
-    pub fn spread(&self) -> Vec<Vec<f64>> {
-        self.spread.values().cloned().collect()
-    }
-
     /// Returns the samples spread over the record, each with its number.
     pub fn numbered_samples(&self) -> impl Iterator<Item = (usize, &[f64])> {
         self.spread.iter().map(|(at, strain)| (*at, &**strain))
     }
 
     /// Recovers all of these samples. If the loads explain them, recovers the extremes alone too: among 200 samples a single wrong one may not be
-    /// significant. Empty if no gauge reads.
+    /// significant. Empty if no gauge reads. `installed` are the rows of S of gauges that are installed otherwise than stated.
     pub fn recover_loads(
         self,
-        s: &Sensitivity,
+        (s, installed): (&Sensitivity, &[AlternativeRows]),
         errors: ErrorModel,
         noise_factor: f64,
         time_s: impl Fn(usize) -> f64,
@@ -152,7 +149,9 @@ impl TestedSamples {
             if readings.is_empty() {
                 continue;
             }
-            let recovery = recover_samples(s, readings, errors);
+            let mut rows = || installed.to_vec();
+            let with = (Vec::new(), &mut rows as &mut Alternatives);
+            let recovery = recover_samples_with_alternatives(s, readings, errors, with);
             let unexplained = recovery.findings.iter().any(|f| f.code == UNEXPLAINED);
             out.push(recovery);
             if unexplained {

@@ -10,8 +10,8 @@ use crate::units::number;
 /// effect of the library does that.
 const OTHER_UNIT: f64 = 10.0;
 
-/// Returns the finding on a model that gives far more strain than the readings.
-fn far_above_readings(outcome: &Outcome) -> Option<Finding> {
+/// Returns the finding on a model that gives far more strain than the readings. No effect is named then.
+pub(super) fn far_above_readings(outcome: &Outcome) -> Option<Finding> {
     let gap = &outcome.gap;
     let far = gap.before > OTHER_UNIT && gap.before > OTHER_UNIT * gap.floor;
     far.then(|| {
@@ -21,7 +21,7 @@ fn far_above_readings(outcome: &Outcome) -> Option<Finding> {
             "runs",
             format!(
                 "the recorded loads and payloads give {} times the measured strain: a column of the runs file, or the readings, are in \
-                 another unit. Do not use the effects found here",
+                 another unit, and no effect is named",
                 number(gap.before)
             ),
             "state the units of the runs file, [runs] units = { force = \"N\" } or after a column\'s name; readings are in microstrain",
@@ -38,7 +38,6 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
         work.findings.extend(outcome.input_faults.iter().cloned());
         return;
     }
-    work.findings.extend(far_above_readings(outcome));
     if outcome.noise_factor > NOISE_KNOWN {
         work.findings.push(
             Finding::new(

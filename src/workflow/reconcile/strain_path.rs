@@ -11,8 +11,9 @@ use super::model_changes::added_to_strain;
 use super::readings::observations;
 use super::run_frame::frame;
 use super::stiffness::factor;
-use super::strain_findings::findings;
+use super::strain_findings::{far_above_readings, findings};
 use super::{causes, described_effects, extend, matrix_frame};
+use crate::finding::Finding;
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::job::{EffectSource, Job};
@@ -59,13 +60,14 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciliation, Fault
         .as_ref()
         .and_then(|r| r.effects.clone())
         .unwrap_or_default();
-    let wrong = match &mut deck {
-        Some(deck) => {
+    let mut wrong = take_readings_of_noise(work);
+    wrong.extend(match &mut deck {
+        Some(deck) if wrong.is_empty() => {
             let mut alternatives = || std::mem::take(&mut deck.alternatives);
             gauges_installed_otherwise(&frame, &mut alternatives)
         }
-        None => Vec::new(),
-    };
+        _ => Vec::new(),
+    });
     if !wrong.is_empty() {
         deck = None;
     }
@@ -93,6 +95,9 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciliation, Fault
             work.go_on()?;
             outcome = search_effects(work, &frame, &only)?;
         }
+    }
+    if let Some(far) = far_above_readings(&outcome) {
+        outcome = outcome_of_wrong_inputs(&frame, vec![far]);
     }
     findings(work, &outcome);
     let extended_model = match outcome.verdict {
@@ -160,6 +165,15 @@ pub(super) fn look(job: &Job, work: &mut Work) -> Result<(), Faults> {
         }
         (None, None) => Ok(()),
     }
+}
+
+/// Takes the error that all readings are below the noise out of the findings. No effect can be found in such readings.
+fn take_readings_of_noise(work: &mut Work) -> Vec<Finding> {
+    let (of_noise, others) = std::mem::take(&mut work.findings)
+        .into_iter()
+        .partition(|f| f.code == "readings-below-noise");
+    work.findings = others;
+    of_noise
 }
 
 /// Searches the effects and returns the verdict on the frame.

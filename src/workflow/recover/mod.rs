@@ -51,6 +51,7 @@ use sink::Unheard;
 pub use sink::{Block, RecordHead, RecordSink, Sample, Samples};
 pub use trace::{Span, Spans};
 pub use validation::ValidationGauge;
+pub(crate) use vertical_loads::VerticalLoads;
 
 use answer::AdditionalResults;
 

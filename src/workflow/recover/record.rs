@@ -19,7 +19,7 @@ use super::sink::{Block, RecordHead, RecordSink};
 use super::task::Task;
 use super::trace::Spans;
 use super::validation::{self, Channels, ValidationSums};
-use super::vertical_loads::check_vertical_sign;
+use super::vertical_loads::VerticalLoads;
 use crate::finding::Finding;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::finite_or_none;
@@ -177,7 +177,8 @@ fn check_range_and_sign(
     let factor = head.filter.coverage_factor();
     let halves: Vec<f64> = sigma.iter().map(|s| factor * s).collect();
     let high: Vec<f64> = sums.max.iter().zip(&halves).map(|(m, h)| m + h).collect();
-    let reversed = check_vertical_sign(task.job, "in the whole record", &high, &head.units);
+    let vertical = VerticalLoads::of_job(task.job);
+    let reversed = vertical.check_sign("in the whole record", &high, &head.units);
     let mut found = calibration_range::record_beyond_calibration(
         &calibration_range::with_range(task.job, sensitivity, &head.units),
         (&head.file, sums.missing.samples()),

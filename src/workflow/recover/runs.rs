@@ -9,7 +9,7 @@ use super::recorded_run_loads;
 use super::sections;
 use super::task::Task;
 use super::validation::{self, ValidationGauge};
-use super::vertical_loads::check_vertical_sign;
+use super::vertical_loads::VerticalLoads;
 use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::Faults;
 use crate::host::work::Work;
@@ -245,8 +245,9 @@ pub(super) fn runs(
     };
     let high: Vec<f64> = (0..k).map(high).collect();
     let states = format!("in all {} runs", recovery.runs.len());
+    let vertical = VerticalLoads::of_job(task.job);
     work.findings
-        .extend(check_vertical_sign(task.job, &states, &high, &units[..k]));
+        .extend(vertical.check_sign(&states, &high, &units[..k]));
     for run in &mut recovery.runs {
         run.estimate.add_sums(&names[k..], &combinations);
     }

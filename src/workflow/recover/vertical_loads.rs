@@ -8,42 +8,53 @@ use crate::units::number;
 /// Vertical loads that must all be negative: fewer may pull by chance or by their function.
 const LEAST_LOADS: usize = 3;
 
-/// Returns the warning that all forces FZ in basic axes are negative, with their intervals, in all states. Wheels, axles and mounts carry a structure
-/// and push it upwards. `high` is the high end of the interval of each load of the job over all states, job units; infinite if a state does not
-/// determine the load.
-pub(super) fn check_vertical_sign(
-    job: &Job,
-    states: &str,
-    high: &[f64],
-    units: &[LoadUnits],
-) -> Option<Finding> {
-    let is_vertical = |l: &usize| {
-        let load = &job.loads[*l];
-        let component = Component::FZ;
-        let vertical =
-            matches!(load.acts, LoadActs::AtGrid { component: c, cid: 0, .. } if c == component);
-        vertical && load.role == LoadRole::Wanted
-    };
-    let vertical: Vec<usize> = (0..job.loads.len().min(high.len()))
-        .filter(is_vertical)
-        .collect();
-    if vertical.len() < LEAST_LOADS || !vertical.iter().all(|l| high[*l] < 0.0) {
-        return None;
+/// Wanted forces FZ in basic axes of a job, by number and name. If S is given and a load has only a name, a name that ends with `FZ` after a
+/// separator counts.
+#[derive(Clone, Debug)]
+pub(crate) struct VerticalLoads(Vec<(usize, String)>);
+
+impl VerticalLoads {
+    /// Returns the vertical loads of a job.
+    pub fn of_job(job: &Job) -> Self {
+        let vertical = job.loads.iter().enumerate().filter(|(_, load)| {
+            let is_vertical = match load.acts {
+                LoadActs::AtGrid { component, cid, .. } => component == Component::FZ && cid == 0,
+                LoadActs::Named => load
+                    .name
+                    .split(|c: char| !c.is_alphanumeric())
+                    .skip(1)
+                    .last()
+                    .is_some_and(|last| last.eq_ignore_ascii_case("FZ")),
+                LoadActs::Set(_) => false,
+            };
+            is_vertical && load.role == LoadRole::Wanted
+        });
+        Self(vertical.map(|(l, load)| (l, load.name.clone())).collect())
     }
-    let nearest = vertical
-        .into_iter()
-        .max_by(|a, b| high[*a].total_cmp(&high[*b]))?;
-    let (name, unit) = (&job.loads[nearest].name, units.get(nearest)?);
-    Some(Finding::new(
-        Severity::Warning,
-        "input-sign-reversed",
-        "all",
-        format!(
-            "all forces FZ are negative {states}; the nearest to zero is {name} with at most {} {}. All readings may have the opposite sign",
-            number(high[nearest] * unit.factor),
-            unit.name
-        ),
-        "check the wiring and the sign convention of the logger. If it is reversed, state [[correction]] sign = -1 for every gauge. If FZ points \
-         down, or the wheels are unloaded, the readings are right",
-    ))
+
+    /// Returns the warning that all these loads are negative, with their intervals, in all states. Wheels, axles and mounts carry a structure and
+    /// push it upwards. `high` is the high end of the interval of each load of the job over all states, job units; infinite if a state does not
+    /// determine the load.
+    pub fn check_sign(&self, states: &str, high: &[f64], units: &[LoadUnits]) -> Option<Finding> {
+        let high_of = |l: usize| high.get(l).copied().unwrap_or(f64::INFINITY);
+        let pulls = |load: &(usize, String)| high_of(load.0) < 0.0;
+        if self.0.len() < LEAST_LOADS || !self.0.iter().all(pulls) {
+            return None;
+        }
+        let nearest = self.0.iter();
+        let (l, name) = nearest.max_by(|a, b| high_of(a.0).total_cmp(&high_of(b.0)))?;
+        let unit = units.get(*l)?;
+        Some(Finding::new(
+            Severity::Warning,
+            "input-sign-reversed",
+            "all",
+            format!(
+                "all forces FZ are negative {states}; the nearest to zero is {name} with at most {} {}. All readings may have the opposite sign",
+                number(high_of(*l) * unit.factor),
+                unit.name
+            ),
+            "check the wiring and the sign convention of the logger. If it is reversed, state [[correction]] sign = -1 for every gauge. If FZ points \
+             down, or the wheels are unloaded, the readings are right",
+        ))
+    }
 }
