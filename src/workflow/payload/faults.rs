@@ -2,11 +2,13 @@
 
 use super::model::{Parts, model_of};
 use super::task::Task;
+use crate::estimate::median;
 use crate::finding::{Finding, Severity};
 use crate::host::work::Work;
 use crate::input_faults::{FaultTreatment, SIGN_OF_ALL};
 use crate::payload::{PayloadRun, Refusal, WeighSpec, Weighing, faults_of_gauges, payload_rows};
 use crate::strain_chain::alternatives_of;
+use crate::units::number;
 
 /// Reports faults of gauges that the strain of all runs shows, and readings that all have the opposite sign.
 pub(super) fn search(
@@ -16,7 +18,8 @@ pub(super) fn search(
     runs: &[PayloadRun],
     (spec, weighing): (&WeighSpec, &Weighing),
 ) {
-    work.findings.extend(all_reversed(weighing));
+    work.findings.extend(all_reversed(runs, weighing));
+    work.findings.extend(strain_contradicts_wheels(weighing));
     let mut others = || {
         alternatives_of(work, task.job, &parts.model.gauges, &|work, job| {
             let mut changed = Task {
@@ -47,21 +50,88 @@ pub(super) fn search(
     }));
 }
 
-/// Returns the finding on readings that give a payload below zero in every run.
-fn all_reversed(weighing: &Weighing) -> Option<Finding> {
-    let negative = |r: &Option<Refusal>| matches!(r, Some(Refusal::Negative { .. }));
-    let told = weighing.runs.iter().map(|r| &r.refused);
-    let told: Vec<&Option<Refusal>> = told
-        .filter(|r| **r != Some(Refusal::Undetermined))
-        .collect();
-    (!told.is_empty() && told.iter().all(|r| negative(r))).then(|| {
-        Finding::new(
-            Severity::Error,
-            "input-sign-reversed",
-            "all",
+/// Returns the refusals of the runs that determine the payload; empty if a run is not refused.
+fn refusals(weighing: &Weighing) -> Vec<Refusal> {
+    let each = weighing.runs.iter().map(|r| r.refused);
+    let refused: Option<Vec<Refusal>> =
+        each.filter(|r| *r != Some(Refusal::Undetermined)).collect();
+    refused.unwrap_or_default()
+}
+
+/// Returns the finding on readings, or recorded wheel forces, that give a payload below zero in every run.
+fn all_reversed(runs: &[PayloadRun], weighing: &Weighing) -> Option<Finding> {
+    let refused = refusals(weighing);
+    let negative = |r: &Refusal| matches!(r, Refusal::Negative { .. });
+    if refused.is_empty() || !refused.iter().all(negative) {
+        return None;
+    }
+    let sums = runs.iter().map(|r| r.reactions.iter().sum::<f64>());
+    let has_wheels = runs.iter().any(|r| !r.reactions.is_empty());
+    let (what, remedy) = match has_wheels && sums.fold(f64::NEG_INFINITY, f64::max) < 0.0 {
+        true => (
+            "the recorded wheel forces sum to a negative payload in every run: they have reversed sign, or the zero was measured with the payload",
+            "correct the sign of the wheel forces in the runs file, or name the unloaded run as the zero".to_owned(),
+        ),
+        false => (
             "the readings give a negative payload in every run: all readings have reversed sign, or the zero was measured with the payload",
             format!("{SIGN_OF_ALL}. Otherwise name the unloaded run or file as the zero"),
-        )
-        .with_numbers(told.len() as f64, 0.0)
-    })
+        ),
+    };
+    let finding = Finding::new(Severity::Error, "input-sign-reversed", "all", what, remedy);
+    Some(finding.with_numbers(refused.len() as f64, 0.0))
+}
+
+/// Returns the finding on payloads from strain that are one multiple of the payloads from wheel forces in all runs, at least two: a sign or a unit is
+/// wrong.
+fn strain_contradicts_wheels(weighing: &Weighing) -> Option<Finding> {
+    let ratio = |r: Refusal| match r {
+        Refusal::OutOfBalance { strain, wheels, .. } => Some(strain / wheels),
+        _ => None,
+    };
+    let ratios: Vec<f64> = refusals(weighing)
+        .into_iter()
+        .map(ratio)
+        .collect::<Option<_>>()?;
+    let common = median(ratios.clone())?;
+    let rules = CommonRatio::default();
+    let alike = |c: &f64| (c / common - 1.0).abs() < rules.alike;
+    if ratios.len() < 2 || !ratios.iter().all(alike) {
+        return None;
+    }
+    let is_unit = common.abs() > rules.unit || common.abs() < 1.0 / rules.unit;
+    let (code, what) = match (is_unit, common < 0.0) {
+        (true, _) => (
+            "input-unit",
+            "the readings or the wheel forces are in another unit",
+        ),
+        (false, true) => (
+            "input-sign-reversed",
+            "all readings, or all wheel forces, have reversed sign",
+        ),
+        (false, false) => return None,
+    };
+    let message = format!(
+        "strain gives {} times the payload of the wheel forces in every run: {what}",
+        number(common)
+    );
+    let remedy = "check sign and unit of the readings, and of the wheel forces ([runs] units)";
+    let finding = Finding::new(Severity::Error, code, "all", message, remedy);
+    Some(finding.with_numbers(common, rules.unit))
+}
+
+/// Limits of the ratio of two payloads.
+struct CommonRatio {
+    /// Largest relative difference of a run from the common ratio: payloads of a few percent uncertainty from strain differ by less.
+    alike: f64,
+    /// Ratio from which a unit is wrong. The smallest ratio of units is 4.448 (lbf and N), less a tenth for errors of the model.
+    unit: f64,
+}
+
+impl Default for CommonRatio {
+    fn default() -> Self {
+        Self {
+            alike: 0.15,
+            unit: 4.0,
+        }
+    }
 }

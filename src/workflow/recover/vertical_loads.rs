@@ -8,17 +8,22 @@ use crate::units::number;
 /// Vertical loads that must all be negative: fewer may pull by chance or by their function.
 const LEAST_LOADS: usize = 3;
 
-/// Wanted forces FZ in basic axes of a job, by number and name. If S is given and a load has only a name, a name that ends with `FZ` after a
-/// separator counts.
+/// Wanted forces FZ in basic axes of a job, by number and name, but for a payload, which pushes down. If S is given and a load has only a name, a
+/// name that ends with `FZ` after a separator counts.
 #[derive(Clone, Debug)]
 pub(crate) struct VerticalLoads(Vec<(usize, String)>);
 
 impl VerticalLoads {
     /// Returns the vertical loads of a job.
     pub fn of_job(job: &Job) -> Self {
+        let payload = job.payload.as_ref().and_then(|p| p.grid);
         let vertical = job.loads.iter().enumerate().filter(|(_, load)| {
             let is_vertical = match load.acts {
-                LoadActs::AtGrid { component, cid, .. } => component == Component::FZ && cid == 0,
+                LoadActs::AtGrid {
+                    grid,
+                    component,
+                    cid,
+                } => component == Component::FZ && cid == 0 && Some(grid) != payload,
                 LoadActs::Named => load
                     .name
                     .split(|c: char| !c.is_alphanumeric())
@@ -27,7 +32,8 @@ impl VerticalLoads {
                     .is_some_and(|last| last.eq_ignore_ascii_case("FZ")),
                 LoadActs::Set(_) => false,
             };
-            is_vertical && load.role == LoadRole::Wanted
+            let is_payload = load.name.to_lowercase().contains("payload");
+            is_vertical && !is_payload && load.role == LoadRole::Wanted
         });
         Self(vertical.map(|(l, load)| (l, load.name.clone())).collect())
     }
