@@ -120,7 +120,7 @@ mod tests {
     use super::*;
     use crate::sensitivity::Load;
 
-    /// Six gauges and two loads; each sample 100 parts of one load and some of the other.
+    /// Returns S of six gauges and two loads, and 100 samples of their strain.
     fn records() -> (Vec<[f64; 2]>, Vec<Vec<f64>>) {
         let s = vec![
             [10.0, 1.0],
