@@ -384,7 +384,7 @@ fn the_force_by_a_known_mass_is_that_of_spring_and_damper() {
     let full = columns(&here.join("out/chassis_forces.csv"));
     let alone = columns(&here.join("known/chassis_forces.csv"));
     assert!(!alone.contains_key("b.by_springs") && !alone.contains_key("s"));
-    // The filter cuts off the ends of both records, or the shorter record starts later.
+    // The computation of the spring stretch cuts off the ends of both records, or the shorter record starts later.
     let at = |t: f64| full["time"].iter().position(|x| (x - t).abs() < 1e-6);
     let (mut squares, mut n) = ([0.0; 2], 0);
     for (t, force) in alone["time"].iter().zip(&alone["b.by_mass"]) {

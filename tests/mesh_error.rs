@@ -299,8 +299,8 @@ fn the_mesh_error_of_open_rails_is_that_against_a_mesh_a_third_as_wide() {
     assert!(after < before / 9.0, "{}", (after / before).sqrt());
 }
 
-/// Without the key, S is corrected for loads through an RBE3. For a load at a grid of a shell, S is that of the deck's
-/// mesh, because the strain under a point load does not converge.
+/// Without the key, S is corrected for loads through an RBE3. For a load at a grid of a shell, S is that of the deck's mesh.
+/// The strain under a point load does not converge.
 #[test]
 fn without_the_key_the_error_is_subtracted_unless_a_load_acts_directly_on_a_shell() {
     let cells = &middle_cells()[..2];

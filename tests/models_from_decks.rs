@@ -340,7 +340,7 @@ fn curved_elements_weigh_what_the_solver_says() {
         .unwrap();
     let ours = read.model.weight().mass;
     // One warped CQUADR has 60 % of the mass. Its mass is 2.112 with the area of the mean plane and 2.119 with the area
-    // of two triangles, a difference of 0.19 % of the total. The documentation does not state which one the solver
+    // of two triangles. The difference is 0.19 % of the total. The documentation does not state which one the solver
     // takes.
     assert!(
         (ours - printed).abs() < 1.9e-3 * printed,

@@ -172,7 +172,8 @@ def test_notes_go_to_the_log(caplog, strip_folder, monkeypatch):
     sb.place("job.toml")
     with caplog.at_level("DEBUG", logger="strainbridge"):
         out = sb.place("job.toml")
-    # The stored solution of the first call is used, which causes a note, like the mesh error that is not computed.
+    # The stored solution of the first call is used. A note reports it, and another note reports that the mesh error is
+    # not computed.
     assert "a stored solution is used" in out.notes[0]
     assert [r.getMessage() for r in caplog.records] == [f"place: {note}" for note in out.notes]
 

@@ -161,7 +161,7 @@ fn what_is_broken_is_said_and_nothing_else_is_lost() {
     let (dir, mut files) = folder("broken");
     let whole = fleet(&dir, "before", &files, &[]).1;
     // A record cut within a line, a missing gauge, a gauge dead from day 15 on, a second copy, a name without vehicle
-    // and day.
+    // and day, a missing file.
     let text = std::fs::read_to_string(dir.join("T0_3.csv")).unwrap();
     std::fs::write(
         dir.join("T0_3.csv"),

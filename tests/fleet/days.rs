@@ -183,8 +183,8 @@ fn a_day_whose_readings_are_all_half_or_twice_as_large_is_told_and_a_rougher_day
         // half of it. The limit is three sigma.
         assert!((said / factor - 1.0).abs() < 0.03, "{message}");
     }
-    // No finding about noise: a thousandth is reported as another unit, the second day has twice the loads with normal
-    // noise, and on the third day only half of the gauges have more noise.
+    // No finding about noise for three changes. A thousandth is reported as another unit. The second day has twice the
+    // loads with normal noise. On the third day, only half of the gauges have more noise.
     let unit = slow_day_text(3, 50.0, |y| y.iter_mut().for_each(|v| *v *= 1e-3));
     assert!(told(&unit).is_empty());
     assert!(told(&slow_day_text(3, 100.0, as_it_is)).is_empty());

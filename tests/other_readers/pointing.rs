@@ -150,8 +150,8 @@ fn lines(said: &Value, k: usize) -> &str {
 
 /// Steps on the page of `place` or `check`.
 ///
-/// They allow property 1, remove six elements of its row at y = 55 with the brush, and request two elements at its
-/// corner with a box. A stroke that is undone has no effect.
+/// They allow property 1 and remove six elements of its row at y = 55 with the brush. A box requests two elements at
+/// its corner. A stroke that is undone has no effect.
 fn steps() -> Value {
     json!([
         ["view", "z"],

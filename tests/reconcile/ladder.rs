@@ -165,8 +165,7 @@ fn case(seed: u64, effects: &[&str], scale: f64, noise: Noise, errors: Errors) -
     } else {
         0.0
     };
-    // The wheels carry the payload at its recorded place by the lever rule. They do not carry the extra mass, because
-    // wheel forces are measured.
+    // The wheels carry the payload at its true place and the extra mass, by the lever rule. Wheel forces are measured.
     let lever = |x: f64| (x - AXLES[0]) / (AXLES[1] - AXLES[0]);
     let mut loads = Vec::new();
     let mut true_loads = Vec::new();

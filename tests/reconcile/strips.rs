@@ -49,8 +49,8 @@ impl Mesh {
 
     /// Returns the deck. The middle bush is `middle` times as stiff as the others.
     ///
-    /// `heat` adds temperature set 31. It contains the temperature of the cold strip, that of the middle plane of the
-    /// first strip, and the gradient through the thickness of the first strip.
+    /// `heat` adds temperature set 31. It contains the temperatures of the cold strip and of the middle plane of the
+    /// first strip. The last number is the gradient through the thickness of the first strip.
     pub fn deck(&self, middle: f64, heat: Option<[f64; 3]>) -> String {
         let mut out = String::from("SOL 101\nCEND\nBEGIN BULK\nPARAM,INREL,-2\nPARAM,POST,-1\n");
         out += "MAT1,1,2.+5,,.3,7.85-9,1.2-5\nPSHELL,1,1,5.,1,,1\n";

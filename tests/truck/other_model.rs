@@ -352,8 +352,8 @@ fn table_6_10_ten_of_forty_four_and_ten_of_all_on_readings_of_the_other_model() 
     assert!(e.coverage > 0.90, "{}", e.coverage);
 }
 
-/// Returns fifteen gauges similar to those of the thesis, each as a gauge on a shell and as a recovery point of a bar
-/// at the same place.
+/// Returns fifteen gauges similar to those of the thesis. Each is a gauge on a shell and a recovery point of a bar at
+/// the same place.
 ///
 /// They measure bending along the rails at the printed stations, and along the flanges near them.
 pub fn build_thesis_gauges() -> Vec<(Gauge, (u32, usize, f64))> {

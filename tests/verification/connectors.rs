@@ -433,8 +433,8 @@ fn the_formats_agree_where_a_lap_joint_of_two_plates_is_pulled() {
 
 /// The equivalent deck written out by hand.
 ///
-/// RBE3 elements with the shape functions as weights tie auxiliary grids, further RBE3 elements tie the ends to those
-/// grids, and a round bar is between the ends.
+/// RBE3 elements with the shape functions as weights tie auxiliary grids, and further RBE3 elements tie the ends to
+/// those grids. A round bar is between the ends.
 #[test]
 fn a_weld_on_a_property_is_the_deck_that_spells_its_ties_out() {
     let load = "FORCE,1,50,0,100.,.3,-.5,1.\nMOMENT,1,46,0,70.,1.,.2,.4";

@@ -30,7 +30,7 @@ pub fn model_of(path: &std::path::Path) -> (Model, nastran::bdf::CaseControl) {
     (model, deck.case_control)
 }
 
-/// Returns the model of a deck and its case control, without a failure on faults.
+/// Returns the model of a deck and its case control, and prints the faults.
 ///
 /// The model contains the unsupported cards. A solver refuses them.
 pub fn faulty_model_of(path: &std::path::Path) -> (Model, nastran::bdf::CaseControl) {

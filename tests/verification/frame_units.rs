@@ -7,7 +7,7 @@ use strainbridge::fe::from_results::{ReadOptions, solution_from_file};
 use strainbridge::fe::*;
 use strainbridge::model::{Model, RigidKind, Vec3};
 
-/// Returns the grids over which an RBE3 distributes the load of a grid.
+/// Returns the positions of a loaded grid and of the grids over which an RBE3 distributes its load.
 fn footprint(model: &Model, loaded: strainbridge::model::GridIx) -> Vec<Vec3> {
     let mut x = vec![model.grids[loaded.us()].x];
     for r in &model.rigids {

@@ -185,8 +185,8 @@ fn the_rigid_mass_of_warped_and_curved_elements_is_that_of_the_mass_matrix() {
     }
 }
 
-/// A mass that acts in one direction adds to the weight in that direction only, as in the mass axis system of the grid
-/// point weight generator.
+/// A mass in one direction adds to the weight in that direction only, as in the mass axis system of the grid point
+/// weight generator.
 #[test]
 fn a_mass_in_one_direction_weighs_in_that_direction() {
     // The displacement frame of grid 30 is turned by 30 degrees about z.
