@@ -5,8 +5,8 @@
 The frames come from `frame.py` there: C rails and box rails, straight and kicked, higher and lower. The deck has elements of 40 mm. `place` places
 40 gauges on it with the mesh error. The truth is the same frame with elements of 13.3 mm, loaded through the grids of the deck's RBE3. A gauge reads
 the mean over its nine elements. There are 34 states of 18 wheel loads of expected size, with 1 microstrain of noise and no stated model uncertainty.
-The output by frame is the error of the loads (rms, in expected sizes) and the coverage of the 95 % intervals, without and with the mesh error. Needs
-numpy.
+The output for each frame is the error of the loads (rms, in expected sizes) and the coverage of the 95 % intervals. Both are given without and with
+the mesh error. Needs numpy.
 """
 
 import csv

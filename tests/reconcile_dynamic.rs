@@ -362,8 +362,8 @@ fn declared_tolerances_enter_by_their_size() {
     assert!(floor(&loose) > 3.0 * floor(&tight));
 }
 
-/// A roll-off truck sets down its container and loses up to 70 % of the body mass, or picks up a container as heavy as
-/// the body. Without this change, nothing of such a record is explained.
+/// A roll-off truck sets down its container and loses up to 70 % of the body mass. Or it picks up a container as heavy
+/// as the body. Without this change, nothing of such a record is explained.
 #[test]
 fn a_mass_that_changes_much_is_named_alone_with_its_size() {
     for (layout, share, seed) in [

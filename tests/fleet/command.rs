@@ -160,8 +160,8 @@ fn one_run_threads_shards_and_a_merge_of_what_is_kept_write_the_same_bytes() {
 fn what_is_broken_is_said_and_nothing_else_is_lost() {
     let (dir, mut files) = folder("broken");
     let whole = fleet(&dir, "before", &files, &[]).1;
-    // A record cut within a line, a missing gauge, a gauge dead from day 15 on, a second copy, a name without vehicle
-    // and day, a missing file.
+    // The faults: a record cut within a line, a missing gauge, a gauge dead from day 15 on. Also a second copy, a name
+    // without vehicle and day, and a missing file.
     let text = std::fs::read_to_string(dir.join("T0_3.csv")).unwrap();
     std::fs::write(
         dir.join("T0_3.csv"),

@@ -129,8 +129,8 @@ fn a_shift_of_a_fraction_of_a_sample_and_an_offset_are_found_in_a_record() {
     for (v, expected) in [(&a["bias"], -2.0), (&a["rms"], 2.0), (&b["bias"], 0.0)] {
         assert!((number(v) - expected).abs() < 5e-3, "{a} {b}");
     }
-    // By hand, sigma is .23 N for load A (.3 microstrain over the norm of its column without the part along B) and .2 N
-    // for B. The offset of 2 N is therefore outside the interval.
+    // By hand, sigma is .2 N for load B. It is .23 N for load A: .3 microstrain over the norm of its column without the
+    // part along B. The offset of 2 N is therefore outside the interval.
     assert_eq!(
         (number(&a["share_within"]), number(&b["share_within"])),
         (0.0, 1.0)

@@ -33,8 +33,8 @@ fn frame() -> (Matrix, Matrix) {
     let by_place: HashMap<_, usize> = (0..fine.shells.len())
         .map(|i| (of_place(fine, i), i))
         .collect();
-    // The gauge must be more than 200 mm away from the patch of each load and from the grid of each point mass, where
-    // inertia acts. On a mesh of 40 mm, the strain close to a force at one grid does not converge.
+    // The gauge must be more than 200 mm away from the patch of each load and from the grid of each point mass. Inertia
+    // acts at these grids. On a mesh of 40 mm, the strain close to a force at one grid does not converge.
     let is_far = |i: &usize| {
         let c = centre(coarse, &coarse.shells[*i].grids);
         let patches = AXLES.into_iter().all(|axle| {

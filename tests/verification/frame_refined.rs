@@ -107,7 +107,7 @@ impl Frame {
         f
     }
 
-    /// Adds the grid of a wheel 200 mm below and 60 mm outboard, on an RBE3 over a patch of the web of 240 x 120 mm.
+    /// Adds the grid of a wheel 200 mm below and 60 mm outboard, on an RBE3 over 240 x 120 mm of the web.
     fn wheel(&mut self, axle: i32, right: bool) -> u32 {
         let (k, y) = (self.k, if right { 20 } else { 0 });
         let outboard = if right { 60.0 } else { -60.0 };
