@@ -1,9 +1,10 @@
-"""What `reconcile` says against a calibrated S, on two measured bridges: half of the runs of each lane calibrate, the other half are read with
-one fault planted at one of the eight hottest gauges.
+"""Tests `reconcile` with a calibrated S on two measured bridges.
+
+Half of the runs of each lane are calibration runs. The other half have one planted fault at one of the eight gauges with the largest strain.
 
     python benches/calibrated_reconcile.py target/release/strainbridge ../shared/bridges [seeds]
 
-Prints a line a case and a table: named at its place, the right channel by another name, silent, and second names that are false.
+Prints a line for each case, and a table: fault named at its place, right channel with another fault, nothing named, and additional wrong names.
 """
 import collections
 import csv
@@ -34,7 +35,7 @@ def rows(path):
 
 
 class Bridge:
-    """Runs that are fit for weighing and in which every gauge was recorded."""
+    """Runs that are suitable for weighing and have readings of every gauge."""
 
     def __init__(self, folder):
         readings = {r["run"]: r for r in rows(folder / "peaks.csv")}

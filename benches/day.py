@@ -1,9 +1,9 @@
-"""A day's record, 8 hours of 500 Hz and 41 channels: time and peak memory of `fleet` beside the plain reading of pyarrow and asammdf.
+"""Record of a day, 8 hours at 500 Hz with 41 channels: time and peak memory of `fleet`, compared with plain reading by pyarrow and asammdf.
 
     STRAINBRIDGE=target/release/strainbridge python benches/day.py [HOURS] [FOLDER]
 
-Every reading is a process of its own, the files in the page cache; `fleet` reads, recovers, counts and hashes the record. The peak is that
-of resident memory; the file, which is read into it, is taken off. Needs numpy and pyarrow, and asammdf for MDF4.
+Every reading is a separate process, and the files are in the page cache. `fleet` reads, recovers, counts and hashes the record. The peak is that of
+resident memory minus the file, which is read into memory. Needs numpy and pyarrow, and asammdf for MDF4.
 """
 
 import json
@@ -43,7 +43,7 @@ print(len(file.select(all)[0].samples))
 
 
 def blocks(samples, random):
-    """Strain of slowly changing loads with noise, block by block."""
+    """Strain of slowly varying loads with noise, block by block."""
     s = random.normal(size=(LOADS, GAUGES))
     for begin in range(0, samples, GROUP):
         t = np.arange(begin, min(begin + GROUP, samples)) / RATE
@@ -52,7 +52,7 @@ def blocks(samples, random):
 
 
 def written(folder, ending, samples):
-    """The record and its job in a folder."""
+    """Writes the record and its job into a folder."""
     random = np.random.default_rng(8)
     names = [f"G{g}" for g in range(GAUGES)]
     path = folder / f"T1_day.{ending}"
@@ -81,7 +81,7 @@ def written(folder, ending, samples):
 
 
 def job(path, gauges, sections):
-    """A job with six loads and these sections, and the S of its gauges beside it."""
+    """Writes a job with six loads and these sections, and S of its gauges."""
     s = np.random.default_rng(8).normal(size=(LOADS, len(gauges)))
     rows = [f"{n}," + ",".join(str(v) for v in s[:, g]) for g, n in enumerate(gauges)]
     loads = [f"F{i}" for i in range(LOADS)]
@@ -91,7 +91,7 @@ def job(path, gauges, sections):
     return path
 
 
-# A process of its own starts the command: what whoever starts it holds counts into the command's peak.
+# A separate process starts the command, because the memory of the starting process counts in the peak of the command.
 MEASURED = """
 import os, subprocess, sys, time
 begin = time.perf_counter()
@@ -102,7 +102,7 @@ print(time.perf_counter() - begin, usage.ru_utime + usage.ru_stime, usage.ru_max
 
 
 def run(call, ends):
-    """Seconds, seconds of processor, and peak memory (bytes) of a command that ends with one of these codes."""
+    """Returns seconds, processor seconds and peak memory (bytes) of a command that ends with one of these codes."""
     done = subprocess.run([sys.executable, "-c", MEASURED, *map(str, call)], capture_output=True, text=True, check=True)
     seconds, busy, peak, code = done.stdout.split()
     if int(code) not in ends:

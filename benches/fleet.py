@@ -1,11 +1,12 @@
-"""Two Dask workers against one on the same files: time of `fleet.run`, the smaller of two, and million samples a second: read, recovered,
-counted, judged and hashed. The speed beside plain reading of the same file is `benches/day.py`'s.
+"""Two Dask workers compared with one on the same files: time of `fleet.run`, the smaller of two, and million samples per second.
+
+The samples are read, recovered, counted, tested and hashed. `benches/day.py` compares the speed with plain reading of the same file.
 
     python benches/fleet.py          (with the package, numpy, pyarrow and distributed installed)
 
-Aim: .6 of the time. Workers are processes of one thread on this machine; the merge at the end is the caller's. Where other programs run on the
-cores, two workers get no more of them than one: the time of processor of the busiest worker and of the caller, one after the other, is what a quiet
-machine would take.
+The target is .6 of the time. Workers are processes with one thread on this machine, and the caller merges at the end. If other programs use the
+cores, two workers get no more processor time than one. The sum of the processor times of the busiest worker and of the caller is then the time on an
+idle machine.
 """
 
 import os
@@ -20,7 +21,7 @@ import pyarrow.parquet as pq
 
 try:
     from strainbridge import fleet
-except ImportError:  # this checkout's file alone, with the command that STRAINBRIDGE names
+except ImportError:  # the file of this checkout, with the command in STRAINBRIDGE
     import sys
 
     sys.path.insert(0, str(Path(__file__).parent.parent / "python" / "strainbridge"))
@@ -30,7 +31,7 @@ FILES, SAMPLES, GAUGES, LOADS = 32, 120_000, 40, 6
 
 
 def records(folder):
-    """A job and its records."""
+    """Writes a job and its records."""
     random = np.random.default_rng(8)
     names = [f"G{g}" for g in range(GAUGES)]
     s = random.normal(size=(LOADS, GAUGES))
@@ -53,7 +54,7 @@ def records(folder):
 
 
 def busy():
-    """Seconds of processor of this process and of those it has started and waited for."""
+    """Returns the processor seconds of this process and of the processes that it has started and waited for."""
     return sum(os.times()[:4])
 
 

@@ -1,12 +1,12 @@
-"""What `[model] mesh_error` is worth to recovered loads, and whether their intervals hold the truth: six ladder frames.
+"""Effect of `[model] mesh_error` on recovered loads and on the coverage of their intervals, for six ladder frames.
 
     python benches/mesh_error.py target/release/strainbridge ../shared/benchmarks/frames [folder for decks and results]
 
-The frames are those of `frame.py` there: rails as C and as box, straight and kicked, higher and lower. The deck has elements of 40 mm; 40 gauges are
-placed on it by `place` with the mesh error. The truth is the same frame with elements of 13.3 mm, loaded through the grids that the deck's RBE3 have;
-a gauge reads the mean over the nine elements of its own. 34 states of 18 wheel loads of expected size, 1 microstrain of noise, no model
-uncertainty stated. By frame: error of the loads (rms, in expected sizes) and share of 95 % intervals that hold, without and with the mesh error.
-Needs numpy.
+The frames come from `frame.py` there: C rails and box rails, straight and kicked, higher and lower. The deck has elements of 40 mm. `place` places
+40 gauges on it with the mesh error. The truth is the same frame with elements of 13.3 mm, loaded through the grids of the deck's RBE3. A gauge reads
+the mean over its nine elements. There are 34 states of 18 wheel loads of expected size, with 1 microstrain of noise and no stated model uncertainty.
+The output for each frame is the error of the loads (rms, in expected sizes) and the coverage of the 95 % intervals. Both are given without and with
+the mesh error. Needs numpy.
 """
 
 import csv
@@ -116,7 +116,7 @@ class Case:
         return out
 
     def children(self, section):
-        """Fine elements of each coarse one, by the order in which the frame's patches are made."""
+        """Returns the fine elements of each coarse element, in the order in which the patches of the frame are made."""
         f = self.frame
         length, height, width, span = f.RAIL_LEN, f.RAIL_H, f.RAIL_W, f.SPAN
         rail = [(length, height), (length, width), (length, width)] + [(length, height)] * (section == "box")

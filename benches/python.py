@@ -1,4 +1,4 @@
-"""What the way from Python to the library costs: time of a call over the library's own, the smallest of five.
+"""Cost of a call from Python: time of the call divided by the time in the library, the smallest of five.
 
     python benches/python.py          (with the package installed)
 """
@@ -11,7 +11,7 @@ from strainbridge import _strainbridge as engine
 
 
 def ratio(ask, calls=5):
-    """Seconds of a call over those that the library spent in it."""
+    """Returns the seconds of a call divided by the seconds that the library spent in it."""
     found = []
     for _ in range(calls):
         begin = time.perf_counter()

@@ -1,8 +1,8 @@
-"""Whole processes that read a deck or an OP2: pyNastran beside `strainbridge check`, medians of five.
+"""Whole processes that read a deck or an OP2: pyNastran compared with `strainbridge check`, medians of five.
 
     STRAINBRIDGE=target/release/strainbridge python benches/reading.py DECK_OR_OP2...
 
-Needs pyNastran. `check` reads every card or block, hashes the file and says what is in it.
+Needs pyNastran. `check` reads every card or block, hashes the file and reports its contents.
 """
 
 import os
@@ -18,7 +18,7 @@ PYNASTRAN = {
 
 
 def median(call, ends):
-    """Seconds of a process that ends with one of these codes."""
+    """Returns the seconds of a process that ends with one of these codes."""
     seconds = []
     for _ in range(5):
         begin = time.perf_counter()

@@ -1,9 +1,9 @@
-"""Long records, one process each: time and peak of resident memory, the file that is read into it among them.
+"""Long records, one process each: time and peak of resident memory, including the file that is read into it.
 
     STRAINBRIDGE=target/release/strainbridge python benches/records.py [FOLDER]
 
-A binary record of 40 gauges with a zero of 300,000 samples as text under `check` (2 million samples), and 41 columns under `recover` (10 million, 1.6 GB;
-its text, 150,000 samples). Seconds are the smaller of two; files lie in the page cache. Needs numpy, and 4 GB of disk.
+`check` reads a binary record of 40 gauges (2 million samples) with a zero of 300,000 samples as text. `recover` reads 41 columns (10 million
+samples, 1.6 GB, and 150,000 samples as text). Seconds are the smaller of two. Files are in the page cache. Needs numpy, and 4 GB of disk.
 """
 
 import os
@@ -17,7 +17,7 @@ from day import job, run
 
 
 def binary(path, names, samples, random):
-    """Sines with noise, single precision, 500 samples a second."""
+    """Writes sines with noise, in single precision, at 500 Hz."""
     heads = b"".join(struct.pack("<H", len(n)) + n.encode() for n in names)
     begin = (56 + len(heads) + 63) // 64 * 64
     with path.open("wb") as out:
@@ -31,14 +31,14 @@ def binary(path, names, samples, random):
 
 
 def text(path, names, samples, random):
-    """The same as CSV with four decimals."""
+    """Writes similar samples as CSV with four decimals."""
     t = np.arange(samples) / 500
     block = np.column_stack([t, 100 * np.sin(t[:, None] + random.normal(size=len(names))) + random.normal(size=(samples, len(names)))])
     np.savetxt(path, block, fmt="%.4f", delimiter=",", header=",".join(["time", *names]), comments="")
 
 
 def timed(command, path):
-    """A command on a job, twice."""
+    """Runs a command on a job twice."""
     program = os.environ.get("STRAINBRIDGE", "strainbridge")
     runs = [run([program, command, str(path), "--out", str(path.parent / f"out{i}")], (0, 1)) for i in range(2)]
     seconds, peak = min(r[0] for r in runs), max(r[2] for r in runs)

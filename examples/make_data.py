@@ -1,13 +1,13 @@
-"""Makes the measured data of the examples `quarter_truck`, `rig`, `frame` and `fleet`: numbers of our own, from models that are written here.
+"""Generates the measured data of the examples `quarter_truck`, `rig`, `frame` and `fleet`, from models in this file.
 
-Call it in this folder; it needs numpy. The results stand in the folders already, so that nobody has to call it.
+Run it in this folder. It needs numpy. The folders already contain the results, so it is not necessary to run it.
 """
 
 import numpy as np
 
 
 def road(rng, n, dt):
-    """A rough road, m: integrated noise without what is slower than half a hertz."""
+    """Returns a rough road in m: integrated noise without frequencies below half a hertz."""
     slope = rng.normal(0.0, 1.0, n)
     height, out = 0.0, np.zeros(n)
     for i in range(n):
@@ -17,12 +17,12 @@ def road(rng, n, dt):
 
 
 def ride(seed, seconds, k_3):
-    """Accelerations of body and wheel (with gravity), m/s2, and wheel force, N, of a quarter truck on such a road."""
+    """Simulates a quarter truck on such a road: accelerations of body and wheel (with gravity), m/s2, and wheel force, N."""
     m_b, m_w, k_s, c_s, k_t, g = 3000.0, 600.0, 4.0e5, 1.1e4, 1.3e6, 9.81
     rate, inner = 200, 20
     dt = 1.0 / (rate * inner)
     rng = np.random.default_rng(seed)
-    # The road is smooth over a fiftieth of a second: a tyre is no point.
+    # The road is smooth over a fiftieth of a second, because a tyre has a footprint.
     z = np.convolve(road(rng, seconds * rate * inner, dt), np.ones(80) / 80.0, "same") * 1.5
     x = np.zeros(4)
 
@@ -57,7 +57,10 @@ def write_ride(path, rows):
 
 
 def shaken(seed, seconds, mass, damping, stiffness, size):
-    """Time, force on the first mass, N, displacements and accelerations of masses that a force of such a size (N rms, 2 to 30 Hz) shakes; 200 Hz."""
+    """Returns time, force on the first mass in N, displacements and accelerations of masses at 200 Hz.
+
+    The force is random with the given size (N rms, 2 to 30 Hz).
+    """
     rate, inner = 200, 20
     dt = 1.0 / (rate * inner)
     n = seconds * rate * inner
@@ -86,7 +89,7 @@ def shaken(seed, seconds, mass, damping, stiffness, size):
 
 
 def oscillator(path, seed, seconds):
-    """2 kg on a spring of 8,000 N/m with 15 N s/m: displacement, m, and force, N."""
+    """Simulates 2 kg on a spring of 8,000 N/m with 15 N s/m: displacement, m, and force, N."""
     rows, rng = shaken(seed, seconds, np.array([2.0]), np.array([[15.0]]), np.array([[8000.0]]), 20.0)
     with open(path, "w") as f:
         f.write("t,y,u\n")
@@ -95,7 +98,10 @@ def oscillator(path, seed, seconds):
 
 
 def two_masses(path, seed, seconds):
-    """60 kg on 400 kg on the ground, springs of 9e4 and 6e5 N/m, dampers of 700 and 4,000 N s/m: accelerations with gravity, force on the first."""
+    """Simulates 60 kg on 400 kg on the ground, with springs of 9e4 and 6e5 N/m and dampers of 700 and 4,000 N s/m.
+
+    The record has accelerations with gravity, and the force on the first mass.
+    """
     k, c = [9.0e4, 6.0e5], [700.0, 4000.0]
     chain = lambda v: np.array([[v[0], -v[0]], [-v[0], v[0] + v[1]]])
     rows, rng = shaken(seed, seconds, np.array([60.0, 400.0]), chain(c), chain(k), 500.0)
@@ -110,7 +116,7 @@ LENGTH, HALF_WIDTH, HEIGHT, FLANGE, BAY = 4000.0, 400.0, 200.0, 60.0, 250.0
 
 
 def deck():
-    """A three-wheeled carrier, mm t s: two C rails, five cross plates, one grid where payload sits. Its wheel forces follow from statics."""
+    """Writes a three-wheeled carrier, mm t s: two C rails, five cross plates, one grid for the payload. Statics gives its wheel forces."""
     grids, elements = {}, []
 
     def grid(x, y, z):
@@ -155,7 +161,7 @@ GRAVITY = 9.80665
 
 
 def wheel_forces(mass, x, y):
-    """Forces under the wheels by a mass (t) at a place: three forces, three equations of statics. N."""
+    """Returns the wheel forces in N under a mass (t) at a place, from three equations of statics."""
     w = mass * GRAVITY * 1000.0
     rows = [[1.0, 1.0, 1.0], [p[0] for p in WHEELS.values()], [p[1] for p in WHEELS.values()]]
     return np.linalg.solve(np.array(rows), w * np.array([1.0, x, y]))
@@ -182,7 +188,7 @@ if __name__ == "__main__":
     oscillator("rig/oscillator_holdout.csv", 7, 12)
     two_masses("rig/rig.csv", 8, 20)
     two_masses("rig/rig_holdout.csv", 9, 12)
-    # `strainbridge sensitivity recover.toml` wrote what the gauges read per newton.
+    # `strainbridge sensitivity recover.toml` wrote the strain of the gauges per newton.
     table = [line.split(",") for line in open("frame/sensitivity.csv").read().split()]
     names, gauges = table[0][1:], [row[0] for row in table[1:]]
     s = np.array([[float(v) for v in row[1:]] for row in table[1:]])
@@ -210,16 +216,16 @@ if __name__ == "__main__":
     wired[:, 4] = -wired[:, 4]
     write("frame/strain_wired.csv", ["run", *gauges], rows_of(wired))
     write("frame/runs.csv", ["run", "payload_mass", "payload_x", "payload_y", "N.FZ", "L.FZ", "R.FZ"], listed)
-    # S as a matrix, per kN; the payload per kg, and per kg and metre of its displacement.
+    # S as a matrix, per kN. For the payload, per kg, and per kg and metre of its displacement.
     column = {n: s[:, i] for i, n in enumerate(names)}
     wheels = [[g, *(f"{1000.0 * column[n][i]:.6f}" for n in ["N.FZ", "L.FZ", "R.FZ"])] for i, g in enumerate(gauges)]
     write("frame/s_wheels.csv", ["gauge", "N.FZ", "L.FZ", "R.FZ"], wheels)
     signature = [[-GRAVITY * column["payload.FZ"][i], GRAVITY * 1000.0 * column["payload.MY"][i], -GRAVITY * 1000.0 * column["payload.MX"][i], 0.0] for i in range(len(gauges))]
     write("frame/s_payload.csv", ["gauge", "b0", "b_dx", "b_dy", "b_dxdy"], [[g, *(f"{v:.9f}" for v in r)] for g, r in zip(gauges, signature)])
-    # The empty carrier: 0.1708 t of frame (as `check` says) and a gearbox of 0.25 t at 3.0 m, 0.1 m that the model lacks.
+    # The empty carrier: a frame of 0.1708 t (from `check`) and a gearbox of 0.25 t at 3.0 m, 0.1 m, which is not in the model.
     empty = (wheel_forces(0.170816, 2000.0, 0.0) + wheel_forces(0.25, 3000.0, 100.0)) / 1000.0
     write("frame/empty.csv", ["run", "N.FZ", "L.FZ", "R.FZ"], [["empty", *(f"{v:.4f}" for v in empty)]])
-    # Two carriers, two days each: B drives the same bends and bumps as A with a fifth more load.
+    # Two carriers on two days each. B drives the same road as A with a fifth more load.
     write("fleet/s_wheels.csv", ["gauge", "N.FZ", "L.FZ", "R.FZ"], wheels)
     kilo = np.array([[float(v) for v in row[1:]] for row in wheels])
     time = np.arange(0.0, 20.0, 0.05)

@@ -1,12 +1,12 @@
-"""A fleet on Spark: every task takes some paths, processes them with the Python package, and yields a row for each file.
+"""Processes a fleet on Spark. Every task processes some paths with the Python package, and yields a row for each file.
 
     spark-submit examples/spark_fleet.py JOB.toml OUT FILE...
 
-The package is installed where the executors run (`pip install` of the wheel). Job, records and OUT must be reachable under the same paths by every
-executor. The results of a task are kept in OUT/days, so a task that Spark repeats costs nothing. The driver merges at the end, with the digests
-that the tasks return: it reads no record. Prints how many files are done, failed and second copies.
+Install the package where the executors run (`pip install` of the wheel). Every executor must find job, records and OUT under the same paths. The
+results of a task are stored in OUT/days, so that a repeated task costs no time. The driver merges at the end with the digests that the tasks return,
+and reads no record. It prints the number of files that are done, failed or second copies.
 
-On Databricks, import `fleet_on_spark` in a notebook and give it the session `spark`.
+On Databricks, import `fleet_on_spark` in a notebook and pass it the session `spark`.
 """
 
 import collections
@@ -30,7 +30,7 @@ def fleet_on_spark(spark, job: str, out: str, files: list[str]):
             try:
                 done = fleet.part(job, paths, out, 1, mark)
             except sb.Faults as faults:
-                # Returned, not raised: Spark would repeat the task, and the input would still be wrong.
+                # The fault is returned and not raised. Spark would repeat the task, with the same fault.
                 done = [{"path": paths[0], "status": "fault", "message": str(faults), "sha256": ""}]
             columns = {k: [f[k] for f in done] for k in COLUMNS}
             yield pa.RecordBatch.from_pydict(columns, schema=pa.schema([(k, pa.string()) for k in columns]))

@@ -1,4 +1,4 @@
-"""The page of the Python package's names, from their docstrings: `python python/api.py > docs/reference/python-api.md`."""
+"""Writes the page of the Python package's names from their docstrings: `python python/api.py > docs/reference/python-api.md`."""
 
 import inspect
 import re
@@ -6,7 +6,7 @@ import sys
 
 import strainbridge as sb
 
-#: Names by subject; `main` sees that none is left out.
+#: Names by subject. `page` fails if a name is missing.
 SUBJECTS = {
     "Bare arrays": ["place_rows", "Placement", "relax", "Relaxation", "recover_rows", "RecoveredRows", "calibrate_rows", "CalibratedRows", "strain_along", "rainflow"],
     "Jobs": ["Job"],
@@ -20,7 +20,7 @@ SUBJECTS = {
 
 
 def signature(name: str, what: object, bound: bool) -> str:
-    """The call, with types as they are written."""
+    """Returns the call, with types as in the source."""
 
     def one(p: inspect.Parameter) -> str:
         star = {p.VAR_POSITIONAL: "*", p.VAR_KEYWORD: "**"}.get(p.kind, "")
@@ -42,7 +42,7 @@ def signature(name: str, what: object, bound: bool) -> str:
 
 
 def text(what: object) -> str:
-    """A docstring as Markdown: double backticks of reST are single, sections are bold."""
+    """Returns a docstring as Markdown: double backticks of reST become single, sections become bold."""
     doc = inspect.getdoc(what) or ""
     doc = re.sub(r":(?:class|func|meth|attr):`(?:strainbridge\.)?([^`]*)`", r"`\1`", doc)
     doc = doc.replace("``", "`")
@@ -62,7 +62,7 @@ def text(what: object) -> str:
 
 
 def fields(cls: type) -> list[str]:
-    """Attributes with the comments above them."""
+    """Returns attributes with the comments above them."""
     out, said = [], []
     for line in inspect.getsource(cls).splitlines():
         comment = re.fullmatch(r"    #: (.*)", line)
@@ -105,7 +105,7 @@ def entry(name: str) -> list[str]:
 
 
 def page() -> str:
-    """The page."""
+    """Returns the page."""
     left_out = set(sb.__all__) - {n for names in SUBJECTS.values() for n in names}
     assert not left_out, f"give a subject to {sorted(left_out)}"
     lines = ["# Python, name by name", "", "Made from the docstrings by `python python/api.py > docs/reference/python-api.md`. By task: [Python](python.md).", ""]

@@ -1,6 +1,6 @@
 """Writes the typed keys of a job: python python/keys.py > python/strainbridge/_keys.py
 
-Editors and type checkers read them. They are made from the schema of a job, and a test compares the two."""
+Editors and type checkers read them. They come from the schema of a job, and a test compares them with the schema."""
 
 import json
 import keyword
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def described(schema: dict[str, Any]) -> list[str]:
-    """The docstring of a key."""
+    """Returns the docstring of a key."""
     words = str(schema.get("description", "")).replace("\\", "\\\\").replace('"', "'").strip()
     if not words:
         return []
@@ -38,7 +38,7 @@ def class_of(name: str) -> str:
 
 
 def text() -> str:
-    """The module."""
+    """Returns the module."""
     schema: dict[str, Any] = json.loads(engine.schema())["properties"]
     out = [HEAD]
     top = []

@@ -1,4 +1,4 @@
-//! `calibrate` through the program: the examples of the guide, whose unknown runs were made with loads written here.
+//! `calibrate` through the program, with the examples of the guide. The loads of their unknown runs are stated here.
 
 #[path = "../nastran/tests/support/mod.rs"]
 mod support;
@@ -15,7 +15,7 @@ fn scratch(name: &str) -> PathBuf {
     folder
 }
 
-/// Exit code and `result.json` of a command, standard error.
+/// Returns exit code, `result.json` and standard error of a command.
 fn run(command: &str, job: &Path, out: &Path) -> (Option<i32>, Value, String) {
     let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
         .args([
@@ -42,7 +42,7 @@ fn example(name: &str) -> PathBuf {
         .join("calibrate.toml")
 }
 
-/// Value and sigma of a load in a run, as `recover` gives them.
+/// Returns value and sigma of a load in a run, from the result of `recover`.
 fn load(result: &Value, run: &str, name: &str) -> (f64, f64) {
     let loads = result["loads"].as_array().unwrap();
     let found = loads
@@ -64,7 +64,8 @@ fn trucks_that_nobody_weighed_are_weighed_by_the_bridge_within_their_intervals()
     assert_eq!(c["runs"], 12);
     assert_eq!(c["prior"], "none");
     assert_eq!(c["coverage"]["of"], 12);
-    // Made with 3 % of scatter in size and a twentieth of a gauge's distance in place; noise of a hundredth of that.
+    // The data have a scatter of 3 % in size and of a twentieth of the gauge distance in place. The noise is a
+    // hundredth of that.
     let scatter = c["repeat_scatter_rel"].as_f64().unwrap();
     assert!((0.015..0.1).contains(&scatter), "{scatter}");
     assert!(c["noise_rel"].as_f64().unwrap() < scatter / 3.0);
@@ -80,7 +81,7 @@ fn trucks_that_nobody_weighed_are_weighed_by_the_bridge_within_their_intervals()
         ("R15", "east", 265.0),
     ] {
         let (value, sigma) = load(&result, run, lane);
-        // Three sigma: no more than one of a few hundred lies outside.
+        // Three sigma, which one value of a few hundred exceeds.
         assert!(
             (value - truth).abs() < 3.0 * sigma,
             "{run}: {value} +- {sigma}, truth {truth}"
@@ -92,7 +93,8 @@ fn trucks_that_nobody_weighed_are_weighed_by_the_bridge_within_their_intervals()
     }
 }
 
-/// A truck between two lanes strains as the mean of its strain in both: two loads of half its weight, each with the narrow interval of its lane.
+/// A truck between two lanes strains the bridge by the mean of its strain in both. The answer is two loads of half its
+/// weight, each with the narrow interval of its lane.
 #[test]
 fn a_truck_between_two_lanes_is_named_and_its_intervals_hold_one_lane_too() {
     let folder = scratch("calibrate-between");
@@ -123,19 +125,20 @@ fn a_truck_between_two_lanes_is_named_and_its_intervals_hold_one_lane_too() {
         .iter()
         .filter(|f| f["code"] == "loads-unlike-known-runs")
         .collect();
-    // The three trucks in one lane each are not named.
+    // The finding does not name the three trucks that are in one lane.
     assert_eq!(named.len(), 1, "{named:?}");
     assert_eq!(named[0]["subject"], "BETWEEN");
     assert_eq!(named[0]["severity"], "warning");
     for lane in ["west", "middle"] {
         let (value, sigma) = load(&result, "BETWEEN", lane);
         assert!((value - 110.0).abs() < 30.0, "{lane}: {value}");
-        // Either lane alone, 220 kN there and nothing here, within 95 %: two sigma.
+        // The 95 % intervals (two sigma) contain 220 kN in one lane and zero in the other.
         assert!(2.0 * sigma > 110.0, "{lane}: {sigma}");
     }
 }
 
-/// Loads in kilograms read as kilonewtons, without a model: nothing contradicts them, so that a person has to see how large they are.
+/// Loads in kilograms, read as kilonewtons without a model. Nothing contradicts them, so the output states their size
+/// for the user.
 #[test]
 fn the_largest_known_load_is_stated_where_no_model_checks_its_unit() {
     let folder = scratch("calibrate-unit");
@@ -215,10 +218,11 @@ fn a_payload_of_which_the_sum_alone_is_known_teaches_too() {
     }
     let keys = ["known", "low", "value", "high", "sigma"];
     let [known, low, value, high, sigma] = keys.map(|key| one("payload")[key].as_f64().unwrap());
-    // Loads that were wide before are conditioned on the sum, which is known to .2 kN: that leaves a share of it that none reads.
+    // The loads are uncertain before, and then conditioned on their sum, which is known within .2 kN. A part of the sum
+    // remains that no gauge measures.
     assert!((known - 60.0).abs() < 1e-3, "{of_sum}");
     assert!(low < value - sigma && value + sigma < high, "{of_sum}");
-    // One left-out run in twenty lies outside of its interval; no more than one of a few hundred by this much.
+    // One held-out run in twenty is outside its interval. A difference of this size occurs once in a few hundred runs.
     assert!((known - value).abs() < 3.5 * sigma, "{of_sum}");
     let (code, result, said) = run(
         "recover",
@@ -240,8 +244,8 @@ fn a_payload_of_which_the_sum_alone_is_known_teaches_too() {
     }
 }
 
-/// The sum of the payloads in newtons between loads in kilonewtons, its sd without a unit of its own; columns that the job names by what
-/// stands before their unit.
+/// The sum of the payloads is in newtons, the loads are in kilonewtons, and the sd has no unit. The job names columns
+/// without their units.
 #[test]
 fn an_sd_has_the_unit_of_its_load_and_other_columns_may_have_units_too() {
     let calibrated = |name: &str, example_of: &str, change: &dyn Fn(&str, String) -> String| {
@@ -285,7 +289,7 @@ fn an_sd_has_the_unit_of_its_load_and_other_columns_may_have_units_too() {
         let other = calibrated(&format!("calibrate-units-{name}"), name, change);
         assert!(!plain.is_empty() && plain.len() == other.len());
         for (a, b) in plain.iter().zip(&other) {
-            // Newtons into kilonewtons: the last digits written.
+            // The conversion from newtons to kilonewtons changes the last written digits.
             assert!((a - b).abs() <= 1e-5 * a.abs().max(1e-3), "{name}: {a} {b}");
         }
     }
@@ -382,7 +386,7 @@ fn of_lorries_that_a_scale_weighed_whole_the_whole_is_known_and_the_axles_are_no
     let (code, result, said) = run("recover", &calibrated, &folder.join("loads"));
     assert_eq!(code, Some(1), "{said}");
     assert!(said.contains("loads-not-determined"), "{said}");
-    // Of the true S: noise times the root of the sum of (S'S)^-1.
+    // With the true S: noise times the root of the sum of (S'S)^-1.
     let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
     for [x, y] in ROWS {
         (a, b, c) = (a + x * x, b + x * y, c + y * y);
@@ -406,7 +410,7 @@ fn of_lorries_that_a_scale_weighed_whole_the_whole_is_known_and_the_axles_are_no
     }
 }
 
-/// A strip of plates, 400 by 80 mm, clamped at x = 0, with a rigid end plate at x = 400.
+/// Returns a strip of plates, 400 by 80 mm, clamped at x = 0, with a rigid end plate at x = 400.
 fn strip() -> String {
     use std::fmt::Write;
     let (nx, ny, h) = (20_u32, 4_u32, 20.0);
@@ -434,7 +438,7 @@ fn strip() -> String {
     deck + "ENDDATA\n"
 }
 
-/// Gauges of the strip: x, y, angle from x in degrees. All on top.
+/// Nominal gauges of the strip: x, y, angle from x in degrees. All are on top.
 const DRAWN: [[f64; 3]; 6] = [
     [90.0, 30.0, 0.0],
     [90.0, -30.0, 0.0],
@@ -443,7 +447,7 @@ const DRAWN: [[f64; 3]; 6] = [
     [250.0, 30.0, 30.0],
     [250.0, -30.0, 60.0],
 ];
-/// Where they were glued in fact: off along, across (mm), turned (degrees).
+/// Offsets of the installed gauges: along, across (mm), angle (degrees).
 const GLUED: [[f64; 3]; 6] = [
     [5.0, -4.0, 3.0],
     [-6.0, 3.0, -2.0],
@@ -453,12 +457,12 @@ const GLUED: [[f64; 3]; 6] = [
     [3.0, -6.0, 2.0],
 ];
 
-/// A job of the strip with gauges off their drawing by `share` of [`GLUED`].
+/// Returns a job of the strip with gauges at `share` of the offsets [`GLUED`].
 fn strip_job(share: f64) -> String {
     strip_job_with(&GLUED.map(|off| off.map(|v| share * v)))
 }
 
-/// A job of the strip with gauges off their drawing.
+/// Returns a job of the strip with the given gauge offsets.
 fn strip_job_with(offsets: &[[f64; 3]; 6]) -> String {
     use std::fmt::Write;
     let mut job =
@@ -487,7 +491,7 @@ fn strip_job_with(offsets: &[[f64; 3]; 6]) -> String {
     job
 }
 
-/// S of a job: a row a gauge.
+/// Returns S of a job, one row per gauge.
 fn sensitivity(folder: &Path, job: &str, out: &str) -> Vec<Vec<f64>> {
     let path = folder.join(format!("{out}.toml"));
     std::fs::write(&path, job).unwrap();
@@ -498,11 +502,13 @@ fn sensitivity(folder: &Path, job: &str, out: &str) -> Vec<Vec<f64>> {
     text.lines().skip(1).map(row).collect()
 }
 
-/// Numbers of standard deviation 1.
+/// Numbers with standard deviation 1.
 const NOISE: [f64; 9] = [0.7, -1.2, 0.3, 1.1, -0.5, -0.9, 1.4, 0.2, -1.0];
 
-/// Strain and known loads of six pushes by the rows `truth`: the sizes of the loads, some 300 microstrain each at its hottest gauge. Noise of 1
-/// microstrain, written here.
+/// Writes strain and known loads of six pushes with the rows `truth`, and returns the sizes of the loads.
+///
+/// Each load gives about 300 microstrain at the gauge with the largest strain. The noise of 1 microstrain is fixed
+/// here.
 fn write_pushes(folder: &Path, truth: &[Vec<f64>]) -> [f64; 4] {
     let hot = |l: usize| truth.iter().map(|r| r[l].abs()).fold(0.0, f64::max);
     let sizes: [f64; 4] = std::array::from_fn(|l| 300.0 / hot(l));
@@ -531,7 +537,8 @@ fn write_pushes(folder: &Path, truth: &[Vec<f64>]) -> [f64; 4] {
     sizes
 }
 
-/// Without a stated tolerance: rows are the drawing's, and one gauge of the strip is turned, displaced, has another gain, or nothing.
+/// Without a stated tolerance, rows are those of the nominal positions. One gauge of the strip is rotated, displaced,
+/// has another gain, or has no fault.
 #[test]
 fn a_turned_gauge_is_told_from_a_gain_where_a_model_stands_behind_s() {
     let folder = scratch("calibrate-turned");
@@ -551,7 +558,7 @@ fn a_turned_gauge_is_told_from_a_gain_where_a_model_stands_behind_s() {
         let mut offsets = [[0.0; 3]; 6];
         offsets[gauge] = off;
         let mut truth = sensitivity(&folder, &strip_job_with(&offsets), name);
-        // Off by 2 % entry by entry besides, as a model is.
+        // Each entry also has an error of 2 %, as in a model.
         for (g, row) in truth.iter_mut().enumerate() {
             let own = if g == gauge { gain } else { 1.0 };
             for (l, s) in row.iter_mut().enumerate() {
@@ -567,7 +574,7 @@ fn a_turned_gauge_is_told_from_a_gain_where_a_model_stands_behind_s() {
             let wanted = if g == gauge { wanted } else { "none" };
             assert_eq!(word, wanted, "{name}, G{g}: {result}");
         }
-        // Where it sits is asked for by a tolerance alone.
+        // Only a stated tolerance requests the estimate of the position.
         assert!(result["calibration"]["gauges"][gauge]["as_glued"].is_null());
     }
 }
@@ -596,9 +603,9 @@ fn gauges_are_found_where_they_were_glued_and_their_table_makes_the_true_s() {
             told += usize::from(found[what]["told"] == true);
         }
     }
-    // Of 18 intervals one lies outside two sigma; three would be a chance of one in a hundred.
+    // Of 18 intervals, about one is outside two sigma. Three have a chance of one in a hundred.
     assert!(off < 4 && told > 9, "{off} off, {told} told: {result}");
-    // The table stands for the gauges of the job.
+    // The written table replaces the gauges of the job.
     let (head, _) = strip_job(0.0)
         .split_once("[[gauge]]")
         .map(|(a, b)| (a.to_owned(), b.len()))
@@ -623,23 +630,25 @@ fn gauges_are_found_where_they_were_glued_and_their_table_makes_the_true_s() {
     );
 }
 
-/// A measured bridge.
+/// Measured bridge.
 struct Bridge {
     gauges: Vec<String>,
     runs: Vec<Run>,
 }
 
-/// A passage of the truck.
+/// Passage of the truck.
 struct Run {
     name: String,
     lane: String,
     strain: Vec<f64>,
-    /// Calibrates; the others are looked at.
+    /// Whether this is a calibration run.
     teaches: bool,
 }
 
-/// Passages of `folder` in which every one of the `most` hottest gauges was recorded and whose lane is known: those that are fit for weighing, every
-/// other one teaching, or those of a planted case with the part that its table gives them.
+/// Returns passages of `folder` in a known lane with readings of all of the `most` gauges with the largest strain.
+///
+/// For weighing, it takes the suitable passages, and every other one is a calibration run. A planted case has a table
+/// that states the role of each run.
 fn bridge(folder: &str, most: usize) -> Option<Bridge> {
     let table = |name: &str| -> Option<Vec<Vec<String>>> {
         let row = |l: &str| l.split(',').map(str::to_owned).collect();
@@ -684,7 +693,7 @@ fn bridge(folder: &str, most: usize) -> Option<Bridge> {
     })
 }
 
-/// Strain and runs files of the runs that teach or of the others, the channel `turned` with its sign the wrong way round.
+/// Writes strain and runs files of the calibration runs or of the others. The channel `turned` has reversed polarity.
 fn write_runs(folder: &Path, of: &Bridge, teach: bool, turned: Option<usize>) {
     let lanes = ["east", "middle", "west"];
     let mut strain = format!("run,{}\n", of.gauges.join(","));
@@ -730,7 +739,7 @@ units = { force = "kN" }
 repeats = ["lane"]
 "#;
 
-/// What `reconcile` says of the other runs against what some taught, and what it names.
+/// Returns the result of `reconcile` for the runs that were not used in the calibration, and the identified effects.
 fn reconcile_other_runs(
     name: &str,
     bridge: &Bridge,
@@ -751,8 +760,11 @@ fn reconcile_other_runs(
     (result.clone(), words.collect())
 }
 
-/// Calibrated by every other run, the bridge says of the others that nothing is missing, and names the one channel that was turned. Noise
-/// alone (.05 of 20 microstrain, repeats scatter by a tenth) makes every run of the others a contradiction.
+/// Calibrated with every other run, `reconcile` of the others finds nothing missing, and identifies the one channel
+/// with reversed polarity.
+///
+/// With noise alone (.05 of 20 microstrain, while repeats scatter by a tenth), every other run would be a
+/// contradiction.
 #[test]
 fn against_a_calibrated_s_reconcile_counts_what_repeats_scatter_by() {
     let Some(bridge) = bridge("ponca", usize::MAX) else {
@@ -769,7 +781,7 @@ fn against_a_calibrated_s_reconcile_counts_what_repeats_scatter_by() {
         let (result, named) =
             reconcile_other_runs(&format!("calibrated-reconcile-{name}"), &bridge, turned);
         match turned {
-            // Whether a gain of a few per cent hides in the scatter may be left open: neither names anything.
+            // The scatter may hide a gain of a few per cent. Both verdicts identify nothing.
             None => assert!(
                 named.is_empty()
                     && (result["verdict"] == "none" || result["verdict"] == "below-detectability"),
@@ -781,9 +793,10 @@ fn against_a_calibrated_s_reconcile_counts_what_repeats_scatter_by() {
     }
 }
 
-/// Two runs a lane teach: three degrees of freedom. What gauges scatter by in patterns that no load makes was estimated from all of them together, so
-/// two channels that were exchanged are no scatter: they stand first among what is not explained, and are named. A bridge without a fault
-/// has none.
+/// Two calibration runs per lane give three degrees of freedom.
+///
+/// The scatter of gauges in patterns that no load causes is estimated from all runs together. Two exchanged channels
+/// exceed it. They have the largest residuals and are identified. A bridge without a fault has no such residual.
 #[test]
 fn few_repeats_do_not_hide_channels_that_were_exchanged() {
     let exchanged = ["B5411", "B7059"];
@@ -805,7 +818,8 @@ fn few_repeats_do_not_hide_channels_that_were_exchanged() {
             .collect();
         worst.sort_unstable();
         assert_eq!(worst, exchanged, "{result}");
-        // The bridge is a measured one: what its other gauges did between the runs that taught and the later ones may be named besides.
+        // The bridge is a measured one. Other changes of its gauges between the calibration runs and the later runs may
+        // be identified as well.
         assert!(
             named.iter().any(|n| n == "gauge_swap:B7059+B5411"),
             "{} {named:?}",
@@ -862,7 +876,7 @@ fn legs_of_a_rosette_teach_where_no_model_stands_behind_s() {
     assert_eq!(names, ["C1", "R1.a", "R1.b", "R1.c"]);
 }
 
-/// Findings of a code.
+/// Returns the findings with a code.
 fn of_code<'a>(result: &'a Value, code: &str) -> Vec<&'a Value> {
     let findings = result["findings"].as_array().unwrap().iter();
     findings.filter(|f| f["code"] == code).collect()
@@ -890,7 +904,7 @@ fn a_gauge_without_a_column_is_said_so_and_is_not_dead() {
     assert_eq!(names, ["C1", "C2"]);
 }
 
-/// The same jack on two places, the second noted in N where kN are read.
+/// The same jack in two places. The second one is recorded in N, but the program expects kN.
 #[test]
 fn loads_of_one_unit_that_make_a_thousand_times_less_strain_are_named() {
     let folder = scratch("calibrate-uneven");
@@ -907,7 +921,7 @@ fn loads_of_one_unit_that_make_a_thousand_times_less_strain_are_named() {
         assert_eq!(found.len(), named, "{said}");
         assert!(found.iter().all(|f| f["subject"] == "right"), "{said}");
     }
-    // A load that the gauges don't feel is no load in another unit: they read noise.
+    // If a load causes no strain in the gauges, they read noise. Its unit is then not wrong.
     let strain = "run,C1,C2\nA,1010.1,210.3\nB,2019.8,420.1\nC,0.2,-0.3\nD,0.4,0.1\n";
     let runs = "run,left,right\nA,10,0\nB,20,0\nC,0,10\nD,0,20\n";
     let job = write_job(&folder, job, runs, strain);
@@ -915,7 +929,7 @@ fn loads_of_one_unit_that_make_a_thousand_times_less_strain_are_named() {
     assert!(of_code(&result, "known-loads-uneven").is_empty(), "{said}");
 }
 
-/// Strain of a lift: microstrain a kN and a kN m about y, four gauges.
+/// Returns the strain of a payload: microstrain per kN and per kN m about y, for four gauges.
 fn lift(kg: f64, x: f64, wiggle: f64) -> String {
     const ROWS: [[f64; 2]; 4] = [[12.0, 3.0], [9.0, -4.0], [11.0, 1.5], [10.0, -2.5]];
     let weight = kg * 9.80665e-3;
@@ -988,8 +1002,9 @@ fn payloads_of_known_mass_and_place_teach_and_then_every_lift_is_weighed() {
 #[test]
 fn weight_and_moment_of_a_payload_share_the_error_of_its_weight() {
     let folder = scratch("calibrate-payload-error");
-    // A scale that is off by 5 % (1 sd) of 1000 kg; places are known. The first run's place is wrong by 0.2 m: of moments whose errors were their own,
-    // 60 kg m each, three sd; of the one error of its weight nothing at all makes that.
+    // The scale has an error of 5 % (1 sd) of 1000 kg, and the places are known. The place of the first run is wrong by
+    // 0.2 m. If moments had independent errors of 60 kg m each, that would be three sd. The common error of the weight
+    // cannot explain it.
     let job = "units = \"m-kg-s\"\nreport_units = { force = \"N\", moment = \"N m\" }\n[[load]]\nname = \"payload\"\n\
                [[load]]\nname = \"payload.MY\"\n[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.1\n[runs]\nfile = \"runs.csv\"\n";
     let (mut runs, mut strain) = (
@@ -1015,7 +1030,7 @@ fn weight_and_moment_of_a_payload_share_the_error_of_its_weight() {
     let calibrated = folder.join("cal/calibrated.toml");
     let (code, result, said) = run("recover", &calibrated, &folder.join("loads"));
     assert_eq!(code, Some(0), "{said}");
-    // Eight runs stand where the lift does: 5 % over the root of eight, of either.
+    // Eight runs are in the place of the payload. The error of both loads is 5 % over the root of eight.
     let shared = 1000.0 * 9.80665 * 0.05 / 8_f64.sqrt();
     for name in ["payload", "payload.MY"] {
         let (_, sigma) = load(&result, "L0", name);
@@ -1065,7 +1080,8 @@ fn a_sum_that_its_loads_do_not_make_is_a_fault_of_its_line_and_one_that_was_roun
                        [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\n\
                        [runs]\nfile = \"runs.csv\"\nunits = { force = \"kN\" }\n";
     const STRAIN: &str = "run,C1,C2\nA,10.1,20.2\nB,20.1,-40.3\nC,40.2,40.1\n";
-    // B: the one axle in another unit than the scale; a slip; both within their sd; rounded to three digits.
+    // Run B: the axle load is in another unit than the scale, then a slip, then values within their sd, then values
+    // rounded to three digits.
     for (rows, wrong) in [
         ("A,10,0,,\nB,0,4.4966,20,\nC,20,10,,\n", Some("runs.csv:3")),
         ("A,10,0,,\nB,0,20,,\nC,20,10,3,\n", Some("runs.csv:4")),

@@ -1,4 +1,4 @@
-//! The command line as a user meets it: exit codes, standard output, standard error, files.
+//! The command line as a user sees it: exit codes, standard output, standard error, files.
 
 #[path = "../nastran/tests/support/mod.rs"]
 mod support;
@@ -14,7 +14,7 @@ fn strainbridge(arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-/// A fresh folder for one test.
+/// Creates an empty folder for one test.
 fn folder(name: &str) -> PathBuf {
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
         .join("command_line")
@@ -59,7 +59,7 @@ fn a_missing_file_is_bad_input() {
     );
 }
 
-/// Said of a deck by itself, not of its job alone; the set that no subcase selects is not held.
+/// The finding appears for a deck alone, and not only for its job. A set that no subcase selects does not count.
 #[test]
 fn a_deck_that_holds_a_grid_at_two_values_or_has_a_solid_inside_out_is_told_so() {
     let dir = folder("contradicting");
@@ -159,7 +159,8 @@ fn check_and_strains_write_a_page_beside_their_result() {
         entries: 0,
         titles: Default::default(),
     };
-    // Fibre distance, exx, eyy, gxy, then what follows from them: 1000 microstrain along x at the top, half of it at the bottom.
+    // Fibre distance, exx, eyy, gxy, and values derived from them: 1000 microstrain along x at the top, half of it at
+    // the bottom.
     let n = columns::SHELL_STRAIN.len();
     let mut values = vec![0.0; 2 * n];
     let place = |name: &str| {
@@ -199,14 +200,14 @@ fn check_and_strains_write_a_page_beside_their_result() {
     ]);
     assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
     let page = std::fs::read_to_string(dir.join("s/report.html")).unwrap();
-    // The hotter surface of element 9.
+    // The surface of element 9 with the larger strain.
     assert!(
         page.contains("<td>top</td>") && page.contains("<td>1000</td>"),
         "{page}"
     );
     let csv = std::fs::read_to_string(dir.join("s/strains.csv")).unwrap();
     assert_eq!(csv.lines().count(), 3, "{csv}");
-    // a strain of a thousandth is 1000 microstrain
+    // A strain of a thousandth is 1000 microstrain.
     assert!(
         csv.lines()
             .any(|l| l.contains("top,1.0000000") && l.contains("e3,")),
@@ -252,7 +253,7 @@ fn help_of_every_command_shows_an_example_of_it() {
         else {
             break;
         };
-        // Descriptions of two lines go on far to the right.
+        // Further lines of a description are indented.
         if name == "help" || line.starts_with("   ") {
             continue;
         }
@@ -266,7 +267,7 @@ fn help_of_every_command_shows_an_example_of_it() {
     assert!(seen >= 17, "{help}");
 }
 
-/// Keys of a TOML value that a schema does not know.
+/// Collects the keys of a TOML value that a schema does not contain.
 fn unknown_keys(schema: &serde_json::Value, value: &toml::Value, at: &str, out: &mut Vec<String>) {
     match value {
         toml::Value::Table(t) => {
@@ -384,7 +385,7 @@ fn a_deck_given_as_a_job_is_one_fault_that_names_init() {
 fn quiet_says_errors_alone_and_verbose_says_seconds() {
     let dir = folder("quiet");
     let deck = dir.join("plate.bdf");
-    // Grids 11 to 13 belong to nothing: one note that begins with its place.
+    // Grids 11 to 13 belong to no element. One note states their place.
     let grids: String = (11..14)
         .map(|g| format!("GRID,{g},,5.,{g}.,0.\n"))
         .collect();
@@ -448,7 +449,8 @@ fn init_writes_a_job_for_a_purpose_whose_only_faults_are_files_to_be_named() {
         );
         let job = std::fs::read_to_string(dir.join("job.toml")).unwrap();
         assert!(job.contains("# check"), "{job}");
-        // The keys are known and of the right type: what `check` finds wanting is files, and what is to be filled in.
+        // The keys are known and have the right type. `check` reports only missing files and values that the user must
+        // fill in.
         let path = dir.join("job.toml");
         let checked = strainbridge(&["check", path.to_str().unwrap(), "--json"]);
         let said: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
@@ -560,7 +562,7 @@ fn init_leaves_a_job_that_is_there() {
     assert_eq!(std::fs::read_to_string(&gauges).unwrap(), "name\nG1\n");
 }
 
-/// A folder unpacked from an archive of Windows: its name has the letter of code page 1252 as a single byte.
+/// Folder unpacked from a Windows archive. Its name contains the letter as a single byte of code page 1252.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_name_that_is_not_utf_8_is_a_fault_that_says_so() {
@@ -584,7 +586,7 @@ fn a_name_that_is_not_utf_8_is_a_fault_that_says_so() {
         said.contains("is not UTF-8") && said.contains("rename it"),
         "{said}"
     );
-    // The same letter in UTF-8 is a name like any other, also for results.
+    // The same letter in UTF-8 is a valid name, also for results.
     let named = folder("code_page_utf8").join("Träger");
     std::fs::create_dir(&named).unwrap();
     std::fs::copy(frame.join("frame.bdf"), named.join("Rähmen.bdf")).unwrap();

@@ -1,4 +1,4 @@
-//! Inputs that are cut, devices or no decks at all: every command that reads them ends with 2 and a sentence of what is wrong.
+//! Inputs that are cut, are devices, or are not decks. Every command that reads them ends with 2 and a message.
 
 #[path = "../nastran/tests/support/mod.rs"]
 mod support;
@@ -37,7 +37,8 @@ fn files(folder: &Path, ends: &[&str]) -> Vec<PathBuf> {
     found
 }
 
-/// OP2, and the deck beside it where there is one that is no part of another; `None` where the reference material is absent.
+/// Returns each OP2 with its deck, if one exists that is not an include file. `None` if the reference material is
+/// absent.
 fn sets() -> Option<Vec<(PathBuf, Option<PathBuf>)>> {
     let mut folders: Vec<PathBuf> = std::fs::read_dir(find_nastran_folder()?)
         .unwrap()
@@ -64,7 +65,7 @@ fn every_command_that_reads_a_cut_op2_says_so_and_ends_with_2() {
     let (mut cut_short, mut without_grids) = (0, 0);
     for (op2, deck) in sets {
         let bytes = std::fs::read(&op2).unwrap();
-        // Decks that write matrices and have no model: `init` says so before it opens the results.
+        // Decks that write matrices and have no model. `init` reports this before it opens the results.
         let has_model = |d: &PathBuf| !d.ends_with("wrt_test_op2_files.dat");
         let lacks_grids = !deck.as_ref().is_none_or(has_model);
         for percent in (5..100).step_by(5) {
@@ -154,7 +155,7 @@ fn strains_and_init_on_a_cut_deck_end_with_2() {
         for percent in [60, 80, 95] {
             let part = &bytes[..bytes.len() * percent / 100];
             let lines = part.iter().rposition(|b| *b == b'\n').unwrap() + 1;
-            // Within a line, and at the end of one.
+            // Cut within a line, and at the end of a line.
             for part in [part, &part[..lines]] {
                 std::fs::write(&cut, part).unwrap();
                 for command in ["strains", "init"] {
@@ -175,19 +176,20 @@ fn strains_and_init_on_a_cut_deck_end_with_2() {
     }
 }
 
-/// What a deck of the reference material holds, counted by hand.
+/// Content of a deck of the reference material, counted by hand.
 struct Holds<'a> {
     /// Deck and results.
     files: &'a [&'a str],
-    /// Lines of the job that name its loads: sets of its subcases; for a pressure that no subcase scales, corners of the mesh.
+    /// Lines of the job that name its loads: sets of the subcases, or corners of the mesh for a pressure that no
+    /// subcase scales.
     loads: &'a [&'a str],
-    /// CQUAD4 and CTRIA3 by property, where gauges can tell the loads.
+    /// CQUAD4 and CTRIA3 by property, if gauges can determine the loads.
     shells: Option<&'a [(u32, usize)]>,
-    /// What `init` says where they can't.
+    /// Message of `init` if gauges cannot determine the loads.
     says: &'a str,
 }
 
-/// Whether the next step that `init` prints is `place`; its lines are wrapped.
+/// Returns whether `init` recommends `place` as the next step. Its lines are wrapped.
 fn recommends_place(stdout: &[u8]) -> bool {
     let text = String::from_utf8_lossy(stdout);
     let words: Vec<&str> = text.split_whitespace().collect();
@@ -206,21 +208,21 @@ fn init_recommends_place_where_the_deck_has_shells_that_tell_its_loads_alone() {
         shells: Some(&[(1, 3), (2, 2), (6, 5), (24, 6), (62, 5)]),
         says: "",
     };
-    // A sector of a shell under pressure, 15 CQUAD4 and a CTRIA3, of SOL 106: the built-in solver refuses it.
+    // A sector of a shell under pressure with 15 CQUAD4 and a CTRIA3 in SOL 106, which the built-in solver refuses.
     let sector = |files| Holds {
         files,
         loads: &[],
         shells: None,
         says: "`SOL 106` affects the solution, and the built-in solver does not support it",
     };
-    // Pressures on a membrane, a PSHELL without MID2: nothing holds its grids across it.
+    // Pressures on a membrane, a PSHELL without MID2. Nothing supports its grids in the normal direction.
     let element = Holds {
         files: &["nx_unit_loads_quad4/cquad4.bdf"],
         loads: &[],
         shells: None,
         says: "loads dof 3, which no element holds",
     };
-    // A CBAR and nothing else; nine CBEAM and five CONM2.
+    // A single CBAR, and nine CBEAM with five CONM2.
     let [bar, beams] = [
         "msc_bar_strain/pbarl_bar_100.bdf",
         "nx_opg_1/rdop2opg_1.dat",
@@ -254,7 +256,7 @@ fn init_recommends_place_where_the_deck_has_shells_that_tell_its_loads_alone() {
         arguments.extend(files.iter().map(String::as_str));
         arguments.extend(["--out", &out]);
         let done = strainbridge(&arguments);
-        // Later lines of a finding are indented.
+        // Further lines of a finding are indented.
         let said = String::from_utf8_lossy(&done.stderr).replace("\n    ", " ");
         assert_eq!(done.status.code(), Some(0), "{names:?}: {said}");
         let recommended = recommends_place(&done.stdout);
@@ -275,7 +277,7 @@ fn init_recommends_place_where_the_deck_has_shells_that_tell_its_loads_alone() {
             .collect();
         assert_eq!(loads, deck.loads, "{names:?}");
         for (property, n) in shells {
-            // Between id and number the name of the property, where the deck has one.
+            // The line has the name of the property between id and number, if the deck states one.
             let (head, end) = (format!("# property {property}"), format!(": {n} shells"));
             let is_line = |l: &str| l.starts_with(&head) && l.ends_with(&end);
             assert!(text.lines().any(is_line), "{names:?} {property}: {text}");
@@ -283,7 +285,7 @@ fn init_recommends_place_where_the_deck_has_shells_that_tell_its_loads_alone() {
     }
 }
 
-/// What is to be solved in a second or two; `STRAINBRIDGE_ALL_CUTS` takes all.
+/// Largest file that is solved in a second or two. `STRAINBRIDGE_ALL_CUTS` solves all.
 const SMALL_SET: u64 = 500_000;
 
 #[test]
@@ -313,7 +315,7 @@ fn on_every_set_the_quick_start_gives_an_answer_or_init_says_why_not() {
         arguments.extend(["--out", &out]);
         let done = strainbridge(&arguments);
         if !recommends_place(&done.stdout) {
-            // Refused with a fault, or a job with the reason why nothing can be placed.
+            // A fault, or a job with the reason why no gauge can be placed.
             assert!(!done.stderr.is_empty(), "{files:?}: nothing is said");
             told += 1;
             continue;
@@ -329,14 +331,14 @@ fn on_every_set_the_quick_start_gives_an_answer_or_init_says_why_not() {
         "{answered} of {} answered, {told} told why not, neither {neither:?}",
         inputs.len()
     );
-    // Nine of ten are asked for.
+    // At least nine of ten must have one of both.
     assert!(
         answered > 0 && told > 0 && 10 * neither.len() <= inputs.len(),
         "{neither:?}"
     );
 }
 
-/// The first grid and the first shell that the texts of a deck's folder name.
+/// Returns the first grid and the first shell in the text files of a deck's folder.
 fn ids(deck: &Path) -> Option<[u32; 2]> {
     let texts: Vec<String> = files(deck.parent()?, &["bdf", "dat", "nas", "inc"])
         .iter()
@@ -355,7 +357,7 @@ fn ids(deck: &Path) -> Option<[u32; 2]> {
     Some([first(&["GRID"])?, first(&["CQUAD4", "CTRIA3", "CQUADR"])?])
 }
 
-/// A job that every command could answer, its results beside it.
+/// Returns a job for every command, with its results.
 fn job_of_all(deck: &Path, results: &str) -> String {
     let [grid, element] = ids(deck).unwrap_or([1, 1]);
     let deck = deck.display().to_string().replace('\\', "/");
@@ -372,7 +374,8 @@ fn job_of_all(deck: &Path, results: &str) -> String {
     )
 }
 
-/// `STRAINBRIDGE_ALL_CUTS` (`.ci/long`): every OP2 of the set at 5, 10 .. 95 %; else a few of the smaller ones at three places.
+/// With `STRAINBRIDGE_ALL_CUTS` (`.ci/long`), every OP2 of the set is cut at 5, 10 .. 95 %. Otherwise a few smaller
+/// ones are cut at three places.
 #[test]
 fn every_command_on_a_job_whose_results_are_cut_ends_with_2() {
     const COMMANDS: [&str; 12] = [
@@ -405,7 +408,8 @@ fn every_command_on_a_job_whose_results_are_cut_ends_with_2() {
         let Some(deck) = deck else { continue };
         let bytes = std::fs::read(&op2).unwrap();
         let has_shells = ids(&deck).is_some();
-        // On these every command comes to the results; on others some end at what the deck lacks before.
+        // For these decks, every command reads the results. For others, some commands end before that because the deck
+        // is incomplete.
         let comes_there = has_shells && bytes.len() <= 60_000 && taken < 4;
         if !all && !comes_there {
             continue;
@@ -427,7 +431,7 @@ fn every_command_on_a_job_whose_results_are_cut_ends_with_2() {
                     assert_eq!(code, Some(2), "{at}");
                     assert!(said.contains("cut short"), "{at}");
                 } else {
-                    // What the deck lacks may be an error of an answer that needs no results.
+                    // An incomplete deck may also cause an error of an answer that needs no results.
                     assert!(matches!(code, Some(1 | 2)), "{at}");
                 }
                 if has_shells {

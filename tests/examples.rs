@@ -1,4 +1,4 @@
-//! The examples of the library end in a number that they check themselves.
+//! Runs the examples of the library, which compare their result with a known number.
 
 #[path = "../examples/place.rs"]
 mod place;

@@ -1,4 +1,4 @@
-//! The jobs in `examples/`: each runs, and comes to what its data were made of (`examples/make_data.py`).
+//! Runs the jobs in `examples/` and compares the results with the true values of their data (`examples/make_data.py`).
 
 mod console;
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Runs a command on files of a folder of `examples/`; exit code 0; `result.json`.
+/// Runs a command on files of a folder of `examples/`, with exit code 0, and returns `result.json`.
 fn run(command: &str, folder: &str, files: &[&str]) -> Value {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     let out: PathBuf = Path::new(env!("CARGO_TARGET_TMPDIR")).join("examples");
@@ -32,13 +32,13 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()
 }
 
-/// The entries of a list, by a key.
+/// Returns the entries of a list whose `key` has the value `name`.
 fn find_entries<'a>(list: &'a Value, key: &str, name: &str) -> Vec<&'a Value> {
     let all = list.as_array().unwrap().iter();
     all.filter(|e| e[key] == name).collect()
 }
 
-/// Mass (kg) and place (m) of the payload of the runs, as they were made.
+/// True mass (kg) and place (m) of the payload in each run.
 const PAYLOADS: [(f64, f64, f64); 9] = [
     (300.0, 2.0, 0.0),
     (600.0, 2.0, 0.1),
@@ -58,7 +58,8 @@ fn the_carrier_s_unit_loads_are_in_balance_and_its_gauges_told_apart() {
     for case in solved["balance"].as_array().unwrap() {
         assert!(number(&case["residual"]) < 1e-9, "{case}");
     }
-    // Steel of 7.85e-9 t/mm3: plates of 6 mm (rails, 2 x 4 m of 200 and twice 60 mm) and 8 mm (five of 800 by 200 mm).
+    // Steel of 7.85e-9 t/mm3: plates of 6 mm (rails, 2 x 4 m of 200 and twice 60 mm) and of 8 mm (five of 800 by 200
+    // mm).
     let mass = 7.85e-9 * (2.0 * 4000.0 * 320.0 * 6.0 + 5.0 * 800.0 * 200.0 * 8.0);
     assert!((number(&solved["mass"]["mass"]) / mass - 1.0).abs() < 1e-9);
     assert_eq!(
@@ -80,7 +81,7 @@ fn recovered_wheel_forces_hold_those_of_statics() {
     let (mut held, mut of) = (0, 0);
     for (i, (mass, x, y)) in PAYLOADS.iter().enumerate() {
         let w = mass * 9.80665 / 1000.0;
-        // Three wheels, at (0, 0) and (3.5, -.4), (3.5, .4): the lever rule.
+        // Three wheels at (0, 0), (3.5, -.4) and (3.5, .4), by the lever rule.
         let rear = w * x / 3.5;
         let truth = [
             ("N.FZ", w - rear),
@@ -105,7 +106,7 @@ fn the_payload_is_weighed_and_found() {
     let weighed = run("payload", "frame", &["payload.toml"]);
     assert_eq!(weighed["payload"].as_array().unwrap().len(), PAYLOADS.len());
     for (answer, (mass, x, y)) in weighed["payload"].as_array().unwrap().iter().zip(PAYLOADS) {
-        // Four standard deviations of 27 answers.
+        // Four standard deviations for 27 answers.
         let off = (number(&answer["mass"]) - mass) / number(&answer["mass_sigma"]);
         assert!(off.abs() < 4.0, "{answer}");
         for (k, at) in [x, y].into_iter().enumerate() {
@@ -129,14 +130,14 @@ fn the_gearbox_that_the_model_lacks_is_found() {
 fn stress_and_study_answer_for_the_same_runs() {
     let hot = run("respond", "frame", &["respond.toml"]);
     assert_eq!(hot["states"], 9);
-    // The gauges' own strain is predicted to the noise that was put on it.
+    // The prediction of the strain of the gauges is accurate within their noise.
     assert!(!hot["gauges"].as_array().unwrap().is_empty());
     for g in hot["gauges"].as_array().unwrap() {
         assert!(number(&g["residual_rms_microstrain"]) < 1.5, "{g}");
     }
     let study = run("study", "frame", &["study.toml"]);
     let noise = find_entries(&study["study"], "error", "absolute-normal 1");
-    // More gauges of the same layout never do worse.
+    // More gauges of the same layout never increase the error.
     assert_eq!(noise.len(), 2);
     assert!(number(&noise[1]["mean_relative_rms"]) <= number(&noise[0]["mean_relative_rms"]));
 }
@@ -165,7 +166,7 @@ fn reconcile_names_what_was_hidden_on_all_three_paths() {
             .unwrap()
             .starts_with("cubic_stiffness")
     );
-    // Made with 2e8 N/m3.
+    // The true value is 2e8 N/m3.
     assert!((number(&found["effects"][0]["size"]) / 2.0e8 - 1.0).abs() < 0.02);
 }
 
@@ -198,7 +199,8 @@ fn a_fifth_more_load_is_a_fifth_more_to_the_power_of_the_slope() {
         let v = find_entries(&found["vehicles"], "name", vehicle)[0];
         number(&find_entries(&v["loads"], "load", load)[0]["damage"])
     };
-    // N.FZ swings between -2 and 2 kN, or a fifth more: noise of .05 microstrain moves a range by less than 1 %, damage by less than 5 %.
+    // N.FZ oscillates between -2 and 2 kN, or with a fifth more. Noise of .05 microstrain changes a range by less than
+    // 1 % and damage by less than 5 %.
     let ratio = damage("B", "N.FZ") / damage("A", "N.FZ");
     assert!((ratio / 1.2_f64.powi(5) - 1.0).abs() < 0.05, "{ratio}");
 }
@@ -230,7 +232,7 @@ fn masses_springs_and_dampers_of_the_oscillator_and_the_rig_lie_in_their_interva
         let found = run("identify", "rig", &[job]);
         for (name, value) in truth {
             let p = find_entries(&found["parameters"], "name", name)[0];
-            // 95 % intervals of nine parameters: one may be missed by chance, and none by twice its width.
+            // 95 % intervals of nine parameters. One may miss the true value by chance, but none by twice its width.
             let away = (number(&p["value"]) - value).abs();
             assert!(away < 2.0 * 1.96 * number(&p["sigma"]), "{job}: {p}");
             assert!(number(&p["sigma"]) < 1e-3 * value, "{job}: {p}");
@@ -238,23 +240,24 @@ fn masses_springs_and_dampers_of_the_oscillator_and_the_rig_lie_in_their_interva
     }
 }
 
-/// Names of the loads of a large job.
+/// Returns the names of the loads of a large job.
 fn many_loads() -> Vec<String> {
     (1..40).map(|l| format!("W{l:02}.FZ")).collect()
 }
 
-/// Writes a job with 40 gauges, 39 loads and so many runs, whose strain is that of known loads and a noise of half a microstrain.
+/// Writes a job with 40 gauges, 39 loads and a number of runs. Strain comes from known loads with a noise of half a
+/// microstrain.
 fn write_large_job(folder: &Path, runs: usize) {
     let _ = std::fs::remove_dir_all(folder);
     std::fs::create_dir_all(folder).unwrap();
     let loads = many_loads();
     let mut state = 7u64;
     let mut random = || {
-        // Numerical Recipes' linear congruential generator, -1 to 1.
+        // Linear congruential generator of Numerical Recipes, -1 to 1.
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223) % (1 << 32);
         state as f64 / f64::from(1u32 << 31) - 1.0
     };
-    // Each gauge reads one load most.
+    // Each gauge reads mainly one load.
     let mut entry = |g: usize, l: usize| random() + if g == l { 20.0 } else { 0.0 };
     let s: Vec<Vec<f64>> = (0..40)
         .map(|g| (0..39).map(|l| entry(g, l)).collect())
@@ -328,7 +331,7 @@ fn the_console_names_each_of_39_loads_with_its_interval_in_25_lines() {
             for load in many_loads() {
                 let after = said.split_once(&load).map(|s| s.1);
                 let after = after.unwrap_or_else(|| panic!("{command} {load}\n{said}"));
-                // Up to the next load of the line.
+                // The text until the next load of the line.
                 let own = after.lines().next().unwrap().split('W').next().unwrap();
                 let has_interval = own.contains(plus_minus);
                 assert!(

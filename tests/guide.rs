@@ -1,4 +1,5 @@
-//! The guide in `docs/`: every command in a `sh` box is run, in order, in one folder; files that a page names are there afterwards.
+//! The guide in `docs/`. Every command in a `sh` box runs, in order, in one folder. Afterwards, the files that a page
+//! names must exist.
 
 #[path = "console/fits.rs"]
 mod console;
@@ -30,7 +31,7 @@ fn pages() -> Vec<(String, String)> {
         .collect()
 }
 
-/// Lines of the boxes of one kind, one text a box.
+/// Returns the content of the boxes of one kind.
 fn boxes(page: &str, kind: &str) -> Vec<String> {
     let fence = format!("```{kind}");
     let mut out = Vec::new();
@@ -44,7 +45,7 @@ fn boxes(page: &str, kind: &str) -> Vec<String> {
     out
 }
 
-/// Runs one line; the exit code is that of its comment (`# exit code 1`), else 0.
+/// Runs one line. The expected exit code is stated in its comment (`# exit code 1`), otherwise 0.
 fn run(line: &str, folder: &Path) {
     let (command, comment) = line.split_once(" #").unwrap_or((line, ""));
     let (command, target) = command.split_once(" > ").unwrap_or((command, ""));
@@ -72,7 +73,7 @@ fn run(line: &str, folder: &Path) {
     }
 }
 
-/// Puts the files of a folder of `examples/` beside the commands.
+/// Copies a folder of `examples/` into the folder of the commands.
 fn copy_example(name: &str, folder: &Path) {
     let from = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("examples")
@@ -84,7 +85,7 @@ fn copy_example(name: &str, folder: &Path) {
     }
 }
 
-/// Paths in backticks that lead into a folder and end in a file.
+/// Returns paths in backticks that contain a folder and end in a file.
 fn named_files(page: &str) -> Vec<&str> {
     let spans = page.split('`').skip(1).step_by(2);
     spans
@@ -141,19 +142,19 @@ fn an_export_comes_to_a_gauge_plan_in_three_commands_and_three_edited_lines() {
     let text = std::fs::read_to_string(folder.join("job.out/result.json")).unwrap();
     let plan: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(plan["gauges"].as_array().unwrap().len(), 60);
-    // The page of placement states this figure.
+    // The page about placement states this figure.
     assert!(plan["efficiency_bound"].as_f64().unwrap() > 0.969);
     let findings = plan["findings"].as_array().unwrap();
     let of = |code: &str| findings.iter().find(|f| f["code"] == code);
     assert!(of("loads-weakly-separable").is_some());
-    // The tolerance is stated: nobody is told to state it.
+    // The tolerance is stated, so the remedy does not ask for it.
     let remedy = of("position-budget-small").unwrap()["remedy"].as_str();
     assert!(remedy.unwrap().starts_with("Place more gauges"));
     let sigma = &plan["load_sigma"][0];
     assert!(sigma["sigma_as_glued"].as_f64() > sigma["sigma"].as_f64());
 }
 
-/// Each line in place of the job's line of the same key; a new one at the head of `[placement]`.
+/// Replaces the line of the job with the same key by each line. A new key goes to the beginning of `[placement]`.
 fn edit(job: &Path, lines: &str) {
     let text = std::fs::read_to_string(job).unwrap();
     let mut text: Vec<&str> = text.lines().collect();
@@ -169,7 +170,7 @@ fn edit(job: &Path, lines: &str) {
     std::fs::write(job, text.join("\n")).unwrap();
 }
 
-/// Whether a documented field, with `*` for any name and for all below where it comes last, is this one.
+/// Returns whether `path` matches a documented field. `*` stands for any name, and at the end for everything below.
 fn is_field(pattern: &str, path: &str) -> bool {
     let (mut a, mut b) = (pattern.split('.').peekable(), path.split('.'));
     while let Some(p) = a.next() {
@@ -184,7 +185,8 @@ fn is_field(pattern: &str, path: &str) -> bool {
     b.next().is_none()
 }
 
-/// Fields of a value, lists looked through; what a name of the job leads to has dots of its own and is not followed.
+/// Collects the fields of a value, including those in lists. Values below a name of the job are omitted, because such
+/// names may contain dots.
 fn fields_of(value: &serde_json::Value, path: &str, out: &mut std::collections::BTreeSet<String>) {
     match value {
         serde_json::Value::Object(map) => {
@@ -203,7 +205,7 @@ fn fields_of(value: &serde_json::Value, path: &str, out: &mut std::collections::
     }
 }
 
-/// Every field and every column that the commands of the guide wrote stands in the reference.
+/// Fails unless the reference contains every field and every column that the commands of the guide wrote.
 fn check_documented(folder: &Path) {
     use strainbridge::report::reference::{columns, fields};
     let mut seen = 0;
@@ -275,7 +277,7 @@ fn documented_in(
         if !name.ends_with(".csv") {
             continue;
         }
-        // `reconcile` and the story also write inputs of jobs, in the form of such inputs.
+        // `reconcile` and `demo` also write inputs of jobs, in the format of such inputs.
         let known = columns.iter().any(|c| c[0] == command && c[1] == name);
         if !known && ["reconcile", "demo"].contains(&command) {
             continue;

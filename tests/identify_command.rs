@@ -1,4 +1,4 @@
-//! `identify` from job to result.json.
+//! `identify` from the job to result.json.
 
 #[path = "../nastran/tests/support/mod.rs"]
 mod support;
@@ -125,8 +125,8 @@ fn bad_records_end_with_code_2_and_name_file_line_and_remedy() {
     fails("k_q");
 }
 
-/// By Newton's laws the force on the chassis is the wheel force less what the wheel's own mass takes; hanger and shackle share it as the
-/// levers say.
+/// By Newton's laws, the force on the chassis is the wheel force minus the inertia force of the wheel. Hanger and
+/// shackle share it by the lever rule.
 #[test]
 fn the_chassis_force_is_told_by_mass_by_springs_and_at_the_seats_of_the_leaf() {
     let Some(case) = support::find_shared_path("hidden_effects/dynamics/dev-d1") else {
@@ -183,7 +183,8 @@ fn the_chassis_force_is_told_by_mass_by_springs_and_at_the_seats_of_the_leaf() {
     );
 }
 
-/// The rig hangs on the ground by spring 2: its masses are no load of the shaker. Units are those of the job, on page and in tables.
+/// Spring 2 connects the rig to the ground, so the weight of its masses is not a load of the shaker. Page and tables
+/// use the units of the job.
 #[test]
 fn a_rig_has_no_static_load_and_its_tables_and_page_are_in_the_units_of_the_job() {
     let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/rig");
@@ -223,7 +224,8 @@ fn a_rig_has_no_static_load_and_its_tables_and_page_are_in_the_units_of_the_job(
     }
 }
 
-/// A force of the other sign, or a record a thousand times as large: no noise is declared, and the model leaves all of it.
+/// A force with reversed sign, or a record a thousand times as large. No noise is declared, and the model explains
+/// nothing of it.
 #[test]
 fn a_model_that_leaves_most_of_a_channel_is_an_error_where_no_noise_is_declared() {
     let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/rig");
@@ -285,7 +287,7 @@ fn a_channel_whose_name_is_misspelt_is_named_and_not_taken_for_one_that_was_not_
     assert!(message.contains("`f_whel` for `f_wheel`"), "{message}");
 }
 
-/// Columns of a table by name.
+/// Returns the columns of a table by name.
 fn columns(path: &Path) -> std::collections::BTreeMap<String, Vec<f64>> {
     let text = std::fs::read_to_string(path).unwrap();
     let mut lines = text.lines();
@@ -330,8 +332,7 @@ fn one_accelerometer_and_a_known_sprung_mass_give_the_chassis_force_with_its_int
     for i in n / 4..3 * n / 4 {
         let truth = mass * a(table["time"][i]);
         let [force, low, high] = ["b.by_mass", "b.low", "b.high"].map(|c| table[c][i]);
-        // The record ends within a period, which the filter of the band spreads.
-        // 1.1e-3 is measured.
+        // The record ends within a period, and the filter of the band spreads the step. Measured: 1.1e-3.
         assert!(
             (force - truth).abs() < 2e-3 * mass * size,
             "{force} {truth}"
@@ -346,7 +347,7 @@ fn one_accelerometer_and_a_known_sprung_mass_give_the_chassis_force_with_its_int
             "{low} {force} {half}"
         );
     }
-    // Without a mass the missing channel is a fault.
+    // Without a mass, the missing channel is a fault.
     let without = job.replace(&format!("known = {{ m_b = {mass} }}\n"), "");
     std::fs::write(here.join("job.toml"), without).unwrap();
     let output = run(&here.join("job.toml"), &here.join("without"));
@@ -355,7 +356,7 @@ fn one_accelerometer_and_a_known_sprung_mass_give_the_chassis_force_with_its_int
     assert!(said.contains("a_wheel"), "{said}");
 }
 
-/// Of a measured quarter truck the mass alone gives the force that spring and damper transmit.
+/// For a measured quarter truck, the mass alone gives the force of spring and damper.
 #[test]
 fn the_force_by_a_known_mass_is_that_of_spring_and_damper() {
     let here = folder("identify_mass_alone");
@@ -383,7 +384,7 @@ fn the_force_by_a_known_mass_is_that_of_spring_and_damper() {
     let full = columns(&here.join("out/chassis_forces.csv"));
     let alone = columns(&here.join("known/chassis_forces.csv"));
     assert!(!alone.contains_key("b.by_springs") && !alone.contains_key("s"));
-    // Ends that the stretch needs are cut off both alike, or the shorter one begins later.
+    // The computation of the spring stretch cuts off the ends of both records, or the shorter record starts later.
     let at = |t: f64| full["time"].iter().position(|x| (x - t).abs() < 1e-6);
     let (mut squares, mut n) = ([0.0; 2], 0);
     for (t, force) in alone["time"].iter().zip(&alone["b.by_mass"]) {
@@ -394,11 +395,11 @@ fn the_force_by_a_known_mass_is_that_of_spring_and_damper() {
         }
     }
     assert!(n > 3000, "{n}");
-    // Sensor noise is below one per cent of the accelerations, as for both ways of the whole model.
+    // Sensor noise is below one per cent of the accelerations, as for both methods with the whole model.
     assert!(squares[0] < 0.02f64.powi(2) * squares[1], "{squares:?}");
 }
 
-/// `identify` and `reconcile` report a reversed wheel force as such, and no effect of the model with it.
+/// `identify` and `reconcile` report a reversed wheel force as such, without any effect of the model.
 #[test]
 fn a_reversed_wheel_force_is_an_error_of_identify_and_reconcile() {
     let here = folder("identify_reversed");

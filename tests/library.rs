@@ -1,4 +1,4 @@
-//! The library asked as a program of somebody else's would: files in memory, no folder, no terminal.
+//! Uses the library as another program would: files in memory, no folder, no terminal.
 
 use std::fmt::Write;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use strainbridge::workflow::reconcile::extended_job;
 use strainbridge::workflow::recover::{Block, RecordHead, RecordSink, Samples, recover_into};
 use strainbridge::{Context, Fault, Job, Severity, place, reconcile, recover, sensitivity};
 
-/// A free strip of plates along x, 11 by 2 grids 20 mm apart, 2 mm thick.
+/// Returns a free strip of plates along x, 11 by 2 grids 20 mm apart, 2 mm thick.
 fn strip() -> String {
     let mut deck = String::from("SOL 101\nCEND\nBEGIN BULK\n");
     for i in 0..11 {
@@ -79,7 +79,7 @@ fn a_rule_that_leaves_no_place_is_named() {
             "exclude_properties = [1]\nelements = [2]\n",
             "`exclude_properties` leaves 0 of 1",
         ),
-        // Fewer places than gauges: the rule that takes most.
+        // Fewer places than gauges: the message names the rule that excludes most places.
         (
             "elements = [2]\nsurfaces = [\"top\"]\nangle_step_deg = 180\n",
             "`elements` leaves 1 of 10",
@@ -109,17 +109,17 @@ fn a_layout_comes_as_a_value_with_its_certificate() {
         let length: f64 = gauge.direction.iter().map(|v| v * v).sum();
         assert!((length - 1.0).abs() < 1e-9, "a direction is a unit vector");
     }
-    // The certificate is a share; what is proved the best has nothing above it.
+    // The efficiency bound is a share. A layout that is proved to be the best reaches the upper bound.
     assert!(plan.efficiency_bound > 0.0 && plan.efficiency_bound <= 1.0 + 1e-12);
     assert!(plan.log_det <= plan.upper_bound + 1e-9);
     assert!(plan.findings.worst_severity() < Some(Severity::Error));
-    // Asked again, the kept solution gives the same layout.
+    // In a second call, the stored solution gives the same layout.
     let again = place(&job, &context).unwrap();
     assert_eq!(plan.gauges, again.gauges);
     assert!(again.notes.iter().any(|n| n.contains("stored")));
 }
 
-/// What is planned and what is recovered from readings without error are the same covariance, asked twice.
+/// The planned covariance equals the covariance recovered from readings without error.
 #[test]
 fn the_planned_sigma_is_the_recovered_one_at_the_expected_loads() {
     let errors = "noise_microstrain = 1.0\nmodel_uncertainty_rel = 0.02\n";
@@ -162,20 +162,20 @@ fn the_planned_sigma_is_the_recovered_one_at_the_expected_loads() {
     assert_eq!(placed.load_sigma.len(), 4);
     let variance = |i: usize| placed.load_sigma[i].sigma.powi(2);
     let (both, each) = (variance(2) + variance(3), variance(0) + variance(1));
-    // Variances of sum and difference make twice those of their terms.
+    // The variances of sum and difference add up to twice those of the terms.
     assert!((both - 2.0 * each).abs() < 1e-9 * each, "{both} {each}");
     let truths = [10.0, 10.0, 20.0, 0.0];
     for ((planned, got), truth) in placed.load_sigma.iter().zip(&got.loads).zip(truths) {
         let value = got.value;
         assert!((value - truth).abs() < 1e-6, "{value}");
-        // Only the chi-square of readings without error could differ, and it widens nothing.
+        // Only the chi-square could differ. Readings without error do not widen the intervals.
         let ratio = got.sigma / planned.sigma;
         assert!((ratio - 1.0).abs() < 0.01, "{} {ratio}", planned.name);
         assert!(planned.sigma_as_glued.unwrap() > planned.sigma);
     }
 }
 
-/// Installed gauges at the chosen places have the sigmas of the chosen ones, with and without the tolerances of gluing.
+/// Installed gauges at the chosen places have the sigmas of the chosen gauges, with and without tolerances.
 #[test]
 fn an_installed_layout_has_the_sigmas_of_the_same_chosen_one() {
     let all = "angle_tolerance_deg = 2.0\nposition_tolerance = 2.0\ngauge_factor_rel = 0.01\nmodel_uncertainty_rel = 0.05\n";
@@ -202,7 +202,7 @@ fn an_installed_layout_has_the_sigmas_of_the_same_chosen_one() {
         let installed = again.installed.as_ref().unwrap().quality.as_ref().unwrap();
         assert_eq!(installed.load_sigma.len(), chosen.load_sigma.len());
         for (a, b) in installed.load_sigma.iter().zip(&chosen.load_sigma) {
-            // Directions are written with all digits; the least squares of the loads take a few.
+            // Directions are written with all digits, and the least squares of the loads lose a few.
             let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-6;
             assert!(near(a.sigma, b.sigma), "{tolerances}: {a:?} {b:?}");
             let glued = [a, b].map(|l| l.sigma_as_glued.unwrap());
@@ -221,7 +221,8 @@ fn faults_come_with_file_line_and_remedy() {
     assert!(!first.remedy.is_empty());
 }
 
-/// Twelve gauges under three loads, 14 runs: readings with a repeating scatter below a microstrain, gauge `G05` wired the wrong way round.
+/// Returns twelve gauges under three loads in 14 runs. Readings have a repeating scatter below a microstrain, and gauge
+/// `G05` has reversed polarity.
 fn yard() -> InMemory {
     let at = |g: usize, l: usize| 20.0 * ((1.3 + 0.7 * l as f64) * (g as f64 + 1.0)).sin();
     let load = |r: usize, l: usize| 3.0 + 2.5 * ((2.1 + l as f64) * (r as f64 + 1.0)).cos();
@@ -276,13 +277,13 @@ fn what_is_missing_comes_as_a_value_with_the_job_that_has_it() {
     assert_eq!(found.effects.len(), 1);
     let effect = &found.effects[0];
     assert_eq!(effect.place.as_deref(), Some("G05"), "{}", effect.id);
-    // A turned sign has no parameter: -1 stands for it.
+    // A reversed sign has no parameter. Its size is reported as -1.
     assert_eq!(effect.size.as_ref().and_then(|s| s.size), Some(-1.0));
     let gap = &found.gap;
-    // A twelfth of the readings has twice its size for a residual; what is left is scatter.
+    // The residual of a twelfth of the readings is twice their size. Only scatter remains afterwards.
     assert!(gap.before > 0.1 && gap.after < 0.05, "{gap:?}");
     assert!(found.strain.is_some() && found.motion.is_none() && found.causes.is_none());
-    // The extended model turns the channel of that gauge and no others.
+    // The extended model corrects the channel of that gauge and no other.
     let extended = found.extended_model.as_ref().expect("a model");
     assert!(extended.readings.is_none());
     let [correction] = extended.corrections.as_slice() else {
@@ -298,7 +299,7 @@ fn what_is_missing_comes_as_a_value_with_the_job_that_has_it() {
         "{text}"
     );
     assert!(text.contains("title = \"yard, with "), "{text}");
-    // Its path is known once the folder is.
+    // The path of the model is known as soon as the folder is known.
     assert_eq!(extended.path, extended.name);
     found.answer.put_into("out".as_ref());
     let json = serde_json::to_value(&found.answer).unwrap();
@@ -335,7 +336,7 @@ fn causes_that_changed_together_come_as_rivals_of_the_same_type() {
     assert_eq!(found.rivals.len(), 2);
     assert!(found.strain.is_none() && found.motion.is_none());
     assert!(found.best_attempt.is_none() && found.extended_model.is_none());
-    // The runs file may have the loads of a given S.
+    // The runs file may contain the loads of a given S.
     let files = files
         .with_file("S.csv", "gauge,F1\na,1\nb,2\n")
         .with_file(
@@ -364,7 +365,7 @@ fn motion_without_a_vehicle_is_refused() {
     assert!(faults.iter().any(|f| f.to_string().contains("vehicle")));
 }
 
-/// Two loads, three gauges, S given, microstrain per N.
+/// Given S with two loads and three gauges, microstrain per N.
 const GIVEN: [[f64; 2]; 3] = [[1.0, 0.2], [-0.3, 1.1], [0.8, -0.5]];
 
 const RECOVER: &str = r#"
@@ -385,13 +386,14 @@ strain = "strain.csv"
 noise_microstrain = 0.01
 "#;
 
-/// Loads of row `i`, N.
+/// Returns the loads of row `i`, N.
 fn loads(i: usize) -> [f64; 2] {
     let t = i as f64 * 0.1;
     [100.0 * t.sin(), 50.0 * (0.7 * t).cos()]
 }
 
-/// A job and its strain without noise: `rows` runs (`key` is `run`), or samples at 10 Hz (`time`); `blank` rows lack gauge 2.
+/// Returns a job and its strain without noise: `rows` runs (`key` is `run`), or samples at 10 Hz (`time`). The `blank`
+/// rows lack gauge 2.
 fn measured_job(key: &str, rows: usize, blank: std::ops::Range<usize>) -> InMemory {
     let mut table = format!("{key},G1,G2,G3\n");
     for i in 0..rows {
@@ -418,7 +420,7 @@ fn measured_job(key: &str, rows: usize, blank: std::ops::Range<usize>) -> InMemo
         .with_file("job.toml", RECOVER)
 }
 
-/// Keys of the answer in `result.json`.
+/// Returns the keys of the answer in `result.json`.
 fn keys<A: serde::Serialize>(answer: &A) -> Vec<String> {
     let json = serde_json::to_value(answer).unwrap();
     json.as_object().unwrap().keys().cloned().collect()
@@ -482,7 +484,7 @@ fn loads_of_a_record_stay_in_memory_sample_by_sample() {
     }
     assert_eq!(widths.len(), 500);
     assert!(widths[110] > 1.01 * widths[99], "a gauge less tells less");
-    // Whatever part is asked for, the same samples come.
+    // The samples do not depend on the requested part.
     let (mut all, mut parts) = (Vec::new(), Vec::new());
     history.read(0, 500, &[0, 1, 2], &mut all);
     for from in (0..500).step_by(77) {
@@ -512,7 +514,7 @@ fn loads_of_a_record_stay_in_memory_sample_by_sample() {
     );
 }
 
-/// A gauge without a zero reading has an offset that nobody knows: its readings are no strain.
+/// A gauge without a zero reading has an unknown offset, so its readings are not used as strain.
 #[test]
 fn a_gauge_that_the_zero_file_lacks_has_no_part_in_the_loads() {
     let mut strain = "run,G1,G2,G3\n".to_owned();
@@ -532,7 +534,7 @@ fn a_gauge_that_the_zero_file_lacks_has_no_part_in_the_loads() {
     for (i, of_run) in answer.runs().unwrap().loads.chunks(3).enumerate() {
         let [a, b] = loads(i).map(|v| v * 1e-3);
         for (load, truth) in of_run.iter().zip([a, b]) {
-            // Two gauges, two loads, no noise: exact but for rounding.
+            // Two gauges and two loads without noise are exact except for rounding.
             assert!((load.value - truth).abs() < 1e-9, "{load:?} {truth}");
         }
     }
@@ -544,7 +546,7 @@ fn a_gauge_that_the_zero_file_lacks_has_no_part_in_the_loads() {
     );
 }
 
-/// Counts what it is given, and has enough after some samples.
+/// Counts samples, and stops after a number of them.
 #[derive(Default)]
 struct Counter {
     samples: usize,
@@ -597,7 +599,7 @@ fn a_sink_of_somebody_else_gets_every_sample_once_and_may_refuse() {
         .unwrap();
     assert_eq!(faults.first().unwrap().wrong, "too many");
     assert_eq!(sink.ended, None);
-    // Runs are no record.
+    // Runs are not a record.
     let files = measured_job("run", 5, 0..0);
     let job = Job::read("job.toml", &files).unwrap();
     let mut sink = Counter::default();
@@ -670,7 +672,7 @@ fn wanted_elements_and_picked_lists_are_kept() {
     assert_eq!(on.len(), 4);
     assert!(on.contains(&7) && on.contains(&8), "{on:?}");
     assert!(on.iter().all(|e| *e <= 8 && *e != 3), "{on:?}");
-    // What a wish costs can't be less than nothing, and the certificate says it.
+    // A requested element cannot improve the layout, and the efficiency bound shows it.
     let free = plan("plain.toml").unwrap();
     assert!(wanted.log_det <= free.upper_bound + 1e-9);
     assert!(wanted.efficiency_bound <= 1.0 + 1e-12);
@@ -690,7 +692,7 @@ fn wanted_elements_and_picked_lists_are_kept() {
     assert!(faults.to_string().contains("element 99 is not a candidate"));
 }
 
-/// A gauge drawn at 30 degrees and known to be turned by 60 reads what one drawn at 90 does.
+/// A gauge with the nominal angle 30 degrees and a correction by 60 reads the same as one with the nominal angle 90.
 #[test]
 fn a_gauge_that_is_known_to_be_turned_is_turned_in_modes_too() {
     let gauge = |angle: u32| {
@@ -721,7 +723,7 @@ fn a_gauge_that_is_known_to_be_turned_is_turned_in_modes_too() {
     }
 }
 
-/// A moment that is not called one is a moment to `reconcile` too, and S is that of `sensitivity` to the last digits.
+/// A moment without a moment name is a moment for `reconcile` too. S equals that of `sensitivity` to the last digits.
 #[test]
 fn reconcile_has_the_s_that_every_command_has() {
     let files = yard();
@@ -758,7 +760,7 @@ fn reconcile_has_the_s_that_every_command_has() {
                 .iter()
                 .position(|n| *n == load.name)
                 .unwrap();
-            // Microstrain a kilonewton (or kN m) against strain a newton.
+            // Microstrain per kilonewton (or kN m), compared with strain per newton.
             let asked = frame.influence[row * n_c + column] * 1e-6 / 1e3;
             let had = s.values[(g, l)];
             assert!(
@@ -768,7 +770,7 @@ fn reconcile_has_the_s_that_every_command_has() {
             );
         }
     }
-    // The runs file counts the moment in N mm: a millionth of a kN m.
+    // The runs file gives the moment in N mm, a millionth of a kN m.
     let a = frame.load_names.iter().position(|n| n == "A").unwrap();
     let stated = 3.0 + 2.5 * (2.1_f64).cos();
     assert!((frame.loads[a] - 1e-6 * stated).abs() < 1e-12);
@@ -801,7 +803,7 @@ fn a_folder_is_verified_by_whoever_can_answer_again() {
     let same = ask();
     assert!(same.differs.is_empty(), "{:?}", same.differs);
     assert!(same.same.len() > 2 && same.findings.worst_severity().is_none());
-    // Twice as stiff: another input, and half the strain.
+    // Twice the stiffness is a different input and gives half the strain.
     std::fs::write(&deck, strip().replace("210000.", "420000.")).unwrap();
     let other = ask();
     let files: Vec<&str> = other.differs.iter().map(|d| d.file.as_str()).collect();
@@ -817,7 +819,7 @@ fn a_folder_is_verified_by_whoever_can_answer_again() {
     std::fs::remove_dir_all(folder).unwrap();
 }
 
-/// Stops the work when it begins to solve.
+/// Stops the work at the beginning of the solution.
 struct StopsAtSolve(strainbridge::stop::Stop);
 
 impl strainbridge::host::context::Progress for StopsAtSolve {

@@ -1,4 +1,5 @@
-//! The mesh error that `[model] mesh_error = true` predicts and takes out, against a mesh a third as wide: open rails, where 40 mm are coarse.
+//! The mesh error that `[model] mesh_error = true` predicts and subtracts, compared with a mesh three times as fine. In
+//! the open rails, 40 mm are coarse.
 
 mod drawn;
 
@@ -9,7 +10,8 @@ use std::process::Command;
 
 /// Width of the coarse elements.
 const WIDTH: f64 = 40.0;
-/// Coarse cells along a rail, from rail to rail, over the height and width of a rail, where cross members stand and how high they are.
+/// Coarse cells along a rail, between the rails, and over height and width of a rail. Then stations and heights of the
+/// cross members.
 const RAIL: usize = 40;
 const SPAN: usize = 20;
 const HEIGHT: usize = 6;
@@ -25,16 +27,18 @@ const LOADS: [(&str, usize); 6] = [
     ("FY", 1),
     ("FZ", 1),
 ];
-/// Their expected size, N.
+/// Expected size of the loads, N.
 const EXPECTED: f64 = 1.0e4;
 
-/// Half a ladder frame: two C rails (240 x 80 x 8 mm) held at x = 0, two cross members, loaded through RBE3 below the tips; `k` elements on
-/// 40 mm.
+/// Half a ladder frame with `k` elements per 40 mm.
+///
+/// It has two C rails (240 x 80 x 8 mm) fixed at x = 0 and two cross members. RBE3 elements below the tips apply the
+/// loads.
 struct Frame {
     k: usize,
     grids: BTreeMap<[usize; 3], usize>,
     quads: Vec<[usize; 4]>,
-    /// By quad: its coarse cell (patch, along, across).
+    /// Coarse cell of each quad (patch, along, across).
     cells: Vec<[usize; 3]>,
 }
 
@@ -94,7 +98,7 @@ impl Frame {
         for (id, q) in (1..).zip(&self.quads) {
             let _ = writeln!(deck, "CQUAD4,{id},1,{},{},{},{}", q[0], q[1], q[2], q[3]);
         }
-        // A patch of the web, 240 x 120 mm, on grids that both meshes have.
+        // A patch of the web, 240 x 120 mm, on grids of both meshes.
         for (side, web) in [0, SPAN * self.k].into_iter().enumerate() {
             let patch = |at: &&[usize; 3]| {
                 at.iter().all(|c| c.is_multiple_of(self.k))
@@ -132,7 +136,7 @@ impl Frame {
         deck
     }
 
-    /// Gauges on every quad of the `cells`: `cell number`.
+    /// Returns gauges on every quad of the `cells`, named by cell number and element.
     fn gauges(&self, cells: &[[usize; 3]]) -> String {
         let mut out = String::new();
         for (id, cell) in (1..).zip(&self.cells) {
@@ -181,7 +185,7 @@ fn run(folder: &Path, command: &str, job: &str) -> serde_json::Value {
         .env("STRAINBRIDGE_CACHE", folder.join("kept"))
         .output()
         .unwrap();
-    // S of the coarse mesh does not explain what the fine one reads, and says so.
+    // S of the coarse mesh does not explain the readings of the fine one, and the output reports it.
     let code = i32::from(job == "recover_coarse.toml");
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(code), "{said}");
@@ -189,7 +193,7 @@ fn run(folder: &Path, command: &str, job: &str) -> serde_json::Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// Rows of `sensitivity.csv` by name less the element's number, the mean where several have it.
+/// Returns the rows of `sensitivity.csv` by name without the element number. Rows with equal names are averaged.
 fn rows(folder: &Path, job: &str) -> BTreeMap<String, Vec<f64>> {
     let text = std::fs::read_to_string(folder.join(format!("{job}.out/sensitivity.csv"))).unwrap();
     let mut sums: BTreeMap<String, (Vec<f64>, f64)> = BTreeMap::new();
@@ -206,7 +210,7 @@ fn rows(folder: &Path, job: &str) -> BTreeMap<String, Vec<f64>> {
     sums.into_iter().map(|(name, s)| (name, mean(s))).collect()
 }
 
-/// Cells of the first rail at least 200 mm from the support and from the load.
+/// Returns the cells of the first rail that are at least 200 mm away from the support and from the load.
 fn middle_cells() -> Vec<[usize; 3]> {
     let mut cells = Vec::new();
     for i in (6..29).step_by(3) {
@@ -217,7 +221,7 @@ fn middle_cells() -> Vec<[usize; 3]> {
     cells
 }
 
-/// The job's folder with both meshes; readings of gauges are means over the elements of the coarse mesh.
+/// Writes the folder of the job with both meshes. Readings of gauges are means over the elements of a coarse cell.
 fn meshes(name: &str, cells: &[[usize; 3]]) -> PathBuf {
     let folder = folder(name);
     let write = |name: &str, text: String| std::fs::write(folder.join(name), text).unwrap();
@@ -234,10 +238,11 @@ fn meshes(name: &str, cells: &[[usize; 3]]) -> PathBuf {
     folder
 }
 
-/// Where a load strains a gauge by at least this share of what the load that strains it most does.
+/// Least strain of a gauge under a load, as a share of the largest strain of the gauge under any load.
 const STRAINS: f64 = 0.3;
 
-/// Entries of S worth a look, times expected loads: coarse, limit (by the command), fine, relative error as predicted.
+/// Returns the entries of S above this limit, times expected loads: coarse mesh, limit of the command, fine mesh,
+/// predicted relative error.
 fn entries(folder: &Path) -> Vec<[f64; 4]> {
     let with = run(folder, "sensitivity", "with.toml");
     run(folder, "sensitivity", "coarse.toml");
@@ -262,8 +267,8 @@ fn entries(folder: &Path) -> Vec<[f64; 4]> {
     out
 }
 
-/// Nine in ten errors above 1 % are predicted within a factor of 1.5, sign included; where the error is smaller, so is the prediction.
-/// And S of the command is much nearer to the fine mesh than that of the deck.
+/// Nine in ten errors above 1 % are predicted within a factor of 1.5 and with the right sign. For a smaller error, the
+/// prediction is small. S of the command is much closer to the fine mesh than S of the deck.
 #[test]
 fn the_mesh_error_of_open_rails_is_that_against_a_mesh_a_third_as_wide() {
     let folder = meshes("frame", &middle_cells());
@@ -290,12 +295,12 @@ fn the_mesh_error_of_open_rails_is_that_against_a_mesh_a_third_as_wide() {
     assert!(large > 50, "{large}");
     assert!(near * 10 >= large * 9, "{near} of {large}");
     assert!(quiet * 10 >= small * 9, "{quiet} of {small}");
-    // The fine mesh has an error itself: an eighth of what the coarse one has against it.
+    // The fine mesh has an error too: an eighth of the difference between the coarse and the fine mesh.
     assert!(after < before / 9.0, "{}", (after / before).sqrt());
 }
 
-/// Without the key S is corrected where loads act through an RBE3, and it is S of the deck's mesh where a load acts at a grid of a shell: the strain
-/// under a point load has no limit.
+/// Without the key, S is corrected for loads through an RBE3. For a load at a grid of a shell, S is that of the deck's mesh.
+/// The strain under a point load does not converge.
 #[test]
 fn without_the_key_the_error_is_subtracted_unless_a_load_acts_directly_on_a_shell() {
     let cells = &middle_cells()[..2];
@@ -316,13 +321,15 @@ fn without_the_key_the_error_is_subtracted_unless_a_load_acts_directly_on_a_shel
     assert_eq!(default.0["mesh_error"], with.0["mesh_error"]);
     assert_ne!(direct.1, default.1);
     assert_eq!(direct.1, declined.1);
-    // Nothing is reported either, as where the key declines the correction.
+    // Nothing is reported either, as if the key declines the correction.
     assert_eq!(direct.0["mesh_error"], declined.0["mesh_error"]);
     assert_ne!(direct.0["mesh_error"], with.0["mesh_error"]);
 }
 
-/// A frame that is the fine mesh, read with noise: loads recovered from the coarse deck. All 100 runs share one error of the mesh, so that what
-/// their intervals hold scatters more than that of independent runs.
+/// Recovers loads with the coarse deck from readings of the fine mesh with noise.
+///
+/// All 100 runs have the same mesh error. The coverage of their intervals therefore varies more than that of
+/// independent runs.
 #[test]
 fn loads_are_recovered_better_without_the_mesh_error_and_intervals_hold_them() {
     let all = middle_cells();
@@ -381,12 +388,14 @@ fn loads_are_recovered_better_without_the_mesh_error_and_intervals_hold_them() {
         rms.push(((sum / f64::from(n)).sqrt(), held as f64 / f64::from(n)));
     }
     assert!(rms[1].0 < 0.2 * rms[0].0, "{rms:?}");
-    // Asked of the intervals that 95 +- 3 % hold; all runs share one error of the mesh.
+    // The coverage must be 95 +- 3 %. All runs have the same mesh error.
     assert!((0.92..=0.98).contains(&rms[1].1), "{rms:?}");
 }
 
-/// A strip of 4 x 2 elements with rods along its long sides and its loaded end, of a material that does not contract: uniform strain
-/// `F / (E (A + 2 A_rod))` on any mesh. Where rods go along shells the divided mesh is tied to them.
+/// A strip of 4 x 2 elements with rods along its long sides and its loaded end, of a material without lateral
+/// contraction.
+///
+/// The strain is uniform, `F / (E (A + 2 A_rod))`, on any mesh. The divided mesh is tied to rods along shells.
 #[test]
 fn uniform_strain_beside_rods_has_no_mesh_error() {
     let folder = folder("rods");
@@ -446,7 +455,8 @@ impl nastran::bdf::Loader for NoFiles {
     }
 }
 
-/// Large meshes are divided round the gauges alone: what that changes at a gauge against what dividing the whole mesh changes there.
+/// Large meshes are divided only around the gauges. The test compares the change at a gauge with the change on a mesh
+/// that is divided everywhere.
 #[test]
 fn a_mesh_divided_round_a_gauge_says_what_one_divided_everywhere_says() {
     use strainbridge::fe::{SolveOptions, Support, UnitLoad, solve_unit_loads_on};
@@ -513,7 +523,7 @@ fn a_mesh_divided_round_a_gauge_says_what_one_divided_everywhere_says() {
     }
     println!("{missed:?}");
     assert!(missed.windows(2).all(|w| w[1] < w[0]), "{missed:?}");
-    // Two thirds and more of it with as many rows as the program takes: what is weighed as left (half of what is seen, each entry and the pattern)
-    // is made for that.
+    // With as many rows as the program takes, at least two thirds are included. The assumed remainder (half of the
+    // visible change, for each entry and for the pattern) covers the rest.
     assert!(missed[4] < 0.4, "{missed:?}");
 }

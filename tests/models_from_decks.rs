@@ -1,4 +1,5 @@
-//! Every case of the shared set as a model: ids, places, frames, masses against what another reader and the solvers say.
+//! Every case of the shared set as a model: ids, places, frames and masses, compared with another reader and with the
+//! solvers.
 
 #[path = "../nastran/tests/support/mod.rs"]
 mod support;
@@ -18,10 +19,10 @@ fn json(path: &Path) -> Option<Value> {
     serde_json::from_slice(&std::fs::read(path).ok()?).ok()
 }
 
-/// Cases with a mesh that the set has at least (30 in November 2026).
+/// Least number of cases with a mesh in the set (30 in November 2026).
 const LEAST: usize = 27;
 
-/// Name, expected mesh and our model of every case with a mesh; none where the set is absent.
+/// Returns name, expected mesh and model of every case with a mesh, or an empty list if the set is absent.
 fn cases() -> Vec<(String, Value, DeckModel)> {
     let Some(folder) = find_nastran_folder() else {
         return Vec::new();
@@ -64,8 +65,10 @@ fn cases() -> Vec<(String, Value, DeckModel)> {
     out
 }
 
-/// Calls `check` for every case, and adds up what it compared; fails where that is less than the set is known to hold, so that a test can't
-/// pass by comparing nothing.
+/// Calls `check` for every case and adds up the number of comparisons.
+///
+/// It fails if there are fewer comparisons than the set is known to contain. A test therefore cannot pass without any
+/// comparison.
 fn at_least(least: usize, mut check: impl FnMut(&str, &Value, &DeckModel) -> usize) {
     let cases = cases();
     let compared = cases.iter().map(|(n, mesh, read)| check(n, mesh, read));
@@ -73,7 +76,7 @@ fn at_least(least: usize, mut check: impl FnMut(&str, &Value, &DeckModel) -> usi
     assert!(cases.is_empty() || compared >= least, "{compared} compared");
 }
 
-/// Our model of a case, which is in the set wherever the set is there.
+/// Returns the model of a case, or `None` if the set is absent.
 fn case(name: &str) -> Option<DeckModel> {
     let cases = cases();
     if cases.is_empty() {
@@ -93,7 +96,7 @@ fn vec3(v: &Value) -> Vec3 {
     Vec3::new(x[0], x[1], x[2])
 }
 
-/// Largest coordinate of a model.
+/// Returns the largest coordinate of a model.
 fn size(m: &Model) -> f64 {
     m.grids.iter().map(|g| g.x.amax()).fold(1e-30, f64::max)
 }
@@ -112,10 +115,11 @@ fn every_real_deck_is_a_model_without_faults() {
 #[test]
 fn grids_stand_where_another_reader_puts_them() {
     let mut wrong = String::new();
-    // The set holds 841.
+    // The set has 841.
     at_least(800, |name, mesh, read| {
         let m = &read.model;
-        // Coordinates of a 32-bit OP2 are exact singles on both sides; what remains is the arithmetic of frames.
+        // Coordinates of a 32-bit OP2 are exact single precision numbers on both sides. Only the arithmetic of frames
+        // differs.
         let tolerance = 1e-9 * size(m);
         let geometric = m.grids.iter().filter(|g| !g.is_scalar()).count();
         if geometric as u64 != mesh["nodes"].as_u64().unwrap() {
@@ -137,7 +141,8 @@ fn grids_stand_where_another_reader_puts_them() {
                 wrong.push_str(&format!("{name}: grid {id} off by {d:e}\n"));
             }
             let cd = m.frames[ours.cd.us()].id;
-            // An explicit 0 on GRID wins over GRDSET; the other reader takes it for a blank (msc_buckling_tabs, grid 100).
+            // An explicit 0 on GRID has priority over GRDSET. The other reader takes it for a blank (msc_buckling_tabs,
+            // grid 100).
             let overruled = name == "msc_buckling_tabs" && cd == 0;
             if !overruled && cd as u64 != g["cd"].as_u64().unwrap_or(0) {
                 wrong.push_str(&format!(
@@ -154,7 +159,7 @@ fn grids_stand_where_another_reader_puts_them() {
 #[test]
 fn shells_have_the_output_frames_and_material_axes_of_the_oracle() {
     let mut wrong = String::new();
-    // The set holds 586.
+    // The set has 586.
     at_least(550, |name, mesh, read| {
         let m = &read.model;
         let Some(frames) = mesh["cquad4_frames"].as_array() else {
@@ -178,18 +183,20 @@ fn shells_have_the_output_frames_and_material_axes_of_the_oracle() {
                     wrong.push_str(&format!("{name}: element {id} axis {k} off by {d:e}\n"));
                 }
             }
-            // Material x from side 1-2 turned about the normal of the diagonals.
+            // The material x axis is side 1-2, rotated about the normal of the diagonals.
             let z: Vec3 = frame.row(2).transpose();
             let side = x[1] - x[0];
             let e1 = (side - z * side.dot(&z)).normalize();
             let e2 = z.cross(&e1);
             let (sin, cos) = s.material_angle_rad.sin_cos();
             let ours = e1 * cos + e2 * sin;
-            // The other reader leaves side 1-2 of a warped quad out of the mean plane: compare its projection.
+            // In the other reader, side 1-2 of a warped quad is not in the mean plane. The test compares its
+            // projection.
             let theirs = vec3(&f["material"].as_array().unwrap()[0]);
             let theirs = (theirs - z * theirs.dot(&z)).normalize();
             let d = (ours - theirs).amax();
-            // It also turns THETA about that side's own normal: second order in a warp of 3e-3.
+            // The other reader also rotates THETA about the normal of that side, a second-order difference for a warp
+            // of 3e-3.
             if d > 2e-5 {
                 wrong.push_str(&format!(
                     "{name}: element {id} material axis off by {d:e} theta_mcid {}\n",
@@ -205,11 +212,13 @@ fn shells_have_the_output_frames_and_material_axes_of_the_oracle() {
 #[test]
 fn masses_agree_with_another_reader_where_it_is_right() {
     let mut wrong = String::new();
-    // The set holds 20.
+    // The set has 20.
     at_least(18, |name, mesh, read| {
-        // The other reader ignores offsets of CBARs; the printed mass of the ring has a test of its own.
-        // Where the mesh oracle is the geometry of an OP2, its mass is not the solver's (radial_cd: 3.41 against 2.56 of the same mesh
-        // read from its sister decks). It takes curved elements by their corners; the next tests hold us to OGPWG there.
+        // The other reader ignores offsets of CBARs. A separate test compares the printed mass of the ring.
+        //
+        // If the mesh oracle is the geometry of an OP2, its mass is not that of the solver (radial_cd: 3.41 against
+        // 2.56 for the same mesh read from its sister decks). It replaces curved elements by their corners. The next
+        // tests compare with OGPWG there.
         if [
             "n95_inertia_relief_ring",
             "nx_radial_cd",
@@ -223,13 +232,15 @@ fn masses_agree_with_another_reader_where_it_is_right() {
             return 0;
         };
         let w = read.model.weight();
-        // The other reader takes area times mean thickness; of tapered and warped shells the integral differs by 2.5e-6 at most here.
+        // The other reader takes area times mean thickness. For tapered and warped shells, the integral differs by
+        // 2.5e-6 at most here.
         if (w.mass - expected).abs() > 5e-6 * expected {
             wrong.push_str(&format!("{name}: mass {} expected {expected}\n", w.mass));
             return 1;
         }
         let d = (w.cg - vec3(&mesh["mass"]["cg"])).amax();
-        // It puts the mass of an element at the mean of its corners; trapezoids of the wing of d173 are off by 6.8e-5 of the size together.
+        // The other reader puts the mass of an element at the mean of its corners. For the trapezoids of the wing of
+        // d173 this gives 6.8e-5 of the size.
         if d > 1e-4 * size(&read.model) {
             wrong.push_str(&format!(
                 "{name}: cg off by {d:e} of {}\n",
@@ -259,7 +270,8 @@ fn the_ring_weighs_what_its_solver_printed_about_grid_19() {
     for i in 0..6 {
         for j in 0..6 {
             let p = printed[i].as_array().unwrap()[j].as_f64().unwrap();
-            // Printed from single-precision words (6e-8); rotations about the cg in units of mass times length squared.
+            // Printed from single precision values (6e-8). Rotations about the cg are in units of mass times length
+            // squared.
             let scale = if i < 3 && j < 3 {
                 31326.285
             } else {
@@ -297,7 +309,8 @@ fn grid_point_weight_of_the_solver_is_ours() {
                 let p = mo.as_array().unwrap()[i].as_array().unwrap()[j]
                     .as_f64()
                     .unwrap();
-                // Inertia: beams weigh 1/1000 of the points; their own sections' inertia is not lumped by us.
+                // Beams have 1/1000 of the mass of the points. The model does not include the inertia of their
+                // sections.
                 let tolerance = if i < 3 || j < 3 { 1e-6 } else { 1e-5 };
                 assert!(
                     (ours[(i, j)] - p).abs() < tolerance * largest,
@@ -326,15 +339,16 @@ fn curved_elements_weigh_what_the_solver_says() {
         .as_f64()
         .unwrap();
     let ours = read.model.weight().mass;
-    // One CQUADR carries 60 % of the mass and is warped: from the area of its mean plane (ours) to that of two triangles it weighs
-    // 2.112 to 2.119, 0.19 % of the whole; which of them the solver takes is not documented.
+    // One warped CQUADR has 60 % of the mass. Its mass is 2.112 with the area of the mean plane and 2.119 with the area
+    // of two triangles. The difference is 0.19 % of the total. The documentation does not state which one the solver
+    // takes.
     assert!(
         (ours - printed).abs() < 1.9e-3 * printed,
         "{ours} printed {printed}"
     );
 }
 
-/// The model of a deck's text.
+/// Returns the model of a deck's text, and the number of faults.
 fn model_of(case_control: &str, bulk: &str) -> (Model, usize) {
     let text = format!("SOL 101\nCEND\n{case_control}\nBEGIN BULK\n{bulk}\nENDDATA\n");
     let mut loader = nastran::bdf::MemoryLoader::default();
@@ -344,7 +358,7 @@ fn model_of(case_control: &str, bulk: &str) -> (Model, usize) {
     (model, faults.len())
 }
 
-/// Two plates of 2 x 1 and 1 x 1 and a bar of length 3.
+/// Two plates of 2 x 1 and 1 x 1, and a bar of length 3.
 const PLATES: &str = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,2.,1.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,3.,0.,0.\nGRID,6,,3.,1.,0.\n\
      GRID,7,,0.,0.,3.\nCQUAD4,1,1,1,2,3,4\nCQUAD4,2,2,2,5,6,3\nPSHELL,1,1,.01,1,,1,,.5\nPSHELL,2,1,.01,1,,1\nMAT1,1,2.+11,,.3,1000.\n\
      CBAR,3,3,1,7,1.,0.,0.\nPBAR,3,1,.01,1.-4,1.-4,1.-4\n";
@@ -361,7 +375,7 @@ fn non_structural_mass_weighs_where_case_control_selects_it() {
         ("NSM = 7", 6.0),
         ("NSM = 8", 1.0 * 2.0 + 2.0 * 1.0),
         ("NSM = 10", 4.0 * 3.0 + 6.0),
-        // All beams, and there are none: the bar is left alone.
+        // All beams, of which there are none. The bar does not count.
         ("NSM = 12", 0.0),
     ] {
         let (model, faults) = model_of(selected, &format!("{PLATES}{nsm}"));
@@ -370,7 +384,7 @@ fn non_structural_mass_weighs_where_case_control_selects_it() {
         let mass = model.weight().mass;
         assert!((mass - structure - more).abs() < 1e-9, "{selected}: {mass}");
     }
-    // A total is spread evenly over the areas: its centre is that of the plates.
+    // A total is distributed over the areas, so its centre is that of the plates.
     let (bare, _) = model_of("", PLATES);
     let (with, _) = model_of("NSM = 6", &format!("{PLATES}{nsm}"));
     let (a, b) = (bare.weight(), with.weight());
@@ -394,14 +408,14 @@ fn non_structural_mass_that_differs_between_subcases_is_refused() {
     }
 }
 
-/// RBAR1 is the RBE2 from A to B, RTRPLT the RBE1 of its three grids.
+/// RBAR1 equals the RBE2 from A to B, and RTRPLT equals the RBE1 of its three grids.
 #[test]
 fn rigid_bars_and_triangles_are_those_of_older_cards() {
     let kinds = |card: &str| {
         let (model, faults) = model_of("", &format!("{PLATES}{card}"));
         assert_eq!(faults, 0, "{card}");
         assert!(model.unsupported_cards.is_empty(), "{card}");
-        // All but the name of the card.
+        // Everything except the name of the card.
         let body = |kind| match kind {
             RigidKind::Body {
                 independent,
@@ -423,7 +437,7 @@ fn rigid_bars_and_triangles_are_those_of_older_cards() {
     );
 }
 
-/// SWLDPRM changes how connectors are projected, and nothing where there are none.
+/// SWLDPRM changes the projection of connectors. It has no effect without connectors.
 #[test]
 fn swldprm_is_refused_by_name_beside_connectors() {
     let cards = |connector: &str| {

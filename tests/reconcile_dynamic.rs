@@ -1,4 +1,4 @@
-//! The dynamic workflow on cases whose hidden effect is known, and on seeded ones of our own.
+//! The dynamic workflow on cases with a known hidden effect, and on seeded cases.
 
 mod moving;
 #[path = "../nastran/tests/support/mod.rs"]
@@ -17,7 +17,7 @@ fn find_shared_case(case: &str) -> Option<PathBuf> {
     support::find_shared_path(&format!("hidden_effects/dynamics/{case}"))
 }
 
-/// What the case's author made the vehicle of.
+/// Returns the true parameters of the vehicle in a case.
 fn true_parameters(case: &str) -> serde_json::Value {
     let text = support::text(&format!("hidden_effects/truth/{case}.json")).unwrap();
     let truth: serde_json::Value = serde_json::from_str(&text).unwrap();
@@ -80,17 +80,18 @@ fn shared_cases_get_their_names_and_identify_runs_the_extended_job() {
             r["gap"]["explained_share"].as_f64().unwrap() > 0.95,
             "{case}"
         );
-        // What the effect did to a simulation of the held-out road goes to the level of sensor noise.
+        // On the simulated held-out road, the residual of the effect falls to the level of sensor noise.
         assert!(!r["simulation"]["channels"].as_array().unwrap().is_empty());
         for c in r["simulation"]["channels"].as_array().unwrap() {
             let [measured, before, after] =
                 ["measured_rms", "before", "after"].map(|k| c[k].as_f64().unwrap());
-            // A small effect was small before: then noise of the sensors, .02 m/s^2 in the jobs, is what is left.
+            // A small effect has a small residual before. Afterwards, only the sensor noise remains, .02 m/s^2 in the
+            // jobs.
             let quiet = after < 0.15 * before || after < 0.02;
             assert!(quiet && after < 0.01 * measured, "{c}");
         }
         let by_simulation = r["simulation"]["parameters"].as_array().unwrap();
-        // Faults of channels are no parameters of the vehicle.
+        // Faults of channels are not parameters of the vehicle.
         let parameter = match named {
             "coulomb_friction" => Some("fc_s"),
             "cubic_stiffness" => Some("k3_s"),
@@ -103,7 +104,8 @@ fn shared_cases_get_their_names_and_identify_runs_the_extended_job() {
             assert!((p / truth - 1.0).abs() < 0.02, "{case}: {p}");
         }
         let extended = Path::new(r["extended_model"].as_str().unwrap());
-        // Nothing is left to name, and the gap is at its floor: noise that is half as large again as declared would be more.
+        // No effect remains to identify, and the gap is at the noise floor. Noise of 1.5 times the declared noise would
+        // exceed this limit.
         let second = run("reconcile", extended, &out.join("second"));
         assert_eq!(second["verdict"], "none", "{case}: {}", second["named"]);
         let gap = |key: &str| second["gap"][key].as_f64().unwrap();
@@ -124,7 +126,7 @@ fn shared_cases_get_their_names_and_identify_runs_the_extended_job() {
             wheel["relative_rms"].as_f64().unwrap() < 0.01,
             "{case}: {wheel}"
         );
-        // Masses, spring and damper are those of the case's author: within four of the sigmas that are stated, which are small.
+        // Masses, spring and damper equal those of the case within four stated sigmas, which are small.
         let known = true_parameters(case);
         for name in ["m_b", "m_f", "k_s", "c_s"] {
             let all = again["parameters"].as_array().unwrap();
@@ -136,7 +138,7 @@ fn shared_cases_get_their_names_and_identify_runs_the_extended_job() {
     }
 }
 
-/// Friction and a cubic spring, gains good to 1 %, and an anti-roll bar that nobody measured.
+/// Friction and a cubic spring, gain errors of 1 %, and an unmeasured anti-roll bar.
 #[test]
 fn two_effects_before_an_imperfect_background_are_both_named() {
     let Some(folder) = find_shared_case("dev-d6") else {
@@ -160,17 +162,18 @@ fn two_effects_before_an_imperfect_background_are_both_named() {
         // Three standard deviations of the gains.
         assert!((size / truth - 1.0).abs() < 0.03, "{effect}");
     }
-    // Gains and the bar stay in it: most of the gap closes, not all.
+    // The gap still contains the gain errors and the bar. Most of it closes, but not all.
     let gap = |key: &str| r["gap"][key].as_f64().unwrap();
     assert!(gap("after") < 0.5 * gap("before"), "{}", r["gap"]);
 }
 
-/// A gain on a body accelerometer and its inverse on a wheel's are one and the same to the shaken part; the weight on the wheel tells them
-/// apart, and where no force is measured they are a group.
+/// For the dynamic part, a gain error of a body accelerometer equals the inverse error of a wheel accelerometer.
+///
+/// The static wheel load separates them. Without a measured force, both are an indistinguishable group.
 #[test]
 fn the_accelerometer_that_reads_wrong_is_named_or_its_group_never_another_alone() {
     use moving::generator::hide_gain;
-    // What a gain could be taken for, and what could hide it.
+    // Effects that resemble a gain error, and effects that could hide it.
     let library = [
         "accel_gain",
         "time_offset",
@@ -180,7 +183,7 @@ fn the_accelerometer_that_reads_wrong_is_named_or_its_group_never_another_alone(
     .map(String::from);
     let either = &[Score::Exact, Score::Group][..];
     let not_wrong = &[Score::Exact, Score::Group, Score::Abstained, Score::Missed][..];
-    // With all that a job declares at its limits, the background is in the units of whichever explanation leads.
+    // With all declared tolerances at their limits, the background depends on the units of the leading explanation.
     for (layout, background, scores) in [
         (Layout::Front, Background::Clean, &[Score::Exact][..]),
         (Layout::FrontAccelerationsOnly, Background::Clean, either),
@@ -202,7 +205,7 @@ fn the_accelerometer_that_reads_wrong_is_named_or_its_group_never_another_alone(
     }
 }
 
-/// What the text of a next measurement expects, by rival.
+/// Returns the expected difference of log evidence in the text of a next measurement, for each alternative explanation.
 fn expected_worth(next: &str) -> Vec<f64> {
     let list = next.split("expected difference of log evidence").nth(1);
     let list = list.unwrap_or_else(|| panic!("{next}"));
@@ -217,9 +220,11 @@ fn expected_worth(next: &str) -> Vec<f64> {
     list.split("from ").skip(1).filter_map(number).collect()
 }
 
-/// Two accelerometers whose gains are aliases: turned over, each says its own. With g the gain and s what turning over tells of one (a sensor
-/// that leans by 4 degrees, .0025), either explanation misses both channels by ln g, but for what the record leaves its own gain to move:
-/// the difference of log evidence is up to (ln g / s)^2. What was found is off by what g is known to.
+/// Two accelerometers with indistinguishable gain errors. If both are turned over, each shows its gain.
+///
+/// Let g be the gain and s the error of a gain from turning over (a tilt of 4 degrees, .0025). Each explanation misses
+/// both channels by ln g, except for the change of gain that the record permits. The difference of log evidence is at
+/// most (ln g / s)^2. The estimate has the uncertainty of g.
 #[test]
 fn of_two_accelerometers_that_may_be_wrong_the_next_measurement_is_to_turn_them_over() {
     use moving::generator::hide_gain;
@@ -247,7 +252,8 @@ fn of_two_accelerometers_that_may_be_wrong_the_next_measurement_is_to_turn_them_
     assert!(groups > 0, "no group to separate");
 }
 
-/// Thresholds are those of the frame: where a name takes more evidence than any record has, there is none; the gap stays what it was.
+/// The frame states its thresholds. If a name requires more evidence than any record has, no effect is named, and the
+/// gap is unchanged.
 #[test]
 fn a_frame_brings_its_thresholds() {
     let case = hide(Layout::Front, "coulomb_friction", 1, Background::Clean, 7);
@@ -261,7 +267,8 @@ fn a_frame_brings_its_thresholds() {
     assert_eq!(plain.gap.before, strict.gap.before);
 }
 
-/// A second-order band-pass between two frequencies, Hz, about the first sample (bilinear transform with prewarping).
+/// Applies a second-order band-pass between two frequencies in Hz to the deviation from the first sample (bilinear
+/// transform with prewarping).
 fn band_passed(x: &mut [f64], [low, high]: [f64; 2], rate_hz: f64) {
     let warped = |f: f64| (std::f64::consts::PI * f / rate_hz).tan();
     let (w, bandwidth) = (
@@ -280,7 +287,8 @@ fn band_passed(x: &mut [f64], [low, high]: [f64; 2], rate_hz: f64) {
     }
 }
 
-/// The thesis filters its channels apart (table B.1: wheel 9 to 13 Hz, body 1 to 12 Hz): no effect of the library makes such channels agree.
+/// The thesis filters its channels differently (table B.1: wheel 9 to 13 Hz, body 1 to 12 Hz). No effect of the library
+/// makes such channels agree.
 #[test]
 fn channels_of_different_bands_are_unknown_and_no_cause_is_named_while_the_signal_is_left() {
     let mut case = hide(Layout::Front, "none", 0, Background::Clean, 7);
@@ -318,7 +326,8 @@ fn without_a_second_record_gaps_are_cross_validated_and_called_that() {
     let o = examine(&frame, &[]).unwrap();
     assert_eq!(o.judged_by, Proof::CrossValidated);
     assert_eq!(score(&case, &o), Score::Exact);
-    // Segments under parameters of the others leave what a held-out road leaves: the floor of the sensors, within a third.
+    // Each segment is tested with the parameters of the other segments. The gap equals that of a held-out road, the
+    // noise floor, within a third.
     assert!(
         (o.gap.after / o.gap.floor - 1.0).abs() < 0.33,
         "{:?}",
@@ -327,7 +336,7 @@ fn without_a_second_record_gaps_are_cross_validated_and_called_that() {
     assert!(o.remains.contains("cross-validated"), "{}", o.remains);
 }
 
-/// 1e-6 is not 1e-2: a gap that gains good to 1 % would leave is none where they are said to be exact to a millionth.
+/// 1e-6 is not 1e-2. A gap from gain errors of 1 % must be explained if gains are declared exact to a millionth.
 #[test]
 fn declared_tolerances_enter_by_their_size() {
     let case = hide(Layout::Front, "none", 0, Background::Messy, 3);
@@ -353,8 +362,8 @@ fn declared_tolerances_enter_by_their_size() {
     assert!(floor(&loose) > 3.0 * floor(&tight));
 }
 
-/// A roll-off truck leaves its container, up to 70 % of the body goes; or takes one up that is as heavy as the body. Without the change
-/// nothing of such a record is explained at all.
+/// A roll-off truck sets down its container and loses up to 70 % of the body mass. Or it picks up a container as heavy
+/// as the body. Without this change, nothing of such a record is explained.
 #[test]
 fn a_mass_that_changes_much_is_named_alone_with_its_size() {
     for (layout, share, seed) in [
@@ -380,7 +389,9 @@ fn a_mass_that_changes_much_is_named_alone_with_its_size() {
     }
 }
 
-/// A body's equation holds the readings on every body that it hangs on: what a dead one enters is left out, and the rest is at the floor.
+/// The equation of a body contains the readings of every body connected to it.
+///
+/// Equations with the dead reading are left out, and the rest is at the noise floor.
 #[test]
 fn a_dead_channel_is_named_and_the_gap_is_that_of_the_equations_without_it() {
     for (layout, channel, compared) in [
@@ -408,14 +419,14 @@ fn a_dead_channel_is_named_and_the_gap_is_that_of_the_equations_without_it() {
             assert!(o.gap.before.is_nan() && o.gap.after.is_nan(), "{:?}", o.gap);
         } else {
             let ratio = o.gap.before / o.gap.floor;
-            // 24 s of a road: noise of some hundred bins.
+            // 24 s of a road have the noise of some hundred frequency bins.
             assert!((ratio - 1.0).abs() < 0.25, "{channel}: {:?}", o.gap);
             assert!((o.gap.after - o.gap.before).abs() < 1e-12);
         }
     }
 }
 
-/// What the smallest sizes say is what happens: half of it is not named, three times of it is.
+/// The stated smallest size is correct: half of it is not named, three times of it is.
 #[test]
 fn the_smallest_size_that_is_stated_is_where_naming_begins() {
     let clean = hide(Layout::Front, "none", 0, Background::Clean, 9);
@@ -451,21 +462,24 @@ fn free_play_a_quadratic_damper_and_a_spring_that_changes_are_named() {
 
 #[test]
 fn a_spring_that_stiffens_on_both_sides_is_named_with_its_rate() {
-    // `quadratic_stiffness` has a cubic part named beside it (docs/reference/limits.md).
+    // For `quadratic_stiffness`, a cubic part may be named as well (docs/reference/limits.md).
     let effect = "progressive_leaf";
     let case = hide(Layout::Front, effect, 2, Background::Clean, 7);
     let o = examine(&frame_of(&case), &[]).unwrap();
     assert_eq!(score(&case, &o), Score::Exact, "{:?}", o.best_attempt);
-    // Half of the linear rate at 20 mm; sensor noise of a few tenths of a per cent, and a law that leaves its linear part free.
+    // Half of the linear rate at 20 mm. Sensor noise is a few tenths of a per cent, and the linear part of the law is
+    // free.
     let (size, truth) = (o.effects[0].size[0].abs(), 0.5 * case.spring / 0.02);
     assert!((size / truth - 1.0).abs() < 0.02, "{size} for {truth}");
-    // One size has one variance: its sigma squared.
+    // One size has one variance, the square of its sigma.
     let [sigma, variance] = [o.effects[0].sigma[0], o.covariance[0][0]];
     assert!((variance / (sigma * sigma) - 1.0).abs() < 1e-6, "{effect}");
 }
 
-/// A square and a cube of one stretch are one law of force: what the noisy stretch leaves of a square, up to a fifth of it, looks like a cube, so that
-/// a cube of an eighth of its force is not named. Under the rule for effects that are no such law (a twentieth) it is.
+/// A square and a cube of one stretch are one law of force.
+///
+/// The noise of the stretch leaves a residual of up to a fifth of the square, which resembles a cube. A cube of an
+/// eighth of its force is therefore not named. Under the rule for independent effects (a twentieth) it is named.
 #[test]
 fn a_second_law_of_one_spring_needs_a_fifth_of_the_force_of_the_first() {
     let library = ["quadratic_stiffness", "cubic_stiffness"].map(String::from);
@@ -480,8 +494,10 @@ fn a_second_law_of_one_spring_needs_a_fifth_of_the_force_of_the_first() {
     assert_eq!(tried(&frame).len(), 2);
 }
 
-/// An amplifier that read a tenth too much while the record was made and was put right before the second one: the gain explains the first record
-/// and makes the gap of the second larger, so that friction, which both records show, has no gain named beside it.
+/// An amplifier with 10 % too much gain in the first record, corrected before the second one.
+///
+/// The gain explains the first record but increases the gap of the second. Friction is in both records, and no gain is
+/// named with it.
 #[test]
 fn a_name_needs_a_gap_that_falls_by_it_on_the_second_record() {
     let library = ["coulomb_friction", "accel_gain"].map(String::from);
@@ -496,7 +512,8 @@ fn a_name_needs_a_gap_that_falls_by_it_on_the_second_record() {
     let tried: Vec<&str> = o.best_attempt.iter().map(|e| e.id.as_str()).collect();
     assert_eq!(tried, ["coulomb_friction"], "{}", o.remains);
     assert_eq!(o.verdict, Verdict::Unknown);
-    // Which of the two accelerometers: a zero of a load cell of 1 % leaves that open where friction and a gain mix.
+    // Either accelerometer may be reported. A zero error of a load cell of 1 % leaves this open if friction and a gain
+    // occur together.
     let said = "explains more of the fitted record, but does not reduce the gap of the proof";
     let either = ["a_body", "a_wheel"].map(|c| format!("accel_gain:{c} {said}"));
     assert!(
@@ -506,7 +523,8 @@ fn a_name_needs_a_gap_that_falls_by_it_on_the_second_record() {
     );
 }
 
-/// The word is for what no parameter was fitted to: without a second record neither the page nor the result says it.
+/// "Held out" refers to a record that no parameter was fitted to. Without a second record, neither the page nor the
+/// result uses the term.
 #[test]
 fn without_a_second_record_nothing_is_called_held_out_and_the_page_goes_from_verdict_to_notes() {
     let Some(folder) = find_shared_case("dev-d3") else {
@@ -531,7 +549,7 @@ fn without_a_second_record_nothing_is_called_held_out_and_the_page_goes_from_ver
         assert!(!text.contains("held-out") && !text.contains("held out"));
     }
     in_order(&page);
-    // When, at which frequency and at which size of the motion; what was added has a path, an old and a new value.
+    // Time, frequency and size of motion. The added part has a path, an old value and a new value.
     let sits = &r["sits_at"][0];
     for key in ["band_hz", "time_s", "size_over_rms"] {
         let at = |edge: &str| sits[key][edge].as_f64().unwrap();
@@ -543,7 +561,7 @@ fn without_a_second_record_nothing_is_called_held_out_and_the_page_goes_from_ver
     assert_eq!(added["old"], "none");
 }
 
-/// Verdict, where, what was added, gap, scatter; the rest behind.
+/// Tests the order of the page: verdict, place, added parts, gap, scatter, then the rest.
 fn in_order(page: &str) {
     let at = |title: &str| page.find(&format!("<h2>{title}</h2>"));
     let places = [
@@ -577,7 +595,7 @@ fn controls_are_left_alone_on_clean_and_messy_backgrounds() {
 fn effects_are_named_with_their_size() {
     let (s, o) = examine_hidden_effect(Layout::Front, "coulomb_friction", 1, Background::Clean);
     assert_eq!(s, Score::Exact);
-    // 450 N were hidden.
+    // The hidden size is 450 N.
     assert!(
         (o.effects[0].size[0] / 450.0 - 1.0).abs() < 0.05,
         "{:?}",
@@ -588,7 +606,8 @@ fn effects_are_named_with_their_size() {
     assert_eq!(s, Score::Exact, "{:?}", o.best_attempt);
 }
 
-/// The other accelerometer turned makes the mirror image of a vehicle: masses and springs would be negative, weights against the wheels.
+/// Reversing the other accelerometer would give the mirror image of a vehicle: masses, springs and wheel loads would be
+/// negative.
 #[test]
 fn a_turned_accelerometer_is_named_and_not_the_other_one() {
     for layout in [Layout::Front, Layout::FrontAccelerationsOnly, Layout::Rear] {
@@ -614,8 +633,10 @@ fn what_is_in_no_library_is_called_unknown() {
     }
 }
 
-/// A frame over two axles, `M` 6 t, seen as a quarter truck of its front axle. By mechanics the inertance between the bodies over the axles is
-/// (J - M a b) / (a + b)^2 and the front body's mass M b / (a + b).
+/// A frame of mass `M` = 6 t over two axles, measured as a quarter truck of its front axle.
+///
+/// By mechanics, the inertance between the bodies over the axles is (J - M a b) / (a + b)^2. The mass of the front body
+/// is M b / (a + b).
 #[test]
 fn the_pitch_of_a_frame_over_two_axles_is_named_where_its_rear_is_seen() {
     const MASS: f64 = 6000.0;
@@ -674,7 +695,7 @@ fn the_pitch_of_a_frame_over_two_axles_is_named_where_its_rear_is_seen() {
     }
 }
 
-/// A record of that frame on a random road, as CSV: 60 s at 200 Hz, sensor noise of .02 m/s2 and 20 N.
+/// Returns a record of that frame on a random road, as CSV: 60 s at 200 Hz, sensor noise of .02 m/s2 and 20 N.
 fn simulate_pitch_record(inertia: f64, seed: u64) -> String {
     use std::fmt::Write;
     use strainbridge::vehicle::refine::sensor_signal;
@@ -697,7 +718,7 @@ fn simulate_pitch_record(inertia: f64, seed: u64) -> String {
     };
     let values: Vec<f64> = v.parameters().iter().map(|p| known(&p.name)).collect();
     let mut state = seed;
-    // xorshift64*: uniform, of variance one.
+    // xorshift64*: uniform numbers of variance one.
     let mut random = move || {
         state ^= state >> 12;
         state ^= state << 25;
@@ -706,7 +727,7 @@ fn simulate_pitch_record(inertia: f64, seed: u64) -> String {
         (bits as f64 / (1u64 << 53) as f64 - 0.5) * 12f64.sqrt()
     };
     random();
-    // White noise through two poles at 15 Hz: nothing folds back.
+    // White noise through two poles at 15 Hz, so that there is no aliasing.
     let mut road = || {
         let (mut a, mut b) = (0.0, 0.0);
         let keep = (-2.0 * std::f64::consts::PI * 15.0 / RATE_HZ).exp();

@@ -1,4 +1,5 @@
-//! Faults of a logger on one channel: a clock of its own, samples lost, a slow filter, a mains line; records that can't judge.
+//! Faults of a logger in one channel: a wrong clock, lost samples, a slow filter, mains hum. Also second records that
+//! cannot be used for a test.
 
 mod moving;
 
@@ -11,7 +12,7 @@ use std::process::{Command, Output};
 use strainbridge::reconcile::Verdict;
 use strainbridge::reconcile::motion::examine;
 
-/// The fault is named at its channel, its size within a share of the truth.
+/// Fails unless the fault is named at its channel with a size within a share of the true size.
 fn assert_fault_named(
     layout: Layout,
     fault: Fault,
@@ -31,14 +32,15 @@ fn assert_fault_named(
     assert_eq!(o.effects.len(), 1, "{said}");
     let size = o.effects[0].size[0];
     assert!((size / fault.size() - 1.0).abs() < near, "{said}");
-    // A hold-out that lost no samples judges parameters alone: its gap was small before.
+    // If the held-out record lost no samples, it tests only parameters. Its gap is small before.
     let closed = o.gap.explained_share() > 0.9 || o.gap.after < 1.3 * o.gap.floor;
     assert!(closed, "{said} {:?}", o.gap);
 }
 
 #[test]
 fn a_clock_that_is_off_is_named_by_its_channel() {
-    // 40 ppm make 2.6 ms in 64 s, 200 ppm 13 ms: an eighth of a wave of the axle; 3,000 ppm are two waves of it.
+    // 40 ppm give 2.6 ms in 64 s, and 200 ppm give 13 ms, an eighth of a wave of the axle. 3,000 ppm give two waves of
+    // it.
     for (layout, channel, share) in [
         (Layout::Front, "a_body", 4e-5),
         (Layout::Front, "a_wheel", -2e-4),
@@ -81,7 +83,7 @@ fn a_slow_filter_is_named_and_not_a_delay() {
         (Layout::Front, Fault::Butterworth(40.0), "f_wheel"),
         (Layout::Rear, Fault::LowPass(30.0), "a_mid"),
     ] {
-        // The filters of the records are those of a difference equation: beside an RC circuit they are off by (w dt)^2 / 12.
+        // The filter of the records is a difference equation. Compared with an RC circuit, its error is (w dt)^2 / 12.
         assert_fault_named(layout, fault, channel, Background::Clean, 23, 0.03);
     }
 }
@@ -104,7 +106,7 @@ fn hum_of_the_mains_is_named_by_its_channel() {
     }
 }
 
-/// Tolerances that hide a fault hide it: what is named beside them is right, and `unknown` is no falsehood.
+/// Tolerances can hide a fault. Any other effect that is named must be correct, and `unknown` is not wrong.
 #[test]
 fn before_an_imperfect_background_nothing_false_is_named() {
     for (fault, channel) in [
@@ -137,7 +139,7 @@ fn healthy_loggers_are_left_alone() {
     }
 }
 
-/// A folder with the job of a case; `hold_out` is what is left of its second record.
+/// Creates a folder with the job of a case. `spoil` shortens or damages its second record.
 fn workplace(
     name: &str,
     case: &Case,
@@ -187,7 +189,7 @@ fn answer(done: &Output) -> serde_json::Value {
     serde_json::from_slice(&done.stdout).unwrap_or_else(|e| panic!("{e}: {said}"))
 }
 
-/// What is named stands in the job, and the job with it leaves nothing to name.
+/// The named fault is in the extended job, and a second run with that job names nothing.
 #[test]
 fn the_extended_job_holds_the_fault_of_the_logger() {
     let known = "[\"clock_drift\", \"dropped_samples\", \"low_pass\", \"hum\", \"time_offset\"]";
@@ -225,7 +227,8 @@ fn the_extended_job_holds_the_fault_of_the_logger() {
     }
 }
 
-/// A record that is too short for its band is a fault of that file, in `identify` and `reconcile` alike; one with a dead channel is not used.
+/// A record that is too short for its band is a fault of that file, in `identify` and in `reconcile`. A record with a
+/// dead channel is not used.
 #[test]
 fn a_second_record_that_cannot_judge_is_said_by_its_name() {
     let case = hide(Layout::Front, "none", 0, Background::Clean, 27);
@@ -267,7 +270,7 @@ fn a_second_record_that_cannot_judge_is_said_by_its_name() {
     }
 }
 
-/// A gap that no equation states is null, not a number.
+/// A gap without any equation is null, not a number.
 #[test]
 fn a_dead_accelerometer_is_told_by_the_command_without_a_made_up_gap() {
     let mut case = hide(Layout::Front, "none", 0, Background::Clean, 28);

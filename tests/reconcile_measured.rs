@@ -1,4 +1,5 @@
-//! The dynamic workflow on records that others measured: Silverbox (Wigren & Schoukens 2013), F-16 (Noel & Schoukens 2017).
+//! The dynamic workflow on published measured records: Silverbox (Wigren & Schoukens 2013), F-16 (Noel & Schoukens
+//! 2017).
 
 #[path = "../nastran/tests/support/mod.rs"]
 mod support;
@@ -14,7 +15,8 @@ use strainbridge::vehicle::layout::Measures;
 use strainbridge::vehicle::preset::{PresetRequest, vehicle};
 use strainbridge::vehicle::term::UnitNames;
 
-/// One mass on a linear spring and damper, as the analyst has it; `cut` samples are fitted, the rest judges.
+/// Returns a model with one mass on a linear spring and damper. It is fitted to `cut` samples and tested on the
+/// following ones.
 fn frame(
     file: &str,
     rate_hz: f64,
@@ -87,7 +89,7 @@ fn the_cubic_spring_of_the_silverbox_is_named_from_the_linear_model() {
         o.effects
     );
     assert!(o.gap.after < 0.25 * o.gap.before, "{:?}", o.gap);
-    // Linear models of this circuit stay at about 7 mV, 37 parameters reach .26 mV.
+    // Linear models of this circuit have an error of about 7 mV. A model with 37 parameters reaches .26 mV.
     let simulated = simulated_gap(&f, &o).unwrap();
     let y = &simulated.channels[0];
     assert!((5e-3..9e-3).contains(&y.before), "{y:?}");

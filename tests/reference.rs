@@ -1,4 +1,4 @@
-//! The reference against the code: finding codes, pages, links, commands that pages show, the README's length.
+//! Compares the reference with the code: finding codes, pages, links, commands on pages, length of the README.
 
 #![cfg(feature = "cli")]
 
@@ -12,7 +12,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Files below a folder whose name ends so.
+/// Collects the files below a folder whose name has this ending.
 fn files(folder: &Path, end: &str, out: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap().flatten() {
         let path = entry.path();
@@ -24,7 +24,7 @@ fn files(folder: &Path, end: &str, out: &mut Vec<PathBuf>) {
     }
 }
 
-/// Sources without their tests, by path.
+/// Returns the sources without their tests, by path.
 fn sources() -> BTreeMap<String, String> {
     let mut list = Vec::new();
     files(&root().join("src"), ".rs", &mut list);
@@ -41,12 +41,12 @@ fn sources() -> BTreeMap<String, String> {
     out
 }
 
-/// String literals of a text.
+/// Returns the string literals of a text that have the form of a code.
 fn literals(text: &str) -> BTreeSet<&str> {
     text.split('"').filter(|l| is_code(l)).collect()
 }
 
-/// Whether a word has the form of a code.
+/// Returns whether a word has the form of a code.
 fn is_code(word: &str) -> bool {
     let letters = word.starts_with(|c: char| c.is_ascii_lowercase());
     letters
@@ -55,7 +55,7 @@ fn is_code(word: &str) -> bool {
             .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || "-_".contains(c))
 }
 
-/// Codes that stand in calls of `Finding::new`: the second argument where it is a literal.
+/// Returns the codes in calls of `Finding::new`: the second argument, if it is a literal.
 fn codes_of_calls(text: &str) -> Vec<&str> {
     let calls = text.split("Finding::new(").skip(1);
     let second = |call: &'_ str| -> Option<(usize, usize)> {
@@ -100,7 +100,7 @@ fn every_code_that_the_program_gives_has_an_entry_and_every_entry_is_given() {
             );
             given += 1;
         }
-        // Codes that reach the call through a table or an argument stand as literals in the same file.
+        // Codes that reach the call through a table or an argument are literals in the same file.
         if text.contains("Finding::new(")
             || text.contains("Finding {")
             || text.contains("said(")
@@ -126,7 +126,8 @@ fn codes_that_reach_a_finding_through_a_table_have_entries_too() {
     let known: BTreeSet<&str> = explain_all().iter().map(|c| c.code).collect();
     let mut given = 0;
     for (name, text) in sources() {
-        // `code` as a variable: every literal of the file that has the form of one, dash included, and stands beside a severity.
+        // `code` may be a variable. The test takes every literal of the file with the form of a code and a dash after a
+        // severity.
         for (i, _) in text.match_indices("\",\n") {
             let before = &text[..i];
             let Some(start) = before.rfind('"') else {
@@ -176,7 +177,7 @@ fn the_pages_of_the_reference_say_what_the_code_says() {
     assert_eq!(reference::columns().len(), lines(&read("columns.txt")));
 }
 
-/// Pages of the repository.
+/// Returns the pages of the repository.
 fn pages() -> Vec<(PathBuf, String)> {
     let mut list = Vec::new();
     files(&root().join("docs"), ".md", &mut list);
@@ -259,7 +260,8 @@ fn the_readme_is_short_and_leads_to_the_reference() {
     }
 }
 
-/// The thresholds of names with their values, and every constant that the page lists, as the code has them.
+/// The page must have the thresholds of names with their values, and every constant that it lists must have the value
+/// in the code.
 #[test]
 fn the_page_of_thresholds_states_those_of_the_code() {
     use strainbridge::reconcile::{MotionRules, Rule, StrainRules};
@@ -289,7 +291,7 @@ fn the_page_of_thresholds_states_those_of_the_code() {
         for row in rows {
             let stated: f64 = row[1].parse().unwrap();
             let value = known[&row[0]];
-            // Four digits are stated.
+            // The page states four digits.
             assert!(
                 (stated / value - 1.0).abs() < 5e-4,
                 "{title}: {row:?} {value}"
@@ -306,7 +308,7 @@ fn the_page_of_thresholds_states_those_of_the_code() {
         let of_name = format!("const {}: ", row[1]);
         let words = |text: &str| -> String { text.split_whitespace().collect() };
         let mut stands = source.split(of_name.as_str()).skip(1);
-        // Types of arrays hold a semicolon of their own, before the sign.
+        // The type of an array contains a semicolon before the equals sign.
         let is_it = |rest: &str| {
             let value = rest.split_once('=').and_then(|r| r.1.split_once(';'));
             value.is_some_and(|v| words(v.0) == words(&row[2]))

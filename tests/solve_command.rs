@@ -1,4 +1,4 @@
-//! `solve` as a user meets it: bad models named with file and line, solutions kept beside their inputs.
+//! `solve` as a user sees it: faulty models are reported with file and line, and solutions are stored.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ fn strainbridge(arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-/// A folder for kept solutions of its own for every test: beside the file that the command is about.
+/// Returns a folder for stored solutions next to the file of the command, so that every test has a separate one.
 fn kept_beside(arguments: &[&str]) -> PathBuf {
     let file = Path::new(arguments.get(1).copied().unwrap_or_default());
     file.with_file_name("kept")
@@ -27,12 +27,13 @@ fn folder(name: &str) -> PathBuf {
     path
 }
 
-/// Text of a stream, later lines of a finding joined to the first.
+/// Returns the text of a stream, with further lines of a finding joined to the first.
 fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).replace("\n    ", " ")
 }
 
-/// A free strip of 8 x 2 quadrilaterals of 20 mm, grids 1 to 27, a force pair as load 1; `cards` go behind.
+/// Returns a free strip of 8 x 2 quadrilaterals of 20 mm with grids 1 to 27. A pair of forces is load 1. `cards` are
+/// appended.
 fn strip(cards: &str) -> String {
     let mut deck = String::from(
         "SOL 101\nCEND\nSUBCASE 1\n  LOAD = 1\nBEGIN BULK\nPARAM,INREL,-2\n\
@@ -62,7 +63,7 @@ fn strip(cards: &str) -> String {
     deck
 }
 
-/// Runs `solve` on a deck; exit code and standard error.
+/// Runs `solve` on a deck. Returns exit code, standard error and folder.
 fn solve(name: &str, deck: &str) -> (i32, String, PathBuf) {
     let dir = folder(name);
     let path = dir.join("model.bdf");
@@ -71,12 +72,12 @@ fn solve(name: &str, deck: &str) -> (i32, String, PathBuf) {
     (out.status.code().unwrap_or(-1), text(&out.stderr), dir)
 }
 
-/// Line of the first card that starts so, from 1.
+/// Returns the line of the first card that starts with `card`, from 1.
 fn line_of(deck: &str, card: &str) -> usize {
     1 + deck.lines().position(|l| l.starts_with(card)).unwrap()
 }
 
-/// Fails unless the deck is refused with a message that stands at the card's line and says all of `words`.
+/// Fails unless the deck is refused with a message that has the line of the card and contains all of `words`.
 #[track_caller]
 fn assert_deck_refused(name: &str, deck: &str, card: &str, words: &[&str]) {
     let (code, err, dir) = solve(name, deck);
@@ -167,7 +168,7 @@ fn each_kind_of_bad_model_has_a_message_of_its_own_at_its_line() {
 
 #[test]
 fn mechanisms_are_named_before_anything_is_solved() {
-    // A bar that hangs on the strip by a hinge about its own axis and across: nothing holds its turning.
+    // A hinge about the axis of a bar and across it connects the bar to the strip. Nothing resists its rotation.
     let hinge =
         strip("PBAR,9,1,10.,100.,100.,200.\nGRID,60,,-80.,0.,0.\nCBAR,90,9,1,60,0.,0.,1.,\n,456\n");
     assert_deck_refused(
@@ -176,7 +177,7 @@ fn mechanisms_are_named_before_anything_is_solved() {
         "GRID,60",
         &["grid 60", "is not held", "CBAR 90"],
     );
-    // A second strip that nothing joins.
+    // A second strip without any connection.
     let island = strip(
         "GRID,61,,0.,0.,99.\nGRID,62,,20.,0.,99.\nGRID,63,,20.,20.,99.\nCTRIA3,90,1,61,62,63\n",
     );
@@ -193,13 +194,13 @@ fn mechanisms_are_named_before_anything_is_solved() {
     let (code, err, _) = solve("sliding", &sliding);
     assert_eq!(code, 2, "{err}");
     assert!(err.contains("is not held"), "{err}");
-    // The set, and what moves: the strip slides along x and along y.
+    // The message names the set and the motions: the strip slides along x and along y.
     let said = err.lines().find(|l| l.contains("SPC set 5")).unwrap();
     assert!(
         said.contains("motions remain") && said.contains("dof 1") && said.contains("dof 2"),
         "{said}"
     );
-    // Where no set is selected, that is said.
+    // If no set is selected, the message states it.
     let (_, err, _) = solve("hinge_again", &hinge);
     assert!(
         err.contains("no SPC set is selected") && err.contains("grid 60 dof 3"),
@@ -242,7 +243,7 @@ fn gravity_alone_says_that_a_free_structure_has_no_strain() {
     );
 }
 
-/// `result.json` without the times and the memory of the run.
+/// Returns `result.json` without times and memory of the run.
 fn answer(dir: &Path) -> String {
     let json = std::fs::read_to_string(dir.join("result.json")).unwrap();
     json.lines()
@@ -287,7 +288,7 @@ fn a_kept_solution_gives_the_same_answer_and_nothing_is_kept_beside_the_deck() {
         let read = |d: &Path| std::fs::read(d.join(name)).unwrap();
         assert!(read(&base) == read(&again), "{name}");
     }
-    // A damaged file is passed over, said so, and replaced.
+    // A damaged file is ignored, reported and replaced.
     let mut bytes = std::fs::read(&file).unwrap();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
@@ -317,7 +318,7 @@ fn a_changed_deck_is_solved_again() {
     assert_eq!(list_kept_files(&dir).len(), 2);
 }
 
-/// A job of two loads and three gauges on the strip.
+/// Returns a job with two loads and three gauges on the strip.
 fn job(measured: &str) -> String {
     let mut job =
         String::from("units = \"mm-t-s\"\n[model]\ndeck = \"model.bdf\"\nmesh_error = false\n");
@@ -340,7 +341,7 @@ fn job(measured: &str) -> String {
 fn recover_takes_the_solution_of_sensitivity_and_warns_of_content_near_the_first_mode() {
     let dir = folder("recover");
     std::fs::write(dir.join("model.bdf"), strip("")).unwrap();
-    // 60 Hz: far below the first mode of a 160 mm strip of 2 mm steel (about 400 Hz).
+    // 60 Hz is far below the first mode of a strip of 160 mm in 2 mm steel (about 400 Hz).
     let slow = job("[measured]\nstrain = \"slow.csv\"\nnoise_microstrain = 1e-4\n");
     let fast = slow.replace("slow.csv", "fast.csv");
     std::fs::write(dir.join("job.toml"), &slow).unwrap();
@@ -357,7 +358,7 @@ fn recover_takes_the_solution_of_sensitivity_and_warns_of_content_near_the_first
     let run = |command: &str| {
         let done = strainbridge(&[command, path.to_str().unwrap(), "-v"]);
         let err = text(&done.stderr);
-        // Three gauges read in a proportion that no load makes.
+        // No load gives this ratio of the readings of three gauges.
         let is_wrong = command == "recover";
         let code = i32::from(is_wrong);
         assert_eq!(done.status.code(), Some(code), "{command}: {err}");
@@ -374,12 +375,12 @@ fn recover_takes_the_solution_of_sensitivity_and_warns_of_content_near_the_first
     assert!(err.contains("first elastic mode"), "{err}");
     let json = std::fs::read(dir.join("job.out/result.json")).unwrap();
     let result: serde_json::Value = serde_json::from_slice(&json).unwrap();
-    // A free uniform beam: 4.73^2 / 2 pi sqrt(EI / (m L^4)) = 410 Hz; a plate strip is a little stiffer across.
+    // A free uniform beam has 4.73^2 / 2 pi sqrt(EI / (m L^4)) = 410 Hz. A plate strip is slightly stiffer across.
     let first = result["first_elastic_mode_hz"].as_f64().unwrap();
     assert!((first / 415.0 - 1.0).abs() < 0.06, "{first}");
     let content = result["content_hz"][0].as_f64().unwrap();
     assert!((content - 300.0).abs() < 5.0, "{content}");
-    // Strain from a results file: the modes are solved for the record's sake.
+    // With strain from a results file, the modes are still solved for the record.
     let done = strainbridge(&["solve", path.to_str().unwrap()]);
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
     let with_results = std::fs::read_to_string(&path).unwrap().replace(
@@ -397,7 +398,8 @@ fn recover_takes_the_solution_of_sensitivity_and_warns_of_content_near_the_first
     assert!((other / first - 1.0).abs() < 1e-6, "{other} {first}");
 }
 
-/// Element types of a result file: 33 is CQUAD4 at the centre, 144 with corners (MSC Nastran Quick Reference Guide, item codes).
+/// Element types of a result file: 33 is CQUAD4 at the centre, 144 with corners (MSC Nastran Quick Reference Guide,
+/// item codes).
 #[test]
 fn strain_is_written_where_the_deck_asks_for_it() {
     for (request, written) in [
@@ -419,7 +421,8 @@ fn strain_is_written_where_the_deck_asks_for_it() {
     }
 }
 
-/// A cantilever plate of 1,000 x 100 x 10 mm, 40 x 4 quadrilaterals, clamped at x = 0 by SPC set 1; 100 N along z at the middle of its tip.
+/// Returns a cantilever plate of 1,000 x 100 x 10 mm with 40 x 4 quadrilaterals, clamped at x = 0 by SPC set 1. A force
+/// of 100 N along z acts in the middle of its tip.
 fn cantilever(case_control: &str) -> String {
     let mut deck = format!(
         "SOL 101\nCEND\n{case_control}SUBCASE 1\n  LOAD = 1\nBEGIN BULK\nMAT1,1,210000.,,.3,7.85-9\nPSHELL,1,1,10.,1,,1\n\
@@ -440,7 +443,8 @@ fn cantilever(case_control: &str) -> String {
     deck
 }
 
-/// A job with the tip load of 100 N and a gauge on element 21 (x = 137.5 mm), lengthwise on top; `support` is a line of [model].
+/// Writes a job with the tip load of 100 N and a gauge on element 21 (x = 137.5 mm), along the plate on top. `support`
+/// is a line of [model].
 fn on_support(name: &str, support: &str) -> PathBuf {
     let dir = folder(name);
     std::fs::write(dir.join("canti.bdf"), cantilever("SPC = 1\n")).unwrap();
@@ -460,7 +464,7 @@ fn json_of(command: &str, job: &Path) -> serde_json::Value {
     serde_json::from_slice(&out.stdout).unwrap()
 }
 
-/// Microstrain of the gauge per newton at the tip, from sensitivity.csv.
+/// Returns the microstrain of the gauge per newton at the tip, from sensitivity.csv.
 fn sensitivity_of(job: &Path) -> f64 {
     json_of("sensitivity", job);
     let table = std::fs::read_to_string(job.with_file_name("job.out/sensitivity.csv")).unwrap();
@@ -471,10 +475,10 @@ fn sensitivity_of(job: &Path) -> f64 {
 #[test]
 fn a_job_whose_deck_selects_supports_is_solved_on_them_and_free_where_it_says_so() {
     let job = on_support("held_job", "");
-    // Beam theory: strain at the surface under the tip load, M t / 2 / (E I) with I = b t^3 / 12.
+    // Beam theory: the strain at the surface under the tip load is M t / 2 / (E I) with I = b t^3 / 12.
     let exact = |x: f64| 1e6 * (1000.0 - x) * 5.0 / (210_000.0 * 100.0 * 1000.0 / 12.0);
     let held = sensitivity_of(&job);
-    // Element 22 is the second of its row, at x = 137.5: the plate's Poisson effect and shear lag are a few per cent.
+    // The element of the gauge is at x = 137.5. The Poisson effect and shear lag of the plate are a few per cent.
     assert!((held.abs() / exact(137.5) - 1.0).abs() < 0.03, "{held}");
     let solved = json_of("solve", &job);
     assert_eq!(solved["support"], "held by SPC set 1");
@@ -483,7 +487,7 @@ fn a_job_whose_deck_selects_supports_is_solved_on_them_and_free_where_it_says_so
         (total[2].as_f64().unwrap() + 100.0).abs() < 1e-6,
         "{total:?}"
     );
-    // Named by its number: the same. Free: hardly any strain.
+    // With the set named by its number, the result is the same. A free plate has hardly any strain.
     let named = sensitivity_of(&on_support("named_job", "support = 1"));
     assert_eq!(named, held);
     let free = sensitivity_of(&on_support("free_job", "support = \"free\""));
@@ -494,7 +498,7 @@ fn a_job_whose_deck_selects_supports_is_solved_on_them_and_free_where_it_says_so
 fn a_payload_on_supports_is_weighed_by_strain_alone() {
     let job = on_support("payload_held", "");
     let dir = job.parent().unwrap();
-    // 200 N and 500 N down at the tip by beam theory: the upper side is pulled; the plate is within 3 % of it.
+    // By beam theory, 200 N and 500 N down at the tip put the upper side in tension. The plate agrees within 3 %.
     let exact = |newton: f64| 1e6 * newton * 862.5 * 5.0 / (210_000.0 * 100.0 * 1000.0 / 12.0);
     let rows = [("empty", 0.0), ("light", 200.0), ("heavy", 500.0)];
     let lines: Vec<String> = rows
@@ -522,7 +526,8 @@ fn a_payload_on_supports_is_weighed_by_strain_alone() {
     assert!(codes.iter().any(|f| f["code"] == "payload-on-supports"));
 }
 
-/// The plate on supports with strain of the runs as beam theory gives it for forces down at the tip, times `unit`, and a [payload].
+/// Writes a job of the plate on supports with a [payload]. The strain of the runs is that of beam theory for forces
+/// down at the tip, times `unit`.
 fn weighed_plate(name: &str, forces: &[f64], unit: f64, keys: &str) -> PathBuf {
     let job = on_support(name, "");
     let mut table = "run,a\n".to_owned();
@@ -618,7 +623,8 @@ fn the_unit_load_deck_keeps_the_support_and_asks_for_no_relief() {
     );
 }
 
-/// E halves at 100 degrees: gauges read twice the strain, and the unit-load deck selects the same temperatures and masses.
+/// E halves at 100 degrees, so gauges read twice the strain. The unit-load deck selects the same temperatures and
+/// masses.
 #[test]
 fn a_job_takes_materials_at_the_temperatures_that_its_deck_selects() {
     let job = on_support("hot_job", "");
@@ -630,7 +636,7 @@ fn a_job_takes_materials_at_the_temperatures_that_its_deck_selects() {
         .replace("ENDDATA\n", cards);
     std::fs::write(job.with_file_name("canti.bdf"), deck).unwrap();
     let hot = sensitivity_of(&job);
-    // The table holds six digits.
+    // The table has six digits.
     assert!((hot / cold - 2.0).abs() < 1e-5, "{hot} {cold}");
     json_of("cases", &job);
     let deck = std::fs::read_to_string(job.with_file_name("job.out/unit_loads.bdf")).unwrap();
@@ -650,7 +656,8 @@ fn modes_of_a_held_deck_of_sol_103_are_those_of_the_clamped_beam() {
     assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
     let result: serde_json::Value = serde_json::from_slice(&out.stdout).unwrap();
     let hz = result["modes"][0]["hz"].as_f64().unwrap();
-    // Euler: 1.8751^2 / (2 pi l^2) sqrt(E t^2 / (12 rho)); a strip a tenth as wide as long is stiffer by less than 1 %.
+    // Euler: 1.8751^2 / (2 pi l^2) sqrt(E t^2 / (12 rho)). A strip with a width of a tenth of its length is stiffer by
+    // less than 1 %.
     let exact = 1.875_104_f64.powi(2) / (std::f64::consts::TAU * 1e6)
         * (210_000.0 * 100.0 / (12.0 * 7.85e-9_f64)).sqrt();
     assert!((hz / exact - 1.0).abs() < 0.01, "{hz} {exact}");
@@ -659,7 +666,7 @@ fn modes_of_a_held_deck_of_sol_103_are_those_of_the_clamped_beam() {
     for file in ["modes.csv", "modes.op2", "modes.vtu", "report.html"] {
         assert!(dir.join("canti.out").join(file).exists(), "{file}");
     }
-    // The shapes come back from the result file: eigenvectors of as many modes.
+    // The result file contains the shapes: eigenvectors of as many modes.
     let bytes = std::fs::read(dir.join("canti.out/modes.op2")).unwrap();
     let file = nastran::results::ResultsFile::read(&bytes, "modes.op2").unwrap();
     let shapes = file

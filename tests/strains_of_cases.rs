@@ -1,5 +1,8 @@
-//! Walks `../shared/nastran`: shell strain of every case, in the element and the basic frame, and displacements in basic, against
-//! `expected.json` (pyNastran's reading, rotated with the verified bisector frame). A new case needs no code.
+//! Tests all cases of `../shared/nastran`: shell strain in the element frame and in the basic frame, and displacements
+//! in the basic frame.
+//!
+//! The reference is `expected.json`, read by pyNastran and rotated with the verified bisector frame. A new case needs
+//! no code.
 
 #[path = "../nastran/tests/support/mod.rs"]
 mod support;
@@ -16,7 +19,7 @@ use strainbridge::fe::strain_tensor::basic_tensor;
 use strainbridge::fe::{CaseResult, PlaneStrain, Solution};
 use strainbridge::model::{GridIx, Model, Shell, ShellIx, Vec3};
 
-/// Fibre distances at a grid of a shell; at its centre where that is no corner of it.
+/// Returns the fibre distances at a grid of a shell, or at its centre if the grid is not one of its corners.
 fn fibres_at(model: &Model, shell: &Shell, grid: u32) -> [f64; 2] {
     let fibres = model.fibres(shell);
     let is = |g: &GridIx| model.grids.get(g.us()).is_some_and(|g| g.id == grid);
@@ -26,12 +29,12 @@ fn fibres_at(model: &Model, shell: &Shell, grid: u32) -> [f64; 2] {
     }
 }
 
-/// Relative to the column's largest value.
+/// Returns the tolerance relative to the largest value of the column.
 fn tolerance(word_bytes: u64) -> f64 {
     if word_bytes == 8 { 1e-12 } else { 1e-6 }
 }
 
-/// The set's cases: folder, case.json, expected.json.
+/// Returns the cases of the set: folder, case.json, expected.json.
 fn cases() -> Vec<(PathBuf, Value, Value)> {
     let Some(folder) = support::find_shared_path("nastran") else {
         return Vec::new();
@@ -53,7 +56,7 @@ fn cases() -> Vec<(PathBuf, Value, Value)> {
     all
 }
 
-/// Included files from disk.
+/// Loader of included files from disk.
 struct Disk;
 impl Loader for Disk {
     fn load(&mut self, request: &IncludeRequest) -> Result<LoadedFile, String> {
@@ -71,7 +74,7 @@ impl Loader for Disk {
     }
 }
 
-/// The model of a case's deck.
+/// Returns the model of the deck of a case.
 fn model(folder: &Path, case: &Value) -> Option<Model> {
     let path = folder.join(case["bdf"].as_str()?);
     let deck = read_deck(
@@ -82,7 +85,7 @@ fn model(folder: &Path, case: &Value) -> Option<Model> {
     Some(Model::from_cards(&deck.cards).0)
 }
 
-/// Values by column: our number and the oracle's.
+/// Values by column: from this reader and from the oracle.
 #[derive(Default)]
 struct Columns(BTreeMap<String, Vec<(f64, f64)>>);
 
@@ -94,14 +97,15 @@ impl Columns {
             .push((ours, theirs.as_f64().unwrap()));
     }
 
-    /// Largest difference of any column relative to that column's largest value, with its name.
+    /// Returns the largest difference in any column, relative to the largest value of that column, with the column
+    /// name.
     fn largest_difference(&self) -> (f64, String) {
         let mut worst = (0.0, String::new());
         for (name, pairs) in &self.0 {
             let largest = pairs.iter().fold(0.0_f64, |m, p| m.max(p.1.abs()));
             for (ours, theirs) in pairs {
                 let d = (ours - theirs).abs();
-                // A column of zeros must be zero to the rounding of a turned tensor of order one thousandth.
+                // A column of zeros must be zero within the rounding of a rotated tensor of order one thousandth.
                 let relative = if largest > 1e-20 {
                     d / largest
                 } else {
@@ -124,7 +128,7 @@ fn case_of(solution: &Solution, subcase: u64) -> &CaseResult {
         .unwrap_or_else(|| panic!("no subcase {subcase}"))
 }
 
-/// Strain at the surfaces of a shell: at the centre, or at a corner grid.
+/// Returns the strain at the surfaces of a shell, at the centre or at a corner grid.
 fn shell_strain_at(model: &Model, case: &CaseResult, element: u32, grid: u32) -> [PlaneStrain; 2] {
     let ix = model.shell_ix(element).unwrap();
     let i = case.shells.elements.binary_search(&ix).unwrap();
@@ -138,8 +142,8 @@ fn shell_strain_at(model: &Model, case: &CaseResult, element: u32, grid: u32) ->
     case.shells.corners[i][corner]
 }
 
-/// What the file's row states, from strain at the surfaces: strain at the fibre, or mid-plane strain and minus its derivative. Strain is
-/// linear through the thickness.
+/// Returns the values of a row of the file, from strain at the surfaces: strain at the fibre, or mid-plane strain and
+/// minus its derivative. Strain is linear through the thickness.
 fn as_row(strain: [PlaneStrain; 2], z: [f64; 2], row: usize, is_fibre: bool) -> PlaneStrain {
     let w = -z[0] / (z[1] - z[0]);
     match (is_fibre, row) {
@@ -149,7 +153,7 @@ fn as_row(strain: [PlaneStrain; 2], z: [f64; 2], row: usize, is_fibre: bool) -> 
     }
 }
 
-/// The solution of a case's OP2, where it has both deck and OP2.
+/// Returns the solution of the OP2 of a case, if the case has both deck and OP2.
 fn solve(folder: &Path, case: &Value) -> Option<(Model, Solution)> {
     let model = model(folder, case)?;
     let bytes = std::fs::read(folder.join(case["op2"].as_str()?)).unwrap();
@@ -231,7 +235,7 @@ fn strain_of_quads_in_the_basic_frame_agrees_in_every_case() {
             let result = case_of(&solution, subcase);
             let element = row["eid"].as_u64().unwrap() as u32;
             let shell = &model.shells[model.shell_ix(element).unwrap().us()];
-            // Curvature rows state the fibre distances 0 and -1; no shell has its surfaces there.
+            // Curvature rows state the fibre distances 0 and -1. No shell has its surfaces there.
             let which = row["row"].as_u64().unwrap() as usize;
             let fibre = row["fiber"].as_f64().unwrap();
             let z = model.fibres(shell).centre;
@@ -243,7 +247,7 @@ fn strain_of_quads_in_the_basic_frame_agrees_in_every_case() {
                 is_fibre,
             );
             let axes = shell_axes(&model, shell, ShellPlace::Centre).unwrap();
-            // The oracle leaves the normal strain out.
+            // The oracle omits the normal strain.
             let ours = components(&basic_tensor(strain, 0.0, &axes));
             for (k, name) in ["xx", "yy", "zz", "xy", "yz", "zx"].iter().enumerate() {
                 columns.push(
@@ -342,7 +346,7 @@ fn displacements_of_every_case_turned_back_to_their_frames_are_those_of_the_file
                     columns.push(&k.to_string(), *ours, &row[4 + k]);
                 }
             }
-            // pyNastran holds nodal tables in single precision even where the file is double.
+            // pyNastran stores nodal tables in single precision, even if the file has double precision.
             let (worst, column) = columns.largest_difference();
             assert!(
                 worst <= 1e-6,

@@ -1,9 +1,9 @@
-"""A fleet on machines that SSH reaches, by Dask.
+"""Processes a fleet on machines that are reached by SSH, with Dask.
 
     python dask_ssh.py JOB OUT LIST HOST [HOST ...]
 
-The first host runs the scheduler, the others the workers; `local` stands for two workers on this machine, without SSH. Every host has the same
-Python with strainbridge and dask[distributed]. JOB, OUT and the records have the same paths on all of them.
+The first host runs the scheduler, the others the workers. `local` means two workers on this machine, without SSH. Every host has the same Python
+with strainbridge and dask[distributed]. JOB, OUT and the records have the same paths on all hosts.
 """
 
 import sys

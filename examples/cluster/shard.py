@@ -1,9 +1,10 @@
-"""One part of a fleet, for a scheduler that gives every task a number; or the merge of all parts.
+"""Processes one part of a fleet, for a scheduler that gives every task a number, or merges all parts.
 
-    python shard.py JOB OUT 3/64 LIST      the third of 64 parts of the records in LIST, a path or URL a line
-    python shard.py JOB OUT merge          fleet.csv and the report from what all parts have kept in OUT
+    python shard.py JOB OUT 3/64 LIST      the third of 64 parts of the records in LIST, one path or URL per line
+    python shard.py JOB OUT merge          fleet.csv and the report from the stored results of all parts in OUT
 
-A part ends with exit code 0 if it is done, whatever it found. The merge ends with exit code 1 if a finding is an error. Bad input ends with 2.
+A part ends with exit code 0 if it is complete, independently of its findings. The merge ends with exit code 1 if a finding is an error. Faulty input
+ends with 2.
 """
 
 import sys

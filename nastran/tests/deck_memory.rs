@@ -1,10 +1,10 @@
-//! Small decks that ask for much memory do not get it.
+//! Small decks that request much memory do not get it.
 
 use std::collections::BTreeMap;
 
 use nastran::bdf::{MemoryLoader, read_deck};
 
-/// Peak resident memory of this process in bytes, where the system tells.
+/// Returns the peak resident memory of this process in bytes, or `None` if the system does not report it.
 fn peak() -> Option<usize> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;

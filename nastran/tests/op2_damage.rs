@@ -1,4 +1,4 @@
-//! Damaged OP2 files: every truncation and thousands of seeded mutations give an error or a partial answer, never a panic.
+//! Damaged OP2 files. Every truncation and thousands of seeded mutations give an error or a partial answer, without a panic.
 
 mod support;
 
@@ -6,7 +6,7 @@ use nastran::op2::Op2;
 use nastran::results::SalvagedFile;
 use std::path::PathBuf;
 
-/// Files of the shared set up to a size, smallest first.
+/// Returns the files of the shared set up to a size, smallest first.
 fn files(largest: u64) -> Vec<(PathBuf, Vec<u8>)> {
     let mut found = Vec::new();
     let Some(shared) = support::find_shared_path("nastran") else {
@@ -31,7 +31,7 @@ fn files(largest: u64) -> Vec<(PathBuf, Vec<u8>)> {
     found
 }
 
-/// Reads everything a file holds; the number of rows that came out.
+/// Reads the whole content of a file. Returns the number of rows.
 fn read_all(bytes: &[u8]) -> usize {
     let Ok(SalvagedFile { file: op2, .. }) = Op2::salvage(bytes) else {
         return 0;
@@ -46,7 +46,7 @@ fn read_all(bytes: &[u8]) -> usize {
     n.saturating_add(cards.grids.len())
 }
 
-/// A small generator, the same everywhere (xorshift; Marsaglia 2003).
+/// Small generator that is equal on all platforms (xorshift; Marsaglia 2003).
 struct Random(u64);
 
 impl Random {
@@ -62,7 +62,7 @@ impl Random {
     }
 }
 
-/// Ends of the physical records, in the word order of the file.
+/// Returns the ends of the physical records, in the byte order of the file.
 fn record_ends(bytes: &[u8]) -> Vec<usize> {
     let little = matches!(u32::from_le_bytes(bytes[..4].try_into().unwrap()), 4 | 8);
     let (mut at, mut ends) = (0, Vec::new());
@@ -140,7 +140,7 @@ fn a_whole_file_is_read_and_a_cut_one_is_not() {
     }
 }
 
-/// Byte ranges of the records of result tables: from one negative key to the next.
+/// Returns the byte ranges of the records of result tables, from one negative key to the next.
 fn numbered_records(bytes: &[u8]) -> Vec<(usize, usize)> {
     let little = matches!(u32::from_le_bytes(bytes[..4].try_into().unwrap()), 4 | 8);
     let (mut starts, mut before) = (Vec::new(), 0);
@@ -202,7 +202,7 @@ fn ten_thousand_mutations_end_in_an_error_or_a_partial_answer() {
     }
 }
 
-/// One change: a byte, a word set to a number that hurts, a piece taken out, doubled or moved.
+/// Makes one change: a byte, a word with a critical number, or a removed, doubled or moved piece.
 fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
     const WORDS: [u32; 10] = [
         0,

@@ -1,4 +1,4 @@
-//! Reading takes less than four times the file's size and 64 MiB, every row of every block held at once.
+//! Reading takes less memory than four times the file size plus 64 MiB, while every row of every block is in memory.
 
 mod support;
 
@@ -6,7 +6,7 @@ use nastran::op2::{Op2, Op2Writer};
 use nastran::results::{Analysis, Block, ElementType, Quantity, RowId, Rows, ShellForm, columns};
 use std::path::Path;
 
-/// Peak resident memory of this process in bytes, where the system tells.
+/// Returns the peak resident memory of this process in bytes, or `None` if the system does not report it.
 fn peak() -> Option<usize> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
@@ -28,7 +28,7 @@ fn read_all(path: &Path) -> (usize, usize) {
     (bytes.len(), rows)
 }
 
-/// Writes a file of `subcases` x `elements` quads with strain on both surfaces; a tenth of a MiB of it is in memory at a time.
+/// Writes a file of `subcases` x `elements` quads with strain on both surfaces. Only a tenth of a MiB of it is in memory at a time.
 fn write_large(path: &Path, subcases: u32, elements: u32) {
     let ids: Vec<RowId> = (1..=elements)
         .flat_map(|entity| {

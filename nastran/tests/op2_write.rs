@@ -1,4 +1,4 @@
-//! What the OP2 writer writes is read back the same, and real files survive being written again.
+//! A file of the OP2 writer is read back with equal content, and real files can be written again.
 
 mod support;
 
@@ -30,7 +30,7 @@ fn block(quantity: Quantity, element: Option<u32>, subcase: u32) -> Block {
     }
 }
 
-/// Rows with values that are exact in 32 bits, different in every place.
+/// Returns rows with values that are exact in 32 bits and all different.
 fn rows(columns: &'static [&'static str], ids: Vec<RowId>) -> Rows {
     let n = ids.len() * columns.len();
     Rows {
@@ -176,7 +176,7 @@ fn every_block_of_the_shared_files_that_can_be_written_comes_back() {
             }
         }
     }
-    // Displacements and forces at grids in statics alone are 78 blocks, strain and stress of shells, bars and solids more.
+    // There are 78 blocks with displacements and forces at grids in statics. Strain and stress of shells, bars and solids add more.
     assert!(compared >= 100, "{compared} blocks compared");
 }
 

@@ -1,4 +1,4 @@
-//! Every result file of the shared set opens through the common front, told apart by content.
+//! Opens every result file of the shared set through the common interface, which recognises the format by the content.
 
 mod support;
 

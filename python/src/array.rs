@@ -48,7 +48,7 @@ impl Named<'_> {
         Ok(array)
     }
 
-    /// Two dimensions.
+    /// Returns an array of two dimensions.
     pub fn matrix<'py>(&self, a: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArray2<'py, f64>> {
         self.array_of_any_type(a, 2)?;
         Ok(a.cast::<numpy::PyArray2<f64>>()?.try_readonly()?)

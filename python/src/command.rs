@@ -1,4 +1,4 @@
-//! Every command that asks a job or files, by its name.
+//! Every command that takes a job or files, by its name.
 
 use crate::fault::{argument_fault, raise};
 use crate::files::Desk;
@@ -14,10 +14,10 @@ use strainbridge::workflow::fleet::{FleetSpec, name::Shard};
 use strainbridge::workflow::verify;
 use strainbridge::{Context, Faults, Job};
 
-/// A question of a job alone.
+/// Command that takes only a job.
 type OnJob = fn(&Job, &Context) -> Result<AnyOutcome, Faults>;
 
-/// Commands that ask a job alone, and the question of the library behind each.
+/// Commands that take only a job, with the function of the library.
 const ON_JOB: [(&str, OnJob); 11] = [
     ("ballast", |j, cx| keep(strainbridge::ballast(j, cx)?)),
     ("calibrate", |j, cx| {
@@ -51,7 +51,7 @@ struct More {
     digests: BTreeMap<String, String>,
 }
 
-/// Names of the commands that [`ask`] knows.
+/// Returns the names of the commands that [`ask`] accepts.
 #[pyfunction]
 pub(crate) fn commands() -> Vec<&'static str> {
     let on_job = ON_JOB.iter().map(|c| c.0);
@@ -60,13 +60,13 @@ pub(crate) fn commands() -> Vec<&'static str> {
     names
 }
 
-/// The JSON schema of a job.
+/// Returns the JSON schema of a job.
 #[pyfunction]
 pub(crate) fn schema() -> String {
     strainbridge::job::schema::job_schema()
 }
 
-/// The outcome of a command.
+/// Runs a command and returns its outcome.
 #[pyfunction]
 #[pyo3(signature = (command, job=None, *, files=Vec::new(), folder=PathBuf::new(), modes=0, total_strain=false, shard=None, digests=BTreeMap::new(), threads=None, cache=true, progress=None))]
 pub(crate) fn ask(
@@ -162,7 +162,7 @@ fn answer(
     }
 }
 
-/// The command that wrote a folder, the job or deck that it was given, and the results it names.
+/// Returns the command that wrote a folder, its job or deck, and the results that it names.
 #[pyfunction]
 pub(crate) fn made(py: Python, folder: PathBuf) -> PyResult<(String, PathBuf, Vec<String>)> {
     let made = verify::read_made(&folder).map_err(|f| raise(py, f.into()))?;
@@ -171,7 +171,7 @@ pub(crate) fn made(py: Python, folder: PathBuf) -> PyResult<(String, PathBuf, Ve
     Ok((made.command, main, results))
 }
 
-/// Removes kept solutions from a folder, that of the user where `None`: its path, how many, and their bytes.
+/// Removes stored solutions from a folder, by default from that of the user. Returns its path, the number of solutions, and their bytes.
 #[pyfunction]
 #[pyo3(signature = (folder=None))]
 pub(crate) fn clean(py: Python, folder: Option<PathBuf>) -> PyResult<(PathBuf, usize, u64)> {

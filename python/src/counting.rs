@@ -5,10 +5,10 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use strainbridge::series::rainflow::{Point, Rainflow};
 
-/// Numbers of a cycle: range, mean, count, and the samples of its two reversals.
+/// Number of columns of a cycle: range, mean, count, and the samples of its two reversals.
 const COLUMNS: usize = 5;
 
-/// Cycles by rows: range, mean, count, first and second reversal.
+/// Returns cycles by rows: range, mean, count, first and second reversal.
 #[pyfunction]
 pub(crate) fn rainflow<'py>(
     py: Python<'py>,

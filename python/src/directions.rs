@@ -13,9 +13,11 @@ const STRAIN: Named = Named {
     axes: "places x 3 or 6",
 };
 
-/// Exx Eyy Ezz Exy Eyz Ezx (tensor shear, places x 6) along directions as they are given; or exx, eyy, gxy (engineering shear, places x 3) of
-/// elements, in the element's frame without `corners`, else in the frame of `corners` (places x 3 or 4 x 3), the direction laid onto the
-/// element. NaN where an element has no area or the direction is its normal.
+/// Returns normal strain along directions.
+///
+/// For Exx Eyy Ezz Exy Eyz Ezx (tensor shear, places x 6), directions are taken as given. For exx, eyy, gxy (engineering shear, places x 3) of
+/// elements, directions are in the frame of the element. With `corners` (places x 3 or 4 x 3), they are in the frame of the corners and projected
+/// onto the element. The result is NaN if an element has no area or the direction is its normal.
 #[pyfunction]
 #[pyo3(signature = (strain, direction, corners))]
 pub(crate) fn strain_along<'py>(
@@ -68,7 +70,7 @@ pub(crate) fn strain_along<'py>(
                 };
                 let z: Vec3 = axes.row(2).transpose();
                 let flat = d - z * d.dot(&z);
-                // What is left of a normal is rounding.
+                // The projection of a normal is only rounding.
                 let has_direction = flat.norm() > 1e-9 * d.norm();
                 let tensor = basic_tensor([exx, eyy, gxy], 0.0, &axes);
                 has_direction.then(|| along(&tensor, &flat))

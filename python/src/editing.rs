@@ -8,7 +8,7 @@ use numpy::PyReadonlyArray1;
 use std::collections::HashMap;
 use strainbridge::{Fault, Faults};
 
-/// Columns of the cards of a name, all as reals, rows one after the other.
+/// Columns of the cards with a name, all as reals, row by row.
 pub(crate) type Columns<'py> = HashMap<String, PyReadonlyArray1<'py, f64>>;
 
 /// Shapes of shells.
@@ -21,7 +21,7 @@ const SHAPES: [ShellShape; 6] = [
     ShellShape::Tria6,
 ];
 
-/// The columns of one name.
+/// Columns of one card name.
 struct Rows<'a, 'py> {
     name: &'a str,
     columns: &'a Columns<'py>,
@@ -37,7 +37,7 @@ impl Rows<'_, '_> {
         )
     }
 
-    /// `width` numbers of row `i` of a column.
+    /// Returns `width` numbers of row `i` of a column.
     fn reals<const N: usize>(&self, column: &str, i: usize) -> Result<[f64; N], Fault> {
         let found = self.columns.get(column);
         let slice = found.and_then(|c| c.as_slice().ok());
@@ -49,7 +49,7 @@ impl Rows<'_, '_> {
         })
     }
 
-    /// A finite number, or numbers.
+    /// Returns one or several finite numbers.
     fn finite_numbers<const N: usize>(&self, column: &str, i: usize) -> Result<[f64; N], Fault> {
         let row = self.reals(column, i)?;
         if row.iter().all(|v| v.is_finite()) {
@@ -59,7 +59,7 @@ impl Rows<'_, '_> {
         Err(self.fault(column, &said, "give numbers"))
     }
 
-    /// Ids; 0 where `least` allows it.
+    /// Returns ids, which are at least `least` (0 or 1).
     fn ids<const N: usize>(&self, column: &str, i: usize, least: f64) -> Result<[u32; N], Fault> {
         let row: [f64; N] = self.reals(column, i)?;
         let is_id = |v: &f64| v.fract() == 0.0 && (least..=f64::from(i32::MAX)).contains(v);
@@ -157,7 +157,7 @@ fn grid(rows: &Rows, i: usize, old: Option<&Grid>) -> Result<Grid, Fault> {
     let old = old.copied();
     Ok(Grid {
         id,
-        // A blank stays blank: GRDSET may stand behind it.
+        // A blank field remains blank, because GRDSET may give its value.
         cp: match old.and_then(|o| o.cp) {
             None if cp == 0 => None,
             _ => Some(cp),

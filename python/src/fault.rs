@@ -1,9 +1,9 @@
-//! Bad input as the exception `strainbridge.Faults`.
+//! Faulty input as the exception `strainbridge.Faults`.
 
 use pyo3::prelude::*;
 use strainbridge::{Fault, Faults};
 
-/// The exception that holds these faults.
+/// Returns the exception with these faults.
 pub(crate) fn raise(py: Python, faults: Faults) -> PyErr {
     let made = || -> PyResult<PyErr> {
         let list: Vec<_> = faults
@@ -16,7 +16,7 @@ pub(crate) fn raise(py: Python, faults: Faults) -> PyErr {
     made().unwrap_or_else(|e| e)
 }
 
-/// A fault of an argument of a function.
+/// Returns a fault of an argument of a function.
 pub(crate) fn argument_fault(function: &str, argument: &str, said: &str, remedy: &str) -> Fault {
     Fault::new(function, argument, said, remedy)
 }

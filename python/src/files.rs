@@ -1,4 +1,4 @@
-//! Files on the disk, and some held in memory under paths of their own.
+//! Files on the disk, and files in memory with paths.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use strainbridge::Disk;
 use strainbridge::host::context::Files;
 use strainbridge::host::files::{FileBytes, OpenedFile, Stamp};
 
-/// The disk with files from memory before it.
+/// The disk, with files in memory that have priority.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Desk(pub BTreeMap<PathBuf, Vec<u8>>);
 

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use strainbridge::{Fault, Job};
 
-/// A job, checked, with what it was read from.
+/// Checked job with its source.
 #[pyclass(frozen, name = "_Job", module = "strainbridge._strainbridge")]
 pub(crate) struct CheckedJob {
     pub job: Job,
@@ -16,7 +16,7 @@ pub(crate) struct CheckedJob {
 
 #[pymethods]
 impl CheckedJob {
-    /// Reads the job at `path`; `files` are held in memory, by path, and go before those of the disk.
+    /// Reads the job at `path`. `files` are in memory, by path, and have priority over files on the disk.
     #[new]
     #[pyo3(signature = (path, files=BTreeMap::new()))]
     fn new(py: Python, path: PathBuf, files: BTreeMap<PathBuf, Vec<u8>>) -> PyResult<Self> {
@@ -27,7 +27,7 @@ impl CheckedJob {
     }
 }
 
-/// The keys of a job's text, as JSON.
+/// Returns the keys of a job's text, as JSON.
 #[pyfunction]
 pub(crate) fn job_to_json(py: Python, path: &str, text: &str) -> PyResult<String> {
     let fault = |e: &dyn std::fmt::Display| {

@@ -1,22 +1,22 @@
 //! The Python package: arrays and jobs of Python in, outcomes of the application out. Nothing is decided here.
 //!
 //! - [`array`]: numpy arrays as slices, without a copy
-//! - [`command`]: every command that asks a job or files, by its name
+//! - [`command`]: every command that takes a job or files, by its name
 //! - [`counting`]: rainflow cycles of a signal
 //! - [`directions`]: strain of shells along any direction
 //! - [`editing`]: cards of a deck changed by columns
-//! - [`fault`]: bad input as the exception `strainbridge.Faults`
-//! - [`files`]: files on the disk, and some held in memory
+//! - [`fault`]: faulty input as the exception `strainbridge.Faults`
+//! - [`files`]: files on the disk, and files in memory
 //! - [`job`]: a checked job
-//! - [`outcome`]: an outcome, whatever the command
+//! - [`outcome`]: outcome of any command
 //! - [`placing`], [`recovering`]: layouts and loads of bare matrices
 //! - [`reading`]: decks and result files as arrays
-//! - [`relaxing`]: weights in place of gauges, and the bound they give
+//! - [`relaxing`]: weights instead of gauges, and the upper bound
 //! - [`table`]: tables for readers of Arrow
 //! - [`work`]: threads, the interpreter's lock, Ctrl-C, bugs
-//! - [`writing`]: result files and meshes of arrays
+//! - [`writing`]: result files and meshes from arrays
 //!
-//! What users see, with its documentation, is Python: `python/strainbridge`.
+//! Users see the Python package with its documentation: `python/strainbridge`.
 
 mod array;
 mod command;

@@ -1,4 +1,4 @@
-//! An outcome, whatever the command: `result.json` as text, words, and the files on demand.
+//! Outcome of any command: `result.json` as text, console output, and the files on request.
 
 use crate::fault::raise;
 use crate::work::{Asked, run};
@@ -69,7 +69,7 @@ impl Kept for OfCalibration {
     }
 }
 
-/// Loads of what was measured, samples among them.
+/// Loads of the measured strain, including samples.
 struct Measured(Outcome<RecoveredLoads>);
 
 impl Kept for Measured {
@@ -115,13 +115,13 @@ where
     }
 }
 
-/// An outcome without the type of its answer.
+/// Outcome without the type of its answer.
 #[pyclass(frozen, name = "_Outcome", module = "strainbridge._strainbridge")]
 pub(crate) struct AnyOutcome {
-    /// The text of `result.json`, without the tables that only files have.
+    /// Text of `result.json`, without the list of tables, which exist only as files.
     #[pyo3(get)]
     json: String,
-    /// Table and summary as in a terminal.
+    /// Table and summary as on a terminal.
     #[pyo3(get)]
     words: String,
     /// Notes about the computation.
@@ -173,12 +173,12 @@ where
     })
 }
 
-/// A matrix with the names of its rows and columns.
+/// Matrix with the names of its rows and columns.
 type NamedMatrix<'py> = (Bound<'py, PyArray2<f64>>, Vec<String>, Vec<String>);
 
 #[pymethods]
 impl AnyOutcome {
-    /// Writes the files of the command into a folder; the text of `result.json`.
+    /// Writes the files of the command into a folder, and returns the text of `result.json`.
     fn save(&self, py: Python, folder: PathBuf) -> PyResult<String> {
         let done = run(py, &Asked::default(), |_| {
             let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
@@ -187,7 +187,7 @@ impl AnyOutcome {
         done.map_err(|f| raise(py, f))
     }
 
-    /// The blocks of its report as HTML for a notebook.
+    /// Returns the blocks of its report as HTML for a notebook.
     fn html(&self, py: Python) -> PyResult<String> {
         run(py, &Asked::default(), |_| {
             let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
@@ -195,7 +195,7 @@ impl AnyOutcome {
         })
     }
 
-    /// S, gauges x loads, microstrain per job unit of each load, with the names of gauges and loads; `None` where the command gives none.
+    /// Returns S, gauges x loads, microstrain per job unit of each load, with the names of gauges and loads. `None` if the command computes no S.
     fn sensitivity<'py>(&self, py: Python<'py>) -> PyResult<Option<NamedMatrix<'py>>> {
         let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let Some(s) = kept.sensitivity() else {
@@ -208,7 +208,7 @@ impl AnyOutcome {
         Ok(Some((matrix, s.gauges.clone(), loads)))
     }
 
-    /// Samples of a record by column, `time` first; `None` where no record was measured.
+    /// Returns the samples of a record by column, `time` first. `None` if no record was measured.
     fn history<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let found = run(py, &Asked::default(), |_| {
             let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);

@@ -24,7 +24,7 @@ const POSITIONS: Named = Named {
     ..S
 };
 
-/// The rows of `s` with the largest determinant, and its certificate, by name.
+/// Returns the rows of `s` with the largest determinant, and their certificate, by name.
 #[pyfunction]
 #[pyo3(signature = (s, n, spacing, positions, proof, threads))]
 pub(crate) fn place_rows<'py>(
@@ -63,12 +63,12 @@ pub(crate) fn place_rows<'py>(
     out.set_item("efficiency_bound", layout.efficiency_bound)?;
     out.set_item("proved", layout.proved)?;
     out.set_item("condition_number", condition)?;
-    // What the library took, for those who measure what the way to it costs.
+    // The time in the library, which shows the cost of the call.
     out.set_item("seconds", seconds)?;
     Ok(out)
 }
 
-/// Positions of the rows.
+/// Returns the positions of the rows.
 fn points(a: &Bound<PyAny>, n: usize) -> PyResult<Vec<[f64; 3]>> {
     let array: PyReadonlyArray2<f64> = POSITIONS.matrix(a)?;
     if array.shape() != [n, 3] {
@@ -86,7 +86,7 @@ fn points(a: &Bound<PyAny>, n: usize) -> PyResult<Vec<[f64; 3]>> {
     Ok(rows.to_vec())
 }
 
-/// The layout, and the condition number of its rows.
+/// Returns the layout, and the condition number of its rows.
 fn layout(
     rows: &[f64],
     k: usize,

@@ -21,13 +21,13 @@ use strainbridge::units::MICROSTRAIN;
 use strainbridge::workflow::cases::edited_files;
 use strainbridge::{Context, Fault, Faults};
 
-/// Numbers of a table, `columns` a row.
+/// Numbers of a table, `columns` per row.
 struct Columns<T> {
     values: Vec<T>,
     columns: usize,
 }
 
-/// Puts columns into a dictionary: one number a row as a vector, more as a matrix.
+/// Inserts columns into a dictionary: one number per row as a vector, more as a matrix.
 fn insert_columns<T: numpy::Element>(
     out: &Bound<PyDict>,
     name: &str,
@@ -48,13 +48,13 @@ fn ids(values: impl Iterator<Item = i64>) -> Columns<i64> {
     }
 }
 
-/// A deck with what it means.
+/// Deck with its model.
 #[pyclass(frozen, name = "_Deck", module = "strainbridge._strainbridge")]
 pub(crate) struct ReadDeck(DeckModel);
 
 #[pymethods]
 impl ReadDeck {
-    /// Reads the deck at `path`; `files` are held in memory, by path, and go before those of the disk.
+    /// Reads the deck at `path`. `files` are in memory, by path, and have priority over files on the disk.
     #[new]
     #[pyo3(signature = (path, files=BTreeMap::new()))]
     fn new(py: Python, path: PathBuf, files: BTreeMap<PathBuf, Vec<u8>>) -> PyResult<Self> {
@@ -91,7 +91,8 @@ impl ReadDeck {
         Ok(out)
     }
 
-    /// Name and bytes of the files of the deck with cards changed by columns, INCLUDEs as they are found from `folder`; the first is the deck.
+    /// Returns name and bytes of the files of the deck after changes of cards by columns. The first is the deck. INCLUDE files are relative to
+    /// `folder`.
     fn edit_files(
         &self,
         py: Python,
@@ -131,7 +132,7 @@ impl ReadDeck {
         Ok(out)
     }
 
-    /// Cards of one name as columns; `None` for a name that has no columns here.
+    /// Returns the cards of one name as columns, or `None` for a name without columns here.
     fn cards<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Bound<'py, PyDict>>> {
         let (out, cards) = (PyDict::new(py), &self.0.deck.cards);
         match name {
@@ -195,7 +196,7 @@ impl ReadDeck {
     }
 }
 
-/// Ids, properties (the element's id where blank) and grids of elements.
+/// Inserts ids, properties (the id of the element if blank) and grids of elements.
 fn elements<'a>(
     out: &Bound<PyDict>,
     rows: impl Iterator<Item = (u32, Option<u32>, &'a [u32])>,
@@ -220,7 +221,7 @@ fn elements<'a>(
     )
 }
 
-/// A result file.
+/// Result file.
 #[pyclass(frozen, name = "_Results", module = "strainbridge._strainbridge")]
 pub(crate) struct ReadResults {
     name: String,
@@ -248,7 +249,7 @@ impl ReadResults {
 
 #[pymethods]
 impl ReadResults {
-    /// Reads the results at `path`; `files` are held in memory, by path, and go before those of the disk.
+    /// Reads the results at `path`. `files` are in memory, by path, and have priority over files on the disk.
     #[new]
     #[pyo3(signature = (path, files=BTreeMap::new()))]
     fn new(py: Python, path: PathBuf, files: BTreeMap<PathBuf, Vec<u8>>) -> PyResult<Self> {
@@ -282,7 +283,7 @@ impl ReadResults {
         })
     }
 
-    /// The rows of a table: `entity`, `at`, `layer`, and its own columns.
+    /// Returns the rows of a table: `entity`, `at`, `layer`, and the columns of the table.
     fn rows<'py>(&self, py: Python<'py>, table: usize) -> PyResult<Bound<'py, PyDict>> {
         let rows: Rows = self.open_results(py, |file| file.rows(table))?;
         let out = PyDict::new(py);
@@ -305,7 +306,7 @@ impl ReadResults {
     }
 }
 
-/// Strain of the shells of a subcase, microstrain: `element`, `grid` (0: the centre), `top`, `local` (n x 3), `basic` (n x 6).
+/// Returns strain of the shells of a subcase, microstrain: `element`, `grid` (0: the centre), `top`, `local` (n x 3), `basic` (n x 6).
 #[pyfunction]
 #[pyo3(signature = (deck, results, subcase, files=BTreeMap::new()))]
 pub(crate) fn shell_strain<'py>(

@@ -1,4 +1,4 @@
-//! Loads of bare readings.
+//! Loads from bare readings.
 
 use crate::array::Named;
 use crate::fault::{argument_fault, raise};
@@ -33,25 +33,25 @@ const STRAIN: Named = Named {
     ..S
 };
 
-/// Number of runs up to which each is tested with its own residual, as in the command; a longer record is tested on so many samples.
+/// Number of runs up to which each run is tested with its residual, as in the command. Of a longer record, this number of samples is tested.
 const MOST_RUNS: usize = 2000;
-/// Samples handled together.
+/// Number of samples in a block.
 const BLOCK: usize = 8192;
 
-/// Loads with what their intervals take.
+/// Loads, and the data for their intervals.
 struct Recovered {
-    /// `k` a run.
+    /// `k` numbers per run.
     loads: Vec<f64>,
-    /// Half width of the interval of each load, where every gauge reads.
+    /// Half width of the interval of each load, if every gauge reads.
     half: Vec<f64>,
-    /// Runs whose intervals have another width, and those widths, `k` a run.
+    /// Runs whose intervals have other widths, with these widths, `k` per run.
     others: Vec<(usize, Vec<f64>)>,
-    /// `k x k` by rows, where every gauge reads.
+    /// `k x k` by rows, if every gauge reads.
     covariance: Vec<f64>,
     findings: Vec<Finding>,
 }
 
-/// Loads of every row of `strain`, by name.
+/// Returns the loads of every row of `strain`, by name.
 #[pyfunction]
 #[pyo3(signature = (s, strain, noise, threads))]
 pub(crate) fn recover_rows<'py>(
@@ -97,12 +97,12 @@ pub(crate) fn recover_rows<'py>(
     out.set_item("others", PyArray1::from_vec(py, at))?;
     out.set_item("other_halves", matrix(others.1, [others.0, k])?)?;
     out.set_item("findings", findings)?;
-    // What the library took, for those who measure what the way to it costs.
+    // The time in the library, which shows the cost of the call.
     out.set_item("seconds", seconds)?;
     Ok(out)
 }
 
-/// A finding by its parts.
+/// Parts of a finding.
 type Parts = (
     String,
     &'static str,
@@ -120,7 +120,7 @@ fn parts(f: Finding) -> Parts {
     )
 }
 
-/// The loads of readings, `n` a run.
+/// Recovers the loads of readings, `n` per run.
 fn recover_readings(
     rows: &[f64],
     k: usize,
@@ -152,7 +152,7 @@ fn recover_readings(
         )
         .into());
     }
-    // A record is looked through once: readings between those that are judged are rarely in another unit.
+    // One pass over the record is sufficient, because readings between the tested samples are rarely in another unit.
     let judged: Vec<f64> = judged_rows(samples, n)
         .flat_map(|(_, row)| row.to_vec())
         .collect();
@@ -170,7 +170,7 @@ fn recover_readings(
     }
 }
 
-/// The loads with `unit` as the strain of a unit of the readings; `None` where some reading is too large for it.
+/// Recovers the loads with `unit` as the strain of a unit of the readings. Returns `None` if a reading is too large for this unit.
 fn in_unit(
     rows: &[f64],
     k: usize,
@@ -224,7 +224,7 @@ fn in_unit(
             None => return Ok(None),
         }
     };
-    // All gauges together tell every load, so that what a row lacks is a gap, few rows or many.
+    // All gauges together determine every load, so a missing load in a row is a gap, for any number of rows.
     let said = judged.findings.into_iter();
     findings.extend(said.filter(|f| f.code != NOT_SOLVABLE));
     findings.extend(check_gaps(STRAIN.name, &s, &missing));
@@ -238,7 +238,7 @@ fn in_unit(
     }))
 }
 
-/// Strain of one unit of the readings: microstrain, and where that can't be, a power of two that keeps all of them.
+/// Returns the strain of one unit of the readings: microstrain, or a power of two that permits all of them.
 fn unit_of(samples: &[f64]) -> f64 {
     let largest = samples.par_iter().filter(|v| v.is_finite());
     let largest = largest.map(|v| v.abs()).reduce(|| 0.0, f64::max);
@@ -291,7 +291,7 @@ fn readings(samples: &[f64], n: usize, unit: f64) -> Vec<Readings> {
 
 /// Loads of all rows.
 struct Rows {
-    /// Loads, `k` a row.
+    /// Loads, `k` per row.
     loads: Vec<f64>,
     /// Rows whose intervals have another width, with these widths.
     others: Vec<(usize, Vec<f64>)>,
@@ -331,8 +331,9 @@ fn of_runs(judged: &Recovery, half: &[f64]) -> Rows {
     }
 }
 
-/// Loads of a record, streamed through one estimate, and the widths of samples in which some gauge gives nothing; `None` where a reading is too
-/// large to be strain in this unit.
+/// Recovers the loads of a record, streamed through one estimate, and the widths of samples in which a gauge has no reading.
+///
+/// Returns `None` if a reading is too large to be strain in this unit.
 fn of_record(
     s: &Sensitivity,
     samples: &[f64],
@@ -354,13 +355,13 @@ fn of_record(
                 values: Vec::with_capacity(block.len() / n * k),
                 gaps: Vec::new(),
             };
-            // What is not asked for any more is left empty.
+            // After a stop request, the result is left empty.
             if stop.is_asked() {
                 return (out, MissingReadings::new(k), 0);
             }
             let mut missing = MissingReadings::new(k);
             filter.loads_of(block, unit, &mut out, &mut missing);
-            // An infinite reading is none in any unit.
+            // An infinite reading is impossible in any unit.
             let impossible = match missing.impossible {
                 0 => 0,
                 _ => block

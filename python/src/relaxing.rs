@@ -1,4 +1,4 @@
-//! The relaxation of a placement of a bare matrix: weights in place of gauges, and the bound they give.
+//! Relaxation of a placement of a bare matrix: weights instead of gauges, and the upper bound.
 
 use crate::array::Named;
 use crate::fault::{argument_fault, raise};
@@ -21,7 +21,7 @@ const S: Named = Named {
 /// Weights of all rows, `log det` of the weighted sum, and the bound.
 type Weighted = (Vec<f64>, f64, f64);
 
-/// The weights of the rows of `s` that sum to `n`, and the bound that no `n` rows can pass.
+/// Returns the weights of the rows of `s`, whose sum is `n`, and the upper bound for any `n` rows.
 #[pyfunction]
 #[pyo3(signature = (s, n, tolerance, threads))]
 pub(crate) fn relax<'py>(

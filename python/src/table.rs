@@ -1,4 +1,4 @@
-//! Tables that any reader of the Arrow PyCapsule interface takes, without a package of Arrow on either side.
+//! Tables for any reader of the Arrow PyCapsule interface, without an Arrow package on either side.
 
 use crate::fault::{argument_fault, raise};
 use arrow_array::builder::{
@@ -16,14 +16,15 @@ use pyo3::types::{PyCapsule, PyDict};
 use serde_json::{Map, Value};
 use std::sync::Arc;
 
-/// A table of the Arrow format.
+/// Table in the Arrow format.
 #[pyclass(frozen, name = "_Table", module = "strainbridge._strainbridge")]
 pub(crate) struct Table(RecordBatch);
 
 #[pymethods]
 impl Table {
-    /// A table of records, as JSON (a list of objects) with the names of its columns in order; or of columns (arrays of numbers, lists of texts)
-    /// by name.
+    /// Creates a table of records or of columns.
+    ///
+    /// Records are JSON (a list of objects), with the names of the columns in order. Columns are arrays of numbers or lists of texts, by name.
     #[new]
     #[pyo3(signature = (records=None, names=Vec::new(), columns=None))]
     fn new(
@@ -45,7 +46,7 @@ impl Table {
             .iter()
             .map(|(name, a)| Field::new(name, a.data_type().clone(), true))
             .collect();
-        // Without a column there is nothing to count rows by.
+        // Without a column, the number of rows is zero.
         let n = of.first().map_or(0, |c| c.1.len());
         let arrays = of.into_iter().map(|c| c.1).collect();
         let options = RecordBatchOptions::new().with_row_count(Some(n));
@@ -66,14 +67,14 @@ impl Table {
         schema.fields().iter().map(|f| f.name().clone()).collect()
     }
 
-    /// The schema, as the interface has it.
+    /// Returns the schema as the interface requires.
     fn __arrow_c_schema__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyCapsule>> {
         let schema = FFI_ArrowSchema::try_from(self.0.schema().as_ref())
             .map_err(|e| fault(py, &e.to_string(), "report it"))?;
         PyCapsule::new_with_value(py, schema, c"arrow_schema")
     }
 
-    /// The rows as a stream, as the interface has it; a schema that is asked for is not heeded, which the interface allows.
+    /// Returns the rows as a stream, as the interface requires. A requested schema is ignored, which the interface permits.
     #[pyo3(signature = (requested_schema=None))]
     fn __arrow_c_stream__<'py>(
         &self,
@@ -104,7 +105,7 @@ fn of_column(column: &Bound<PyAny>) -> PyResult<ArrayRef> {
     )))
 }
 
-/// Columns of these names, in order.
+/// Returns columns with these names, in order.
 fn of_records(rows: &[Map<String, Value>], names: &[String]) -> Vec<(String, ArrayRef)> {
     let column = |name: &String| {
         let values = rows.iter().map(|r| r.get(name).filter(|v| !v.is_null()));
@@ -113,7 +114,7 @@ fn of_records(rows: &[Map<String, Value>], names: &[String]) -> Vec<(String, Arr
     names.iter().map(column).collect()
 }
 
-/// The values as whole numbers, reals, truths, lists of reals or texts, whichever fits all of them; else as JSON.
+/// Converts values to whole numbers, reals, truth values, lists of reals or texts. The first type that fits all values is used, otherwise JSON.
 fn of_values(values: &[Option<&Value>]) -> ArrayRef {
     let all = |fits: fn(&Value) -> bool| values.iter().flatten().all(|v| fits(v));
     let kind = if values.iter().all(Option::is_none) || all(Value::is_i64) {

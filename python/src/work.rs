@@ -1,7 +1,7 @@
-//! Work without the interpreter's lock, on separate threads. Ctrl-C stops it between stages and between the cases, runs, files and trials of a stage;
-//! a bug in it is an exception.
+//! Work without the interpreter's lock, on separate threads.
 //!
-//! Every call has its own pool, which ends with it: a process forked from this one finds no threads missing.
+//! Ctrl-C stops it between stages and between the cases, runs, files and trials of a stage. A bug in it becomes an exception. Every call has a
+//! separate pool, which ends with the call, so a forked process does not lack threads.
 
 use crate::fault::{argument_fault, raise};
 use pyo3::exceptions::PyRuntimeError;
@@ -23,7 +23,7 @@ const LOOK: Duration = Duration::from_millis(50);
 /// Number of threads, and the callback for progress.
 #[derive(Default)]
 pub(crate) struct Asked {
-    /// Number of threads; `None`: as many as the machine has.
+    /// Number of threads. `None`: all cores of the machine.
     pub threads: Option<usize>,
     /// Callback with stage, completed parts and total parts (0: unknown).
     pub progress: Option<Py<PyAny>>,
@@ -32,7 +32,7 @@ pub(crate) struct Asked {
 /// Panic value that unwinds cancelled work.
 struct Stopped;
 
-/// Progress of the work, and whether it is to stop.
+/// Progress of the work, and whether it must stop.
 #[derive(Default)]
 pub(crate) struct Heard {
     stage: Mutex<String>,
@@ -64,7 +64,7 @@ impl Progress for Heard {
 }
 
 impl Heard {
-    /// Unwinds cancelled work from a point where it reports progress; [`run`] ends the unwinding. Half-written files are removed on the way.
+    /// Unwinds cancelled work from a point where it reports progress. [`run`] ends the unwinding. Half-written files are removed on the way.
     fn leave_if_stopped(&self) {
         if self.is_cancelled() && !std::thread::panicking() {
             resume_unwind(Box::new(Stopped));
@@ -85,10 +85,10 @@ impl Heard {
     }
 }
 
-/// Runs `work` on its own threads and returns its result.
+/// Runs `work` on separate threads and returns its result.
 ///
 /// # Errors
-/// `KeyboardInterrupt`, and any exception of the progress callback, once the work has stopped; `RuntimeError` if it panics.
+/// `KeyboardInterrupt`, and any exception of the progress callback, once the work has stopped. `RuntimeError` if it panics.
 pub(crate) fn run<T: Send>(
     py: Python,
     asked: &Asked,
@@ -137,7 +137,7 @@ pub(crate) fn run<T: Send>(
     })
 }
 
-/// The exception for a mistake of the program.
+/// Returns the exception for a bug in the program.
 fn bug(panic: &(dyn Any + Send)) -> PyErr {
     let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
     let said = text.or_else(|| panic.downcast_ref::<String>().cloned());

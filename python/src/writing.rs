@@ -1,4 +1,4 @@
-//! Result files and meshes of arrays.
+//! Result files and meshes from arrays.
 
 use crate::fault::{argument_fault, raise};
 use crate::work::{Asked, run};
@@ -11,10 +11,10 @@ use std::collections::HashMap;
 use strainbridge::Faults;
 use strainbridge::report::{MeshArrays, NamedArray, Numbers, write_arrays_vtu};
 
-/// Date in the files: the same arrays, the same bytes.
+/// Date in the files. It is constant, so that equal arrays give equal bytes.
 const DATE: [u32; 3] = [1, 1, 2000];
 
-/// Lists of columns that a table can have.
+/// Lists of columns that a table may have.
 const LISTS: [&[&str]; 15] = [
     columns::NODAL,
     columns::SHELL_STRAIN,
@@ -49,7 +49,7 @@ const QUANTITIES: [Quantity; 12] = [
     Quantity::PlyStrain,
 ];
 
-/// A table to be written.
+/// Table to be written.
 #[derive(FromPyObject)]
 pub(crate) struct Given<'py> {
     #[pyo3(item)]
@@ -82,7 +82,7 @@ fn fault(said: &str, remedy: &str) -> Faults {
     argument_fault("write_op2", "tables", said, remedy).into()
 }
 
-/// The tables as the bytes of an OP2.
+/// Returns the tables as the bytes of an OP2.
 #[pyfunction]
 pub(crate) fn op2_bytes<'py>(py: Python<'py>, tables: Vec<Given>) -> PyResult<Bound<'py, PyBytes>> {
     let made: Result<Vec<(Block, Rows)>, Faults> = tables.iter().map(prepare_block).collect();
@@ -181,7 +181,7 @@ fn prepare_block(given: &Given) -> Result<(Block, Rows), Faults> {
     Ok((block, rows))
 }
 
-/// Numbers of Python on points or cells.
+/// Numbers from Python on points or cells.
 enum Held<'py> {
     Reals(PyReadonlyArrayDyn<'py, f64>),
     Whole(PyReadonlyArrayDyn<'py, i64>),
@@ -217,7 +217,7 @@ fn name_arrays<'a>(list: &'a [(String, usize, Held)]) -> PyResult<Vec<NamedArray
     list.iter().map(one).collect()
 }
 
-/// A mesh and numbers on it as the bytes of a VTU. Shapes are checked in Python.
+/// Returns a mesh with numbers as the bytes of a VTU. Python checks the shapes.
 #[pyfunction]
 pub(crate) fn vtu_bytes<'py>(
     py: Python<'py>,

@@ -1,7 +1,7 @@
 """Placement, recovery and counting on bare numpy arrays.
 
-Arguments are whatever ``numpy.asarray`` takes: lists, slices, float32, Fortran order, tables of pandas, polars and pyarrow. A float64 array in C
-order is read without a copy. Masked values are missing values.
+Arguments are anything that ``numpy.asarray`` accepts: lists, slices, float32, Fortran order, tables of pandas, polars and pyarrow. A float64 array
+in C order is read without a copy. Masked values are missing values.
 """
 
 from __future__ import annotations
@@ -23,31 +23,31 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Placement:
-    """A layout and its certificate."""
+    """Layout and its certificate."""
 
-    #: Rows of S that were chosen, from 0, ascending.
+    #: Chosen rows of S, from 0, ascending.
     rows: NDArray[np.int64]
-    #: Natural log of det(S'S) of those rows.
+    #: Natural log of det(S'S) of the chosen rows.
     log_det: float
-    #: No rows that keep the rules have a larger one.
+    #: Upper bound of the log det of all layouts that follow the rules.
     upper_bound: float
-    #: exp((log_det - upper_bound) / loads), 0 to 1: certified to be at least this share of the best possible.
+    #: exp((log_det - upper_bound) / loads), from 0 to 1. The layout reaches at least this share of the best possible one.
     efficiency_bound: float
-    #: Whether these rows are proved to be the best.
+    #: Whether the chosen rows are proved to be the best.
     proved: bool
-    #: Condition number of those rows.
+    #: Condition number of the chosen rows.
     condition_number: float
 
 
 @dataclass(frozen=True)
 class RecoveredRows:
-    """Loads with their intervals."""
+    """Recovered loads with their intervals."""
 
-    #: runs x loads, or loads where one run was given; NaN where the gauges with readings do not determine a load.
+    #: runs x loads, or loads for a single run. NaN if the gauges with readings do not determine a load.
     loads: Floats
-    #: loads x loads: covariance of a run in which every gauge reads.
+    #: loads x loads: covariance of a run with readings of every gauge.
     covariance: Floats
-    #: What is to be known of them, the worst first.
+    #: Findings on the loads, the worst first.
     findings: Sequence[Finding]
     _half: Floats = field(repr=False)
     _others: NDArray[np.int64] = field(repr=False)
@@ -75,7 +75,7 @@ class RecoveredRows:
 
     @property
     def residuals(self) -> Floats:
-        """runs x gauges: reading less prediction, microstrain; NaN where a gauge has no reading."""
+        """runs x gauges: reading minus prediction, microstrain. NaN if a gauge has no reading."""
         return self._strain - self.loads @ self._s.T
 
     @property
@@ -94,10 +94,12 @@ class RecoveredRows:
         return self.loads + self.half_width
 
     def to_arrow(self, names: Sequence[str] | None = None) -> Table:
-        """One row for each run, for any reader of the Arrow PyCapsule interface: of each load its value, ``<name>.low`` and ``<name>.high``.
+        """One row for each run, for any reader of the Arrow PyCapsule interface.
+
+        The columns of each load are its value, ``<name>.low`` and ``<name>.high``.
 
         Args:
-            names: of the loads; ``f0``, ``f1`` .. where left out.
+            names: names of the loads; default: ``f0``, ``f1`` ..
         """
         n = self.loads.shape[-1]
         labels = list(names) if names is not None else [f"f{i}" for i in range(n)]
@@ -131,13 +133,13 @@ class RecoveredRows:
 
 @dataclass(frozen=True)
 class Relaxation:
-    """A placement with weights in place of gauges."""
+    """Placement with weights instead of gauges."""
 
-    #: A weight a row of S, 0 to 1; they sum to n.
+    #: One weight for each row of S, 0 to 1. The sum is n.
     weights: Floats
     #: Natural log of det of the sum of w a a' over the rows a of S.
     log_det: float
-    #: No n rows of S have a larger log det(S'S).
+    #: Upper bound of log det(S'S) for any n rows of S.
     upper_bound: float
 
 
@@ -150,19 +152,19 @@ def place_rows(
     positions: ArrayLike | None = None,
     threads: int | None = None,
 ) -> Placement:
-    """The n rows of S with the largest det(S'S), with a bound that no other n rows can pass.
+    """Returns the n rows of S with the largest det(S'S), with an upper bound for any other n rows.
 
     Args:
-        S: candidates x loads; any unit. Rows have equal weight: divide each by the sd of its reading where these differ.
-        n: how many rows, at least as many as loads.
-        spacing: least distance between two rows chosen, in the unit of `positions`.
+        S: candidates x loads; any unit. Rows have equal weight: divide each by the sd of its reading if these differ.
+        n: number of rows, at least as many as loads.
+        spacing: least distance between two chosen rows, in the unit of `positions`.
         proof: whether to try to prove by branch and bound that no layout is better. The bound does not need it.
         positions: candidates x 3, needed for a spacing.
-        threads: how many; None or -1: all cores.
+        threads: number of threads; None or -1: all cores.
 
     Raises:
         Faults: S is empty or not finite, or no n of its rows separate the loads.
-        TypeError: an argument of another type.
+        TypeError: an argument has another type.
     """
     rows, log_scale = _scaled(floats("S", S))
     at = None if positions is None else floats("positions", positions)
@@ -176,20 +178,20 @@ def place_rows(
 
 
 def relax(S: ArrayLike, n: int, tolerance: float = 1e-6, *, threads: int | None = None) -> Relaxation:
-    """Weights of the rows of S, 0 to 1 and n in sum, with the largest log det(S' diag(w) S), and the bound that no n rows can pass.
+    """Returns weights of the rows of S with the largest log det(S' diag(w) S), and the upper bound for any n rows.
 
-    A layout of your own with log det d has at least the share exp((d - upper_bound) / loads) of the best possible efficiency; rows of
-    weight 0 are those that a good layout does without.
+    Weights are from 0 to 1, and their sum is n. If the log det of another layout is d, its efficiency is at least exp((d - upper_bound) / loads) of
+    the best possible. A good layout does not need rows with weight 0.
 
     Args:
-        S: candidates x loads; any unit. Divide each row by the sd of its reading where these differ.
-        n: how many gauges.
-        tolerance: gap per load to which weights and bound are brought together; the bound holds at any.
-        threads: how many; None or -1: all cores.
+        S: candidates x loads; any unit. Divide each row by the sd of its reading if these differ.
+        n: number of gauges.
+        tolerance: gap per load between weights and bound at the end. The bound is valid for any tolerance.
+        threads: number of threads; None or -1: all cores.
 
     Raises:
         Faults: S is empty or not finite, or no n of its rows separate the loads.
-        TypeError: an argument of another type.
+        TypeError: an argument has another type.
 
     Reference:
         Boyd and Vandenberghe, Convex Optimization, 2004, section 7.5.2 (D-optimal design).
@@ -206,20 +208,20 @@ def strain_along(
     angle_deg: ArrayLike | None = None,
     corners: ArrayLike | None = None,
 ) -> Floats:
-    """Normal strain of shells along a direction: what a gauge of zero length glued that way reads. The unit is that of `strain`.
+    """Returns normal strain of shells along a direction, which is the reading of a gauge of zero length, in the unit of `strain`.
 
     Args:
         strain: places x 3, exx, eyy, gxy (engineering shear) in the element's frame, as an OP2 contains them; or places x 6, Exx, Eyy, Ezz, Exy,
             Eyz, Ezx (tensor shear) in the basic frame.
-        direction: 3, or places x 3, of any length. In the frame of `strain`; with `corners` in the basic frame, and laid onto the element.
-        angle_deg: instead of a direction: degrees from the element's x axis, right-handed about its normal; one, or one a place.
+        direction: 3, or places x 3, of any length, in the frame of `strain`. With `corners`, in the basic frame and projected onto the element.
+        angle_deg: instead of a direction: degrees from the element's x axis, right-handed about its normal; one number, or one for each place.
         corners: places x 4 x 3 or places x 3 x 3, the grids of quadrilaterals (CQUAD4) or triangles (CTRIA3) in the basic frame.
 
     Returns:
-        A strain a place; NaN where an element has no area or the direction is its normal.
+        One strain for each place. NaN if an element has no area or the direction is its normal.
 
     Raises:
-        Faults: shapes that don't fit.
+        Faults: the shapes do not match.
     """
     values = floats("strain", strain)
     if (direction is None) == (angle_deg is None) or (angle_deg is not None and corners is not None):
@@ -236,20 +238,20 @@ def strain_along(
 
 
 def recover_rows(S: ArrayLike, strain: ArrayLike, noise: float | ArrayLike = 1.0, *, threads: int | None = None) -> RecoveredRows:
-    """Loads f of every row of strain by least squares, strain = S f + noise, with 95 % intervals.
+    """Recovers the loads f of every row of strain by least squares, strain = S f + noise, with 95 % intervals.
 
-    Intervals follow from the stated noise. They are wider where the residuals exceed it, and a finding states this. A warning gives the number of
-    rows with a missing reading; an error lists the loads that no row determines. If a finding is an error, an :class:`UnreliableWarning` is issued.
+    Intervals follow from the stated noise. They are wider if the residuals exceed it, and a finding states this. A warning gives the number of
+    rows with a missing reading. An error lists the loads that no row determines. If a finding is an error, an :class:`UnreliableWarning` is issued.
 
     Args:
         S: gauges x loads, microstrain per unit of load.
-        strain: runs (or samples) x gauges, or one run as a vector; microstrain. NaN or masked where a gauge has no reading: the others are used.
-        noise: sd of one reading, microstrain; one number, or one a gauge.
-        threads: how many; None or -1: all cores.
+        strain: runs (or samples) x gauges, or one run as a vector; microstrain. NaN or masked if a gauge has no reading; the others are used.
+        noise: sd of one reading, microstrain; one number, or one for each gauge.
+        threads: number of threads; None or -1: all cores.
 
     Raises:
-        Faults: the loads cannot be separated, or shapes do not fit.
-        TypeError: an argument of another type.
+        Faults: the loads cannot be separated, or shapes do not match.
+        TypeError: an argument has another type.
     """
     s, readings = floats("S", S), floats("strain", strain)
     rows = readings.reshape(1, -1) if readings.ndim == 1 else readings
@@ -259,7 +261,7 @@ def recover_rows(S: ArrayLike, strain: ArrayLike, noise: float | ArrayLike = 1.0
     if np.ndim(sd):
         if s.ndim != 2 or sd.shape != (len(s),) or not (np.isfinite(sd) & (sd > 0.0)).all():
             raise ValueError(f"noise has the shape {sd.shape}; give one positive number, or one for each row of S")
-        # Rows over their own noise, in the unit of the median.
+        # Rows divided by their noise, in units of the median noise.
         common = float(np.median(sd))
         weights = common / sd
     found = _engine.recover_rows(
@@ -278,13 +280,13 @@ def recover_rows(S: ArrayLike, strain: ArrayLike, noise: float | ArrayLike = 1.0
 
 
 def rainflow(signal: ArrayLike) -> NDArray[np.void]:
-    """Rainflow cycles of a signal, as ASTM E1049 counts them.
+    """Returns the rainflow cycles of a signal, counted by ASTM E1049.
 
     Args:
         signal: samples; values that are not finite are skipped.
 
     Returns:
-        A structured array with one row for each cycle: ``range``, ``mean``, ``count`` (1, or 0.5 for what is left over at the end), ``first`` and
+        A structured array with one row for each cycle: ``range``, ``mean``, ``count`` (1, or 0.5 for the residue at the end), ``first`` and
         ``second`` (the samples of its reversals, from 0).
     """
     rows = _engine.rainflow(floats("signal", signal))
@@ -295,7 +297,7 @@ def rainflow(signal: ArrayLike) -> NDArray[np.void]:
 
 
 def _scaled(S: Floats) -> tuple[Floats, float]:
-    """Returns S over a power of two where its determinant would overflow or vanish, with what the scale adds to ``log_det``."""
+    """Returns S divided by a power of two if its determinant would overflow or vanish, and the change of ``log_det`` by this scale."""
     largest = float(np.max(np.abs(S), initial=0.0))
     if S.ndim != 2 or not np.isfinite(largest) or largest == 0.0 or 1e-50 < largest < 1e50:
         return S, 0.0

@@ -49,20 +49,20 @@ def calibrate_rows(
     repeats: Sequence[object] | None = None,
     threads: int | None = None,
 ) -> CalibratedRows:
-    """S from runs of known load, as the command `calibrate` computes it.
+    """Returns S from runs with known loads, as the command `calibrate` computes it.
 
     Args:
         strain: runs x gauges, microstrain; NaN for a missing reading.
-        loads: runs x loads, any one unit; NaN: unknown, 0: known to be zero.
+        loads: runs x loads, in any one unit; NaN: unknown, 0: known to be zero.
         noise: sd of one reading, microstrain.
-        prior: a model's S, gauges x loads, microstrain per unit of load.
-        prior_rel: how far the model is off, 1 sd, entry by entry and common to a gauge.
-        repeats: a label a run; runs of the same label are repeats, whose scatter goes into the intervals.
-        threads: how many; all of the machine where None.
+        prior: S of a model, gauges x loads, microstrain per unit of load.
+        prior_rel: relative error of the model, 1 sd, for each entry and common to a gauge.
+        repeats: one label for each run; runs with equal labels are repeats, and their scatter enters the intervals.
+        threads: number of threads; None: all cores.
 
     Raises:
-        Faults: runs too few, or tables that make no sense.
-        ValueError: shapes that don't fit.
+        Faults: there are too few runs, or the tables are not valid.
+        ValueError: the shapes do not match.
     """
     readings, known = floats("strain", strain), floats("loads", loads)
     if readings.ndim != 2 or known.ndim != 2 or len(readings) != len(known):

@@ -1,11 +1,15 @@
-"""The commands, as one function each. A job is a :class:`Job`, the path of one, or a dictionary with its keys.
+"""The commands as functions. A job is a :class:`Job`, its path, or a dictionary with its keys.
 
-All of them take `threads` (None or -1: all cores), `cache` (whether solutions of the built-in solver are kept in the user's cache, as
-the command keeps them) and `progress` (True: a bar of tqdm, where that is installed; or a function, called with stage, parts done and parts in
-all, 0: not known, about twenty times a second). They raise
-:class:`Faults` with every fault of the input, and ``KeyboardInterrupt`` once the work has stopped: between two stages, or between the load
-cases, runs, files or trials of one. Nothing is written before :meth:`Outcome.save`. If a finding is an error, the call issues an
-:class:`UnreliableWarning`.
+Common arguments:
+
+- `threads`: number of threads; None or -1: all cores.
+- `cache`: whether solutions of the built-in solver are stored in the user's cache, as the command does.
+- `progress`: True shows a bar of tqdm, if it is installed. A function is called about twenty times a second with the stage, the number of
+  completed parts and the total number of parts (0: unknown).
+
+The functions raise :class:`Faults` with every fault of the input. They raise ``KeyboardInterrupt`` as soon as the work has stopped: between two
+stages, or between the load cases, runs, files or trials of a stage. They write nothing before :meth:`Outcome.save`. If a finding is an error, the
+call issues an :class:`UnreliableWarning`.
 """
 
 from __future__ import annotations
@@ -57,7 +61,7 @@ def sensitivity(job: AnyJob, *, threads: int | None = None, cache: bool = True, 
 
 
 def place(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
-    """Where to put gauges.
+    """Places gauges.
 
     The outcome contains ``gauges`` (name, element, surface, position, direction, angle_deg, leverage), ``log_det``, ``efficiency_bound``, ``condition_number``, ``load_sigma``.
     """
@@ -113,7 +117,7 @@ def identify(job: AnyJob, *, threads: int | None = None, cache: bool = True, pro
 
 
 def calibrate(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
-    """S from runs of known load.
+    """Calibrates S with runs of known loads.
 
     The outcome contains ``calibration`` (runs, prior, gauges, repeat_scatter_rel, noise_rel, coverage).
     """
@@ -151,18 +155,18 @@ def check(*files: Path, threads: int | None = None, progress: Progress = None) -
 
 
 def init(deck: Path, *results: Path, folder: Path = ".", threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
-    """A job proposed from a deck and its results, for `folder`, where :meth:`Outcome.save` writes it as ``job.toml``.
+    """Proposes a job from a deck and its results, for `folder`. :meth:`Outcome.save` writes it there as ``job.toml``.
 
     The outcome contains ``job``, ``loads``, ``left_out``, ``placeable``.
 
     Raises:
-        Faults: files that cannot be read; a job that exists in the folder already.
+        Faults: a file cannot be read, or the folder contains a job already.
     """
     return _ask("init", None, files=[deck, *results], folder=folder, threads=threads, cache=cache, progress=progress)
 
 
 def strains(deck: Path, *results: Path, threads: int | None = None, progress: Progress = None) -> Outcome:
-    """Strain of shells and bars of every static subcase, element frame and basic frame; ``strains.csv`` once saved.
+    """Strain of shells and bars of every static subcase in the element frame and in the basic frame, with ``strains.csv`` once saved.
 
     The outcome contains ``rows`` and ``subcases``.
     """
@@ -199,22 +203,22 @@ def modes(job: AnyJob, *, modes: int = 10, threads: int | None = None, cache: bo
 
     Args:
         job: a job, or the path of a deck.
-        modes: how many.
+        modes: number of modes.
     """
     files, asked = ([], job) if _is_job(job) else ([job], None)
     return _ask("modes", asked, files=files, modes=count("modes", modes), threads=threads, cache=cache, progress=progress)
 
 
 def verify(folder: Path, *, threads: int | None = None, progress: Progress = None) -> Outcome:
-    """A result folder recomputed from its inputs, without kept solutions, and compared file by file and number by number.
+    """Recomputes a result folder from its inputs without stored solutions, and compares all files and numbers.
 
     The outcome contains ``same`` and ``differs`` (file, at, was, now).
 
     Args:
-        folder: what a command or :meth:`Outcome.save` wrote.
+        folder: folder that a command or :meth:`Outcome.save` wrote.
 
     Raises:
-        Faults: it is no such folder; its inputs are gone.
+        Faults: it is not such a folder, or its inputs are missing.
     """
     command, main, results = _engine.made(folder)
     with tempfile.TemporaryDirectory() as again:
@@ -234,23 +238,23 @@ def verify(folder: Path, *, threads: int | None = None, progress: Progress = Non
 
 
 def clean(folder: Path | None = None) -> Record:
-    """Removes kept solutions of the built-in solver: ``folder``, ``removed`` (how many), ``bytes``.
+    """Removes stored solutions of the built-in solver. Returns ``folder``, ``removed`` (their number) and ``bytes``.
 
     Args:
-        folder: where they are; the user's folder for caches where None.
+        folder: folder of the solutions; None: the user's cache folder.
     """
     where, removed, size = _engine.clean(None if folder is None else _Folder(folder))
     return Record({"command": "clean", "folder": os.fspath(where), "removed": removed, "bytes": size})
 
 
 def explain(code: str | None = None) -> Record | list[Record]:
-    """What a finding means: ``code``, ``severity``, ``said_by``, ``cause``, ``limit``, ``remedy``, ``example``.
+    """Explains a finding: ``code``, ``severity``, ``said_by``, ``cause``, ``limit``, ``remedy``, ``example``.
 
     Args:
-        code: as findings have it, such as ``loads-not-separable``; every code where None.
+        code: code of a finding, such as ``loads-not-separable``; None: every code.
 
     Raises:
-        Faults: no finding has the code; the closest that one has.
+        Faults: no finding has the code. The message names the closest code.
     """
     said = json.loads(_engine.explain(code))
     return Record(said) if code is not None else [Record(c) for c in said]

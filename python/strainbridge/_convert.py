@@ -1,4 +1,4 @@
-"""Arguments of Python as the engine needs them."""
+"""Converts arguments from Python for the engine."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def floats(name: str, value: Any) -> Floats:
 
 
 def _of_objects(name: str, array: NDArray[Any]) -> NDArray[np.float64]:
-    """Returns objects as numbers; what pandas and Python use for a missing value becomes NaN."""
+    """Returns objects as numbers. Missing values of pandas and Python become NaN."""
     out = np.full(array.shape, np.nan)
     for at, value in np.ndenumerate(array):
         if value is None or type(value).__name__ in ("NAType", "NaTType"):
@@ -60,7 +60,7 @@ def count(name: str, value: Any) -> int:
 
 
 def _no_truth(value: Any) -> Any:
-    """The value itself.
+    """Returns the value unchanged.
 
     Raises:
         TypeError: it is a truth value, which Python counts as a number.
@@ -85,8 +85,8 @@ def threads(value: Any) -> int | None:
     """Returns the number of threads; ``None`` and -1 mean all cores.
 
     Raises:
-        TypeError: not a whole number.
-        ValueError: 0 or below -1.
+        TypeError: the value is not a whole number.
+        ValueError: the value is 0 or below -1.
     """
     if value is None:
         return None

@@ -10,12 +10,12 @@ from typing import Any, Iterator
 
 import numpy as np
 
-#: Names under which pandas and its users keep the key of a row.
+#: Names that pandas and its users give to the key of a row.
 _KEYS = ("run", "time", "gauge", "name")
 
 
 def is_table(value: Any) -> bool:
-    """Whether a value is a table: it gives an Arrow stream, or is a DataFrame of pandas."""
+    """Returns whether a value is a table: it has an Arrow stream, or is a DataFrame of pandas."""
     return hasattr(value, "__arrow_c_stream__") or _is_pandas(value)
 
 
@@ -24,12 +24,12 @@ def _is_pandas(value: Any) -> bool:
 
 
 def csv_bytes(table: Any) -> bytes:
-    """The table as UTF-8 CSV with full precision; a missing value is an empty cell.
+    """Returns the table as UTF-8 CSV with full precision. A missing value is an empty cell.
 
     The index of a DataFrame becomes a column if it has a name, or contains times or texts.
 
     Raises:
-        TypeError: a column of lists, or a table that none of the installed packages reads.
+        TypeError: a column contains lists, or no installed package reads the table.
     """
     columns = dict(_columns(table))
     text = io.StringIO()
@@ -71,7 +71,7 @@ def _arrow(table: Any) -> Any:
 
 
 class _Polars:
-    """A DataFrame of polars by the names that pyarrow has."""
+    """A DataFrame of polars with the attribute names of pyarrow."""
 
     def __init__(self, frame: Any) -> None:
         self._frame = frame

@@ -1,4 +1,4 @@
-"""Bad input: every fault at once."""
+"""Faulty input, with every fault."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ Parts = Tuple[str, Optional[int], str, str, str]
 class Fault:
     """One fault of the input."""
 
-    #: File as given; a function's name where an argument is wrong.
+    #: File as given, or the name of a function if an argument is wrong.
     file: str
-    #: Line, from 1; None where it is the file as a whole.
+    #: Line, from 1. None if the fault concerns the whole file.
     line: int | None
     #: Key of a job, field of a card, column of a table, argument.
     field: str
@@ -31,7 +31,7 @@ class Fault:
 
 
 class Faults(ValueError):
-    """Bad input: ``.faults`` contains every fault, at least one."""
+    """Faulty input. ``.faults`` contains every fault, at least one."""
 
     faults: tuple[Fault, ...]
 

@@ -1,4 +1,4 @@
-"""Decks and results that pyNastran has read or made: files in memory."""
+"""Decks and results that pyNastran has read or created, as files in memory."""
 
 from __future__ import annotations
 
@@ -39,27 +39,27 @@ _TABLES = (
 
 
 def is_deck(what: object) -> bool:
-    """Whether it is a `BDF` of pyNastran, or answers like one."""
+    """Returns whether it is a `BDF` of pyNastran, or has the same methods."""
     return callable(getattr(what, "write_bdf", None))
 
 
 def is_results(what: object) -> bool:
-    """Whether it is an `OP2` of pyNastran, or answers like one."""
+    """Returns whether it is an `OP2` of pyNastran, or has the same methods."""
     return callable(getattr(what, "read_op2", None)) or hasattr(what, "op2_results")
 
 
 def deck_bytes(bdf: Any) -> bytes:
-    """The text of a `BDF`."""
+    """Returns the text of a `BDF`."""
     text = io.StringIO()
     bdf.write_bdf(text, size=16, enddata=True, close=False)
     return text.getvalue().encode()
 
 
 def op2_bytes(op2: Any) -> bytes:
-    """Displacements, strain and stress of the static subcases of an `OP2`, as a file of our own.
+    """Returns displacements, strain and stress of the static subcases of an `OP2` as a new OP2 file.
 
     Raises:
-        ValueError: it contains none of them.
+        ValueError: the `OP2` contains none of them.
     """
     tables = [*_nodal(op2), *_elements(op2, "strain"), *_elements(op2, "stress")]
     if not tables:
@@ -101,7 +101,7 @@ def _nodal(op2: Any) -> Iterator[dict[str, Any]]:
 def _elements(op2: Any, quantity: str) -> Iterator[dict[str, Any]]:
     holder = getattr(getattr(op2, "op2_results", None), quantity, None)
     for name in _TABLES:
-        # Where pyNastran kept them before 1.4.
+        # Location of the tables in pyNastran before 1.4.
         tables = getattr(op2 if holder is None else holder, name.format(quantity), None) or {}
         for subcase, table in tables.items():
             made = _rows(table, quantity) if _is_static(table) else None
@@ -122,11 +122,11 @@ _Made = tuple[str, str, tuple[str, ...], NDArray[Any], NDArray[Any], NDArray[Any
 
 
 def _rows(table: Any, quantity: str) -> _Made | None:
-    """What the rows of a table are; None for element types that no question here needs."""
+    """Returns the content of the rows of a table, or None for element types that are not needed here."""
     number = int(table.element_type)
     if number in _SHELLS:
         ids, at = table.element_node[:, 0], table.element_node[:, 1]
-        # Two fibres at every place, Z1 first; the centre has no grid.
+        # Two fibres at every place, Z1 first. The centre has no grid.
         return quantity, _SHELLS[number], _SHELL[quantity], ids, at, 1 + np.arange(len(ids)) % 2, bool(table.is_fiber_distance)
     if number in _PLIES:
         ids, ply = table.element_layer[:, 0], table.element_layer[:, 1]

@@ -1,4 +1,4 @@
-"""A job: read from a file or made of a dictionary, changed in place."""
+"""A job, read from a file or created from a dictionary, and changed in place."""
 
 from __future__ import annotations
 
@@ -15,33 +15,33 @@ from ._keys import Keys
 from ._section import Items, Section
 from ._toml import plain, text_of
 
-#: Name under which a job that was made of a dictionary stands in its folder; nothing is written there.
+#: Name of a job from a dictionary in its folder. No such file is written.
 _NAME = "job.toml"
 
 
 @lru_cache(maxsize=None)
 def _schema() -> dict[str, Any]:
-    """Schema of a job, by key."""
+    """Returns the schema of a job, by key."""
     keys: dict[str, Any] = json.loads(_engine.schema())["properties"]
     return keys
 
 
 def _is_section(name: str) -> bool:
-    """Whether a key is one section."""
+    """Returns whether a key is a single section."""
     return "properties" in _schema()[name]
 
 
 def in_folder(folder: str | os.PathLike[str], name: str) -> str:
-    """The path of a file in a folder, as a job in that folder finds it."""
+    """Returns the path of a file as seen from the folder of a job."""
     base = os.fspath(folder)
     return name if base in ("", ".") else os.path.join(base, name)
 
 
 class Job(Keys):
-    """A job, as the file that the command takes: ``Job.read(path)`` or ``Job.from_dict({...})``.
+    """A job, as in the file that the command reads: ``Job.read(path)`` or ``Job.from_dict({...})``.
 
-    Keys and sections are attributes, as in the file, and can be changed in place: ``job.placement.gauges = 12``. A change is checked when the
-    job is used next, or by :meth:`check`; what is wrong raises :class:`strainbridge.Faults`. A job can be pickled.
+    Keys and sections are attributes, as in the file, and can be changed in place: ``job.placement.gauges = 12``. A change is checked at the next use
+    of the job, or by :meth:`check`. Faults raise :class:`strainbridge.Faults`. A job can be pickled.
     """
 
     _path: str
@@ -56,13 +56,13 @@ class Job(Keys):
         put(self, "_files", dict(files or {}))
         put(self, "_table", None)
         put(self, "_native", None)
-        # The text of the file itself is read by the engine, with its faults.
+        # The engine reads the text of the file and reports its faults.
         put(self, "_text", text)
         self.check()
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Job:
-        """The job in a file. Paths in it are relative to its folder.
+        """Reads a job from a file. Paths in it are relative to its folder.
 
         Raises:
             Faults: every fault with its line: syntax, unknown keys, wrong types, contradictions.
@@ -71,17 +71,17 @@ class Job(Keys):
 
     @classmethod
     def from_dict(cls, job: Mapping[str, Any], folder: str | os.PathLike[str] = ".", files: Mapping[str, bytes] | None = None) -> Job:
-        """A job made of a dictionary with the keys of the file; numpy arrays, paths and tuples are taken.
+        """Creates a job from a dictionary with the keys of the file. Numpy arrays, paths and tuples are accepted.
 
         Args:
-            job: sections are dictionaries, ``[[load]]`` and its like are lists of dictionaries. A key that names a table takes the table itself
-                (a DataFrame, or another object with ``__arrow_c_stream__``). ``deck`` and ``results`` of ``model`` may be a
-                `BDF` and `OP2` of pyNastran instead of paths.
-            folder: what paths in it are relative to. Nothing is written there.
-            files: files in memory, by path relative to `folder` or to the working folder; they take the place of those on the disk.
+            job: sections are dictionaries; ``[[load]]`` and similar sections are lists of dictionaries. A key that names a table may contain the
+                table (a DataFrame, or another object with ``__arrow_c_stream__``). ``deck`` and ``results`` of ``model`` may be a `BDF` and `OP2` of
+                pyNastran instead of paths.
+            folder: folder to which paths are relative. Nothing is written there.
+            files: files in memory, by path relative to `folder` or to the working folder. They replace files on the disk.
 
         Raises:
-            Faults: every fault; lines are those of ``job.text``, had it been written.
+            Faults: every fault. Lines refer to ``job.text``.
         """
         held = dict(files or {})
         held.update({in_folder(folder, os.fspath(name)): content for name, content in (files or {}).items()})
@@ -89,16 +89,16 @@ class Job(Keys):
 
     @property
     def path(self) -> str:
-        """The file; for a job made of a dictionary, the one that it would be."""
+        """Path of the file. For a job from a dictionary, the path that it would have."""
         return self._path
 
     @property
     def text(self) -> str:
-        """The job as TOML, changes included."""
+        """The job as TOML, including changes."""
         return Path(self._path).read_text(encoding="utf-8") if self._text is None else self._text
 
     def to_dict(self) -> dict[str, Any]:
-        """The keys as they stand in the text; what is left to its default is absent."""
+        """Returns the keys that the text states. Keys with default values are absent."""
         copy: dict[str, Any] = plain({k: v for k, v in self._keys().items() if v != []})
         return copy
 
@@ -134,7 +134,7 @@ class Job(Keys):
         return value
 
     def _hold(self, name: str, table: Any) -> str:
-        """Keeps a table in memory as a CSV file of the job, and returns the file's name."""
+        """Stores a table in memory as a CSV file of the job, and returns the name of the file."""
         self._files[in_folder(os.path.dirname(self._path), f"{name}.csv")] = csv_bytes(table)
         return f"{name}.csv"
 
@@ -144,7 +144,7 @@ class Job(Keys):
         object.__setattr__(self, "_text", text_of({k: v for k, v in self._keys().items() if v != []}))
         object.__setattr__(self, "_native", None)
 
-    # A type checker sees the keys of `_keys.py` alone, and reports others.
+    # A type checker uses only the keys of `_keys.py`, and reports others.
     if not TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any:
@@ -156,7 +156,7 @@ class Job(Keys):
                 return self._view(table[name], name, schema)
             if _is_section(name):
                 return Section(self, {}, name, schema, absent=True)
-            # An empty list that is part of the job once it has something in it.
+            # An empty list, which becomes part of the job with its first entry.
             return Items(self, table.setdefault(name, []), name, schema) if "items" in schema else None
 
         def __setattr__(self, name: str, value: Any) -> None:
@@ -186,7 +186,7 @@ class Job(Keys):
 
 
 def _without_objects(job: Mapping[str, Any], folder: str | os.PathLike[str], files: dict[str, bytes]) -> Mapping[str, Any]:
-    """The job with tables and objects of pyNastran as files in memory."""
+    """Returns the job with tables and objects of pyNastran as files in memory."""
     job = dict(job)
     for section, keys in job.items():
         held = {k: v for k, v in keys.items() if is_table(v)} if isinstance(keys, Mapping) else {}
@@ -213,7 +213,7 @@ def _without_objects(job: Mapping[str, Any], folder: str | os.PathLike[str], fil
 
 
 def job_of(job: Job | str | os.PathLike[str] | Mapping[str, Any]) -> Job:
-    """The job itself, read from a file, or made of a dictionary."""
+    """Returns the job: the same object, or one that is read from a file or created from a dictionary."""
     if isinstance(job, Job):
         return job
     if isinstance(job, Mapping):

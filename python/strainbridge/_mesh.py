@@ -1,4 +1,4 @@
-"""Points and cells, as VTK, pyvista and meshio have them."""
+"""Points and cells in the form of VTK, pyvista and meshio."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ _KINDS = {1: "vertex", 3: "line", 5: "triangle", 9: "quad", 10: "tetra", 12: "he
 
 @dataclass(frozen=True)
 class Mesh:
-    """A mesh with numbers on it: ``pyvista.UnstructuredGrid(mesh.cells, mesh.celltypes, mesh.points)``, or :meth:`to_pyvista`."""
+    """Mesh with numbers: ``pyvista.UnstructuredGrid(mesh.cells, mesh.celltypes, mesh.points)``, or :meth:`to_pyvista`."""
 
     #: n x 3, basic frame.
     points: NDArray[np.float64]
-    #: Cell after cell: how many points it has, then those points (rows of `points`, from 0).
+    #: For each cell, the number of its points, followed by these points (rows of `points`, from 0).
     cells: NDArray[np.int64]
     #: VTK type of every cell: 1 vertex, 3 line, 5 triangle, 9 quadrilateral, 10 12 13 14 solids.
     celltypes: NDArray[np.uint8]
-    #: Numbers by point: n, or n x columns; ``grid`` holds the ids.
+    #: Numbers by point: n, or n x columns. ``grid`` contains the ids.
     point_data: Mapping[str, NDArray[Any]] = field(default_factory=dict)
-    #: Numbers by cell; ``element`` holds the ids.
+    #: Numbers by cell. ``element`` contains the ids.
     cell_data: Mapping[str, NDArray[Any]] = field(default_factory=dict)
 
     @classmethod
@@ -41,7 +41,7 @@ class Mesh:
         point_data: Mapping[str, ArrayLike] | None = None,
         cell_data: Mapping[str, ArrayLike] | None = None,
     ) -> Mesh:
-        """A mesh of blocks of cells by kind, as meshio has them: ``{"quad": m x 4, "triangle": m x 3}``, rows of `points` from 0.
+        """Creates a mesh from blocks of cells by kind, as in meshio: ``{"quad": m x 4, "triangle": m x 3}``, rows of `points` from 0.
 
         Args:
             points: n x 3.
@@ -50,7 +50,7 @@ class Mesh:
             cell_data: numbers by cell, in the order of the blocks.
 
         Raises:
-            ValueError: shapes that don't fit, points that do not exist.
+            ValueError: the shapes do not match, or a point does not exist.
         """
         x = np.ascontiguousarray(points, dtype=np.float64)
         if x.ndim != 2 or x.shape[1] != 3:
@@ -71,7 +71,7 @@ class Mesh:
 
     @property
     def offsets(self) -> NDArray[np.int64]:
-        """Where each cell's points end, counts left out; VTK's `offsets` without its first 0."""
+        """End of each cell's points without the counts: `offsets` of VTK without its first 0."""
         ends = np.empty(len(self.celltypes), np.int64)
         at = total = 0
         for i in range(len(ends)):
@@ -82,7 +82,7 @@ class Mesh:
 
     @property
     def blocks(self) -> dict[str, NDArray[np.int64]]:
-        """Cells by kind, m x points, as meshio has them; in the order of the mesh within a kind."""
+        """Cells by kind, m x points, as in meshio. Within a kind, they have the order of the mesh."""
         ends = self.offsets
         sizes = np.diff(ends, prepend=0)
         starts = ends - sizes + np.arange(len(ends)) + 1
@@ -94,7 +94,7 @@ class Mesh:
         return out
 
     def to_pyvista(self) -> Any:
-        """The mesh as a ``pyvista.UnstructuredGrid``, numbers included.
+        """Returns the mesh as a ``pyvista.UnstructuredGrid`` with its numbers.
 
         Raises:
             ImportError: pyvista is not installed.
@@ -111,7 +111,7 @@ class Mesh:
         return grid
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Writes a VTU, which ParaView, pyvista and meshio read, with all digits."""
+        """Writes a VTU with all digits, which ParaView, pyvista and meshio read."""
         flat = np.delete(self.cells, self.offsets - np.diff(self.offsets, prepend=0) + np.arange(len(self.celltypes)))
         points = _data(dict(self.point_data), len(self.points), "point")
         cells = _data(dict(self.cell_data), len(self.celltypes), "cell")
@@ -134,7 +134,7 @@ def _data(given: Mapping[str, ArrayLike] | None, n: int, what: str) -> dict[str,
 
 
 def of_native(found: dict[str, NDArray[Any]]) -> Mesh:
-    """The mesh of a deck, as the engine gives it."""
+    """Returns the mesh of a deck from the data of the engine."""
     return _joined(found["points"], found["connectivity"], found["offsets"], found["types"], {"grid": found["grid"]}, {"element": found["element"]})
 
 
@@ -149,7 +149,7 @@ _DTYPES = {"Float64": "<f8", "Float32": "<f4", "Int64": "<i8", "Int32": "<i4", "
 
 
 def read_vtu(path: Path) -> Mesh:
-    """A VTU of our own: arrays appended as raw bytes."""
+    """Reads a VTU of this package, which contains arrays as appended raw bytes."""
     data = path.read_bytes()
     mark = b'<AppendedData encoding="raw">\n_'
     begin = data.index(mark) + len(mark)
@@ -162,7 +162,7 @@ def read_vtu(path: Path) -> Mesh:
             at = begin + int(offset)
             size = int.from_bytes(data[at : at + 8], "little")
             values = np.frombuffer(data, _DTYPES[kind], offset=at + 8, count=size // np.dtype(_DTYPES[kind]).itemsize)
-            # A copy: an array over bytes could not be changed.
+            # A copy, because an array over bytes is read-only.
             out[html.unescape(label)] = values.reshape(-1, int(columns)).copy() if columns != "1" else values.copy()
         return out
 

@@ -1,4 +1,4 @@
-"""A model from arrays: points, cells, properties."""
+"""A model from arrays of points, cells and properties."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ._mesh import Mesh, of_native
 from ._outcome import Outcome
 from ._toml import plain
 
-#: Cells by the names that meshio, gmsh and pyvista use, and by card.
+#: Cards of cells, by the names that meshio, gmsh and pyvista use.
 _CARDS = {"quad": "CQUAD4", "triangle": "CTRIA3", "quad8": "CQUAD8", "triangle6": "CTRIA6"}
 _GRIDS = {"CQUAD4": 4, "CTRIA3": 3, "CQUAD8": 8, "CTRIA6": 6}
 
@@ -23,9 +23,9 @@ _NAME = "model.bdf"
 
 
 class Model:
-    """A shell model made of arrays. Point i is grid i + 1; cells are elements from 1 on, block after block."""
+    """Shell model from arrays. Point i is grid i + 1. Elements are numbered from 1, block after block."""
 
-    #: The deck it stands for.
+    #: Text of the deck.
     deck: str
 
     def __init__(self, deck: str) -> None:
@@ -39,17 +39,17 @@ class Model:
         properties: Mapping[int, Mapping[str, float]],
         cell_properties: Sequence[ArrayLike] | None = None,
     ) -> Model:
-        """A model of shells.
+        """Creates a model of shells.
 
         Args:
             points: n x 3, basic frame, in the length unit of the job.
-            cells: blocks of cells by kind, as meshio has them: ``[("quad", m x 4), ("triangle", m x 3)]`` with rows of `points`, from 0; also
+            cells: blocks of cells by kind, as in meshio: ``[("quad", m x 4), ("triangle", m x 3)]`` with rows of `points`, from 0; also
                 ``quad8``, ``triangle6``.
-            properties: by number: ``thickness``, ``E``, ``nu``, ``rho`` (0 where left out), job units.
-            cell_properties: the property of every cell, a list a block; left out: the first for all.
+            properties: by number: ``thickness``, ``E``, ``nu``, ``rho`` (default: 0), job units.
+            cell_properties: property of every cell, one list for each block; default: the first property for all cells.
 
         Raises:
-            ValueError: shapes that don't fit, points or properties that do not exist.
+            ValueError: the shapes do not match, or points or properties do not exist.
         """
         x = np.asarray(points, dtype=float)
         if x.ndim != 2 or x.shape[1] != 3 or not np.isfinite(x).all():
@@ -71,7 +71,7 @@ class Model:
             for pid, row in zip(pids, grids + 1):
                 element += 1
                 fields = [str(g) for g in row]
-                # Six fields are left on the first line of a shell.
+                # The first line of a shell has six fields left.
                 more = "," + ",".join(fields[6:]) if len(fields) > 6 else ""
                 lines.append(f"{card},{element},{pid},{','.join(fields[:6])}" + ("\n" + more if more else ""))
         for number, p in properties.items():
@@ -80,8 +80,9 @@ class Model:
         return cls("\n".join([*lines, "ENDDATA", ""]))
 
     def job(self, job: Mapping[str, Any], folder: str | os.PathLike[str] = ".") -> Job:
-        """A job on this model: the dictionary of :meth:`Job.from_dict` without ``[model] deck``; a load may name its ``point``, from 0, instead
-        of its ``grid``. Nothing is written."""
+        """Returns a job on this model: the dictionary of :meth:`Job.from_dict` without ``[model] deck``.
+
+        A load may state its ``point``, from 0, instead of its ``grid``. Nothing is written."""
         keys = plain(job)
         for load in keys.get("load", []):
             if "point" in load:
@@ -90,11 +91,11 @@ class Model:
         return Job.from_dict(keys, folder, {in_folder(folder, _NAME): self.deck.encode()})
 
     def solve(self, job: Mapping[str, Any], **more: Any) -> Outcome:
-        """Solves the unit loads of :meth:`job` with the built-in solver; further arguments are those of :func:`strainbridge.solve`."""
+        """Solves the unit loads of :meth:`job` with the built-in solver. Further arguments are those of :func:`strainbridge.solve`."""
         return solve(self.job(job), **more)
 
     def mesh(self) -> Mesh:
-        """Points and cells, for pyvista and meshio; ``grid`` and ``element`` are the ids in the deck."""
+        """Returns points and cells for pyvista and meshio. ``grid`` and ``element`` are the ids in the deck."""
         return of_native(_engine._Deck(_NAME, {_NAME: self.deck.encode()}).mesh())
 
     def write(self, path: str | os.PathLike[str]) -> None:

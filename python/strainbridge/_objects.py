@@ -1,4 +1,4 @@
-"""Records in object stores, by fsspec: the folder of the results contains a copy of a record while it is read."""
+"""Records in object stores, through fsspec. While the engine reads a record, the folder of the results contains a copy of it."""
 
 from __future__ import annotations
 
@@ -11,42 +11,42 @@ from typing import Any, Iterator, Mapping, Sequence
 
 from ._faults import Faults
 
-#: Folders within the folder of the results: copies while they are read, and the state of each object whose result is kept.
+#: Folders within the folder of the results: copies for reading, and the state of each object with a stored result.
 _COPIES, _STATES = "records", "objects"
 
 
 def is_object(file: str) -> bool:
-    """Whether a path is a URL, such as ``s3://bucket/T1_2026-05-01.parquet``."""
+    """Returns whether a path is a URL, such as ``s3://bucket/T1_2026-05-01.parquet``."""
     scheme, separator, _ = file.partition("://")
     return bool(separator) and scheme.replace("+", "").replace("-", "").isalnum()
 
 
 def local_name(url: str, out: str) -> str:
-    """The path of the copy of an object. It is the same for every worker, and so is the path in the results.
+    """Returns the path of the copy of an object. All workers and the results use the same path.
 
     Raises:
-        Faults: the URL leads out of the folder.
+        Faults: the URL refers to a place outside the folder.
     """
     scheme, _, rest = url.partition("://")
     parts = [p for p in rest.replace("\\", "/").split("/") if p]
     if not parts or ".." in parts:
         raise Faults([(url, None, "files", "the URL names no object", "give scheme, bucket and key: s3://bucket/T1_2026-05-01.parquet")])
     if is_pattern(rest):
-        # The engine would take the path of the copy for a pattern.
+        # The engine would read the path of the copy as a pattern.
         raise Faults([(url, None, "files", "no object has this name, or it has a sign of a pattern: * ? [", "check bucket and key, or rename the object")])
     return os.path.join(out, _COPIES, scheme, *parts)
 
 
 def is_pattern(path: str) -> bool:
-    """Whether a path has a sign of a pattern."""
+    """Returns whether a path contains a sign of a pattern."""
     return any(sign in path for sign in "*?[")
 
 
 def matching(url: str) -> list[str]:
-    """The URLs of the objects that a pattern matches.
+    """Returns the URLs of the objects that match a pattern.
 
     Raises:
-        Faults: none.
+        Faults: no object matches.
     """
     system, path = _opened(url)
     scheme, _, rest = url.partition("://")
@@ -57,7 +57,7 @@ def matching(url: str) -> list[str]:
 
 
 def _opened(url: str) -> tuple[Any, str]:
-    """The file system of a URL and the path there."""
+    """Returns the file system of a URL, and the path in it."""
     try:
         import fsspec  # type: ignore[import-untyped, import-not-found, unused-ignore]
     except ImportError as e:
@@ -71,7 +71,7 @@ def _state_file(url: str, out: str) -> Path:
 
 
 def known_digests(urls: Sequence[str], out: str) -> dict[str, str]:
-    """SHA-256 of objects that were read before and have not changed since, by URL."""
+    """Returns the SHA-256 by URL of objects that were read before and have not changed since."""
     found = {}
     for url in urls:
         state = _state_file(url, out)
@@ -89,7 +89,7 @@ def known_digests(urls: Sequence[str], out: str) -> dict[str, str]:
 
 
 def forget(url: str, out: str) -> None:
-    """Removes what is known of an object, so that it is read again."""
+    """Removes the stored state of an object, so that it is read again."""
     _state_file(url, out).unlink(missing_ok=True)
 
 
@@ -128,7 +128,7 @@ def copies(urls: Sequence[str], out: str) -> Iterator[dict[str, str]]:
 
 
 def keep_states(states: Mapping[str, str], digests: Mapping[str, str], out: str) -> None:
-    """Keeps the state of objects with their SHA-256, so that a later run copies only what has changed."""
+    """Stores the state of objects with their SHA-256, so that a later run copies only changed objects."""
     for url, state in states.items():
         if not digests.get(url):
             continue
@@ -140,7 +140,7 @@ def keep_states(states: Mapping[str, str], digests: Mapping[str, str], out: str)
 
 
 def _remove_empty(folder: Path, top: Path) -> None:
-    """Removes a folder and the folders above it, up to `top`, that are empty."""
+    """Removes a folder if it is empty, and the empty folders above it up to `top`."""
     while folder != top and top in folder.parents:
         try:
             folder.rmdir()

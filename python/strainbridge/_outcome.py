@@ -33,21 +33,21 @@ class Finding:
     subject: str
     #: A sentence with the consequence.
     message: str
-    #: The measured number, where there is one.
+    #: Measured number, if there is one.
     measured: float | None
-    #: The limit it is held against.
+    #: Limit of the measured number.
     limit: float | None
     #: What to do.
     remedy: str
 
     @property
     def where(self) -> str:
-        """The subject."""
+        """Subject of the finding."""
         return self.subject
 
     @property
     def text(self) -> str:
-        """The sentence: the message."""
+        """Message of the finding."""
         return self.message
 
     def __str__(self) -> str:
@@ -55,7 +55,7 @@ class Finding:
 
 
 class UnreliableWarning(UserWarning):
-    """The answer has a finding of severity ``error``: it is not reliable."""
+    """The answer has a finding of severity ``error`` and is not reliable."""
 
 
 def warn_if_unreliable(command: str, findings: Sequence[Finding]) -> None:
@@ -69,7 +69,7 @@ def warn_if_unreliable(command: str, findings: Sequence[Finding]) -> None:
 
 
 class Record(Mapping[str, Any]):
-    """An object of ``result.json``: its keys are attributes and items. Lists of numbers are numpy arrays."""
+    """Object of ``result.json``. Its keys are attributes and items. Lists of numbers are numpy arrays."""
 
     __slots__ = ("_keys", "_seen")
 
@@ -94,7 +94,7 @@ class Record(Mapping[str, Any]):
         return len(self._keys)
 
     def to_dict(self) -> dict[str, Any]:
-        """The keys as JSON has them."""
+        """Returns the keys as in JSON."""
         copy: dict[str, Any] = json.loads(json.dumps(self._keys))
         return copy
 
@@ -118,7 +118,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _value(value: Any) -> Any:
-    """A value of JSON as Python has it: objects as records, lists of numbers (null: NaN) and of such lists as arrays."""
+    """Converts a value of JSON: objects become records, and lists of numbers (null: NaN) and nested lists of numbers become arrays."""
     if isinstance(value, dict):
         return Record(value)
     if not isinstance(value, list):
@@ -134,10 +134,10 @@ def _value(value: Any) -> Any:
 
 
 class Outcome(Record):
-    """Outcome of a command: the keys of its ``result.json`` are attributes, with lists of numbers as numpy arrays.
+    """Outcome of a command. The keys of its ``result.json`` are attributes, with lists of numbers as numpy arrays.
 
-    ``findings`` are objects; :attr:`is_reliable` is False if one of them states that the result is not reliable (the command would end
-    with exit code 1), and the outcome then says so when it is printed.
+    ``findings`` are objects. :attr:`is_reliable` is False if one of them states that the result is not reliable. The command would then have exit
+    code 1, and the printed outcome states it.
     """
 
     __slots__ = ("_native", "_json")
@@ -150,12 +150,12 @@ class Outcome(Record):
         self._json = native.json
         self._seen["findings"] = tuple(Finding(**f) for f in self._keys["findings"])
         if self._keys["command"] == "sensitivity" and (found := native.sensitivity()) is not None:
-            # `result.json` counts the gauges; in Python the list has a length.
+            # `result.json` contains the number of gauges, which is the length of the list in Python.
             self._seen["gauges"], self._seen["loads"] = found[1], found[2]
 
     @classmethod
     def of_folder(cls, answer: Mapping[str, Any], folder: str | Path) -> Outcome:
-        """The outcome of a command that has written its files into a folder, and whose ``result.json`` is `answer`."""
+        """Returns the outcome of a command that has written its files into a folder. `answer` is its ``result.json``."""
         where = Path(folder)
         listed = [line.split("\t")[1] for line in (where / _LISTED).read_text(encoding="utf-8").splitlines() if "\t" in line]
         files = {name: (where / name).read_bytes() for name in [*listed, _LISTED] if (where / name).is_file()}
@@ -165,7 +165,7 @@ class Outcome(Record):
 
     @property
     def findings(self) -> Sequence[Finding]:
-        """What is to be known of the answer, the worst first."""
+        """Findings on the answer, the worst first."""
         listed: Sequence[Finding] = self["findings"]
         return listed
 
@@ -191,11 +191,12 @@ class Outcome(Record):
 
     @property
     def S(self) -> NDArray[np.float64]:
-        """gauges x loads, microstrain per job unit of each load, of ``sensitivity`` and ``calibrate``; rows and columns in the order of
-        ``sensitivity.csv``.
+        """S of ``sensitivity`` and ``calibrate``: gauges x loads, microstrain per job unit of each load.
+
+        Rows and columns have the order of ``sensitivity.csv``.
 
         Raises:
-            AttributeError: the outcome of another command.
+            AttributeError: the outcome is that of another command.
         """
         found = self._native.sensitivity()
         if found is None:
@@ -204,23 +205,23 @@ class Outcome(Record):
 
     @property
     def words(self) -> str:
-        """What the command prints on a terminal."""
+        """Output of the command on a terminal."""
         return self._native.words
 
     @property
     def notes(self) -> list[str]:
-        """What is worth knowing of the way, and no part of the answer."""
+        """Notes about the computation, which are not part of the answer."""
         return list(self._native.notes)
 
     def to_json(self) -> str:
-        """The text of ``result.json``; `tables` is filled once the outcome has been saved."""
+        """Returns the text of ``result.json``. `tables` is filled once the outcome is saved."""
         return self._json
 
     def save(self, folder: str | Path) -> Path:
-        """Writes the files of the command (``result.json``, tables, ``report.html``) into a folder, which is made where missing.
+        """Writes the files of the command (``result.json``, tables, ``report.html``) into a folder, and creates the folder if necessary.
 
         Raises:
-            Faults: a file that cannot be written.
+            Faults: a file cannot be written.
         """
         self._json = self._native.save(folder)
         self._keys["tables"] = json.loads(self._json)["tables"]
@@ -228,10 +229,10 @@ class Outcome(Record):
         return Path(folder)
 
     def report(self) -> str:
-        """The page of the command, HTML that needs nothing else.
+        """Returns the page of the command, as HTML without external files.
 
         Raises:
-            KeyError: the command writes none; a notebook shows what it answers.
+            KeyError: the command writes no page. A notebook shows its answer.
         """
         with tempfile.TemporaryDirectory() as folder:
             page = self.save(folder) / "report.html"
@@ -240,8 +241,10 @@ class Outcome(Record):
             return page.read_text(encoding="utf-8")
 
     def history(self) -> dict[str, NDArray[np.float64]]:
-        """Every sample of a record that :func:`strainbridge.recover` was given: ``time`` (s), then of each load its value, ``<load>.low`` and
-        ``<load>.high`` (95 %), as `loads.csv` has them, report units; NaN if the valid gauges do not determine a load.
+        """Returns every sample of a record of :func:`strainbridge.recover`, as in `loads.csv`, in report units.
+
+        The columns are ``time`` (s), and for each load its value, ``<load>.low`` and ``<load>.high`` (95 %). Values are NaN if the valid gauges do
+        not determine a load.
 
         Raises:
             KeyError: the outcome contains no record.
@@ -252,9 +255,11 @@ class Outcome(Record):
         return found
 
     def to_arrow(self, table: str | None = None) -> Table:
-        """A table of the answer for any reader of the Arrow PyCapsule interface (pandas, polars, DuckDB, pyarrow): a list of records of the outcome
-        (``loads``, ``gauges``), or a CSV file of the command by its name (``sensitivity``, ``fleet``); the first where left out. ``history``: every
-        sample of a record, as :meth:`history`. Columns are in the order of ``result.json`` or of the file.
+        """Returns a table of the answer for any reader of the Arrow PyCapsule interface (pandas, polars, DuckDB, pyarrow).
+
+        A table is a list of records of the outcome (``loads``, ``gauges``), or a CSV file of the command by its name (``sensitivity``, ``fleet``).
+        By default it is the first one. ``history`` is every sample of a record, as in :meth:`history`. Columns have the order of ``result.json`` or
+        of the file.
 
         Raises:
             KeyError: there is no such table.
@@ -277,19 +282,20 @@ class Outcome(Record):
         return Path(folder)
 
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
-        """The first table, by the Arrow PyCapsule interface."""
+        """Returns the first table through the Arrow PyCapsule interface."""
         return self.to_arrow().__arrow_c_stream__(requested_schema)
 
     def mesh(self, file: str | None = None) -> Mesh:
-        """Points and cells with the numbers of the answer on them, those of the VTU that the command writes: the mesh with displacement and
-        strain (`solve`, `modes`), with the envelope of stress (`respond`); gauges with their axes (`place`), loads as arrows (`recover`).
-        The bare mesh of a deck: ``Deck.read(path).mesh()``.
+        """Returns points and cells with the numbers of the answer, as in the VTU that the command writes.
+
+        The mesh has displacement and strain (`solve`, `modes`) or the envelope of stress (`respond`). Otherwise it has gauges with their axes
+        (`place`) or loads as arrows (`recover`). For the bare mesh of a deck, use ``Deck.read(path).mesh()``.
 
         Args:
-            file: which VTU, where there are several.
+            file: name of the VTU, if there are several.
 
         Raises:
-            KeyError: the answer has no picture in space.
+            KeyError: the answer has no mesh.
         """
         with tempfile.TemporaryDirectory() as folder:
             found = {p.name: p for p in sorted(self.save(folder).glob("*.vtu"))}
@@ -332,7 +338,7 @@ class Outcome(Record):
 
 @dataclass(frozen=True)
 class _Stored:
-    """An outcome without its engine: content of a copy or a pickle."""
+    """Outcome without its engine: the content of a copy or a pickle."""
 
     json: str
     words: str
@@ -340,7 +346,7 @@ class _Stored:
     page: str
     s: tuple[NDArray[np.float64], list[str], list[str]] | None
     samples: dict[str, NDArray[np.float64]] | None
-    #: What `save` writes, by name, and the text of ``result.json`` with its tables.
+    #: Files that `save` writes, by name, and the text of ``result.json`` with its tables.
     files: dict[str, bytes]
     saved: str
 
@@ -373,7 +379,7 @@ class _Stored:
         return self.saved
 
 
-#: The file in which a folder lists what commands wrote into it.
+#: File with the list of files that commands wrote into a folder.
 _LISTED = ".strainbridge"
 
 
@@ -387,7 +393,7 @@ def _stored(native: _engine._Outcome | _Stored) -> _Stored:
 
 
 def _table_of_csv(path: Path) -> Table:
-    """One column for each name: numbers where every cell is one or empty (NaN), else texts."""
+    """Returns one column for each name: numbers if every cell is a number or empty (NaN), otherwise texts."""
     with path.open(encoding="utf-8", newline="") as file:
         header, *rows = csv.reader(file)
     columns: dict[str, Any] = {}

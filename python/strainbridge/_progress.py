@@ -10,10 +10,10 @@ Told = Optional[Callable[[str, int, int], object]]
 
 @contextmanager
 def shown(progress: Union[bool, Told]) -> Iterator[Told]:
-    """Receiver of progress: the given function, or for True a bar that is closed at the end.
+    """Yields the receiver of progress: the given function, or for True a bar that is closed at the end.
 
     Raises:
-        ImportError: a bar is asked for and tqdm is not installed.
+        ImportError: a bar is requested and tqdm is not installed.
     """
     if not isinstance(progress, bool):
         yield progress

@@ -23,10 +23,10 @@ Path = os.PathLike[str] | str
 
 
 class Deck:
-    """A Nastran deck, INCLUDE files and all."""
+    """Nastran deck, including its INCLUDE files."""
 
     _native: _engine._Deck
-    #: The file; of a `BDF` of pyNastran the name it has in memory.
+    #: Path of the file. For a `BDF` of pyNastran, its name in memory.
     path: str
 
     def __init__(self, path: Path, files: Mapping[str, bytes] | None = None) -> None:
@@ -41,10 +41,10 @@ class Deck:
 
     @classmethod
     def read(cls, path: Path | Any) -> Deck:
-        """The deck in a file, the mesh of an OP2, or a `BDF` of pyNastran. Faults of cards are in :attr:`faults`.
+        """Reads the deck in a file, the mesh of an OP2, or a `BDF` of pyNastran. :attr:`faults` contains faults of cards.
 
         Raises:
-            Faults: the file cannot be read at all.
+            Faults: the file cannot be read.
         """
         if is_deck(path):
             return cls("pynastran.bdf", {"pynastran.bdf": deck_bytes(path)})
@@ -57,19 +57,21 @@ class Deck:
 
     @property
     def faults(self) -> tuple[Fault, ...]:
-        """All faults of its cards, with file and line."""
+        """All faults of the cards, with file and line."""
         return tuple(Fault(*f) for f in self._native.faults)
 
     def cards(self, name: str) -> dict[str, NDArray[Any]]:
-        """The cards of a name as columns, in the order of the file. Columns of ``GRID``, ``CONM2`` and shells may be changed in place, rows of
-        them left out or added (``deck.cards("GRID")["x"] = ..``): :meth:`write` writes them.
+        """Returns the cards with a name as columns, in the order of the file.
+
+        Columns of ``GRID``, ``CONM2`` and shells may be changed in place, and rows may be removed or added (``deck.cards("GRID")["x"] = ..``).
+        :meth:`write` writes the changes.
 
         ``GRID``: ``id``, ``cp``, ``cd``, ``x`` (n x 3, in cp). Elements (``CQUAD4``, ``CQUADR``, ``CQUAD8``, ``CTRIA3``, ``CTRIAR``,
         ``CTRIA6``, ``CHEXA``, ``CPENTA``, ``CTETRA``, ``CPYRAM``, ``CBAR``, ``CBEAM``, ``CROD``, ``CTUBE``): ``id``, ``pid``, ``grids`` (ids; 0: no
-        grid there), shells ``theta`` (degrees; NaN: a coordinate system states it). ``CONM2``: ``id``, ``grid``, ``mass``, ``offset``.
+        grid there), and for shells ``theta`` (degrees; NaN: a coordinate system states it). ``CONM2``: ``id``, ``grid``, ``mass``, ``offset``.
 
         Raises:
-            KeyError: cards of that name have no columns here.
+            KeyError: cards with that name have no columns here.
         """
         name = name.upper()
         if name not in self._changed:
@@ -80,14 +82,15 @@ class Deck:
         return self._changed[name]
 
     def write(self, path: Path) -> list[str]:
-        """Writes the deck with the cards as :meth:`cards` contains them now; lines of other cards keep every byte. Cards whose id is gone are left out,
-        those of a new id added. INCLUDE files that change are written next to it.
+        """Writes the deck with the present content of :meth:`cards`. Lines of other cards are unchanged.
+
+        Cards whose id is missing are removed, and cards with a new id are added. Changed INCLUDE files are written next to the deck.
 
         Returns:
             The files written.
 
         Raises:
-            Faults: columns that are not valid cards; cards that cannot be changed.
+            Faults: columns are not valid cards, or cards cannot be changed.
         """
         to = _Path(path)
         changed = {}
@@ -105,11 +108,14 @@ class Deck:
         return written
 
     def mesh(self) -> Mesh:
-        """Points and cells, for pyvista and meshio; ``grid`` and ``element`` are ids. Corners only; changes of :meth:`cards` are not in it."""
+        """Returns points and cells for pyvista and meshio. ``grid`` and ``element`` are ids.
+
+        Only corners are included, and changes of :meth:`cards` are not.
+        """
         return of_native(self._native.mesh())
 
     def positions(self) -> dict[str, NDArray[Any]]:
-        """``id`` (ascending) and ``x`` (n x 3, basic frame) of the grids."""
+        """Returns ``id`` (ascending) and ``x`` (n x 3, basic frame) of the grids."""
         return self._native.positions()
 
     def __repr__(self) -> str:
@@ -120,13 +126,13 @@ class Deck:
 class Strain:
     """Strain at places of shells, microstrain."""
 
-    #: Element ids, a row each.
+    #: Element ids, one for each row.
     element: NDArray[np.int64]
-    #: Grid id of a corner, 0: the centre.
+    #: Grid id of a corner. 0 is the centre.
     grid: NDArray[np.int64]
     #: n x 3 or n x 6.
     values: NDArray[np.float64]
-    #: What the columns of `values` are.
+    #: Content of the columns of `values`.
     columns: tuple[str, ...]
 
     def to_arrow(self) -> Table:
@@ -140,12 +146,12 @@ _BASIC = ("Exx", "Eyy", "Ezz", "Exy", "Eyz", "Ezx")
 
 
 class Results:
-    """A result file of Nastran: OP2, punch or HDF5."""
+    """Result file of Nastran: OP2, punch or HDF5."""
 
     _native: _engine._Results
-    #: The file.
+    #: Path of the file.
     path: str
-    #: Its deck, where one was given.
+    #: Path of its deck, if one was given.
     deck: str | None
 
     def __init__(self, path: Path, deck: Path | None = None, files: Mapping[str, bytes] | None = None) -> None:
@@ -156,9 +162,11 @@ class Results:
 
     @classmethod
     def read(cls, path: Path | Any, deck: Path | Any | None = None) -> Results:
-        """The results in a file, or an `OP2` of pyNastran. Strain in the basic frame needs the mesh, and strain from stress, plies or curvature
-        needs materials and thicknesses: the deck (or a `BDF` of pyNastran), or a file that contains it. Of an `OP2`, the static subcases are taken:
-        displacements, strain and stress of shells, plies, bars, beams, rods and solids. An `OP2Geom` contains its own deck.
+        """Reads the results in a file, or an `OP2` of pyNastran.
+
+        Strain in the basic frame needs the mesh. Strain from stress, plies or curvature needs materials and thicknesses. They come from the deck (or
+        a `BDF` of pyNastran), or from a file that contains it. An `OP2Geom` contains its deck. Of an `OP2`, the static subcases are read:
+        displacements, strain and stress of shells, plies, bars, beams, rods and solids.
 
         Raises:
             Faults: the file cannot be read, or has another format.
@@ -167,7 +175,7 @@ class Results:
         files = {}
         if is_results(path):
             if deck is None and is_deck(path):
-                # Read with its geometry: the results hold the deck.
+                # The results were read with their geometry and contain the deck.
                 deck = path
             files["pynastran.op2"], path = op2_bytes(path), "pynastran.op2"
         if is_deck(deck):
@@ -180,8 +188,10 @@ class Results:
         return [Record(t) for t in json.loads(self._native.tables())]
 
     def table(self, number: int) -> dict[str, NDArray[Any]]:
-        """A table, as numbered in :attr:`tables`, as columns: ``entity`` (grid or element id), ``at`` (corner grid, 0: centre), ``layer``
-        (shells: 1 for Z1, 2 for Z2), then its own, in the units of the file (strain is not micro)."""
+        """Returns a table, as numbered in :attr:`tables`, as columns.
+
+        The columns are ``entity`` (grid or element id), ``at`` (corner grid, 0: centre), ``layer`` (shells: 1 for Z1, 2 for Z2), and those of the
+        table in the units of the file (strain is not in microstrain)."""
         if not 0 <= number < len(self.tables):
             raise IndexError(f"no table {number}: there are {len(self.tables)}")
         return self._native.rows(number)
@@ -193,16 +203,16 @@ class Results:
         frame: Literal["element", "basic"] = "element",
         corners: bool = False,
     ) -> Strain:
-        """Strain of the shells of a static subcase, microstrain, elements ascending.
+        """Returns strain of the shells of a static subcase, microstrain, by ascending element.
 
         Args:
-            subcase: its id.
+            subcase: id of the subcase.
             surface: ``top`` is Z2 of the element normal, ``bottom`` Z1.
             frame: ``element``: exx, eyy, gxy (engineering shear); ``basic``: Exx, Eyy, Ezz, Exy, Eyz, Ezx (tensor shear).
             corners: whether corners are listed in addition to the centre, if the file has them.
 
         Raises:
-            Faults: no such subcase; no strain in it; no mesh for the basic frame.
+            Faults: the subcase does not exist or has no strain, or there is no mesh for the basic frame.
         """
         if surface not in ("top", "bottom") or frame not in ("element", "basic"):
             raise ValueError(f"surface is top or bottom, and frame element or basic, not {surface!r} and {frame!r}")
@@ -211,7 +221,7 @@ class Results:
         except Faults:
             if self.deck is not None or frame == "basic":
                 raise
-            # No mesh in the file: its own rows will do.
+            # The file has no mesh, so its rows are used as they are.
             rows = self._own_strain(subcase)
         if not len(rows["element"]):
             raise self._no_strain(subcase)
@@ -242,7 +252,7 @@ class Results:
         }
 
     def _warn_of_others(self, subcase: int, found: NDArray[Any]) -> None:
-        """Warns of shells that have stress in a subcase without strain, and of which no strain is known."""
+        """Warns of shells that have stress but no strain in a subcase."""
         of = [(i, t) for i, t in enumerate(self.tables) if t.analysis == "statics" and t.subcase == subcase and _is_shell(t)]
         if any(t.quantity == "strain" for _, t in of):
             return
@@ -254,12 +264,12 @@ class Results:
             warnings.warn(said + why, UserWarning, stacklevel=3)
 
     def _no_strain(self, subcase: int) -> Faults:
-        """The fault for a subcase without strain of shells: other subcases that have it, or other results."""
+        """Returns the fault for a subcase without strain of shells: other subcases that have it, or other results."""
         shells = [t for t in self.tables if t.analysis == "statics" and _is_shell(t)]
         here = {t.quantity for t in shells if t.subcase == subcase}
         others = sorted({t.subcase for t in shells} - {subcase})
         if here and self.deck is None:
-            # Stress, plies or curvature: thickness and material are in the deck.
+            # For stress, plies or curvature, the deck has thickness and material.
             remedy = f"name the deck, Results.read(path, deck=...): strain is computed from {', '.join(sorted(here))}"
         elif others:
             remedy = f"take one of the subcases {', '.join(map(str, others))}, or ask for STRAIN(FIBER) of shells in it"
@@ -276,17 +286,17 @@ def _is_shell(table: Record) -> bool:
 
 
 def write_op2(path: Path, tables: Iterable[tuple[Mapping[str, Any], Mapping[str, ArrayLike]]]) -> None:
-    """Writes an OP2 that Nastran's readers take: displacements, strain, stress, forces.
+    """Writes an OP2 for readers of Nastran files: displacements, strain, stress, forces.
 
     Args:
-        path: the file.
-        tables: contents and columns of each, as :attr:`Results.tables` and :meth:`Results.table` have them: ``{"quantity": "strain",
+        path: path of the file.
+        tables: contents and columns of each table, as in :attr:`Results.tables` and :meth:`Results.table`: ``{"quantity": "strain",
             "element_type": "CQUAD4", "subcase": 1}`` and ``{"entity": ids, "at": .., "layer": .., "exx": .., ..}``. Strain of shells has two
-            rows an element, ``layer`` 1 (Z1) and 2 (Z2), strain without a unit (not micro); ``fiber``, ``angle``, ``emax``, ``emin`` and ``vm``
-            are NaN where left out, other columns are needed. Give all subcases of a kind together.
+            rows for each element, ``layer`` 1 (Z1) and 2 (Z2), and no unit (it is not in microstrain). ``fiber``, ``angle``, ``emax``, ``emin``
+            and ``vm`` are optional and NaN by default. Other columns are required. Give all subcases of a kind together.
 
     Raises:
-        Faults: columns that no table has, rows that don't fit the element type.
+        Faults: a column belongs to no table, or rows do not match the element type.
     """
     made = []
     for what, columns in tables:

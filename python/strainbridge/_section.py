@@ -1,4 +1,4 @@
-"""Sections of a job: their keys are attributes."""
+"""Sections of a job, with their keys as attributes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ T_co = TypeVar("T_co", covariant=True)
 if TYPE_CHECKING:
 
     class _Key(Generic[T_co]):
-        """A key for a type checker: it is read as `T_co`, and takes dictionaries, lists and tables too."""
+        """A key for a type checker. Its value is `T_co`, and it also accepts dictionaries, lists and tables."""
 
         @overload
         def __get__(self, instance: None, owner: type) -> _Key[T_co]: ...
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def keys_of(schema: Mapping[str, Any]) -> Mapping[str, Any] | None:
-    """The keys that a section can have; None where any name is a key, as in a table of columns."""
+    """Returns the keys that a section may have, or None if any name is a key, as in a table of columns."""
     if "items" in schema:
         schema = schema["items"]
     keys: Mapping[str, Any] | None = schema.get("properties")
@@ -36,9 +36,10 @@ def keys_of(schema: Mapping[str, Any]) -> Mapping[str, Any] | None:
 
 
 class Section:
-    """A section of a job: its keys are attributes and items, and can be set. ``del`` takes a key out; a key that is absent is None. A name that no
-    section of this kind has raises ``AttributeError``, with the closest name that it has. A key that names a table takes the table itself: a
-    DataFrame, or another object with ``__arrow_c_stream__``."""
+    """Section of a job. Its keys are attributes and items, and can be set.
+
+    ``del`` removes a key, and an absent key is None. A name that no section of this kind has raises ``AttributeError`` with the closest name. A key
+    that names a table may contain the table: a DataFrame, or another object with ``__arrow_c_stream__``."""
 
     __slots__ = ("_job", "_table", "_where", "_schema", "_absent")
 
@@ -54,11 +55,11 @@ class Section:
         object.__setattr__(self, "_table", table)
         object.__setattr__(self, "_where", where)
         object.__setattr__(self, "_schema", schema)
-        # Whether the job does not have it until a key is set.
+        # Whether the section is absent from the job until a key is set.
         object.__setattr__(self, "_absent", absent)
 
     def _known(self, name: str) -> Mapping[str, Any]:
-        """The schema of a key.
+        """Returns the schema of a key.
 
         Raises:
             AttributeError: no section of this kind has the key.
@@ -73,7 +74,7 @@ class Section:
         found: Mapping[str, Any] = keys[name]
         return found
 
-    # A type checker sees the keys of `_keys.py` alone, and reports others.
+    # A type checker uses only the keys of `_keys.py`, and reports others.
     if not TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any:
@@ -110,11 +111,11 @@ class Section:
         delattr(self, name)
 
     def get(self, name: str, default: Any = None) -> Any:
-        """The value of a key, or `default` where it is not set."""
+        """Returns the value of a key, or `default` if it is not set."""
         return self[name] if name in self._table else default
 
     def keys(self) -> list[str]:
-        """The keys that are set."""
+        """Returns the keys that are set."""
         return list(self._table)
 
     def __contains__(self, name: str) -> bool:
@@ -139,7 +140,7 @@ class Section:
 
 
 class Items(MutableSequence[Any], Generic[T_co]):
-    """A list of a job, changed in place: ``job.load.append({...})``."""
+    """List of a job, changed in place: ``job.load.append({...})``."""
 
     __slots__ = ("_job", "_list", "_where", "_schema")
 
@@ -167,7 +168,7 @@ class Items(MutableSequence[Any], Generic[T_co]):
         return (self[i] for i in range(len(self)))
 
     def insert(self, index: int, value: Any) -> None:
-        """Puts a value before the one at `index`."""
+        """Inserts a value before the one at `index`."""
         self._list.insert(index, plain(value))
         self._job._change()
 

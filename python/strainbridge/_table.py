@@ -11,33 +11,38 @@ from . import _strainbridge as _engine
 
 
 class Table:
-    """A table in the Arrow format: ``polars.DataFrame(table)``, ``pandas.DataFrame.from_arrow(table)``, ``duckdb.sql("select * from table")``,
-    ``pyarrow.table(table)`` take it by the Arrow PyCapsule interface, without a package of Arrow here. Where pyarrow is installed, a table
-    also answers as a ``pyarrow.Table`` does: ``table["name"]``, ``table.to_pandas()``."""
+    """Table in the Arrow format, which other packages read through the Arrow PyCapsule interface.
+
+    Use ``polars.DataFrame(table)``, ``pandas.DataFrame.from_arrow(table)``, ``duckdb.sql("select * from table")`` or ``pyarrow.table(table)``. No
+    Arrow package is needed here. If pyarrow is installed, a table also has the methods of a ``pyarrow.Table``: ``table["name"]``,
+    ``table.to_pandas()``."""
 
     __slots__ = ("_native", "_source")
 
     def __init__(self, native: _engine._Table, source: tuple[str, Any]) -> None:
         self._native = native
-        # The constructor and its argument, from which a copy is made.
+        # The constructor and its argument, for copies.
         self._source = source
 
     @classmethod
     def from_records(cls, records: Sequence[Mapping[str, Any]]) -> Table:
-        """One row for each record, columns in the order of their keys: numbers, truths, texts, lists of numbers; other values as JSON."""
+        """Creates one row for each record, with columns in the order of the keys.
+
+        Values are numbers, truth values, texts and lists of numbers. Other values are stored as JSON.
+        """
         rows = list(records)
         names = list(dict.fromkeys(name for row in rows for name in row))
         return cls(_engine._Table(json.dumps(rows), names), ("from_records", rows))
 
     @classmethod
     def from_columns(cls, columns: Mapping[str, Any]) -> Table:
-        """One column for each name: arrays of numbers of one dimension, or lists of texts."""
+        """Creates one column for each name, from one-dimensional arrays of numbers or lists of texts."""
         held = {name: _column(c) for name, c in columns.items()}
         return cls(_engine._Table(columns=held), ("from_columns", held))
 
     @property
     def num_rows(self) -> int:
-        """How many rows."""
+        """Number of rows."""
         return self._native.num_rows
 
     @property
@@ -46,11 +51,11 @@ class Table:
         return self._native.column_names
 
     def __arrow_c_schema__(self) -> object:
-        """The schema, by the Arrow PyCapsule interface."""
+        """Returns the schema through the Arrow PyCapsule interface."""
         return self._native.__arrow_c_schema__()
 
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
-        """The rows, by the Arrow PyCapsule interface."""
+        """Returns the rows through the Arrow PyCapsule interface."""
         return self._native.__arrow_c_stream__(requested_schema)
 
     def __len__(self) -> int:

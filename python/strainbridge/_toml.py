@@ -1,4 +1,4 @@
-"""A dictionary as the text of a job."""
+"""Converts a dictionary to the text of a job."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def plain(value: Any) -> Any:
-    """The value in numbers, texts, lists and dictionaries: numpy's scalars and arrays, paths and tuples are turned into these."""
+    """Converts a value to numbers, texts, lists and dictionaries. It accepts scalars and arrays of numpy, paths and tuples."""
     if isinstance(value, Mapping):
         return {str(k): plain(v) for k, v in value.items() if v is not None}
     if isinstance(value, (str, bool, int, float)):
@@ -26,7 +26,7 @@ def plain(value: Any) -> Any:
 
 
 def text_of(job: Mapping[str, Any]) -> str:
-    """The text of a job: values first, then one section each, one line for each key."""
+    """Returns the text of a job: values first, followed by the sections, with one line for each key."""
     lines: list[str] = []
     sections: list[str] = []
     for key, value in plain(job).items():

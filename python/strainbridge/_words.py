@@ -1,4 +1,4 @@
-"""Words of the command and of job files as a user of Python has them."""
+"""Replaces words of the command and of job files by the words of the Python package."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import re
 from functools import lru_cache
 from typing import Any
 
-#: Functions on arrays, where there is no job.
+#: Functions on arrays, which have no job.
 _OF_ARRAYS = ("place_rows", "relax", "recover_rows")
 
-#: Words of a job that mean something else for arrays.
+#: Words of a job that have another meaning for arrays.
 _ARRAYS = (
     (re.compile(r"gauges among these candidates separate"), "rows of S separate"),
     (re.compile(r"ask for at least (\d+) gauges"), r"give n of at least \1"),
@@ -19,7 +19,7 @@ _ARRAYS = (
     (re.compile(r"widen \[candidates\]"), "give more rows"),
 )
 
-#: Options of the command, by what a call has in their place.
+#: Options of the command, with the corresponding argument of a call.
 _OPTIONS = (
     (re.compile(r" with `?--out`?(?: DIR)?"), ""),
     (re.compile(r"`?strainbridge explain --list`?"), "`strainbridge.explain()`"),
@@ -35,7 +35,7 @@ _SECTION = re.compile(r"\[\[?([a-z_]+)\]\]?(?: ([a-z_]+)\b)?")
 
 @lru_cache(maxsize=None)
 def _keys() -> dict[str, set[str]]:
-    """The keys of each section of a job."""
+    """Returns the keys of each section of a job."""
     from . import _strainbridge as engine
 
     schema: dict[str, Any] = json.loads(engine.schema())["properties"]
@@ -43,8 +43,9 @@ def _keys() -> dict[str, set[str]]:
 
 
 def in_python(text: str, function: str = "") -> str:
-    """The text with attributes of a job in place of sections, and arguments in place of options: ``[measured] time_unit`` becomes
-    ``job.measured.time_unit``. A unit in brackets remains."""
+    """Returns the text with attributes of a job instead of sections, and arguments instead of options.
+
+    ``[measured] time_unit`` becomes ``job.measured.time_unit``. A unit in brackets is unchanged."""
     if function in _OF_ARRAYS:
         for word, other in _ARRAYS:
             text = word.sub(other, text)

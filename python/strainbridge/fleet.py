@@ -4,13 +4,13 @@
     result = sb.fleet.run("job.toml", ["data/T1_2026-05-01.parquet", ...], out="fleet")
     result = sb.fleet.run("job.toml", files, out="/shared/fleet", client=dask.distributed.Client("tcp://scheduler:8786"))
 
-A task processes some files. It keeps a small result for each file in the folder `out`, by the digest of file, job and version. A task that is
-repeated, or a run that begins again, therefore processes new files only; at the end everything in the folder is merged. The same files give the
-same bytes of `fleet.csv`, whoever processed them. `out`, `job` and `files` must be reachable under the same paths by every worker. A file may be
-a URL of an object store (``s3://bucket/T1_2026-05-01.parquet``): the worker that reads it copies it by fsspec.
+A task processes some files. It stores a small result for each file in the folder `out`, by the digest of file, job and version. If a task is
+repeated, or a run starts again, it processes only new files. At the end, all stored results are merged. Equal files give equal bytes of `fleet.csv`,
+on any machine. Every worker must find `out`, `job` and `files` under the same paths. A file may be a URL of an object store
+(``s3://bucket/T1_2026-05-01.parquet``). The worker that reads it copies it through fsspec.
 
-Where the environment variable STRAINBRIDGE names a command, or the engine of the package is missing (this file alone will do), that command
-does the work. This file alone returns dictionaries, with the keys of `result.json`.
+If the environment variable STRAINBRIDGE names a command, or the engine of the package is missing (this file is sufficient), that command does the
+work. This file alone returns dictionaries with the keys of `result.json`.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ try:
     from ._job import job_of
     from ._outcome import Outcome
     from ._progress import shown
-except ImportError:  # the file alone
+except ImportError:  # this file without the package
     _engine = None  # type: ignore[assignment]
     _objects = None  # type: ignore[assignment]
 
@@ -48,10 +48,10 @@ except ImportError:  # the file alone
 
 __all__ = ["FILES_A_TASK", "FleetError", "mark", "merge", "part", "program", "run"]
 
-#: Files of one task of a cluster: enough that starting a task costs little, few enough that a lost task loses little.
+#: Files per task of a cluster. Few tasks have little overhead, and a lost task with few files loses little work.
 FILES_A_TASK = 8
 
-#: A job, or the path of one.
+#: A job, or its path.
 AnyJob = Any
 
 #: A fault: file, line, field, what is wrong, what to do.
@@ -59,11 +59,11 @@ _Parts = tuple[str, "int | None", str, str, str]
 
 
 class FleetError(RuntimeError):
-    """Bad input: every fault, as the command prints it."""
+    """Faulty input: every fault, as the command prints it."""
 
 
 def program() -> str:
-    """Path of the command: that named by STRAINBRIDGE, else the one on the path."""
+    """Returns the path of the command: the one in STRAINBRIDGE, otherwise the one on the path."""
     found = os.environ.get("STRAINBRIDGE") or shutil.which("strainbridge")
     if not found:
         raise FleetError("no command `strainbridge` on the path: install it, or name it in the environment variable STRAINBRIDGE")
@@ -72,8 +72,9 @@ def program() -> str:
 
 @contextmanager
 def mark(out: str | Path) -> Iterator[str]:
-    """Puts a file into `out` for the time of a run, and yields its name. :func:`part` with this name raises an error on a worker whose `out` is
-    another folder."""
+    """Writes a file into `out` for the duration of a run, and yields its name.
+
+    :func:`part` with this name raises an error on a worker whose `out` is another folder."""
     folder = Path(out)
     folder.mkdir(parents=True, exist_ok=True)
     name = f".run-{uuid.uuid4().hex}"
@@ -92,17 +93,19 @@ def part(
     threads: int | None = None,
     mark: str | None = None,
 ) -> list[dict[str, str]]:
-    """Processes some files and returns path, status, message and SHA-256 of each: a function of its arguments, except for the results kept in `out`.
+    """Processes some files and returns path, status, message and SHA-256 of each.
+
+    The result depends only on the arguments and on the results stored in `out`.
 
     Args:
-        job: a job with ``[fleet]``, or the path of one.
+        job: a job with ``[fleet]``, or its path.
         files: paths as this process finds them, or URLs of an object store.
-        out: the folder of the results, which all tasks share.
-        threads: how many; all cores where None.
-        mark: name of the file that :func:`mark` has put into `out`.
+        out: folder of the results, common to all tasks.
+        threads: number of threads; None: all cores.
+        mark: name of the file that :func:`mark` has written into `out`.
 
     Raises:
-        Faults: bad input; files or a folder that this process does not find. With the command instead of the engine: FleetError.
+        Faults: the input is faulty, or this process does not find a file or a folder. With the command instead of the engine: FleetError.
     """
     files = [str(f) for f in files]
     if not files:
@@ -119,7 +122,7 @@ def part(
     known = _objects.known_digests(urls, out) if urls else {}
     with _copies([u for u in urls if u not in known], out) as states:
         names = _local_names(files, out)
-        # What counts is kept under `out/days`, which all tasks share; the answer of a part is not.
+        # The results are stored in `out/days`, which all tasks share. The answer of a part is discarded.
         task = _Task(job, list(names), out, threads, digests={_local_name(u, out): d for u, d in known.items()})
         if _in_process():
             answer: Mapping[str, Any] = task.by_engine()
@@ -129,7 +132,7 @@ def part(
         done = [{**{k: f[k] or "" for k in ("status", "message", "sha256")}, "path": names[f["path"]]} for f in answer["files"]]
         if states:
             _objects.keep_states(states, {f["path"]: f["sha256"] for f in done if f["status"] != "failed"}, out)
-    # Of an object that was read before for another job no result is kept: this task reads it again.
+    # An object that was read before for another job has no result here, so this task reads it again.
     again = [f["path"] for f in done if f["status"] == "failed" and f["path"] in known]
     if not again:
         return done
@@ -139,7 +142,7 @@ def part(
 
 
 def merge(job: AnyJob, out: str | Path) -> Answer:
-    """The merged result of all stored results of this job in `out`; `fleet.csv`, `fleet.parquet` and the report are written there."""
+    """Returns the merged result of all stored results of this job in `out`, and writes `fleet.csv`, `fleet.parquet` and the report there."""
     return _saved(_Task(job, [], str(out)), str(out))
 
 
@@ -153,25 +156,25 @@ def run(
     progress: Any = None,
     digests: Mapping[str, str] | None = None,
 ) -> Answer:
-    """Processes all files, writes what the command writes into `out`, and returns the outcome: ``vehicles``, ``files``, as in `result.json`.
+    """Processes all files, writes the files of the command into `out`, and returns the outcome: ``vehicles``, ``files``, as in `result.json`.
 
     Args:
-        job: a job with ``[fleet]``, or the path of one.
-        files: records, relative to the working folder, or URLs of an object store that fsspec reads; a text or path is one file. A pattern
-            (``data/**/*.parquet``) means the files or objects that it matches, a folder for the records below it (without a client).
-        out: where the results of single files are kept, and those of the fleet written.
-        client: a `dask.distributed.Client`, whose workers process the files in tasks of eight; None: they are processed here. A task of a lost
-            worker is repeated; bad input is not.
-        threads: how many here, all cores where None; on a worker 1 where None.
-        shard: ``"3/64"``: the third of 64 parts of the files alone, for a scheduler of your own. The outcome of the part goes to a folder of its
-            own within `out`; :func:`merge` makes the fleet of all parts.
-        progress: as of every command; True: a bar of tqdm. Of the files processed here.
+        job: a job with ``[fleet]``, or its path.
+        files: records, relative to the working folder, or URLs of an object store that fsspec reads. A text or path is one file. A pattern
+            (``data/**/*.parquet``) means the matching files or objects, a folder means the records below it (without a client).
+        out: folder for the results of single files and those of the fleet.
+        client: a `dask.distributed.Client`, whose workers process the files in tasks of eight; None: they are processed here. The task of a lost
+            worker is repeated. Faulty input is not.
+        threads: number of threads. None: all cores here, 1 on a worker.
+        shard: ``"3/64"``: only the third of 64 parts of the files, for another scheduler. The outcome of the part goes to a separate folder
+            within `out`. :func:`merge` combines all parts.
+        progress: as for every command; True: a bar of tqdm, for the files that are processed here.
         digests: SHA-256 of files, by path as in `files`, for a driver that does not read them again.
 
     Raises:
-        Faults: bad input; a file that is missing; a worker that does not find a file or `out`. The results of other files are kept. A record
+        Faults: the input is faulty, a file is missing, or a worker does not find a file or `out`. The results of other files remain. A record
             that cannot be read is a failed file and a finding.
-        FleetError: the workers were lost; the same from the command in place of Faults.
+        FleetError: the workers were lost, or the command reports faults instead of the engine.
     """
     job = str(job) if isinstance(job, os.PathLike) else job
     out = str(out)
@@ -199,17 +202,17 @@ def run(
         number, _, of = shard.partition("/")
         to = os.path.join(out, f"shard-{number}-of-{of}")
     task = _Task(job, list(names), out, threads, shard, progress, {_local_name(f, out): d for f, d in digests.items()})
-    # Nothing is kept of a failed record: it is read again for its message.
+    # A failed record has no stored result. It is read again for its message.
     failed = [f["path"] for f in done if f["status"] == "failed" and _is_object(f["path"])]
     with _copies(failed, out):
         return _saved(task, to)
 
 
 def _matching(file: str) -> list[str]:
-    """The files that a pattern matches; another path itself.
+    """Returns the files that match a pattern, or any other path unchanged.
 
     Raises:
-        Faults: none.
+        Faults: no file matches.
     """
     if not any(sign in file for sign in "*?[") or os.path.exists(file):
         return [file]
@@ -226,23 +229,23 @@ def _tasks(files: Sequence[str]) -> list[list[str]]:
 
 
 def _share(files: Sequence[str], shard: str | None) -> Sequence[str]:
-    """The files of a shard, as the engine divides them; none if the shard is not valid, which the engine reports."""
+    """Returns the files of a shard, divided as in the engine. The list is empty if the shard is not valid, which the engine reports."""
     number, _, of = (shard or "1/1").partition("/")
     valid = number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)
     return files[int(number) - 1 :: int(of)] if valid else []
 
 
 def _by_workers(job: AnyJob, files: Sequence[str], out: str, client: Any, threads: int) -> list[dict[str, str]]:
-    """Has the workers process the files, and returns what :func:`part` returns of all of them.
+    """Lets the workers process the files, and returns the results of :func:`part` for all of them.
 
     Raises:
-        Faults: what the workers found wrong, once all of them have ended.
+        Faults: the faults of all workers, after all of them have ended.
         FleetError: files that no worker processed, because workers were lost.
     """
     tasks = _tasks(files)
     with mark(out) as name:
         n = len(tasks)
-        # The scheduler repeats the task of a lost worker; an exception would be the same on every worker.
+        # The scheduler repeats the task of a lost worker. An exception would occur again on every worker.
         futures = client.map(_answer, [job] * n, tasks, [out] * n, [threads] * n, [name] * n, pure=False, retries=0)
         answers = client.gather(futures, errors="skip")
     faults = list(dict.fromkeys(f for _, some in answers for f in some))
@@ -265,7 +268,7 @@ def _error_of(future: Any) -> BaseException | None:
 
 
 def _answer(job: AnyJob, files: Sequence[str], out: str, threads: int, mark: str) -> tuple[list[dict[str, str]], list[_Parts]]:
-    """What :func:`part` returns, and what is wrong with the input: as a value, which no scheduler repeats."""
+    """Returns the result of :func:`part` and the faults of the input as a value, so that no scheduler repeats the task."""
     try:
         return part(job, files, out, threads, mark), []
     except FleetError as e:
@@ -277,14 +280,14 @@ def _answer(job: AnyJob, files: Sequence[str], out: str, threads: int, mark: str
 
 
 def _bad(faults: Sequence[_Parts]) -> Exception:
-    """The exception for bad input."""
+    """Returns the exception for faulty input."""
     if _engine is not None:
         return Faults(faults)
     return FleetError("\n".join(": ".join(t for t in (f[0], f[2], f[3], f[4]) if t) for f in faults))
 
 
 def _missing(files: Sequence[str]) -> Exception:
-    """The error for files that do not exist."""
+    """Returns the error for files that do not exist."""
     return _bad([(f, None, "files", "the file does not exist", "give a path relative to the working folder") for f in files])
 
 
@@ -293,28 +296,28 @@ def _is_object(file: str) -> bool:
 
 
 def _copies(urls: Sequence[str], out: str) -> AbstractContextManager[dict[str, str]]:
-    """Copies of objects in `out` for the time of a block; yields their states."""
+    """Copies objects into `out` for the duration of a block, and yields their states."""
     return _objects.copies(urls, out) if urls else nullcontext({})
 
 
 def _local_name(file: str, out: str) -> str:
-    """The path of a file for the engine: that of the copy if it is in an object store."""
+    """Returns the path of a file for the engine: the path of the copy if the file is in an object store."""
     return _objects.local_name(file, out) if _is_object(file) else file
 
 
 def _local_names(files: Sequence[str], out: str) -> dict[str, str]:
-    """Files by their path for the engine."""
+    """Returns the files by their path for the engine."""
     return {_local_name(f, out): f for f in files}
 
 
 def _in_process() -> bool:
-    """Whether the engine of the package does the work."""
+    """Returns whether the engine of the package does the work."""
     return _engine is not None and not os.environ.get("STRAINBRIDGE")
 
 
 @dataclass(frozen=True)
 class _Task:
-    """What is asked: the files, and the folder `kept` of the results of single files."""
+    """Request: the files, and the folder `kept` with the results of single files."""
 
     job: AnyJob
     files: Sequence[str]
@@ -359,11 +362,11 @@ class _Task:
 
 
 def _saved(task: _Task, out: str) -> Answer:
-    """The answer, its files written into `out`."""
+    """Returns the answer, and writes its files into `out`."""
     if not _in_process():
         answer = task.by_command(out)
         if _engine is None:
-            # This file alone: a dictionary with the keys of result.json.
+            # This file without the package: a dictionary with the keys of result.json.
             return cast("Answer", answer)
         return Outcome.of_folder(answer, out)
     outcome = task.by_engine()

@@ -1,4 +1,4 @@
-"""A small model, a small matrix, and the command where it is built."""
+"""A small model, a small matrix, and the command if it is built."""
 
 import importlib
 import json
@@ -13,14 +13,14 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def needed(name: str):
-    """The package that a test compares with; the test is skipped without, but where STRAINBRIDGE_TESTS is `required`."""
+    """Returns a package for a comparison. Without it the test is skipped, or fails if STRAINBRIDGE_TESTS is `required`."""
     if os.environ.get("STRAINBRIDGE_TESTS") == "required":
         return importlib.import_module(name)
     return pytest.importorskip(name)
 
 
 def strip() -> str:
-    """A free strip of plates along x, 11 by 2 grids 20 mm apart, 2 mm thick."""
+    """Returns a free strip of plates along x, 11 by 2 grids 20 mm apart, 2 mm thick."""
     lines = ["SOL 101", "CEND", "BEGIN BULK"]
     for i in range(11):
         for j in range(2):
@@ -30,7 +30,7 @@ def strip() -> str:
     return "\n".join([*lines, "PSHELL,1,1,2.,1,,1", "MAT1,1,210000.,,.3,7.85-9", "ENDDATA", ""])
 
 
-#: The job on the strip, as a dictionary.
+#: Job on the strip, as a dictionary.
 STRIP_JOB = {
     "units": "mm-t-s",
     "model": {"deck": "strip.bdf"},
@@ -41,7 +41,7 @@ STRIP_JOB = {
     "placement": {"gauges": 4},
 }
 
-#: The same as a file.
+#: The same job as a file.
 STRIP_TEXT = """units = "mm-t-s"
 [model]
 deck = "strip.bdf"
@@ -59,7 +59,7 @@ expected = 10.0
 gauges = 4
 """
 
-#: A job on a given S.
+#: Job with a given S.
 MATRIX_TEXT = """title = "Two loads"
 units = "m-kg-s"
 report_units = { force = "kN", moment = "kN m" }
@@ -85,7 +85,7 @@ MATRIX = np.array([[10.0, 1.0], [-8.0, 3.0], [2.0, 9.0], [1.0, -11.0], [6.0, 6.0
 
 @pytest.fixture
 def strip_folder(tmp_path, monkeypatch):
-    """A folder with the strip and its job; the working folder."""
+    """Creates a working folder with the strip and its job."""
     (tmp_path / "strip.bdf").write_text(strip())
     (tmp_path / "job.toml").write_text(STRIP_TEXT)
     monkeypatch.chdir(tmp_path)
@@ -94,7 +94,7 @@ def strip_folder(tmp_path, monkeypatch):
 
 @pytest.fixture
 def matrix_folder(tmp_path, monkeypatch):
-    """A folder with S, six runs and two records of two vehicles; the working folder."""
+    """Creates a working folder with S, six runs and two records of two vehicles."""
     rng = np.random.default_rng(3)
     rows = [f"G{g},{a},{b}" for g, (a, b) in enumerate(MATRIX)]
     (tmp_path / "S.csv").write_text("\n".join(["gauge,A.FZ,B.FZ", *rows, ""]))
@@ -115,7 +115,10 @@ def matrix_folder(tmp_path, monkeypatch):
 
 @pytest.fixture(scope="session")
 def command():
-    """The command: that named by STRAINBRIDGE_COMMAND, else the one built here; skipped without, but where STRAINBRIDGE_TESTS is `required`."""
+    """Runs the command: the one in STRAINBRIDGE_COMMAND, otherwise the one built here.
+
+    Without it the test is skipped, or fails if STRAINBRIDGE_TESTS is `required`.
+    """
     found = os.environ.get("STRAINBRIDGE_COMMAND") or ROOT / "target" / "debug" / "strainbridge"
     if not Path(found).is_file():
         assert os.environ.get("STRAINBRIDGE_TESTS") != "required", f"no command at {found}, and required"

@@ -1,4 +1,4 @@
-"""Bare arrays against numpy."""
+"""Compares functions on bare arrays with numpy."""
 
 import itertools
 
@@ -29,7 +29,7 @@ def test_the_determinant_is_that_of_the_rows_and_the_bound_is_above_it():
     assert plan.upper_bound >= plan.log_det - 1e-12
     assert plan.efficiency_bound == pytest.approx(np.exp((plan.log_det - plan.upper_bound) / 6), rel=1e-12)
     assert plan.condition_number == pytest.approx(np.linalg.cond(S[plan.rows]), rel=1e-8)
-    # Better than the best of many random layouts.
+    # The layout is better than the best of many random layouts.
     rng = np.random.default_rng(0)
     assert all(log_det(S[rng.choice(500, 12, replace=False)]) < plan.log_det for _ in range(300))
 
@@ -56,7 +56,7 @@ def test_weights_bound_every_layout():
 
 
 def test_weights_of_rows_alike_are_known():
-    # Each of three axes ten times: the best sum of weights 6 puts 2 on each axis, det = 2^3.
+    # Each of three axes occurs ten times. The best weights with sum 6 put 2 on each axis, det = 2^3.
     relaxed = sb.relax(np.repeat(np.eye(3), 10, axis=0), 6)
     assert relaxed.upper_bound == pytest.approx(3 * np.log(2.0), abs=1e-5)
     assert relaxed.weights.reshape(3, 10).sum(axis=1) == pytest.approx([2.0, 2.0, 2.0], rel=1e-2)
@@ -69,7 +69,7 @@ def test_weights_of_rows_alike_are_known():
 def test_strain_along_a_direction_is_that_of_the_tensor():
     rng = np.random.default_rng(22)
     n = 40
-    # Warped quadrilaterals and triangles anywhere; a strain tensor in each plane.
+    # Warped quadrilaterals and triangles at random positions, with a strain tensor in each plane.
     corners = np.array([[0.0, 0, 0], [3, 0, 0], [3, 2, 0], [0, 2, 0]]) + rng.normal(0.0, 0.2, (n, 4, 3))
     d13, d24 = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]
     unit = lambda v: v / np.linalg.norm(v, axis=1, keepdims=True)  # noqa: E731
@@ -87,7 +87,7 @@ def test_strain_along_a_direction_is_that_of_the_tensor():
     np.testing.assert_allclose(sb.strain_along(e, direction, corners=corners), expected, rtol=1e-9, atol=1e-9)
     six = np.stack([basic[:, i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))], axis=1)
     np.testing.assert_allclose(sb.strain_along(six, laid), expected, rtol=1e-9, atol=1e-9)
-    # Pure shear gamma: half of it along 45 degrees, nothing along the axes.
+    # Pure shear gamma: half of it along 45 degrees, zero along the axes.
     shear = np.array([[0.0, 0.0, 100.0]])
     assert sb.strain_along(np.repeat(shear, 3, axis=0), angle_deg=[0.0, 45.0, 135.0]) == pytest.approx([0.0, 50.0, -50.0])
     side = np.array([[[0.0, 0, 0], [0, 0, 1], [0, 1, 0]]])
@@ -127,7 +127,7 @@ def test_a_record_has_the_loads_of_least_squares_too_and_gaps_take_the_others():
     np.testing.assert_allclose(out.loads[17_000], np.linalg.lstsq(S[others], strain[17_000, others], rcond=None)[0], rtol=1e-9)
     wider = (out.high - out.low)[17_000] > (out.high - out.low)[0]
     assert wider.all()
-    # Two gauges don't tell three loads.
+    # Two gauges do not determine three loads.
     assert np.isnan(out.loads[123]).any()
 
 
@@ -138,7 +138,8 @@ def test_gaps_are_said_alike_of_few_rows_and_of_many(rows):
     strain = rng.normal(0.0, 5.0, (rows, 3)) @ S.T + rng.normal(0.0, 1.0, (rows, 8))
     whole = sb.recover_rows(S, strain)
     assert not any("gaps" in f.code for f in whole.findings)
-    # Rows that are not among those judged of a long record, too: one gauge silent, then six of eight, which leaves three loads untold.
+    # These rows are not among the tested samples of a long record. In one row, one gauge has no reading. In the other, six of eight have none, and
+    # three loads are not determined.
     strain[1_700, 2] = np.nan
     strain[123, :6] = np.nan
     out = sb.recover_rows(S, strain)
@@ -161,7 +162,7 @@ def test_intervals_hold_the_truth_nineteen_times_in_twenty():
     truth = rng.normal(0.0, 100.0, (5_000, 3))
     out = sb.recover_rows(S, truth @ S.T + rng.normal(0.0, 2.0, (5_000, 8)), noise=2.0)
     held = ((out.low <= truth) & (truth <= out.high)).mean()
-    # The runs share nothing: the share of 15,000 is 0.95 +- 0.004.
+    # The runs are independent, so the share of 15,000 intervals is 0.95 +- 0.004.
     assert 0.944 < held < 0.956
 
 
@@ -235,7 +236,7 @@ def test_a_calibration_learns_the_matrix_that_made_the_readings():
     loads = rng.normal(0.0, 30.0, (12, 2))
     strain = loads @ S.T + rng.normal(0.0, 0.5, (12, 6))
     learnt = sb.calibrate_rows(strain, loads, noise=0.5)
-    # Least squares run by run: sd of an entry is the noise over the root of the sum of squares of its load.
+    # Least squares: the sd of an entry is the noise divided by the root of the sum of squares of its load.
     sd = 0.5 / np.sqrt((loads**2).sum(axis=0))
     assert (np.abs(learnt.S - S) < 6.0 * sd).all()
     assert learnt.outcome.calibration.runs == 12

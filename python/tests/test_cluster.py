@@ -1,4 +1,4 @@
-"""The scripts of `examples/cluster`, with the variables that their schedulers set: the same bytes as one machine."""
+"""The scripts of `examples/cluster` with the variables of their schedulers give the same bytes as one machine."""
 
 import os
 import shutil
@@ -15,7 +15,7 @@ SCRIPTS = ROOT / "examples" / "cluster"
 
 @pytest.fixture(scope="module")
 def four(tmp_path_factory):
-    """A folder with the four records of `examples/fleet`, their list, and `fleet.csv` of one machine."""
+    """Returns a folder with the four records of `examples/fleet`, their list, and `fleet.csv` of one machine."""
     folder = tmp_path_factory.mktemp("cluster")
     shutil.copytree(ROOT / "examples" / "fleet", folder, dirs_exist_ok=True)
     files = [str(f) for f in sorted(folder.glob("?_2026-*.csv"))]
@@ -60,7 +60,7 @@ def test_the_kubernetes_job_writes_the_same_bytes(four):
     def pod(job, codes, **variables):
         container = job["spec"]["template"]["spec"]["containers"][0]
         given = {e["name"]: e["value"] for e in container.get("env", [])}
-        # The volume and the program are here.
+        # Replaces the paths of the volume and of the program by local ones.
         line = container["args"][0].replace("/data/", f"{folder}/").replace("exec python", f"exec {sys.executable}")
         call([*container["command"], line], codes, **given, **variables)
 

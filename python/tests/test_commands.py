@@ -1,4 +1,4 @@
-"""Every function against the command, to the last digit."""
+"""Compares every function with the command, to the last digit."""
 
 import json
 
@@ -6,7 +6,7 @@ import pytest
 
 import strainbridge as sb
 
-#: What differs from run to run, and what only written files have.
+#: Keys that differ between runs, or that only written files have.
 OF_THE_RUN = ("seconds", "tables", "peak_memory_bytes")
 
 
@@ -60,7 +60,7 @@ def test_a_job_is_proposed(strip_folder, command):
     same(out, command("init", "strip.bdf"))
     ours = (out.save("ours") / "job.toml").read_text()
     assert ours == (strip_folder / "job.toml").read_text()
-    # One that stands there is not overwritten.
+    # An existing job is not overwritten.
     with pytest.raises(sb.Faults):
         sb.init("strip.bdf")
 

@@ -18,7 +18,7 @@ STRAIN = np.round(RNG.normal(0.0, 5.0, (7, 3)) @ S.T)
 
 
 def kinds(a):
-    """The same numbers in other arrays and tables."""
+    """Returns the same numbers in other arrays and tables."""
     wide = np.zeros((2 * len(a), 2 * a.shape[1]))
     wide[::2, ::2] = a
     big = np.vstack([a[:1], a, a[:1]])
@@ -130,7 +130,7 @@ def test_all_cores_may_be_asked_for_as_elsewhere():
 def test_the_scale_of_s_changes_the_determinant_by_what_it_must(power):
     plan, scaled = sb.place_rows(S, 5), sb.place_rows(np.ldexp(S, power), 5)
     assert scaled.rows.tolist() == plan.rows.tolist()
-    # det(S'S) of three loads grows by the scale to the sixth power.
+    # det(S'S) of three loads is multiplied by the scale to the sixth power.
     grown = 6 * power * np.log(2.0)
     assert scaled.log_det == pytest.approx(plan.log_det + grown, abs=1e-9)
     assert scaled.efficiency_bound == pytest.approx(plan.efficiency_bound, abs=1e-9)
@@ -181,7 +181,7 @@ def test_an_unreliable_answer_warns_once_and_raises_if_asked(matrix_folder):
 
 def test_s_is_at_hand(matrix_folder):
     out = sb.sensitivity("job.toml")
-    # The table is microstrain per kN, the job's unit of force is N; a product and a quotient round.
+    # The table is in microstrain per kN, and the job's unit of force is N. A product and a quotient cause rounding.
     np.testing.assert_allclose(out.S, MATRIX / 1000.0, rtol=4e-16)
     assert out.gauges == [f"G{g}" for g in range(5)] and out.loads == ["A.FZ", "B.FZ"]
     table = out.to_arrow()

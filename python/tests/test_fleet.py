@@ -1,4 +1,4 @@
-"""Sixty records of three vehicles on one machine, on workers, on Spark and in shards: the same bytes."""
+"""Sixty records of three vehicles on one machine, on workers, on Spark and in shards give the same bytes."""
 
 import hashlib
 import json
@@ -27,7 +27,7 @@ def record(path, rng, samples=400, keep=slice(None)):
 
 @pytest.fixture(scope="module")
 def sixty(tmp_path_factory):
-    """The folder of the job and its records, and what one machine makes of them."""
+    """Returns the folder of the job and its records, and the result of one machine."""
     folder = tmp_path_factory.mktemp("fleet")
     rng = np.random.default_rng(60)
     rows = [f"G{g},{a},{b}" for g, (a, b) in enumerate(MATRIX)]
@@ -43,7 +43,7 @@ def sixty(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def cluster():
-    """Two workers, processes that were spawned."""
+    """Yields a client with two workers, which are spawned processes."""
     distributed = needed("distributed")
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as made:
         with distributed.Client(made) as client:
@@ -63,7 +63,7 @@ def test_two_workers_write_the_same_bytes(sixty, cluster):
 
 
 class Dying:
-    """A client whose first tasks kill their worker: after the work is half done."""
+    """Client whose first tasks kill their worker after half of the work."""
 
     def __init__(self, client, mark):
         self.client, self.mark = client, str(mark)
@@ -96,7 +96,7 @@ def test_a_worker_that_dies_half_way_costs_nothing(sixty, cluster):
 
 
 class Counting(Dying):
-    """A client that notes every start of a task, and kills its worker if asked."""
+    """Client that notes every start of a task, and kills its worker on request."""
 
     def __init__(self, client, notes, kill=False):
         self.client, self.notes, self.kill = client, str(notes), kill
@@ -124,7 +124,7 @@ def test_bad_input_is_tried_once(sixty, cluster, tmp_path):
     client = Counting(cluster, tmp_path / "starts")
     with pytest.raises(sb.Faults, match="file_name") as raised:
         sb.fleet.run(folder / "wrong.toml", files, tmp_path / "out", client=client)
-    # Sixty files are eight tasks. All of them find the same fault, which is reported once.
+    # Sixty files are eight tasks. All tasks find the same fault, which is reported once.
     assert client.starts() == 8
     assert len(raised.value.faults) == 1
 
@@ -134,7 +134,7 @@ def test_a_task_that_kills_every_worker_is_an_error(sixty, cluster, tmp_path):
     client = Counting(cluster, tmp_path / "starts", kill=True)
     with pytest.raises(sb.fleet.FleetError, match="no worker processed"):
         sb.fleet.run(folder / "job.toml", files[:1], tmp_path / "out", client=client)
-    # A lost worker's task is repeated, but not for ever.
+    # The task of a lost worker is repeated, but not indefinitely.
     assert 1 < client.starts() < 10
     assert not (tmp_path / "out" / "fleet.csv").exists()
     cluster.wait_for_workers(2, timeout=60)
@@ -180,7 +180,7 @@ def test_a_file_that_is_lost_stops_no_other(sixty, cluster, tmp_path):
 
 @pytest.fixture
 def store(sixty):
-    """The records in an object store of fsspec, in memory."""
+    """Yields an object store of fsspec in memory, with the records."""
     fsspec = needed("fsspec")
     system = fsspec.filesystem("memory")
     for file in sixty[1]:
@@ -205,7 +205,7 @@ def test_an_object_store_gives_the_same_bytes_and_is_read_once(sixty, store, tmp
     again = sb.fleet.run(job, urls, tmp_path / "out")
     assert copied == [] and "60 of 60 files" in again.words
     assert (tmp_path / "out" / "fleet.csv").read_bytes() == here
-    # An object of other bytes is read, alone.
+    # Only the object with other bytes is read.
     record(tmp_path / "new.csv", np.random.default_rng(9))
     system.pipe("/bucket/records/T1_05.csv", (tmp_path / "new.csv").read_bytes())
     sb.fleet.run(job, urls, tmp_path / "out")
@@ -231,7 +231,7 @@ def test_objects_are_read_again_for_another_job_a_few_at_a_time(sixty, store, tm
     again = sb.fleet.run(job, urls, tmp_path / "out")
     assert {f.status for f in again.files} == {"done"}
     assert most <= sb.fleet.FILES_A_TASK
-    # Digests of the caller do not stand in for a result that was never made.
+    # Digests of the caller do not replace a result that does not exist.
     digests = {u: f.sha256 for u, f in zip(sorted(urls), sorted(again.files, key=lambda f: f.path))}
     other = sb.fleet.run(job, urls, tmp_path / "other", digests=digests)
     assert {f.status for f in other.files} == {"done"}
@@ -301,7 +301,7 @@ def test_vehicle_and_day_may_be_folders_of_a_store(sixty, store, tmp_path):
 
 
 class Leaving:
-    """A client that takes the records away when its workers are done."""
+    """Client that moves the records away when its workers are done."""
 
     def __init__(self, client, files):
         self.client, self.files = client, files
@@ -339,7 +339,7 @@ def test_four_shards_in_any_order_write_the_same_bytes(sixty):
 
 def test_spark_writes_the_same_bytes(sixty):
     folder, files, here = sixty
-    # Two gigabytes of packages and a Java: `.ci/long` has them.
+    # Spark needs two gigabytes of packages and Java, which only `.ci/long` installs.
     pytest.importorskip("pyspark")
     if shutil.which("java") is None:
         pytest.skip("no Java")
@@ -354,7 +354,7 @@ def test_spark_writes_the_same_bytes(sixty):
 def test_a_second_run_decodes_nothing(sixty):
     folder, files, here = sixty
     shutil.copytree(folder / "here", folder / "again")
-    # A kept result that is changed, its digest too, shows in the answer: it is what was read, not the record.
+    # A stored result is changed together with its digest. The change appears in the answer, which shows that the record is not read.
     kept = next(p for p in sorted((folder / "again" / "days").glob("*.json")) if json.loads(p.read_text())["path"] == files[0])
     changed = json.loads(kept.read_text())
     changed["done"]["hours"] += 100.0
@@ -366,7 +366,7 @@ def test_a_second_run_decodes_nothing(sixty):
     hours = [float(line.split(",")[2]) for line in (folder / "again" / "fleet.csv").read_text().splitlines()[1:]]
     before = [float(line.split(",")[2]) for line in here.decode().splitlines()[1:]]
     assert [round(a - b) for a, b in zip(hours, before)] == [100, 100, 0, 0, 0, 0]
-    # A record of other bytes is new, whatever its name.
+    # A record with other bytes is new, whatever its name.
     record(Path(files[0]).with_name("T0_21.csv"), np.random.default_rng(1))
     more = sb.fleet.run(folder / "job.toml", [*files, str(folder / "T0_21.csv")], folder / "again")
     assert more.vehicles[0].files == 21

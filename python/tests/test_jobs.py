@@ -1,4 +1,4 @@
-"""Jobs, faults, findings."""
+"""Jobs, faults and findings."""
 
 import copy
 import pickle
@@ -33,7 +33,7 @@ def test_a_job_is_changed_in_place(strip_folder):
     assert "gauges = 5" in job.text
     job.candidates.surfaces = ["top"]
     assert {g.surface for g in sb.place(job).gauges} == {"top"}
-    # The file is as it was.
+    # The file is unchanged.
     assert len(sb.place("job.toml").gauges) == 4
     del job.candidates
     job.placement.gauges = "many"
@@ -81,7 +81,7 @@ def test_an_outcome_has_numbers_findings_and_words(strip_folder, tmp_path):
     assert np.linalg.norm(gauge.direction) == pytest.approx(1.0)
     assert plan["log_det"] == plan.log_det
     assert plan.is_reliable and "RELIED" not in repr(plan)
-    # No spacing and no uncertainty of the model are stated.
+    # The job states no spacing and no model uncertainty.
     assert {f.code for f in plan.findings} >= {"model-uncertainty-unstated", "no-spacing"}
     for f in plan.findings:
         assert f.severity in ("info", "warning", "error") and f.code and f.text

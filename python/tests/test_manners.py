@@ -21,7 +21,7 @@ from strainbridge import _strainbridge as engine
 
 S = np.random.default_rng(0).normal(size=(60, 4))
 
-#: Many errors of a study.
+#: Many errors for a study.
 ERRORS = [{"kind": "relative-uniform", "size": 0.001 * (1 + i)} for i in range(400)]
 
 
@@ -58,7 +58,7 @@ def test_other_threads_run_meanwhile():
     finally:
         done.set()
         thread.join()
-    # Were the lock held, no tick would fall between begin and end.
+    # If the call held the interpreter lock, there would be no tick between begin and end.
     assert sum(begin < t < end for t in ticks) >= 3
 
 
@@ -68,7 +68,7 @@ def test_a_fork_after_use_works():
     expected = sb.place_rows(S, 6).rows.tolist()
     child = os.fork()
     if child == 0:
-        # Whatever happens, the child must not go on with the tests.
+        # In any case, the child process must not continue with the tests.
         code = 1
         try:
             code = 0 if sb.place_rows(S, 6).rows.tolist() == expected else 1
@@ -79,7 +79,7 @@ def test_a_fork_after_use_works():
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
 def test_ctrl_c_stops_the_work():
-    # A shell's background job ignores Ctrl-C, and so would this process.
+    # A background job of a shell ignores Ctrl-C, and this process would inherit that.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     job = sb.Job.read(ROOT / "models" / "truck-shell" / "job.toml")
     timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
@@ -113,7 +113,7 @@ def test_many_calls_leak_nothing():
     def resident():
         return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
-    # Ten thousand calls in all. A result has 2.5 kB or more: kept, they would be 8 MB and more.
+    # Ten thousand calls in total. A result has 2.5 kB or more, so a leak would be 8 MB or more.
     signal_of_2000 = np.random.default_rng(1).normal(size=2000)
     many, strain = np.random.default_rng(2).normal(size=(60, 10)), np.random.default_rng(2).normal(size=(20, 60))
     table = {"a": np.zeros(1000)}
@@ -138,7 +138,7 @@ def test_a_long_record_is_not_copied():
     out = sb.recover_rows(S, strain)
     after = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     scale = 1024 if sys.platform != "darwin" else 1
-    # Loads twice (blocks, then all), 64 MB, and little else; the record has 480 MB.
+    # Loads twice (blocks, then all), 64 MB, and little more. The record has 480 MB.
     assert (after - before) * scale < 0.5 * strain.nbytes
     assert out.loads.shape == (1_000_000, 4)
 
@@ -172,7 +172,8 @@ def test_notes_go_to_the_log(caplog, strip_folder, monkeypatch):
     sb.place("job.toml")
     with caplog.at_level("DEBUG", logger="strainbridge"):
         out = sb.place("job.toml")
-    # The solution of the first is taken, which is a note, as the mesh error that is not computed.
+    # The stored solution of the first call is used. A note reports it, and another note reports that the mesh error is
+    # not computed.
     assert "a stored solution is used" in out.notes[0]
     assert [r.getMessage() for r in caplog.records] == [f"place: {note}" for note in out.notes]
 
@@ -180,7 +181,7 @@ def test_notes_go_to_the_log(caplog, strip_folder, monkeypatch):
 def test_a_long_stage_is_left_between_two_of_its_parts(strip_folder):
     job = sb.Job.read("job.toml")
     job.gauge = [{"name": f"{e}", "element": e, "surface": "top", "direction": [1, 0, 0]} for e in (2, 4, 7, 9)]
-    # 400 errors of a second and more each, one stage.
+    # 400 errors that each take a second or more, in one stage.
     job.study = {"layouts": ["given"], "gauges": [4], "errors": ERRORS, "trials": 1_000_000, "seed": 1}
     told = []
 
@@ -211,7 +212,7 @@ def test_work_stops_between_two_cases():
 
 def test_stubs_and_types_fit_the_package(tmp_path):
     needed("mypy")
-    # The engine with its stubs, and the package with the types that its sources state.
+    # Compares the engine with its stubs, and the package with the types in its sources.
     allowed = Path(__file__).parent / "stubtest.txt"
     done = subprocess.run(
         [sys.executable, "-m", "mypy.stubtest", "strainbridge", "--ignore-disjoint-bases", "--allowlist", str(allowed)],

@@ -1,4 +1,4 @@
-"""Meshes, tables and files that other programs take."""
+"""Meshes, tables and files for other programs."""
 
 import json
 
@@ -8,7 +8,7 @@ from conftest import ROOT, STRIP_JOB, needed
 
 import strainbridge as sb
 
-#: The unit square in two quadrilaterals and a triangle on top.
+#: Two unit squares and a triangle on top.
 POINTS = np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0], [0.5, 2, 0]])
 CELLS = {"quad": np.array([[0, 1, 4, 3], [1, 2, 5, 4]]), "triangle": np.array([[3, 4, 6]])}
 
@@ -38,7 +38,7 @@ def test_a_mesh_is_read_by_other_programs(tmp_path):
 
 
 def test_a_mesh_goes_to_pyvista():
-    # A hundred megabytes of VTK: `.ci/long` has them.
+    # VTK has a hundred megabytes, so only `.ci/long` installs it.
     pytest.importorskip("pyvista")
     grid = sb.Mesh.from_arrays(POINTS, CELLS, cell_data={"strain": [1.0, 2.0, 3.0]}).to_pyvista()
     assert grid.n_cells == 3 and grid.cell_data["strain"].tolist() == [1.0, 2.0, 3.0]
@@ -87,7 +87,7 @@ def test_a_table_goes_to_any_reader_of_arrow(strip_folder):
     assert frame["name"].to_list() == names and frame["leverage"].to_list() == leverage
     assert frame["position"].to_list() == [g.position.tolist() for g in plan.gauges]
     pyarrow = needed("pyarrow")
-    # A stream is read once; a table gives as many as are asked for.
+    # A stream is read once. A table gives any number of streams.
     assert pyarrow.table(table).equals(pyarrow.table(plan))
     assert pyarrow.table(table).equals(pyarrow.table(table))
     assert table["name"].to_pylist() == names
@@ -151,7 +151,7 @@ def test_an_op2_of_arrays_is_read_back(tmp_path):
     for name in ("entity", "layer", "exx", "eyy", "gxy"):
         np.testing.assert_array_equal(back[name], strain[name])
     np.testing.assert_allclose(results.strain(4, "top").values, 1e6 * np.column_stack([strain[c][1::2] for c in ("exx", "eyy", "gxy")]), rtol=1e-6)
-    # What was read is written again, byte by byte.
+    # The tables that were read are written again, with equal bytes.
     sb.write_op2(tmp_path / "again.op2", [(t, results.table(i)) for i, t in enumerate(results.tables)])
     assert (tmp_path / "again.op2").read_bytes() == path.read_bytes()
     reader = needed("pyNastran.op2.op2").OP2(debug=False)
@@ -207,7 +207,7 @@ def test_stress_of_a_pynastran_object_becomes_strain(strip_folder):
     assert len(sb.place(job).gauges) == 2
 
 
-#: Decks of Nastran: stress of quadrilaterals alone; plies; strain and curvature of every element; bars with stations; beams.
+#: Decks of Nastran: stress of quadrilaterals only, plies, strain and curvature of every element, bars with stations, beams.
 REFERENCE = ("msc_plate", "msc_plate_pcomp_2cases", "nx_static_elements", "nx_shell_curvature", "msc_bar_strain", "msc_svanberg_beam")
 
 
@@ -256,7 +256,7 @@ def test_objects_of_pynastran_give_what_their_files_give(name):
 def test_cards_are_changed_and_written(strip_folder):
     text = (strip_folder / "strip.bdf").read_text()
     deck = sb.Deck.read("strip.bdf")
-    # Nothing changed: every byte is kept.
+    # Without a change, every byte remains.
     deck.cards("GRID")
     deck.write("same.bdf")
     assert (strip_folder / "same.bdf").read_text() == text
@@ -275,7 +275,7 @@ def test_cards_are_changed_and_written(strip_folder):
     assert new.cards("GRID")["x"][row].tolist() == [41.25, 0.0, -1.5]
     assert new.cards("CQUAD4")["id"].tolist() == [*range(1, 10), 900]
     assert new.cards("CQUAD4")["theta"][-1] == 30.0
-    # All other lines are those of before.
+    # All other lines are unchanged.
     before, after = set(text.splitlines()), set((strip_folder / "new.bdf").read_text().splitlines())
     assert len(before - after) == 2
     quads["grids"] = quads["grids"] * 0.5

@@ -1,4 +1,4 @@
-"""What a notebook shows of an outcome: the blocks of its report."""
+"""Display of an outcome in a notebook: the blocks of its report."""
 
 import re
 from html.parser import HTMLParser
@@ -7,12 +7,12 @@ import pytest
 
 import strainbridge as sb
 
-#: Elements that have no end.
+#: Elements without an end tag.
 ENDLESS = ("br", "hr", "img", "meta", "input")
 
 
 class Read(HTMLParser):
-    """Texts of a page by element; fails where elements don't close in order."""
+    """Collects texts of a page by element. Fails if elements are not closed in order."""
 
     def __init__(self, page: str) -> None:
         super().__init__()
@@ -37,7 +37,7 @@ class Read(HTMLParser):
 
 def shown(out: sb.Outcome) -> tuple[str, Read]:
     page = out._repr_html_()
-    # Nothing runs, nothing is fetched, nothing of the notebook is restyled.
+    # The page contains no script and no external file, and its styles do not change the notebook.
     assert "<script" not in page and "http" not in page and len(page.encode()) < 300_000
     style = re.search(r"<style>(.*?)</style>", page, re.S)
     rules = [r for r in style[1].split("}") if r.strip()]
@@ -65,7 +65,7 @@ def test_loads_are_shown_with_the_verdict_first(matrix_folder):
     page, read = shown(out)
     assert "<svg" in page and all(l.name in page for l in out.loads)
     job = sb.Job.read("job.toml")
-    # A reading far from what the others say.
+    # A reading far from the prediction of the other gauges.
     lines = (matrix_folder / "strain.csv").read_text().splitlines()
     lines[3] = ",".join([lines[3].split(",")[0], "400", *lines[3].split(",")[2:]])
     (matrix_folder / "strain.csv").write_text("\n".join([*lines, ""]))

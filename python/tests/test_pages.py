@@ -1,4 +1,4 @@
-"""The page of names is that of the docstrings; the notebooks run."""
+"""The page of names agrees with the docstrings, and the notebooks run."""
 
 import json
 import os
@@ -41,14 +41,14 @@ def test_notebooks_run_and_have_pictures(tmp_path):
         kinds = [kind for o in outputs for kind in o.get("data", {})]
         return kinds.count("image/png"), kinds.count("text/html")
 
-    # Kernels start side by side.
+    # Kernels start in parallel.
     with ThreadPoolExecutor(3) as pool:
         for path, (images, pages) in zip(NOTEBOOKS, pool.map(pictures, NOTEBOOKS)):
             assert images >= 1 and pages >= 1, path
 
 
 def boxes(page: str, kind: str):
-    """Line of the first line, and text, of the boxes of a kind."""
+    """Yields the line number and text of the boxes of a kind."""
     for box in re.finditer(rf"^```{kind}\n(.*?)^```$", page, re.MULTILINE | re.DOTALL):
         yield page[: box.start(1)].count("\n"), box.group(1)
 
@@ -67,7 +67,7 @@ def test_the_code_of_a_page_runs_in_order_on_the_examples(path, tmp_path, monkey
     page = path.read_text(encoding="utf-8")
     count = 0
     for line, code in boxes(page, "python"):
-        # Lines of an error are those of the page.
+        # Lines of an error refer to the page.
         exec(compile("\n" * line + code, os.fspath(path), "exec"), names)
         count += 1
     assert count >= 3 and "assert" in page

@@ -11,7 +11,7 @@ import strainbridge as sb
 
 @pytest.fixture
 def solved(strip_folder):
-    """The folder of the strip's unit loads, solved."""
+    """Returns the folder with the solved unit loads of the strip."""
     return sb.solve("job.toml").save(strip_folder / "solved")
 
 

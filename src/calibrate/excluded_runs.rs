@@ -52,7 +52,7 @@ pub(super) fn held_too_few(coverage: &Coverage) -> Option<Finding> {
 mod tests {
     use super::*;
 
-    /// Binomial tails of 0.95: of 20 runs 16 or fewer hold with 1.6 %, 15 or fewer with 0.26 % (tables).
+    /// Binomial tails of 0.95: 16 or fewer of 20 intervals contain the load with 1.6 %, 15 or fewer with 0.26 % (tables).
     #[test]
     fn a_tally_far_below_its_promise_is_an_error_and_chance_is_not() {
         let tally = |held, of| Coverage {

@@ -174,7 +174,8 @@ const UNSEEN: f64 = 1e-6;
 mod tests {
     use super::*;
 
-    /// Two readings of one quantity with variances 1 and 3 and correlation c: generalised least squares in closed form,
+    /// Generalised least squares in closed form for two readings of one quantity with variances 1 and 3 and correlation c.
+    ///
     /// `f = (1' C^-1 y) / (1' C^-1 1)`, variance `1 / (1' C^-1 1)`.
     #[test]
     fn correlated_readings_have_the_closed_form_of_generalised_least_squares() {
@@ -207,7 +208,7 @@ mod tests {
         }
     }
 
-    /// A reading y of variance v with a prior of variance p: posterior mean `y p / (p + v)`, variance `p v / (p + v)`.
+    /// For a reading y of variance v with a prior of variance p, the posterior mean is `y p / (p + v)` and the variance `p v / (p + v)`.
     #[test]
     fn a_prior_weighs_as_one_more_reading() {
         let (y, v, p) = (3.0, 0.5, 2.0_f64);

@@ -69,7 +69,7 @@ pub fn f_tail(ratio: f64, dof: f64, from: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Abramowitz and Stegun, Handbook of Mathematical Functions (1964), tables 26.8, 26.9, 26.10.
+    /// Reference: Abramowitz and Stegun, Handbook of Mathematical Functions (1964), tables 26.8, 26.9, 26.10.
     #[test]
     fn tails_are_those_of_tables() {
         assert!((chi_square_tail(11.0705, 5.0) - 0.05).abs() < 1e-6);

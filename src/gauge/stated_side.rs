@@ -144,7 +144,7 @@ mod tests {
     const RADIUS: f64 = 50.0;
     const THICKNESS: f64 = 1.0;
 
-    /// A tube about z, its grids on the middle surface, of `n` shells around with their normals outwards, three rows high.
+    /// Returns a tube about z with grids on the middle surface: `n` shells around, with normals outwards, and three rows.
     fn tube(n: u32) -> Model {
         let mut deck = "SOL 101\nCEND\nBEGIN BULK\n".to_owned();
         for row in 0..4 {

@@ -10,8 +10,9 @@ use nastran::cards::ShellShape;
 use nastran::place::Place;
 use std::sync::Arc;
 
-/// `nx` x `ny` squares of side 10 in the xy plane, numbered from 1 along x; half thickness 1. Element 1's first corner is turned by
-/// `start` places, which turns its frame by quarter turns.
+/// Returns `nx` x `ny` squares of side 10 in the xy plane, numbered from 1 along x, with half thickness 1.
+///
+/// The corners of element 1 start at number `start`, which rotates its frame by quarter turns.
 fn plate(nx: u32, ny: u32, start: usize) -> Model {
     let at = Place::default();
     let mut m = Model::default();
@@ -69,7 +70,7 @@ fn plate(nx: u32, ny: u32, start: usize) -> Model {
     m
 }
 
-/// Basic-frame tensor (exx, eyy, exy tensor shear) at a place and fibre z, as the field of a case.
+/// Returns a case whose field is the basic tensor (exx, eyy, exy tensor shear) at a place and fibre z.
 fn field(m: &Model, corners: CornerRows, e: impl Fn(Vec3, f64) -> [f64; 3]) -> CaseResult {
     let local = |shell: &Shell, place: ShellPlace, x: Vec3, z: f64| {
         let [exx, eyy, exy] = e(x, z);
@@ -107,7 +108,7 @@ fn read(m: &Model, spec: &GaugeSpec, corners: CornerRows, case: &CaseResult) -> 
         .collect()
 }
 
-/// Strain along the angle t of a basic tensor.
+/// Returns the strain of a basic tensor along the angle t.
 fn strain_along(e: [f64; 3], t: f64) -> f64 {
     let (s, c) = t.sin_cos();
     e[0] * c * c + e[1] * s * s + 2.0 * e[2] * s * c
@@ -202,7 +203,7 @@ fn bridges_are_signed_sums_over_their_factor() {
     assert!((read(&m, &two, CornerRows::Absent, &case)[0] * 1e6 - 40.0).abs() < 1e-9);
 }
 
-/// A rectangular rosette on the first element, leg a along x.
+/// Returns a rectangular rosette on the first element with leg a along x.
 fn rectangular() -> GaugeSpec {
     GaugeSpec {
         direction: Some(Vec3::x()),
@@ -330,7 +331,8 @@ fn a_grid_averages_over_its_length() {
     });
     let mean = read(&m, &long, CornerRows::Present, &square)[0];
     // At 5 and 15 from the middle, the corner values are 25 and 225. The bilinear field is 25 up to 5, then 25 + 20 (d - 5). The rule is
-    // Gauss-Legendre with five points (Abramowitz and Stegun, table 25.4) over +-15. Its middle point takes the shell's own centre row, 0 here.
+    // Gauss-Legendre with five points (Abramowitz and Stegun, table 25.4) over +-15. Its middle point takes the centre row of the shell, which is 0
+    // here.
     let ridge = |d: f64| 25.0 + 20.0 * (d.abs() - 5.0).max(0.0);
     let rule = [
         (0.0, 0.568_888_888_9),

@@ -91,7 +91,7 @@ pub fn remove_all_and(end: impl FnOnce()) {
 mod tests {
     use super::*;
 
-    /// No process has the largest number: Linux gives numbers below 2^22.
+    /// No process has the largest number, because numbers on Linux are below 2^22.
     #[test]
     fn files_of_killed_runs_of_this_machine_are_removed_and_no_others() {
         if host().is_empty() {

@@ -1,4 +1,4 @@
-//! Faults planted in recorded loads of random structures: each is found, and none is found without a fault.
+//! Faults planted in recorded loads of random structures. Each fault is found, and without a fault there is no finding.
 
 use super::{RecordFault, RecordedRuns, faults_of_recorded_loads, findings_of_recorded_loads};
 use crate::finding::Severity;
@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 const LOADS: [&str; 4] = ["A.FZ", "B.FZ", "A.FY", "B.FY"];
 const NOISE: f64 = 1.0;
 
-/// Influence of four loads at twelve gauges, ten runs of recorded loads, and readings of a structure that is off the model by 3 %.
+/// Influence of four loads at twelve gauges, ten runs of recorded loads, and readings of a structure that deviates from the model by 3 %.
 struct SyntheticRuns {
     influence: Matrix,
     records: Vec<Vec<f64>>,

@@ -156,7 +156,7 @@ fn without_null(value: &mut Value) {
 mod tests {
     use super::*;
 
-    /// Every property below, with its path.
+    /// Collects every property below a value, with its path.
     fn walk(value: &Value, path: &str, out: &mut Vec<(String, bool)>) {
         for (name, below) in value
             .get("properties")

@@ -4,7 +4,7 @@ use crate::gauge::Bridge;
 use crate::host::fault::{Fault, Faults};
 use crate::reconcile::strain::WheelForces;
 
-/// A job text parsed and resolved, without any file but the job.
+/// Parses and resolves the text of a job, without any other file.
 pub(crate) fn read_text(text: &str) -> Result<Job, Faults> {
     let (raw, mut faults) = parse::parse_job("job.toml", text);
     let job = resolve::resolve_job("job.toml", text, Path::new(""), raw, &mut faults);
@@ -18,7 +18,7 @@ fn faults(text: &str) -> Vec<Fault> {
         .into_list()
 }
 
-/// Every key of the command-line contract in one job.
+/// A job with every key of the command-line contract.
 const WHOLE: &str = r#"
 title = "Roll-off truck"
 units = "m-kg-s"
@@ -267,7 +267,7 @@ fn contradictions_between_keys_are_faults() {
     }
 }
 
-/// Gauges of a table; `length_m` are the metres in the job's unit of length.
+/// Returns the gauges of a table. `length_m` is the job's unit of length in metres.
 fn gauges_from_table(t: &table::Table, length_m: f64, faults: &mut Vec<Fault>) -> Vec<JobGauge> {
     let columns = gauge_table::GaugeColumns::from_table(t, length_m, faults);
     gauges::gauges_from_table(t, &columns, faults)
@@ -349,7 +349,7 @@ fn a_gauge_table_is_held_to_the_limits_of_a_job() {
     }
 }
 
-/// Half a direction would be taken for the element x axis.
+/// Half a direction would be read as the x axis of the element.
 #[test]
 fn a_direction_in_a_gauge_table_is_whole_or_absent() {
     for (header, row, at) in [
@@ -367,7 +367,7 @@ fn a_direction_in_a_gauge_table_is_whole_or_absent() {
     }
 }
 
-/// An angle that isn't read would be 0.
+/// An angle that is not read would be 0.
 #[test]
 fn columns_that_look_like_those_of_a_gauge_table_are_faults() {
     for (header, meant) in [

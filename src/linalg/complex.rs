@@ -43,7 +43,7 @@ pub fn least_squares_gain(h: &ComplexMatrix, ridge: &[f64]) -> Option<ComplexMat
 mod tests {
     use super::*;
 
-    /// Columns that differ by a millionth: a gain of full rank has `G H = 1`, to the rounding of numbers a million times as large.
+    /// Columns that differ by a millionth. A gain of full rank has `G H = 1` within the rounding of numbers that are a million times as large.
     #[test]
     fn columns_that_are_nearly_alike_are_told_apart_to_rounding() {
         let unit = |i: usize| Complex::from_polar(1.0, i as f64);
@@ -57,7 +57,7 @@ mod tests {
     fn a_ridge_is_information_of_its_own_and_columns_alike_have_none() {
         let h = ComplexMatrix::from_element(3, 2, Complex::new(0.0, 1.0));
         assert!(least_squares_gain(&h, &[0.0, 0.0]).is_none());
-        // The matrix has 3 + r on the diagonal and 3 elsewhere. So each load takes 3 / (6 + r) of a unit load of either.
+        // The matrix has 3 + r on the diagonal and 3 elsewhere. Each load therefore takes 3 / (6 + r) of a unit load of either.
         let gain = least_squares_gain(&h, &[2.0, 2.0]).unwrap();
         let passed = gain * h;
         assert!(

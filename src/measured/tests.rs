@@ -112,7 +112,7 @@ fn a_long_table_in_parts_is_the_whole_table() {
     assert!((0..25_001).all(|i| s.row(i) == [i as f64, -(i as f64)]));
 }
 
-/// The runs of a table, read for a job with these further lines under `[runs]`.
+/// Returns the runs of a table, read for a job with these further lines under `[runs]`.
 fn runs_of(table: &str, more: &str) -> Result<Vec<runs_file::RunRow>, Faults> {
     let files = crate::host::context::InMemory::default().with_file("runs.csv", table);
     let text = format!(
@@ -193,7 +193,7 @@ fn labels_rows_of_units_and_noise_of_a_runs_file_are_not_mistaken() {
             "",
             "`kg` after the name, and `kN` as the unit of the column",
         ),
-        // Noise in kN, or as the column in N?
+        // The noise may be in kN, or in N as the column.
         (
             "run,LF.FZ [N],LF.MX\nR1,2000,3\n",
             "noise = { force = 50.0 }\n",
@@ -225,7 +225,7 @@ fn labels_and_units_of_gauges_are_told_apart() {
             assert_eq!(t.microstrain, [microstrain], "{text}");
         }
     }
-    // Another column in addition to the gauge's own.
+    // Another column in addition to the column of the gauge.
     let raw = read("run,P01,P01 (raw)\nR1,0.5,7\n", &["P01"]).unwrap();
     assert_eq!(raw.gauges, ["P01", "P01 (raw)"]);
     let two = [
@@ -263,7 +263,7 @@ fn of_gauges(columns: &[StrainColumn]) -> Vec<(&str, Option<f64>)> {
     each.map(|c| (c.name.as_str(), c.microstrain)).collect()
 }
 
-/// Names of the columns of a text with this header, and what a 1 in each is in microstrain.
+/// Returns the names of the columns of a text with this header, and the microstrain of a 1 in each column.
 fn columns_of_text(header: &str, gauges: &[String]) -> Result<Vec<(String, f64)>, Faults> {
     let ones = header.split(',').map(|_| ",1").collect::<String>();
     let text = format!("run,{header}\nR1{ones}\n");

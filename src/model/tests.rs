@@ -3,7 +3,7 @@ use nastran::bdf::{MemoryLoader, read_deck};
 use nastran::cards::Dofs;
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
-/// The model of a bulk data text in free format, and its faults.
+/// Returns the model of a bulk data text in free format, and its faults.
 fn model(bulk: &str) -> (Model, Vec<ModelFault>) {
     let text = format!("BEGIN BULK\n{bulk}\nENDDATA\n");
     let deck = read_deck("test.bdf", text.into_bytes(), &mut MemoryLoader::default());
@@ -387,7 +387,7 @@ fn a_grid_without_element_is_a_note() {
 
 #[test]
 fn scalar_points_are_carried_by_springs_constraints_and_equations() {
-    // Grid 1 - spring 2 N/m - point 10 - spring 3 N/m - point 11. Only the spring defines point 11, and SPC1 holds it.
+    // Grid 1 - spring 2 N/m - point 10 - spring 3 N/m - point 11. Only the spring defines point 11, and SPC1 fixes it.
     let (m, faults) = model(
         "GRID,1,,0.,0.,0.\nSPOINT,10\nCELAS2,1,2.,1,3,10\nCELAS2,2,3.,10,,11\nSPC1,5,0,11\nMPC,6,10,0,1.,1,3,-2.",
     );

@@ -30,7 +30,7 @@ fn rows_of(m: &[Vec<f64>]) -> Candidates {
     )
 }
 
-/// The tensors of `ladder_T_k36_n2e4.npy` (float32, places x 3 x 36, C order).
+/// Returns the tensors of `ladder_T_k36_n2e4.npy` (float32, places x 3 x 36, C order).
 fn tensors(k: usize) -> Option<(usize, Vec<f64>)> {
     let bytes = shared("benchmarks/doptimal/ladder_T_k36_n2e4.npy")?;
     let header = u16::from_le_bytes([bytes[8], bytes[9]]) as usize;
@@ -136,7 +136,7 @@ fn log_det(c: &Candidates, gauges: &[Choice], prior: &[f64]) -> f64 {
     spd::cholesky(&m, k).map_or(f64::NEG_INFINITY, |l| spd::log_det(&l, k))
 }
 
-/// The best of all subsets that keep the rule.
+/// Returns the best of all subsets that follow the rule.
 fn brute_force(
     c: &Candidates,
     all: &[Choice],
@@ -392,7 +392,7 @@ fn losing_a_gauge_multiplies_the_determinant_by_one_less_its_leverage() {
     );
 }
 
-/// All subsets of `s` places of `n`.
+/// Returns all subsets of `s` places of `n`.
 fn subsets(n: usize, s: usize) -> impl Iterator<Item = Vec<usize>> {
     (0..1_u32 << n)
         .filter(move |bits| bits.count_ones() as usize == s)

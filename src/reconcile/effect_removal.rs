@@ -78,8 +78,10 @@ pub(super) fn without_useless<F>(
 mod tests {
     use super::{Fall, ReducedEffectSet, ScoredSet, without_useless};
 
-    /// Squared gaps and log evidence of sets of three effects. Effect 2 does not reduce the gap, and effect 0 does not reduce it by more than its
-    /// error of 1. The fitted data need effect 2 more than effect 0, so effect 0 is removed. Each of the two remaining effects then reduces the gap.
+    /// Squared gaps and log evidence of sets of three effects.
+    ///
+    /// Effect 2 does not reduce the gap, and effect 0 does not reduce it by more than its error of 1. The fitted data need effect 2 more than effect
+    /// 0, so effect 0 is removed. Each of the two remaining effects then reduces the gap.
     #[test]
     fn the_name_that_costs_least_evidence_goes_and_only_as_long_as_one_proves_nothing() {
         let squared = |set: &[usize]| match set {

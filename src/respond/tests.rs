@@ -1,4 +1,4 @@
-//! Stress of known strain states, superposition, the interval of a nonlinear quantity by sampling.
+//! Stress of known strain states, superposition, and the interval of a nonlinear quantity by sampling.
 
 use super::*;
 use crate::fe::{CaseResult, ShellField};

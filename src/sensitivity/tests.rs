@@ -28,7 +28,7 @@ fn two_loads_that_act_alike_are_named_with_their_combination() {
         "{}",
         bad.subject
     );
-    // LF - 0.5 RF strains nothing: (1, 2, 3, 4) - (2, 4, 6, 8) / 2.
+    // LF - 0.5 RF causes no strain: (1, 2, 3, 4) - (2, 4, 6, 8) / 2.
     assert!(
         bad.message.contains("0.500 RF") || bad.message.contains("2.00 LF"),
         "{}",

@@ -108,7 +108,7 @@ fn filter_stretch(x: &mut [f64], sections: &[Section; 2]) {
 mod tests {
     use super::*;
 
-    /// Amplitudes of sines against the closed form.
+    /// Compares amplitudes of sines with the closed form.
     #[test]
     fn sines_have_the_amplitude_of_the_closed_form_and_no_phase_shift() {
         for (passes, hz) in [(Passes::Low, 7.0), (Passes::Low, 30.0), (Passes::High, 7.0)] {

@@ -222,7 +222,7 @@ mod tests {
     use rand::rngs::StdRng;
     use rand::{RngExt, SeedableRng};
 
-    /// Finite numbers of every exponent and sign: random bits.
+    /// Returns finite numbers of every exponent and sign from random bits.
     fn finite_numbers(count: usize) -> impl Iterator<Item = (f64, usize)> {
         let mut rng = StdRng::seed_from_u64(1);
         let draw = move || (f64::from_bits(rng.random()), rng.random_range(0..12));

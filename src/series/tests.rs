@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 
 const RATE: f64 = 500.0;
 
-/// White noise of unit standard deviation (sum of uniforms), the same everywhere.
+/// White noise of unit standard deviation (sum of uniform numbers), equal on every machine.
 fn noise(n: usize, seed: u64) -> Vec<f64> {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
     (0..n)
@@ -46,7 +46,7 @@ fn codes(record: &Channels) -> Vec<(String, &'static str)> {
         .collect()
 }
 
-/// A live body acceleration: band-limited noise on gravity.
+/// Returns a realistic body acceleration: band-limited noise on gravity.
 fn live_acceleration(seed: u64) -> Vec<f64> {
     let x = integrate_in_band(
         &noise(16_000, seed),
@@ -64,7 +64,7 @@ fn live_acceleration(seed: u64) -> Vec<f64> {
         .collect()
 }
 
-/// x less its least-squares line.
+/// Returns x minus its least squares line.
 fn without_line(x: &[f64]) -> Vec<f64> {
     let (offset, slope) = line(x);
     let flat = |(i, v): (usize, &f64)| v - offset - slope * i as f64;
@@ -142,7 +142,7 @@ fn a_shift_by_part_of_a_sample_moves_a_sine_by_its_phase() {
     let x: Vec<f64> = (0..8000).map(|i| sine(i, 0.0)).collect();
     for seconds in [0.0004, -0.005, 0.1234] {
         let y = delay(&x, RATE, seconds);
-        // The ends of the record are left out: its start and stop disturb them.
+        // The ends of the record are left out, because the start and the end of the record disturb them.
         for k in 2000..6000 {
             assert!((y[k] - sine(k, seconds)).abs() < 1e-2, "{seconds} {k}");
         }

@@ -1,4 +1,4 @@
-//! Errors of loads against the covariance that theory gives.
+//! Compares errors of loads with the covariance that theory gives.
 
 use super::*;
 use crate::linalg::Matrix;

@@ -1,17 +1,17 @@
-//! Console of a command: it fits a terminal.
+//! Console output of a command must fit a terminal.
 
 use std::process::Output;
 
-/// Lines of a command, findings included.
+/// Largest number of lines of a command, including findings.
 const LINES: usize = 25;
-/// Columns where standard output is not a terminal.
+/// Columns if standard output is not a terminal.
 const COLUMNS: usize = 100;
 
 pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// Asserts that standard output and standard error fit a terminal together.
+/// Fails unless standard output and standard error together fit a terminal.
 pub fn assert_fits(done: &Output, command: &str) {
     let all = text(&done.stdout) + &text(&done.stderr);
     assert!(all.lines().count() <= LINES, "{command}:\n{all}");

@@ -1,4 +1,4 @@
-//! Console of a command: it fits a terminal, and its summary is that of `result.json` and of the page.
+//! Console output of a command fits a terminal, and its summary equals that of `result.json` and of the page.
 
 mod fits;
 
@@ -9,13 +9,13 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::Output;
 
-/// A text without line breaks, signs as in a terminal with UTF-8.
+/// Returns a text without line breaks, with signs as in a UTF-8 terminal.
 fn on_one_line(text: &str) -> String {
     let words: Vec<&str> = text.split_whitespace().collect();
     words.join(" ").replace("+-", "±")
 }
 
-/// Asserts that the summary of `result.json` is a sentence of the console and of the page.
+/// Fails unless the console and the page contain the summary of `result.json`.
 pub fn assert_states_summary(done: &Output, folder: &Path, command: &str) {
     let file = std::fs::read_to_string(folder.join("result.json")).unwrap();
     let result: Value = serde_json::from_str(&file).unwrap();

@@ -1,10 +1,10 @@
-//! Numbers drawn at random that are the same in every run of a test.
+//! Random numbers that are equal in every run of a test.
 #![allow(dead_code, reason = "no test draws all kinds")]
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-/// Of mean 0 and standard deviation 1 (Box and Muller).
+/// Returns a normal random number of mean 0 and standard deviation 1 (Box and Muller).
 pub fn draw_normal(random: &mut ChaCha8Rng) -> f64 {
     let (u, v): (f64, f64) = (
         random.random_range(1e-300..1.0),
@@ -13,11 +13,11 @@ pub fn draw_normal(random: &mut ChaCha8Rng) -> f64 {
     (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
 }
 
-/// Without a crate: a linear congruential generator, Knuth's constants.
+/// Generator without a crate: linear congruential, with Knuth's constants.
 pub struct Numbers(pub u64);
 
 impl Numbers {
-    /// Between -1 and 1.
+    /// Returns a uniform random number between -1 and 1.
     pub fn next(&mut self) -> f64 {
         self.0 = self
             .0
@@ -26,20 +26,20 @@ impl Numbers {
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
-    /// Of mean 0 and standard deviation 1: the sum of twelve, halved, but for the far tails.
+    /// Returns half of the sum of twelve numbers, which is normal with standard deviation 1 except for the far tails.
     pub fn draw_normal(&mut self) -> f64 {
         (0..12).map(|_| 0.5 * self.next()).sum()
     }
 }
 
-/// Steele, Lea and Flood's splitmix64: any seed will do.
+/// Splitmix64 by Steele, Lea and Flood. Any seed is suitable.
 pub struct Splitmix(pub u64);
 
 impl Splitmix {
-    /// What a number adds to the state.
+    /// Increment of the state for each number.
     pub const STEP: u64 = 0x9E37_79B9_7F4A_7C15;
 
-    /// Between -1 and 1.
+    /// Returns a uniform random number between -1 and 1.
     pub fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(Self::STEP);
         let mut z = self.0;

@@ -1,4 +1,4 @@
-//! `fleet` as a user runs it: records of three vehicles in small tables, S given.
+//! `fleet` as a user runs it: records of three vehicles in small tables, with a given S.
 
 use super::drawn::Splitmix;
 use super::program::{self, JOB, scratch};
@@ -17,7 +17,7 @@ pub const S: [[f64; 2]; GAUGES] = [
 ];
 pub const SAMPLES: usize = 1200;
 
-/// Loads of a day, kN: waves whose size differs by vehicle and day.
+/// Returns the loads of a day in kN: waves whose size depends on vehicle and day.
 fn loads(vehicle: usize, day: usize) -> Vec<[f64; 2]> {
     let mut numbers = Splitmix((vehicle * 100 + day) as u64);
     let (mut a, mut b) = ([0.0; 2], [0.0; 2]);
@@ -32,7 +32,7 @@ fn loads(vehicle: usize, day: usize) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// A day's table, one gauge dead or left out where asked.
+/// Returns the table of a day. One gauge may be dead or missing.
 fn table(vehicle: usize, day: usize, left_out: Option<usize>, dead: Option<usize>) -> String {
     table_of(vehicle, day, left_out, |_, readings| {
         if let Some(g) = dead {
@@ -41,7 +41,7 @@ fn table(vehicle: usize, day: usize, left_out: Option<usize>, dead: Option<usize
     })
 }
 
-/// A day's table of readings that `change` has wronged, given the sample and its readings.
+/// Returns the table of a day. `change` gets the sample and its readings, and may change them.
 pub fn table_of(
     vehicle: usize,
     day: usize,
@@ -65,7 +65,7 @@ pub fn table_of(
     text
 }
 
-/// A folder with job and sixty records of three vehicles.
+/// Creates a folder with a job and sixty records of three vehicles.
 pub fn folder(name: &str) -> (PathBuf, Vec<String>) {
     let dir = scratch(name);
     std::fs::write(dir.join("job.toml"), JOB).unwrap();
@@ -93,7 +93,7 @@ fn csv(dir: &Path, out: &str) -> String {
     std::fs::read_to_string(dir.join(out).join("fleet.csv")).unwrap()
 }
 
-/// Code, subject and message of the findings of some severities.
+/// Returns code, subject and message of the findings of some severities.
 pub fn findings_of(result: &Value, severities: &[&str]) -> Vec<[String; 3]> {
     let list = result["findings"].as_array().unwrap();
     let of = |f: &&Value| severities.contains(&f["severity"].as_str().unwrap());
@@ -121,7 +121,7 @@ fn one_run_threads_shards_and_a_merge_of_what_is_kept_write_the_same_bytes() {
         Some("vehicle,files,hours,load,max,min,damage,damage_low,damage_high")
     );
     assert_eq!(rows.count(), 6);
-    // The largest load of each vehicle, from the loads that the strain was made of.
+    // The largest load of each vehicle, from the loads that generate the strain.
     assert!(!result["vehicles"].as_array().unwrap().is_empty());
     for (v, vehicle) in result["vehicles"].as_array().unwrap().iter().enumerate() {
         assert_eq!(vehicle["files"], 20);
@@ -137,7 +137,7 @@ fn one_run_threads_shards_and_a_merge_of_what_is_kept_write_the_same_bytes() {
     }
     let (code, _) = fleet(&dir, "one", &files, &["--threads", "1"]);
     assert_eq!((code, csv(&dir, "one")), (0, all.clone()));
-    // Four shards into one folder, files in another order, then merged.
+    // Four shards into one folder with files in another order, followed by a merge.
     let turned: Vec<String> = files.iter().rev().cloned().collect();
     for n in [3, 1, 4, 2] {
         let (code, part) = fleet(&dir, "shards", &turned, &["--shard", &format!("{n}/4")]);
@@ -146,7 +146,7 @@ fn one_run_threads_shards_and_a_merge_of_what_is_kept_write_the_same_bytes() {
     let (code, merged) = fleet(&dir, "shards", &[], &[]);
     assert_eq!((code, csv(&dir, "shards")), (0, all.clone()));
     assert_eq!(merged["files"].as_array().unwrap().len(), 60);
-    // A second run is the same; records whose results are kept are not decoded: one is broken meanwhile in a way its bytes don't show.
+    // A second run gives equal results. Records with stored results are not decoded.
     let (code, _) = fleet(&dir, "all", &files, &[]);
     assert_eq!((code, csv(&dir, "all")), (0, all));
     assert_eq!(std::fs::read_dir(dir.join("all/days")).unwrap().count(), 60);
@@ -160,7 +160,8 @@ fn one_run_threads_shards_and_a_merge_of_what_is_kept_write_the_same_bytes() {
 fn what_is_broken_is_said_and_nothing_else_is_lost() {
     let (dir, mut files) = folder("broken");
     let whole = fleet(&dir, "before", &files, &[]).1;
-    // Cut in the middle of a line, a gauge left out, a gauge dead for good from day 15 on, a second copy, a name that tells nothing.
+    // The faults: a record cut within a line, a missing gauge, a gauge dead from day 15 on. Also a second copy, a name
+    // without vehicle and day, and a missing file.
     let text = std::fs::read_to_string(dir.join("T0_3.csv")).unwrap();
     std::fs::write(
         dir.join("T0_3.csv"),
@@ -212,7 +213,7 @@ fn what_is_broken_is_said_and_nothing_else_is_lost() {
     assert!(has("gauge-silent", "T2 G1"));
     let gauge = &result["vehicles"][2]["gauges"][1];
     assert_eq!(gauge["dead_days"][0], "15");
-    // Loads from the gauges that are left are the same but for rounding; the vehicle with a cut day has one day less.
+    // The loads from the remaining gauges are equal within rounding. The vehicle with a cut record has one day less.
     for v in 1..3 {
         for l in 0..2 {
             let [a, b] =
@@ -223,7 +224,7 @@ fn what_is_broken_is_said_and_nothing_else_is_lost() {
     assert_eq!(result["vehicles"][0]["files"], 19);
 }
 
-/// Changes one kept result.
+/// Changes one stored result.
 fn spoil(dir: &Path, out: &str, change: impl Fn(String) -> String) {
     let mut kept: Vec<PathBuf> = std::fs::read_dir(dir.join(out).join("days"))
         .unwrap()
@@ -249,7 +250,7 @@ fn a_merge_knows_which_parts_are_missing() {
         panic!("{errors:?}");
     };
     assert_eq!(name, "fleet-records-missing");
-    // Every second record in the order of their names.
+    // Every second record, in the order of the names.
     assert!(subject.starts_with("T0_10.csv"), "{subject}");
     assert!(
         message.contains("Of 60 requested records")
@@ -301,7 +302,7 @@ fn a_blank_hour_is_no_hour_of_work() {
     std::fs::write(dir.join("T0_1.csv"), text).unwrap();
     let (_, result) = fleet(&dir, "out", &files[..1], &[]);
     let hours = result["vehicles"][0]["hours"].as_f64().unwrap();
-    // Half of the samples, a hundred a second.
+    // Half of the samples, at 100 Hz.
     let expected = (SAMPLES / 2) as f64 / 100.0 / 3600.0;
     assert!((hours / expected - 1.0).abs() < 1e-9, "{hours} {expected}");
 }
@@ -363,7 +364,8 @@ fn what_fleet_can_not_do_is_said() {
 fn a_record_whose_strain_the_loads_do_not_explain_is_an_error_that_names_it() {
     let (dir, files) = folder("unexplained");
     let write = |name: &str, text: String| std::fs::write(dir.join(name), text).unwrap();
-    // A gauge backwards, two exchanged, a spike of one sample, a channel that ends at 40 microstrain.
+    // A gauge with reversed polarity, two exchanged gauges, a spike of one sample, a channel that ends at 40
+    // microstrain.
     write("T1_5.csv", table_of(1, 5, None, |_, y| y[2] = -y[2]));
     write("T1_9.csv", table_of(1, 9, None, |_, y| y.swap(0, 1)));
     let spike = |i: usize, y: &mut [f64; GAUGES]| y[3] += if i == 701 { 3000.0 } else { 0.0 };
@@ -393,7 +395,7 @@ fn a_record_whose_strain_the_loads_do_not_explain_is_an_error_that_names_it() {
     let all = findings_of(&result, &["warning", "error"]);
     let suspects = |f: &&[String; 3]| f[0] == "gauge-suspect" && f[1] == "T0 G3";
     assert_eq!(all.iter().filter(suspects).count(), 1, "{all:?}");
-    // Each with its record, and with no other.
+    // Each finding is at its record and at no other.
     let wrong = ["T0_4.csv", "T1_5.csv", "T1_9.csv", "T2_7.csv"];
     assert!(!result["files"].as_array().unwrap().is_empty());
     for file in result["files"].as_array().unwrap() {
@@ -406,7 +408,7 @@ fn a_record_whose_strain_the_loads_do_not_explain_is_an_error_that_names_it() {
         );
         assert_eq!(found.is_empty(), !error, "{file}");
     }
-    // The same whatever the workers, and from what was kept.
+    // The result does not depend on the number of threads, nor on the use of stored results.
     for (out, files, more) in [
         ("one", &files[..], &["--threads", "1"][..]),
         ("out", &files[..], &[]),
@@ -427,7 +429,7 @@ fn right_records_with_the_stated_noise_have_no_finding() {
     std::fs::write(dir.join("job.toml"), job).unwrap();
     let mut numbers = Splitmix(5);
     for (vehicle, day) in (0..3).flat_map(|v| (1..=20).map(move |d| (v, d))) {
-        // Even numbers of standard deviation 1.
+        // Uniform random numbers with standard deviation 1.
         let text = table_of(vehicle, day, None, |_, y| {
             y.iter_mut()
                 .for_each(|y| *y += 3.0_f64.sqrt() * numbers.next());
@@ -463,7 +465,7 @@ fn a_gauge_that_is_stuck_on_every_day_is_told_with_all_its_days() {
 #[test]
 fn a_gap_is_a_warning_and_loads_that_no_sample_tells_are_an_error() {
     let (dir, files) = folder("gaps");
-    // For a while one gauge alone reads, which tells neither load; later 30 lines are missing. As in `recover`.
+    // As in `recover`: for a while only one gauge reads, which determines neither load. Later, 30 lines are missing.
     let lost = table_of(1, 4, None, |i, y| {
         if (200..220).contains(&i) {
             y[1..].fill(f64::NAN);
@@ -492,7 +494,7 @@ fn a_gap_is_a_warning_and_loads_that_no_sample_tells_are_an_error() {
             && said.contains("In at least 50 of them some load is blank"),
         "{said}"
     );
-    // Every gauge reads somewhere, two of them nowhere together.
+    // Every gauge reads in some samples, but no two gauges read in the same one.
     let in_turn = table_of(2, 3, None, |i, y| {
         y.iter_mut()
             .enumerate()
@@ -511,7 +513,8 @@ fn a_gap_is_a_warning_and_loads_that_no_sample_tells_are_an_error() {
     );
 }
 
-/// The zero of G2 drifts by 12 microstrain over every record of T1, among peaks of hundreds. Over the samples that are judged it is 6 on the mean.
+/// The zero of G2 drifts by 12 microstrain over every record of T1, with peaks of hundreds of microstrain. Over the
+/// tested samples its mean is 6.
 #[test]
 fn a_drift_hidden_by_peaks_is_found_in_every_record_with_its_mean() {
     let (dir, files) = folder("drift");
@@ -521,7 +524,7 @@ fn a_drift_hidden_by_peaks_is_found_in_every_record_with_its_mean() {
     let mut peak = 0.0_f64;
     for (vehicle, day) in (0..3).flat_map(|v| (1..=20).map(move |d| (v, d))) {
         let text = table_of(vehicle, day, None, |i, y| {
-            // Even numbers of standard deviation 1.
+            // Uniform random numbers with standard deviation 1.
             y.iter_mut()
                 .for_each(|y| *y += 3.0_f64.sqrt() * numbers.next());
             peak = peak.max(y[2].abs());
@@ -542,12 +545,13 @@ fn a_drift_hidden_by_peaks_is_found_in_every_record_with_its_mean() {
     assert!(message.contains("20 of 20 records"), "{message}");
     let size = message.split_once("deviates by ").unwrap().1;
     let size: f64 = size.split(' ').next().unwrap().parse().unwrap();
-    // 170 samples of noise 1, and a drift that is not the constant it is taken for: its mean is known to a few tenths.
+    // 170 samples with noise 1, and a drift that is estimated as a constant. The standard error of its mean is a few
+    // tenths.
     assert!(
         message.contains("microstrain from") && (size - 6.0).abs() < 1.0,
         "{message}"
     );
-    // No vehicle else is blamed.
+    // No other vehicle has a finding.
     assert!(!found.is_empty());
     assert!(found.iter().all(|f| f[1].starts_with("T1")), "{found:?}");
 }
@@ -572,7 +576,7 @@ fn a_gauge_named_with_what_looks_like_a_unit_is_read_as_any_other() {
             .all(|f| f[0] != "gauge-without-strain"),
         "{named}"
     );
-    // But for the digests of the records, which are other files.
+    // Equal except for the digests, because the record files differ.
     let loads = |r: &Value| {
         let mut loads = r["vehicles"][0]["loads"].clone();
         for load in loads.as_array_mut().unwrap() {

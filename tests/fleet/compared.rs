@@ -1,5 +1,5 @@
-//! What `fleet` holds damage against (a reference day, a target, a mission), where its numbers come from, and gauges over days, on waves whose
-//! damage is known in closed form.
+//! Comparison of damage with a reference day, a target and a mission, the origin of its numbers, and gauges over
+//! several days. The damage of the waves is known in closed form.
 
 use super::drawn::Splitmix;
 use super::program::{self, JOB, scratch};
@@ -18,13 +18,14 @@ const S: [[f64; 2]; GAUGES] = [
     [6.0, 6.0],
     [4.0, -5.0],
 ];
-/// Samples of a period: peak and valley are samples.
+/// Samples per period. Peak and valley are samples.
 const PERIOD: usize = 40;
-/// Periods of a record of two waves of different length.
+/// Periods of a record.
 const PERIODS: usize = 30;
 const SLOPE: i32 = 5;
 
-/// A record at 100 Hz: load A a cosine of this amplitude, B one of 0.7 of it and twice the frequency. `change` may wrong the readings.
+/// Returns a record at 100 Hz. Load A is a cosine of this amplitude, load B has 0.7 of the amplitude and twice the
+/// frequency. `change` may change the readings.
 fn record(amplitude: f64, periods: usize, change: impl Fn(usize, &mut [f64; GAUGES])) -> String {
     let mut text = String::from("time");
     (0..GAUGES).for_each(|g| write!(text, ",G{g} [um/m]").unwrap());
@@ -41,12 +42,12 @@ fn record(amplitude: f64, periods: usize, change: impl Fn(usize, &mut [f64; GAUG
     text
 }
 
-/// From peak to peak: a period is a cycle of twice the amplitude.
+/// Returns the damage from peak to peak. A period is a cycle with twice the amplitude as range.
 fn damage(amplitude: f64, periods: usize) -> f64 {
     periods as f64 * (2.0 * amplitude).powi(SLOPE)
 }
 
-/// A sample lasts a hundredth of a second.
+/// Returns the duration in hours. A sample lasts a hundredth of a second.
 fn hours(periods: usize) -> f64 {
     (periods * PERIOD + 1) as f64 * 0.01 / 3600.0
 }
@@ -73,8 +74,10 @@ fn number(v: &Value) -> f64 {
     v.as_f64().unwrap_or_else(|| panic!("{v}"))
 }
 
-/// The stated noise of 1e-4 kN is added, twice and three times, to tell its bias: it moves each range of 4 kN and more by some 3e-5, its fifth power by
-/// 2e-4.
+/// Fails if two numbers differ by more than 1e-3.
+///
+/// The program adds the stated noise of 1e-4 kN twice and three times to estimate its bias. This changes ranges of 4 kN
+/// and more by about 3e-5, and the fifth power by 2e-4.
 fn is_close(a: f64, b: f64) {
     assert!((a / b - 1.0).abs() < 1e-3, "{a} {b}");
 }
@@ -98,17 +101,17 @@ fn a_factor_on_every_load_is_that_factor_to_the_slope_and_the_error_of_s_leaves_
     let load = |v: usize, l: usize| &result["vehicles"][v]["loads"][l];
     let ratio = |v, l| ["value", "low", "high"].map(|k| number(&load(v, l)["to_reference"][k]));
     for l in 0..2 {
-        // The reference is itself, without any doubt.
+        // The reference day has the ratio one without uncertainty.
         assert!(ratio(0, l).iter().all(|r| (r - 1.0).abs() < 1e-9));
         let [value, low, high] = ratio(1, l);
         is_close(value, 1.5_f64.powi(SLOPE));
         assert!(low <= value && value <= high);
-        // 2 % of S on every gauge is several per cent of the damage: none of it is left.
+        // An error of S of 2 % at every gauge gives several per cent of the damage. It cancels in the ratio.
         let own = load(1, l);
         let width = number(&own["damage_high"]) / number(&own["damage_low"]);
         assert!(width > 1.05, "{width}");
         assert!(high / low < 1.001, "{low} {high}");
-        // Fewer gauges on one day: what they know less is not common.
+        // With fewer gauges on one day, the additional uncertainty is not common to both days.
         let [_, low, high] = ratio(2, l);
         assert!(high / low > 1.001, "{low} {high}");
     }
@@ -124,7 +127,7 @@ fn a_factor_on_every_load_is_that_factor_to_the_slope_and_the_error_of_s_leaves_
     assert!(load(1, 1)["to_target"].is_null());
     let table = std::fs::read_to_string(dir.join("out/fleet_relative.csv")).unwrap();
     assert_eq!(table.lines().count(), 7);
-    // Known columns first, and no others.
+    // The known columns come first, and there are no others.
     let table = std::fs::read_to_string(dir.join("out/fleet.csv")).unwrap();
     assert!(table.starts_with("vehicle,files,hours,load,max,min,damage,damage_low,damage_high\n"));
 }
@@ -154,14 +157,14 @@ fn sums_of_loads_are_counted_like_loads() {
         number(&load(2)["to_target"]["value"]),
         PERIODS as f64 * period / 1e6,
     );
-    // Twice a load is that load in a smaller unit: so much more damage, as well known.
+    // Twice a load is the same load in a smaller unit. Damage and its relative uncertainty scale accordingly.
     let power = 2_f64.powi(SLOPE);
     for key in ["damage", "damage_low", "damage_high"] {
         is_close(number(&load(3)[key]), power * number(&load(0)[key]));
     }
     let table = std::fs::read_to_string(dir.join("out/fleet.csv")).unwrap();
     assert!(table.contains("\nT1,1,") && table.contains(",total,"));
-    // A sum of what S lacks is a fault of the job.
+    // A sum of a load that S lacks is a fault of the job.
     let job = "[[combination]]\nname = \"total\"\nterms = { \"C.FZ\" = 1.0 }\n";
     let dir = folder(
         "no_sum",
@@ -208,18 +211,18 @@ fn a_mission_is_the_damage_an_hour_of_its_kinds_by_their_shares() {
     );
     is_close(number(&load["by_kind"][0]), road);
     is_close(number(&load["by_kind"][1]), yard);
-    // B has two cycles a period, 0.7 as large.
+    // Load B has two cycles per period, 0.7 times as large.
     let of_b = 2.0 * 0.7_f64.powi(SLOPE);
     is_close(
         number(&mission["loads"][1]["damage"]),
         of_b * number(&load["damage"]),
     );
-    // The error of S is the same on all days: the mission is as uncertain as a day of it, not less.
+    // The error of S is equal on all days. The relative uncertainty of the mission therefore equals that of one day.
     let own = &result["vehicles"][0]["loads"][0];
     let share = |v: &Value| number(&v["sigma_s"]) / number(&v["damage"]);
     is_close(share(load), share(own));
     assert!(number(&load["damage_low"]) < number(&load["damage"]));
-    // One day of yard: how much such days differ is unknown.
+    // With one day of yard, the scatter between such days is unknown.
     assert!(load["sigma_days"].is_null());
     assert!(dir.join("out/fleet_mission.csv").exists());
 }
@@ -264,9 +267,9 @@ fn days_that_are_not_there_and_shares_that_are_not_one_are_faults() {
         assert_eq!(got, code, "{job}: {said}");
         assert!(said.to_string().contains(word), "{job}: {said}");
         if code == 1 {
-            // All that the folder holds was asked: the job names what is not there.
+            // The request covers the whole folder, so a missing record named in the job is a fault.
             assert_eq!(fleet(&dir, &[], &[]).0, 2, "{job}");
-            // Another part may have it.
+            // Another shard may contain the record.
             assert_eq!(
                 fleet(&dir, &["T1_1.csv"], &["--shard", "1/2"]).0,
                 0,
@@ -280,14 +283,14 @@ fn days_that_are_not_there_and_shares_that_are_not_one_are_faults() {
 fn extremes_have_their_time_and_every_day_its_record() {
     let spike = |at: usize, size: f64| {
         move |i: usize, y: &mut [f64; GAUGES]| {
-            // A wave of A alone, a quarter of a period long, which the loads explain.
+            // Adds a wave of load A only, with a quarter of a period, which the loads explain.
             if (at..at + 10).contains(&i) {
                 let more = size * (std::f64::consts::PI * (i - at) as f64 / 10.0).sin();
                 y.iter_mut().zip(S).for_each(|(y, s)| *y += s[0] * more);
             }
         }
     };
-    // Samples 415 and 395 to 405 are peaks of the wave anyway: the sum peaks where the cosine is 1.
+    // Samples 415 and 395 to 405 are peaks of the wave anyway. The sum has its peak where the cosine is 1.
     let records = [
         ("T1_9.csv", record(4.0, PERIODS, spike(435, 6.0))),
         ("T1_10.csv", record(4.0, PERIODS, spike(455, -6.0))),
@@ -298,7 +301,7 @@ fn extremes_have_their_time_and_every_day_its_record() {
     let v = &result["vehicles"][0];
     let load = &v["loads"][0];
     for (end, path, day, seconds) in [
-        // Peak at sample 440 with the half wave at its middle; valley at sample 460.
+        // The peak is at sample 440, in the middle of the half wave. The valley is at sample 460.
         ("max_at", "T1_9.csv", "9", 4.4),
         ("min_at", "T1_10.csv", "10", 4.6),
     ] {
@@ -327,15 +330,15 @@ fn extremes_have_their_time_and_every_day_its_record() {
     assert!(page.contains("9, 4.400 s"));
 }
 
-/// Of a record.
+/// Samples of a record.
 const SAMPLES: usize = PERIODS * PERIOD + 1;
 
-/// The `i`th of even numbers between -1 and 1.
+/// Returns the `i`th of uniform random numbers between -1 and 1.
 fn uniform_number(i: usize) -> f64 {
     Splitmix((i as u64).wrapping_mul(Splitmix::STEP)).next()
 }
 
-/// Findings with this code: subject and message.
+/// Returns subject and message of the findings with this code.
 fn findings_by_code(result: &Value, code: &str) -> Vec<[String; 2]> {
     let list = result["findings"].as_array().unwrap();
     let of = list.iter().filter(|f| f["code"] == code);
@@ -348,7 +351,7 @@ fn a_zero_that_moves_over_the_days_and_exchanged_channels_are_named_with_their_d
     let names: Vec<(String, String)> = (1..=2)
         .flat_map(|v| (1..=12_u32).map(move |d| (v, d)))
         .map(|(v, d)| {
-            // A right gauge reads noise too, the same in every run of the test.
+            // A correct gauge has noise too, equal in each run of the test.
             let text = record(4.0 + f64::from(d % 3), PERIODS, |i, y| {
                 for (g, y) in y.iter_mut().enumerate() {
                     *y += 1.7 * uniform_number(((v * 100 + d) as usize * SAMPLES + i) * GAUGES + g);
@@ -374,7 +377,7 @@ fn a_zero_that_moves_over_the_days_and_exchanged_channels_are_named_with_their_d
         panic!("{drifts:?}");
     };
     assert_eq!(subject, "T1 G2");
-    // Eleven days at 1.5; S and noise leave the mean of 75 samples a few tenths.
+    // Eleven days at 1.5. S and noise give the mean of 75 samples an error of a few tenths.
     let moved = message.split_once("drifts by ").unwrap().1;
     let moved: f64 = moved.split(' ').next().unwrap().parse().unwrap();
     assert!((moved - 16.5).abs() < 1.0, "{message}");
@@ -384,20 +387,20 @@ fn a_zero_that_moves_over_the_days_and_exchanged_channels_are_named_with_their_d
         panic!("{swaps:?}");
     };
     assert_eq!(subject, "T2 G0, G3");
-    // The day it began, not the first by the alphabet.
+    // The finding names the first record by date, not by name.
     assert!(
         message.contains("2 of 12 records, the first T2_9.csv"),
         "{message}"
     );
 }
 
-/// T1 has G0 and G3 exchanged from day 7 on, T2 has G1 at .7 of its gain.
+/// T1 has G0 and G3 exchanged from day 7 on. T2 has G1 with a gain of .7 from day 7 on.
 #[test]
 fn a_gain_that_changed_is_told_and_exchanged_gauges_have_one_name() {
     let names: Vec<(String, String)> = (1..=2)
         .flat_map(|v| (1..=12_u32).map(move |d| (v, d)))
         .map(|(v, d)| {
-            // No two records alike: a copy would not count.
+            // All records differ, because a copy does not count.
             let size = 4.0 + f64::from(d % 3) + 0.01 * f64::from(12 * v + d);
             let text = record(size, PERIODS, |_, y| match (v, d) {
                 (1, 7..) => y.swap(0, 3),
@@ -424,14 +427,15 @@ fn a_gain_that_changed_is_told_and_exchanged_gauges_have_one_name() {
     );
 }
 
-/// Days of one load that go up to one value and never back: the cycles between days are all there is but for half of each.
+/// Days with one load that rises to a value and does not return. Apart from half a cycle of each day, all cycles are
+/// between days.
 #[test]
 fn what_closes_between_the_days_of_a_mission_is_bounded() {
     let job =
         "mission_hours = 10\n[[fleet.mission]]\nname = \"all\"\nshare = 1.0\nvehicles = [\"T1\"]\n";
     let records: Vec<(String, String)> = (1..=12)
         .map(|d| {
-            // No two records alike: a copy would not count. The largest is the last.
+            // All records differ, because a copy does not count. The largest is the last.
             let size = 4.0 - 1e-4 * f64::from(12 - d);
             (format!("T1_{d}.csv"), record(size, 1, keep_readings))
         })
@@ -448,11 +452,11 @@ fn what_closes_between_the_days_of_a_mission_is_bounded() {
             .unwrap()
             .contains("between days")
     );
-    // As many days as have ten hours, half a cycle of the largest range each.
+    // The number of days in ten hours, each with half a cycle of the largest range.
     let days = 10.0 / hours(1);
     let at_most = number(&mission["loads"][0]["between_days_at_most"]);
     is_close(at_most, days * 0.5 * 8.0_f64.powi(SLOPE));
-    // Laid end to end, the days of the vehicle hold no more than their sum and that.
+    // The damage of all days in sequence is at most their sum plus this bound.
     let load = &result["vehicles"][0]["loads"][0];
     let single: f64 = load["by_day"].as_array().unwrap().iter().map(number).sum();
     let bound = 12.0 * at_most / days;
@@ -465,7 +469,7 @@ fn what_closes_between_the_days_of_a_mission_is_bounded() {
     assert!(table.starts_with("load,hours,damage,damage_low,damage_high,between_days_at_most\n"));
 }
 
-/// Writes what `sha256sum` lists of the records of a result.
+/// Writes the list of `sha256sum` for the records of a result.
 fn list_digests(dir: &Path, result: &Value) {
     let files = result["files"].as_array().unwrap();
     let line = |f: &Value| ["sha256", "path"].map(|k| f[k].as_str().unwrap().to_owned());
@@ -505,7 +509,7 @@ fn what_damage_is_held_against_is_changed_without_a_record() {
         let fresh = format!("fresh{i}");
         let (code, anew) = program::fleet(&dir, &fresh, &files, &[]);
         assert_eq!(code, 0, "{job}: {anew}");
-        // The records are out of reach: what was kept of them is all there is.
+        // The records are not available, only their stored results.
         let away = dir.join("away");
         std::fs::create_dir_all(&away).unwrap();
         for f in files {
@@ -526,7 +530,7 @@ fn what_damage_is_held_against_is_changed_without_a_record() {
             std::fs::rename(away.join(f), dir.join(f)).unwrap();
         }
     }
-    // What a record is counted by is another matter.
+    // A different slope needs another count of the record.
     std::fs::write(dir.join("job.toml"), format!("{JOB}[recover]\nslope = 4\n")).unwrap();
     assert_eq!(fleet(&dir, &[], &[]).0, 2);
 }
@@ -537,7 +541,7 @@ fn a_record_that_was_replaced_counts_as_it_is_now() {
     let files: Vec<&str> = names.iter().map(String::as_str).collect();
     let dir = folder("replaced", "", &[]);
     for amplitude in [4.0, 6.0] {
-        // A copy of another vehicle's bytes would not count.
+        // All records differ, because a copy of the bytes of another vehicle does not count.
         for (i, file) in (1..).zip(&files) {
             let text = record(amplitude + 0.01 * f64::from(i), PERIODS, keep_readings);
             std::fs::write(dir.join(file), text).unwrap();
@@ -564,7 +568,7 @@ fn a_digest_of_another_state_of_the_record_is_not_taken() {
     let more = ["--digests", "digests.txt"];
     let (_, first) = fleet(&dir, &["T1_1.csv"], &[]);
     list_digests(&dir, &first);
-    // Longer.
+    // A longer record.
     std::fs::write(&path, record(4.0, 40, keep_readings)).unwrap();
     let (code, second) = fleet(&dir, &["T1_1.csv"], &more);
     assert_eq!(code, 0, "{second}");
@@ -574,7 +578,7 @@ fn a_digest_of_another_state_of_the_record_is_not_taken() {
         damage(4.0, 40),
     );
     list_digests(&dir, &second);
-    // As long, and later: two gauges exchanged.
+    // A later record of equal length with two exchanged gauges.
     let text = record(4.0, 40, keep_readings);
     let other = text.replacen("G0 [um/m],G1 [um/m]", "G1 [um/m],G0 [um/m]", 1);
     assert!(other != text && other.len() == text.len());
@@ -599,7 +603,7 @@ fn shares_may_be_rounded_to_three_digits_and_no_further() {
         ("0.083", 12, false),
         ("0.33", 3, true),
         ("0.475", 2, true),
-        // Each within rounding of a fortieth and two per cent off together.
+        // Each share is correct within rounding for a fortieth, but their sum is wrong by two per cent.
         ("0.0245", 40, true),
     ] {
         let kind = |i: usize| {
@@ -630,7 +634,7 @@ fn a_fault_of_a_kind_stands_at_its_line_whatever_is_wrong_with_those_before() {
 
 #[test]
 fn what_failed_is_tried_again() {
-    // Another build may read the format that this one lacks; the answer to the same build is the same.
+    // Another build may support a format that this build lacks. A second run of the same build gives the same answer.
     let dir = folder(
         "failed",
         "",
@@ -699,7 +703,7 @@ fn two_records_of_one_day_are_an_error_and_a_copy_is_not() {
         "{result}"
     );
     assert_eq!(fleet(&dir, &files[2..], &[]).0, 0);
-    // With what tells them apart in the day both count.
+    // If the records of a day have different names, both count.
     std::fs::write(dir.join("job.toml"), JOB).unwrap();
     let (code, result) = fleet(&dir, &files[..2], &[]);
     assert_eq!((code, &result["vehicles"][0]["files"]), (0, &2.into()));

@@ -1,4 +1,4 @@
-//! Days that are not alike: their order by the calendar, other units, other rates, a vehicle that stands.
+//! Days that differ: their order by date, other units, other rates, a vehicle at standstill.
 
 use super::command::{GAUGES, S, findings_of, fleet, folder, table_of};
 use super::drawn::Splitmix;
@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// The job of these tests, with the noise that its records have.
+/// Writes the job of these tests with the noise of its records.
 fn write_noisy_job(name: &str) -> PathBuf {
     let (dir, _) = folder(name);
     let job = JOB.replace("noise_microstrain = 0.001", "noise_microstrain = 1.0");
@@ -15,12 +15,12 @@ fn write_noisy_job(name: &str) -> PathBuf {
     dir
 }
 
-/// Of mean 0 and standard deviation 1: the sum of twelve even numbers, halved.
+/// Returns a random number of mean 0 and standard deviation 1: half of the sum of twelve uniform numbers.
 fn draw_normal(numbers: &mut Splitmix) -> f64 {
     (0..12).map(|_| 0.5 * numbers.next()).sum()
 }
 
-/// A day's table with noise of 1 microstrain in each reading, wronged by `change`.
+/// Returns the table of a day with noise of 1 microstrain in each reading, changed by `change`.
 fn table(day: usize, mut change: impl FnMut(usize, &mut [f64; GAUGES])) -> String {
     let mut numbers = Splitmix(900 + day as u64);
     table_of(1, day, None, |i, y| {
@@ -74,7 +74,7 @@ fn days_named_by_day_month_and_year_are_counted_in_the_order_of_the_calendar() {
     assert_eq!(code, 0, "{result}");
     let vehicle = &result["vehicles"][0];
     assert_eq!(vehicle["days"], Value::from(named.to_vec()));
-    // Cycles that close from day to day are those of this order.
+    // Cycles that close between days depend on this order.
     assert_eq!(damages(&result), damages(&right));
     for (a, b) in ["cycles", "damage_counted"].iter().map(|k| {
         let of = |r: &Value| r["vehicles"][0]["loads"][0][*k].clone();
@@ -82,7 +82,7 @@ fn days_named_by_day_month_and_year_are_counted_in_the_order_of_the_calendar() {
     }) {
         assert_eq!(a, b);
     }
-    // Day or month first: nobody knows; nothing is read and nothing written.
+    // The date is ambiguous, with day or month first. The program reads nothing and writes nothing.
     let text = table(1, |_, _| ());
     let two = ["B_05-06-2026.csv", "B_06-05-2026.csv"].map(|n| write(&dir, n, &text));
     let (code, said) = fleet(&dir, "unknown", &two, &[]);
@@ -105,7 +105,7 @@ fn a_day_in_another_unit_is_read_in_it_where_it_says_so_and_is_an_error_where_no
     write(&dir, "A_3.csv", &stated);
     let (code, result) = fleet(&dir, "stated", &files, &[]);
     assert_eq!(code, 0, "{result}");
-    // Six digits behind the point of mm/m are a thousandth of a microstrain.
+    // Six decimals of mm/m resolve a thousandth of a microstrain.
     for (a, b) in damages(&result).iter().zip(damages(&right)) {
         assert!((a / b - 1.0).abs() < 1e-3, "{a} {b}");
     }
@@ -124,7 +124,7 @@ fn a_day_in_another_unit_is_read_in_it_where_it_says_so_and_is_an_error_where_no
         let times = message
             .split_once(words)
             .and_then(|(before, _)| before.rsplit(' ').next()?.parse::<f64>().ok());
-        // Days differ in what they drive: nearer to a thousand than to a hundred or ten thousand.
+        // Loads differ between days. The factor is nearer to a thousand than to a hundred or ten thousand.
         assert!(
             times.is_some_and(|t| (316.0..3162.0).contains(&t)),
             "{message}"
@@ -132,7 +132,8 @@ fn a_day_in_another_unit_is_read_in_it_where_it_says_so_and_is_an_error_where_no
     }
 }
 
-/// A day of slow loads of this size, forty seconds, with noise of 1 microstrain in each reading, wronged by `change`.
+/// Returns a day of slow loads of this size, forty seconds, with noise of 1 microstrain in each reading, changed by
+/// `change`.
 fn slow_day_text(day: usize, size: f64, mut change: impl FnMut(&mut [f64; GAUGES])) -> String {
     let mut numbers = Splitmix(300 + day as u64);
     let mut text = String::from("time");
@@ -178,10 +179,12 @@ fn a_day_whose_readings_are_all_half_or_twice_as_large_is_told_and_a_rougher_day
         };
         let before = message.split(" on 3. ").next().unwrap();
         let said: f64 = before.rsplit(' ').next().unwrap().parse().unwrap();
-        // Second differences of 4,000 readings tell noise to 1.5 %, the median of five gauges to half of that; three sigmas.
+        // Second differences of 4,000 readings determine the noise within 1.5 %, and the median of five gauges within
+        // half of it. The limit is three sigma.
         assert!((said / factor - 1.0).abs() < 0.03, "{message}");
     }
-    // A thousandth is another unit, which is told as such; twice the loads with the noise of every day; half of the gauges twice as noisy.
+    // No finding about noise for three changes. A thousandth is reported as another unit. The second day has twice the
+    // loads with normal noise. On the third day, only half of the gauges have more noise.
     let unit = slow_day_text(3, 50.0, |y| y.iter_mut().for_each(|v| *v *= 1e-3));
     assert!(told(&unit).is_empty());
     assert!(told(&slow_day_text(3, 100.0, as_it_is)).is_empty());
@@ -195,7 +198,8 @@ fn a_day_that_the_vehicle_stands_names_no_gauge() {
     let mut files = Vec::new();
     for day in 1..=5 {
         let mut numbers = Splitmix(day);
-        // It stands: noise alone, and one gauge whose amplifier rounds to whole numbers reads the nearest.
+        // On day 3 the vehicle is at standstill. The readings are noise, and one gauge with a coarse resolution reads a
+        // constant integer.
         let text = match day {
             3 => table(3, |_, y| {
                 for v in y.iter_mut() {
@@ -214,7 +218,7 @@ fn a_day_that_the_vehicle_stands_names_no_gauge() {
         found.iter().all(|f| !named.contains(&f[0].as_str())),
         "{found:?}"
     );
-    // One that gives a number which the others contradict is dead while it stands, too.
+    // A gauge with a number that the others contradict is dead, even at standstill.
     let mut numbers = Splitmix(3);
     let contradicted = table(3, |_, y| {
         for v in y.iter_mut() {
@@ -227,7 +231,7 @@ fn a_day_that_the_vehicle_stands_names_no_gauge() {
     let found = findings_of(&result, &["warning"]);
     let dead = found.iter().find(|f| f[0] == "gauge-silent");
     assert_eq!(dead.unwrap_or_else(|| panic!("{found:?}"))[1], "A G2");
-    // A gauge that is dead while it drives is named, on the day that it stands as well as not.
+    // A gauge that is dead on a day of driving is reported. The finding includes the day at standstill.
     for (day, file) in files.iter().enumerate() {
         if day >= 3 {
             let text = table(day + 1, |_, y| y[2] = 4.0);
@@ -244,11 +248,11 @@ fn a_day_that_the_vehicle_stands_names_no_gauge() {
     assert!(message.contains("on 3 of 5 days, the first 3"), "{message}");
 }
 
-/// Two days of other sizes, and the same samples as one record.
+/// Two days of different size, and the same samples as one record.
 #[test]
 fn days_and_the_undivided_record_give_the_same_damage_with_model_uncertainty() {
     let dir = write_noisy_job("undivided");
-    // Loads, and with them the model's error, are three times as large on the second day.
+    // The loads, and with them the model error, are three times as large on the second day.
     let day = |day: usize, size: f64| table(day, |_, y| y.iter_mut().for_each(|v| *v *= size));
     let days = [day(1, 1.0), day(2, 3.0)];
     let mut files = vec![write(&dir, "A_1.csv", &days[0])];
@@ -277,7 +281,7 @@ fn days_and_the_undivided_record_give_the_same_damage_with_model_uncertainty() {
     }
 }
 
-/// Of two days neither is the typical one: the other gauges show which of them is wrong.
+/// With two days, neither is typical. The other gauges show which one is wrong.
 #[test]
 fn of_two_days_the_spiked_one_is_named() {
     let dir = write_noisy_job("two_days");
@@ -311,7 +315,7 @@ fn days_of_other_rates_and_with_a_renamed_gauge_are_counted_alike() {
     }
     let (_, right) = fleet(&dir, "right", &files, &[]);
     let hours = number(&right["vehicles"][0]["hours"]);
-    // The same samples, half as fast.
+    // The same samples at half the speed.
     let slow: String = table(2, |_, _| ())
         .lines()
         .map(|line| match line.split_once(',') {
@@ -326,7 +330,7 @@ fn days_of_other_rates_and_with_a_renamed_gauge_are_counted_alike() {
     assert_eq!(code, 0, "{result}");
     assert_eq!(damages(&result), damages(&right));
     assert!((number(&result["vehicles"][0]["hours"]) / hours - 1.25).abs() < 1e-9);
-    // A gauge under another name: its readings are missing and said to be; the others tell the loads, here within their noise.
+    // A gauge with another name is reported as missing. The other gauges determine the loads, here within their noise.
     let renamed = table(3, |_, _| ()).replace("G4 [um/m]", "SG4 [um/m]");
     write(&dir, "A_3.csv", &renamed);
     let (code, result) = fleet(&dir, "renamed", &files, &[]);

@@ -1,4 +1,4 @@
-//! Gauges and days that are wrong in part: what is left out, what stays in the sums and is said to be in doubt, who is named.
+//! Gauges and days that are partly wrong: excluded samples, sums with a warning, and the reported gauge.
 
 use super::command::{GAUGES, S, SAMPLES, findings_of, fleet, folder, table_of};
 use super::program::{JOB, scratch};
@@ -13,7 +13,7 @@ fn number(v: &Value) -> f64 {
     v.as_f64().unwrap_or_else(|| panic!("{v}"))
 }
 
-/// Damage of both loads of a vehicle, and sigma of it by the error of S.
+/// Returns the damage of both loads of a vehicle, and its sigma from the error of S.
 fn loads(result: &Value, vehicle: usize) -> [[f64; 2]; 2] {
     let of = |l: usize| {
         let load = &result["vehicles"][vehicle]["loads"][l];
@@ -28,7 +28,8 @@ fn a_gauge_that_dies_within_a_day_is_left_out_from_there_on() {
     let (code, whole) = fleet(&dir, "before", &files, &[]);
     assert_eq!(code, 0, "{whole}");
     let before = loads(&whole, 1);
-    // From sample 500 on it gives zero, another value, or nothing; one that comes back is at work again.
+    // From sample 500 on, the gauge gives zero, another value, or nothing. In the last case it recovers and is valid
+    // again.
     for (out, value, to) in [
         ("zero", 0.0, SAMPLES),
         ("other", -42.0, SAMPLES),
@@ -49,7 +50,7 @@ fn a_gauge_that_dies_within_a_day_is_left_out_from_there_on() {
         for ([a, _], [b, _]) in before.iter().zip(&after) {
             assert!((a / b - 1.0).abs() < 1e-3, "{out}: {a} {b}");
         }
-        // The others know the load that it reads most less well.
+        // This gauge has the largest readings of load A, so the other gauges determine that load less accurately.
         let [a, b] = [before, after].map(|l| l[0][1]);
         assert!(b > 1.01 * a, "{out}: {a} {b}");
         assert_eq!(
@@ -97,7 +98,7 @@ fn a_vehicle_that_stands_for_half_a_day_has_no_dead_gauge() {
     assert!(found.iter().all(|f| f[0] != "gauge-silent"), "{found:?}");
 }
 
-/// The first second is all that is looked at beforehand.
+/// The first test of the gauges uses only the first second of a record.
 #[test]
 fn who_stands_at_first_and_a_gauge_that_wakes_late_are_at_work_afterwards() {
     let (dir, files) = folder("wakes");
@@ -160,7 +161,7 @@ fn damage_of_days_that_the_loads_do_not_explain_is_told_with_its_share() {
     }
 }
 
-/// One gauge alone reads the second load, and dies at noon.
+/// Only one gauge reads the second load, and it dies in the middle.
 #[test]
 fn a_load_that_is_known_in_a_part_of_the_hours_has_the_damage_of_that_part() {
     let dir = scratch("part");
@@ -195,13 +196,13 @@ fn a_load_that_is_known_in_a_part_of_the_hours_has_the_damage_of_that_part() {
         let whole = number(&result["vehicles"][0]["hours"]);
         assert_eq!(number(&load(0)["hours"]), whole);
         assert!((number(&load(1)["hours"]) / whole - 0.5).abs() < 1e-9);
-        // Fifteen periods of a range of 8 kN.
+        // Fifteen periods with a range of 8 kN.
         let damage = number(&load(1)["damage"]);
         assert!(
             (damage / (15.0 * 8.0_f64.powi(5)) - 1.0).abs() < 0.05,
             "{damage}"
         );
-        // One vehicle is the mean of all, of each load by its own hours.
+        // A single vehicle equals the mean of all vehicles, for each load by its hours.
         for l in 0..2 {
             assert!((number(&load(l)["relative"]) - 1.0).abs() < 1e-9);
             assert!(number(&load(l)["damage_low"]) < number(&load(l)["damage_high"]));

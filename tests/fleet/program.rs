@@ -1,11 +1,11 @@
-//! Runs the program on records in a folder of their own.
+//! Runs the program on records in a separate folder.
 
 use serde_json::Value;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Two loads, S from a table.
+/// Job with two loads and S from a table.
 pub const JOB: &str = r#"units = "m-kg-s"
 report_units = { force = "kN", moment = "kN m" }
 [sensitivity]
@@ -24,7 +24,7 @@ model_uncertainty_rel = 0.02
 file_name = "{vehicle}_{day}.csv"
 "#;
 
-/// An empty folder for one test.
+/// Creates an empty folder for one test.
 pub fn scratch(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
         .join("fleet")
@@ -34,7 +34,8 @@ pub fn scratch(name: &str) -> PathBuf {
     folder
 }
 
-/// Exit code of `fleet job.toml` on these files, and its result; what it said where it gave none.
+/// Runs `fleet job.toml` on these files. Returns exit code and result, or the output of the program if there is no
+/// result.
 pub fn fleet(dir: &Path, out: &str, files: &[impl AsRef<OsStr>], more: &[&str]) -> (i32, Value) {
     let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
         .current_dir(dir)

@@ -1,4 +1,5 @@
-//! Records named by folder, pattern, list, standard input and folders of a data lake: the bytes of those named one by one.
+//! Records named by folder, pattern, list, standard input and folders of a data lake. The results equal those of
+//! records named one by one.
 
 use super::command::folder;
 use super::program::{self, JOB};
@@ -60,7 +61,7 @@ fn a_folder_a_pattern_a_list_and_standard_input_name_the_same_records() {
     assert!(child.wait().unwrap().success());
     assert_eq!(csv(&dir, "input"), wanted);
 
-    // What names nothing is never the question to merge what is kept.
+    // A request that matches no record is not a request to merge the stored results.
     std::fs::write(dir.join("empty.txt"), "\n").unwrap();
     for named in [
         vec!["--files", "empty.txt"],

@@ -1,4 +1,5 @@
-//! `identify` on one record in every format that loggers and their programs write: the parameters are those of the plain table.
+//! `identify` on one record in all formats of loggers and their programs. The parameters equal those of the plain
+//! table.
 
 use serde_json::Value;
 use std::fmt::Write as _;
@@ -9,7 +10,7 @@ use strainbridge::series::{binary, rpc};
 const NAMES: [&str; 3] = ["a_body", "a_wheel", "f_wheel"];
 const G: f64 = 9.80665;
 
-/// Times, s, and samples of the quarter truck of the examples, m/s2 and N.
+/// Returns times in s and samples of the quarter truck of the examples, m/s2 and N.
 fn record() -> (Vec<f64>, [Vec<f64>; 3]) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/quarter_truck/data.csv");
     let text = std::fs::read_to_string(path).unwrap();
@@ -22,7 +23,7 @@ fn record() -> (Vec<f64>, [Vec<f64>; 3]) {
     (times, columns)
 }
 
-/// The same samples in g and kN.
+/// Returns the same samples in g and kN.
 fn in_g(columns: &[Vec<f64>; 3]) -> [Vec<f64>; 3] {
     let factors = [1.0 / G, 1.0 / G, 1e-3];
     [0, 1, 2].map(|c| columns[c].iter().map(|v| v * factors[c]).collect())
@@ -43,7 +44,7 @@ fn table(
     out
 }
 
-/// Result, exit code and messages of `identify` on a record in `file`, without a held-out one.
+/// Returns exit code, result and messages of `identify` on a record in `file`, without a held-out record.
 fn identify(dir: &Path, file: &str, bytes: &[u8]) -> (Option<i32>, Value, String) {
     std::fs::create_dir_all(dir).unwrap();
     std::fs::write(dir.join(file), bytes).unwrap();
@@ -84,7 +85,7 @@ fn every_format_of_a_record_gives_the_parameters_of_the_plain_table() {
         .collect();
     let squared = "time [s],a_body [m/s\u{b2}],a_wheel [m/s\u{b2}],f_wheel [N]";
     let squared = table(squared, &times, &si, commas);
-    // As Windows writes it: every character of this table is one byte of Latin 1.
+    // Encoding as on Windows: every character of this table is one byte of Latin 1.
     let latin: Vec<u8> = squared.chars().map(|c| c as u8).collect();
     let powers = "time [s],a_body (m/s^2),a_wheel (m/s^2),f_wheel (N)";
     let powers = table(powers, &times, &si, commas);
@@ -94,7 +95,7 @@ fn every_format_of_a_record_gives_the_parameters_of_the_plain_table() {
         ("squared.csv", squared.into_bytes(), 1e-6),
         ("latin.csv", latin, 1e-6),
         ("powers.csv", powers.into_bytes(), 1e-6),
-        // 32 bits: seven digits of readings, five of what two integrations make of them.
+        // 32-bit reals have seven digits, of which five remain after two integrations.
         ("record.bin", binary_record(&si, &times), 1e-4),
         // Sixteen bits: 1/32767 of full scale.
         ("record.rsp", rpc3(&of_g, &times), 1e-2),
@@ -124,7 +125,7 @@ fn every_format_of_a_record_gives_the_parameters_of_the_plain_table() {
     }
 }
 
-/// Other columns may have any unit; those of the model measure what the model takes them for.
+/// Columns that the model does not use may have any unit. Used columns must have the unit of their quantity.
 #[test]
 fn units_of_channels_that_are_not_used_do_not_matter_and_those_of_used_ones_do() {
     let dir = folder("identify_units");
@@ -198,7 +199,7 @@ fn parquet(of_g: &[Vec<f64>; 3], times: &[f64]) -> Vec<u8> {
     strainbridge::series::parquet::parquet_bytes(&names, &[], at, times.len(), rows(of_g)).unwrap()
 }
 
-/// A group of its own for each channel, as loggers with several modules write them.
+/// A separate group for each channel, as loggers with several modules write them.
 #[cfg(feature = "mdf")]
 fn mdf4(of_g: &[Vec<f64>; 3], times: &[f64]) -> Vec<u8> {
     let mut file = falcon_mdf::Mf4Writer::new();

@@ -1,4 +1,5 @@
-//! Numbers of every command by name, as they would be on the base model: tags for ids, the base model's sides, frame and load directions.
+//! Numbers in the answers of every command, converted to the base model: tags for ids, and sides, frame and load
+//! directions of the base model.
 
 use crate::cards::{Form, deck};
 use crate::frame::{Frame, V};
@@ -13,7 +14,7 @@ use strainbridge::host::store::Memory;
 use strainbridge::workflow::solve::SolvedCases;
 use strainbridge::{Context, Faults, Job, Outcome, Severity};
 
-/// Numbers by group and item. Numbers of a group have one scale, the largest of them.
+/// Numbers by group and item. The numbers of a group have one scale, the largest of them.
 #[derive(Default)]
 pub struct Answers(pub BTreeMap<String, BTreeMap<String, f64>>);
 
@@ -25,7 +26,7 @@ impl Answers {
         assert!(before.is_none(), "two numbers are called {item}");
     }
 
-    /// The command's answer; the codes of its errors are numbers of it.
+    /// Returns the answer of a command, and adds the codes of its errors to the numbers.
     fn hear<A>(&mut self, command: &str, answer: Result<Outcome<A>, Faults>) -> Outcome<A> {
         let answer = expect_answer(command, answer);
         let of_command = self.0.entry(format!("{command}: errors")).or_default();
@@ -55,7 +56,7 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// Made of the sensitivity of the base model.
+    /// Computes the readings from S of the base model.
     pub fn from_base(base: &Frame, form: Form) -> Self {
         let files = deck(&base.control(), base.cards(), form)
             .with_file("job.toml", job(base, ""))
@@ -83,24 +84,24 @@ impl Measured {
     }
 }
 
-/// Commands that a model is tried with.
+/// Commands that a test runs on a model.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Asked {
     /// All commands.
     All,
-    /// All but `payload`, whose wheels stand on the plane z = 0.
+    /// All commands except `payload`, whose wheels are in the plane z = 0.
     WithoutPayload,
 }
 
-/// Where the strain of the unit loads comes from.
+/// Source of the strain of the unit loads.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Source {
     Solver,
-    /// An OP2 file with the solver's solution.
+    /// OP2 file with the solution of the solver.
     Results,
 }
 
-/// The answers of all commands on a model.
+/// Returns the answers of all commands on a model.
 pub fn answers(frame: &Frame, form: Form, measured: &Measured, ask: (Asked, Source)) -> Answers {
     let mut out = Answers::default();
     let mut files = deck(&frame.control(), frame.cards(), form)
@@ -149,7 +150,7 @@ fn solve_deck(files: &InMemory) -> Outcome<SolvedCases> {
     expect_answer("solve", solved)
 }
 
-/// The side of the base model's shell.
+/// Returns the side of the shell in the base model.
 fn base_side(frame: &Frame, tag: u32, top: bool) -> &'static str {
     if top != frame.sides_exchanged(tag) {
         "top"
@@ -187,7 +188,7 @@ fn put_deck(out: &mut Answers, frame: &Frame, solved: &SolvedCases) {
     out.put_vector("solve: centre", "mm", back * V::from(mass.cg) / u.length);
 }
 
-/// Principal strains of shells by side, strain of bars by point.
+/// Adds principal strains of shells by side, and strain of bars by point.
 fn put_strain(
     out: &mut Answers,
     frame: &Frame,
@@ -215,16 +216,16 @@ fn put_strain(
     }
 }
 
-/// Sign and unit of a load of the job, by name: its base value is `sign * value / unit`.
+/// Returns sign and unit of a load of the job. Its value in the base model is `sign * value / unit`.
 fn load_of(frame: &Frame, name: &str) -> (f64, f64) {
     let load = frame.loads.iter().find(|l| l.name == name);
     let load = load.unwrap_or_else(|| panic!("load {name}"));
     (frame.component(load).1, frame.load_unit(load))
 }
 
-/// The base model's name of a channel of this one.
+/// Returns the name of a channel in the base model.
 fn base_channel(frame: &Frame, name: &str) -> String {
-    // The legs exchange their names in pairs.
+    // The exchange of leg names is its own inverse.
     counterpart(frame, name)
 }
 
@@ -254,12 +255,12 @@ fn put_layout(out: &mut Answers, frame: &Frame, job: &Job, cx: &Context) {
         let tag = frame.tag(g.element);
         let side = base_side(frame, tag, g.surface == "top");
         let direction = back * V::from(g.direction);
-        // An axis has no sign.
+        // The direction of an axis has no sign.
         let sign = direction[direction.iamax()].signum();
         out.put_vector("place: axes", &format!("{tag} {side}"), direction * sign);
         let strain = g.expected_microstrain;
         let signs: Vec<f64> = frame.loads.iter().map(|l| frame.component(l).1).collect();
-        // A sum over the loads is the base model's where all of them point as they did.
+        // The sum over the loads equals that of the base model only if no load has changed its sign.
         if signs.iter().all(|s| *s > 0.0) {
             out.insert_value("place: expected strain", format!("{tag} {side}"), strain);
         }
@@ -301,7 +302,7 @@ fn put_loads(out: &mut Answers, frame: &Frame, measured: &Measured, job: &Job, c
         out.insert_value("recover: leverage", &name, g.leverage);
     }
     out.insert_value("recover: residual", "all", runs.residual_rms_microstrain);
-    // Residuals are differences of readings: their rounding is a share of those.
+    // Residuals are differences of readings, so their rounding error is relative to the readings.
     let readings = measured.readings.iter().flatten();
     let largest = readings.fold(0.0_f64, |m, v| m.max(v.abs()));
     out.insert_value("recover: residual", "largest reading", largest);

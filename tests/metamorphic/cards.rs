@@ -1,8 +1,9 @@
-//! Cards as text: small, large or free field, in any order, split into files, continuations in place or named at the end.
+//! Cards as text: small, large or free field, in any order, split into files, with continuations in place or named at
+//! the end.
 
 use strainbridge::host::context::InMemory;
 
-/// A field of a card.
+/// Field of a card.
 #[derive(Clone)]
 pub enum Field {
     Blank,
@@ -31,11 +32,11 @@ impl From<f64> for Field {
     }
 }
 
-/// A card: name and fields from field 2 on.
+/// Card with its name and the fields from field 2 on.
 #[derive(Clone)]
 pub struct Card(pub &'static str, pub Vec<Field>);
 
-/// A card of the fields `$f`.
+/// Builds a card from the fields `$f`.
 #[macro_export]
 macro_rules! card {
     ($name:literal $(, $f:expr)* $(,)?) => {
@@ -55,7 +56,7 @@ pub enum Width {
 #[derive(Clone, Copy, PartialEq)]
 pub enum Files {
     One,
-    /// The main file includes `bulk/mesh.bdf`, which includes `bulk/cards.bdf` by its bare name.
+    /// The main file includes `bulk/mesh.bdf`, which includes `bulk/cards.bdf` by its file name only.
     Included,
 }
 
@@ -66,7 +67,7 @@ pub struct Form {
     pub files: Files,
     /// Cards are in random order.
     pub permuted: bool,
-    /// Small field only: each continuation has its own name and is at the end of the deck, in reverse order.
+    /// In small field, each continuation has a name and is at the end of the deck, in reverse order.
     pub named: bool,
 }
 
@@ -77,7 +78,7 @@ pub const FREE: Form = Form {
     named: false,
 };
 
-/// The deck `frame.bdf` of case control and bulk data.
+/// Returns the deck `frame.bdf` from case control and bulk data.
 pub fn deck(control: &str, mut cards: Vec<Card>, form: Form) -> InMemory {
     if form.permuted {
         permute(&mut cards);
@@ -128,7 +129,7 @@ pub fn deck(control: &str, mut cards: Vec<Card>, form: Form) -> InMemory {
     }
 }
 
-/// Fisher and Yates with the generator of Knuth.
+/// Shuffles a list by Fisher and Yates with Knuth's generator.
 pub fn permute<T>(list: &mut [T]) {
     let mut state = 2026_u64;
     for i in (1..list.len()).rev() {
@@ -167,7 +168,8 @@ fn format_large_field(card: &Card) -> Vec<String> {
     card.1.chunks(4).enumerate().map(line).collect()
 }
 
-/// `first`: number of the first named continuation; without it, continuations have no name.
+/// Formats a card in small field. `first` is the number of the first named continuation, or `None` for continuations
+/// without names.
 fn format_small_field(card: &Card, first: Option<usize>) -> Vec<String> {
     let text = |f: &Field| format!("{:>8}", word(f, 8));
     let n = card.1.chunks(8).len();
@@ -198,9 +200,9 @@ fn word(field: &Field, width: usize) -> String {
     }
 }
 
-/// A real number of at most `width` characters; fails where small field would round it.
+/// Formats a real number with at most `width` characters. Fails if small field would round it.
 fn format_real(v: f64, width: usize) -> String {
-    // Fifteen digits: products of short numbers are short.
+    // Fifteen digits, because products of short numbers are short.
     let digits: f64 = format!("{v:.14e}").parse().expect("a number");
     let shortest = nastran_form(&format!("{digits:?}"));
     if shortest.len() <= width {
@@ -214,7 +216,7 @@ fn format_real(v: f64, width: usize) -> String {
         .expect("a short form")
 }
 
-/// `1.5e-9` as `1.5-9`, `0.25` as `.25`, `1500.0` as `1500.`.
+/// Converts `1.5e-9` to `1.5-9`, `0.25` to `.25`, `1500.0` to `1500.`.
 fn nastran_form(text: &str) -> String {
     let (mantissa, exponent) = text.split_once('e').unwrap_or((text, ""));
     let mut mantissa = mantissa.to_owned();

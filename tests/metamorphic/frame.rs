@@ -1,4 +1,4 @@
-//! A structure with loads and gauges, and how it is written as a deck.
+//! Structure with loads and gauges, and its conversion to a deck.
 
 use crate::card;
 use crate::cards::{Card, Field};
@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 
 pub type V = Vector3<f64>;
 
-/// A unit system of a job, and its units per millimetre, newton and kilogram.
+/// Unit system of a job, with its units per millimetre, newton and kilogram.
 #[derive(Clone, Copy)]
 pub struct Units {
     pub name: &'static str,
@@ -30,7 +30,7 @@ pub enum Kind {
     Spherical,
 }
 
-/// A coordinate system: the columns of `axes` are its unit vectors.
+/// Coordinate system. The columns of `axes` are its unit vectors.
 #[derive(Clone)]
 pub struct System {
     pub kind: Kind,
@@ -39,7 +39,7 @@ pub struct System {
 }
 
 impl System {
-    /// Coordinates of a point, angles in degrees.
+    /// Returns the coordinates of a point, with angles in degrees.
     pub fn coordinates(&self, x: V) -> V {
         let local = self.axes.transpose() * (x - self.origin);
         let azimuth = local.y.atan2(local.x).to_degrees();
@@ -53,7 +53,7 @@ impl System {
         }
     }
 
-    /// Unit vectors at a point, in columns.
+    /// Returns the unit vectors at a point, as columns.
     pub fn axes_at(&self, x: V) -> Matrix3<f64> {
         let local = self.axes.transpose() * (x - self.origin);
         let (s, c) = local.y.atan2(local.x).sin_cos();
@@ -73,7 +73,7 @@ impl System {
 pub struct Grid {
     pub tag: u32,
     pub x: V,
-    /// Coordinate systems of the place and of the displacements; 0: basic.
+    /// Coordinate systems of the position and of the displacements. 0 is the basic system.
     pub cp: u32,
     pub cd: u32,
 }
@@ -82,20 +82,20 @@ pub struct Grid {
 pub struct Shell {
     pub tag: u32,
     pub property: u32,
-    /// Tags of the corners as they are numbered.
+    /// Tags of the corners in their order.
     pub corners: Vec<u32>,
-    /// The corners run the other way round than in the base model.
+    /// The order of the corners is the reverse of that in the base model.
     pub flipped: bool,
 }
 
-/// Where a gauge is.
+/// Place of a gauge.
 #[derive(Clone)]
 pub enum Seat {
-    /// On a shell, by its id.
+    /// On a shell, given by its id.
     Shell { tag: u32, top: bool },
     /// At a point of the skin.
     Point(V),
-    /// On a bar, recovery point C, at a share of its length.
+    /// On a bar, at recovery point C and a share of its length.
     Bar { tag: u32, station: f64 },
 }
 
@@ -103,9 +103,9 @@ pub enum Seat {
 pub struct Gauge {
     pub name: String,
     pub seat: Seat,
-    /// Where the gauge is, for directions in a coordinate system.
+    /// Position of the gauge, for directions in a coordinate system.
     pub at: V,
-    /// The shell under the gauge; 0 on a bar.
+    /// Shell under the gauge, or 0 on a bar.
     pub shell: u32,
     pub direction: V,
     pub angle_deg: f64,
@@ -119,7 +119,7 @@ pub struct Gauge {
 pub struct Load {
     pub name: &'static str,
     pub grid: u32,
-    /// Unit vector; of a moment an axial one.
+    /// Unit vector. For a moment it is an axial vector.
     pub direction: V,
     pub moment: bool,
     pub system: u32,
@@ -136,7 +136,7 @@ pub struct Bush {
     pub v: V,
 }
 
-/// A CONM2: kg, offset, moments of inertia in kg mm2, in a coordinate system.
+/// A CONM2: kg, offset, and moments of inertia in kg mm2, in a coordinate system.
 #[derive(Clone)]
 pub struct Mass {
     pub grid: u32,
@@ -146,7 +146,7 @@ pub struct Mass {
     pub system: u32,
 }
 
-/// A model with its loads and gauges. Lengths are in mm, forces in N, masses in kg, whatever its `units`.
+/// Model with its loads and gauges. Lengths are in mm, forces in N and masses in kg, independently of `units`.
 #[derive(Clone)]
 pub struct Frame {
     pub units: Units,
@@ -154,24 +154,24 @@ pub struct Frame {
     pub shells: Vec<Shell>,
     /// Property tag and thickness.
     pub properties: Vec<(u32, f64)>,
-    /// Grids and orientation; all of property 9.
+    /// Tag, grids and orientation. All bars have property 9.
     pub bars: Vec<(u32, [u32; 2], V)>,
     pub bushes: Vec<Bush>,
     /// RBE3: tag, reference grid, grids.
     pub spreads: Vec<(u32, u32, Vec<u32>)>,
     pub masses: Vec<Mass>,
-    /// Ids are their places in the list, from 1.
+    /// The id is the position in the list, from 1.
     pub systems: Vec<System>,
     pub held: Vec<u32>,
-    /// The forces of the deck's first subcase: grid and vector.
+    /// Forces of the first subcase of the deck: grid and vector.
     pub forces: Vec<(u32, V)>,
     pub loads: Vec<Load>,
     pub gauges: Vec<Gauge>,
-    /// From the base model to this one.
+    /// Transformation from the base model to this model.
     pub turn: Matrix3<f64>,
     /// ZOFFS of every shell.
     pub offset: f64,
-    /// Id of tag t: `ids.0 + ids.1 t`.
+    /// The id of tag t is `ids.0 + ids.1 t`.
     pub ids: (i64, i64),
     pub reversed_tables: bool,
 }
@@ -181,7 +181,7 @@ impl Frame {
         u32::try_from(self.ids.0 + self.ids.1 * i64::from(tag)).expect("an id")
     }
 
-    /// The tag of an id.
+    /// Returns the tag of an id.
     pub fn tag(&self, id: u32) -> u32 {
         u32::try_from((i64::from(id) - self.ids.0) / self.ids.1).expect("a tag")
     }
@@ -196,13 +196,13 @@ impl Frame {
         shell.expect("a shell")
     }
 
-    /// Mean of the corners of a shell.
+    /// Returns the mean of the corners of a shell.
     pub fn centre(&self, tag: u32) -> V {
         let corners = &self.shell(tag).corners;
         corners.iter().map(|c| self.x(*c)).sum::<V>() / corners.len() as f64
     }
 
-    /// Unit normal of a shell as it is numbered.
+    /// Returns the unit normal of a shell, by its corner order.
     pub fn shell_normal(&self, tag: u32) -> V {
         let c: Vec<V> = self.shell(tag).corners.iter().map(|c| self.x(*c)).collect();
         (c[2] - c[0]).cross(&(c[c.len() - 1] - c[1])).normalize()
@@ -212,7 +212,7 @@ impl Frame {
         self.turn.determinant() < 0.0
     }
 
-    /// Whether the top of a shell is the bottom of the base model's.
+    /// Returns whether the top of a shell is the bottom in the base model.
     pub fn sides_exchanged(&self, tag: u32) -> bool {
         self.shell(tag).flipped != self.is_mirrored()
     }
@@ -224,7 +224,7 @@ impl Frame {
         }
     }
 
-    /// Components of a vector in a coordinate system at a point.
+    /// Returns the components of a vector in a coordinate system at a point.
     pub fn components(&self, system: u32, at: V, v: V) -> V {
         self.axes_of(system, at).transpose() * v
     }
@@ -236,7 +236,7 @@ impl Frame {
         }
     }
 
-    /// The model after a rotation or mirroring about the origin, its coordinate systems included.
+    /// Returns the model after a rotation or mirroring about the origin, including its coordinate systems.
     #[must_use]
     pub fn transform(mut self, turn: Matrix3<f64>) -> Self {
         let axial = turn * turn.determinant();
@@ -246,7 +246,7 @@ impl Frame {
         self.masses
             .iter_mut()
             .for_each(|m| m.offset = turn * m.offset);
-        // A mirrored system is right-handed again with its second axis turned round.
+        // The second axis of a mirrored system is reversed, which makes the system right-handed again.
         let right = Matrix3::from_diagonal(&V::new(1.0, turn.determinant(), 1.0));
         for s in &mut self.systems {
             s.origin = turn * s.origin;
@@ -267,7 +267,7 @@ impl Frame {
         self
     }
 
-    /// Component and sign of a load in its coordinate system.
+    /// Returns component and sign of a load in its coordinate system.
     pub fn component(&self, load: &Load) -> (String, f64) {
         let c = self.components(load.system, self.x(load.grid), load.direction);
         let i = c.iamax();
@@ -281,13 +281,13 @@ impl Frame {
         (format!("{kind}{axis}"), c[i].signum())
     }
 
-    /// Job units of the load per N or N mm.
+    /// Returns the job units of the load per N or N mm.
     pub fn load_unit(&self, load: &Load) -> f64 {
         let u = self.units;
         u.force * if load.moment { u.length } else { 1.0 }
     }
 
-    /// Cards of the bulk data.
+    /// Returns the cards of the bulk data.
     pub fn cards(&self) -> Vec<Card> {
         let mut out = self.mesh_cards();
         out.extend(self.property_cards());
@@ -366,7 +366,7 @@ impl Frame {
         out
     }
 
-    /// An orientation vector, which is in the displacement frame of its first grid.
+    /// Returns the components of an orientation vector in the displacement frame of its first grid.
     fn in_displacements(&self, grid: u32, v: V) -> V {
         let g = self.grids.iter().find(|g| g.tag == grid).expect("a grid");
         self.components(g.cd, g.x, v)
@@ -463,7 +463,7 @@ impl Frame {
         out
     }
 
-    /// Whether anything of the deck or the job is in a coordinate system.
+    /// Returns whether the deck or the job uses a coordinate system.
     fn uses(&self, system: u32) -> bool {
         let grids = self.grids.iter().flat_map(|g| [g.cp, g.cd]);
         let masses = self.masses.iter().map(|m| m.system);
@@ -473,7 +473,7 @@ impl Frame {
         used.any(|s| s == system)
     }
 
-    /// Loads and supports of the deck's own subcases.
+    /// Returns loads and supports of the subcases of the deck.
     fn load_cards(&self) -> Vec<Card> {
         let Units {
             length: l,
@@ -487,7 +487,7 @@ impl Frame {
         for (grid, v) in &self.forces {
             out.push(card!("FORCE", 1, id(*grid), 0, f, v.x, v.y, v.z));
         }
-        // Gravity of 9.81 m/s2: lengths are per s2 in every system.
+        // Gravity of 9.81 m/s2. Lengths are per s2 in every unit system.
         let down = self.turn * V::new(0.1, 0.2, -1.0);
         out.push(card!("GRAV", 2, 0, 9810.0 * l, down.x, down.y, down.z));
         for s in &self.shells[..6] {
@@ -505,7 +505,7 @@ impl Frame {
         out
     }
 
-    /// Case control with the deck's own four subcases.
+    /// Returns the case control with the four subcases of the deck.
     pub fn control(&self) -> String {
         let case = |n: u32, kind: &str| format!("SUBCASE {n}\nSPC = 1\n{kind} = {n}\n");
         let loads = (1..=3).map(|n| case(n, "LOAD")).collect::<String>();

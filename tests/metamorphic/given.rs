@@ -1,4 +1,4 @@
-//! Result files: the solver's solution of a job's unit loads as an OP2.
+//! Result files: the solution of the unit loads of a job as an OP2.
 
 use crate::answers::{expect_answer, read};
 use nastran::op2::{EncodedBlock, Op2Writer};
@@ -7,7 +7,7 @@ use strainbridge::fe::SolveOptions;
 use strainbridge::host::context::InMemory;
 use strainbridge::report::{planned_blocks, rows_of_block};
 
-/// The files with `unit.op2`, the strain of the loads of `unit.toml`.
+/// Adds `unit.op2` to the files, with the strain of the loads of `unit.toml`.
 pub fn with_results(files: InMemory) -> InMemory {
     let job = read(&files, "unit.toml");
     let solved = strainbridge::solve(&job, SolveOptions::default(), &Context::new(&files));

@@ -1,20 +1,20 @@
-//! The jobs that are asked of a structure, and its tables of readings and loads.
+//! The jobs for a structure, and its tables of readings and loads.
 
 use crate::frame::{Frame, Gauge, Kind, Load, Seat, V};
 use nalgebra::Matrix3;
 use std::fmt::Write;
 
-/// Loads of the runs, in shares of the expected ones, by run.
+/// Loads of the runs, relative to the expected loads.
 const RUNS: [&[f64]; 3] = [
     &[0.9, -0.4, 0.6, 0.1, -1.1, 0.3, 0.7],
     &[-0.2, 0.8, 0.5, -0.7, 0.4, 0.9, -0.6],
     &[1.1, 0.3, -0.8, 0.2, 0.6, -0.5, 0.2],
 ];
 
-/// Payloads: weight in N, place in mm.
+/// Payloads: weight in N, position in mm.
 const PAYLOADS: [[f64; 3]; 2] = [[800.0, 400.0, 20.0], [1200.0, 500.0, 0.0]];
 
-/// Channels of the gauges as the base model names them, in its order.
+/// Returns the channels of the gauges with the names and the order of the base model.
 pub fn channels(frame: &Frame) -> Vec<String> {
     let of = |g: &Gauge| match g.rosette {
         true => ["a", "b", "c"]
@@ -25,8 +25,9 @@ pub fn channels(frame: &Frame) -> Vec<String> {
     frame.gauges.iter().flat_map(of).collect()
 }
 
-/// The channel of this model that reads what `base` reads of the base model, and the other way round: on a shell that is numbered the other
-/// way round the legs of a rosette follow each other the other way round.
+/// Returns the channel of this model with the reading of channel `base` in the base model, and vice versa.
+///
+/// On a shell with reversed corner order, the legs of a rosette have the reverse order.
 pub fn counterpart(frame: &Frame, base: &str) -> String {
     let Some((gauge, leg)) = base.split_once('.') else {
         return base.to_owned();
@@ -101,7 +102,7 @@ fn gauge_section(frame: &Frame, g: &Gauge) -> String {
     text
 }
 
-/// Coordinates in job units: the lengths among them times `l`.
+/// Converts coordinates to job units. Only lengths are multiplied by `l`.
 fn scale_lengths(c: V, kind: Option<Kind>, l: f64) -> V {
     match kind {
         None | Some(Kind::Rectangular) => c * l,
@@ -145,7 +146,7 @@ fn head(frame: &Frame, loads: &[Load], results: &str) -> String {
     text + "[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\nmodel_uncertainty_rel = 0.01\n"
 }
 
-/// The job of every command but `payload`.
+/// Returns the job of every command except `payload`.
 pub fn job(frame: &Frame, results: &str) -> String {
     let properties = [1, 2].map(|p| frame.id(p));
     head(frame, &frame.loads, results)
@@ -160,10 +161,10 @@ pub fn job(frame: &Frame, results: &str) -> String {
         )
 }
 
-/// Repetitions of `study`.
+/// Number of trials of `study`.
 pub const TRIALS: usize = 1000;
 
-/// The job of `payload`: three wheels, and a payload at the point above the frame.
+/// Returns the job of `payload`: three wheels, and a payload at the point above the frame.
 pub fn payload_job(frame: &Frame, results: &str) -> String {
     let wheels = frame.loads.iter().filter(|l| WHEELS.contains(&l.name));
     let wheels: Vec<Load> = wheels.cloned().collect();
@@ -175,17 +176,18 @@ pub fn payload_job(frame: &Frame, results: &str) -> String {
     )
 }
 
-/// A scatter of readings below a microstrain.
+/// Returns a scatter of the readings below one microstrain.
 fn scatter(run: usize, channel: usize) -> f64 {
     0.4 * (((run * 5 + channel * 3) % 7) as f64 / 3.0 - 1.0)
 }
 
-/// Sum over loads of the strain of each, in microstrain; `loads` in N and N mm.
+/// Returns the sum of the strains of all loads, in microstrain. `loads` is in N and N mm.
 fn microstrain(row: &[f64], loads: &[f64]) -> f64 {
     1e6 * row.iter().zip(loads).map(|(s, f)| s * f).sum::<f64>()
 }
 
-/// Readings of every channel under loads in shares of those expected; `s` is the base model's, by channel and load.
+/// Returns the readings of every channel, for loads relative to the expected loads. `s` is that of the base model, by
+/// channel and load.
 pub fn readings(frame: &Frame, s: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let run = |(r, shares): (usize, &&[f64])| -> Vec<f64> {
         let loads = frame.loads.iter().zip(*shares);
@@ -208,7 +210,7 @@ fn wheel_forces(frame: &Frame, [f, x, y]: [f64; 3]) -> [f64; 3] {
     (inverse * f * V::new(1.0, x, y)).into()
 }
 
-/// Readings and wheel forces (kN) under the payloads.
+/// Returns readings and wheel forces (kN) under the payloads.
 pub fn payload_runs(frame: &Frame, s: &[Vec<f64>]) -> (Vec<Vec<f64>>, Vec<[f64; 3]>) {
     let at = frame.x(902);
     let forces = PAYLOADS.map(|p| wheel_forces(frame, p));
@@ -236,7 +238,7 @@ pub fn payload_runs(frame: &Frame, s: &[Vec<f64>]) -> (Vec<Vec<f64>>, Vec<[f64; 
     )
 }
 
-/// A table of readings; `rows` are by channel of the base model.
+/// Returns a table of readings. `rows` are by channel of the base model.
 pub fn strain_csv(frame: &Frame, rows: &[Vec<f64>]) -> String {
     let mut columns: Vec<(usize, String)> = channels(frame)
         .iter()
@@ -258,10 +260,10 @@ pub fn strain_csv(frame: &Frame, rows: &[Vec<f64>]) -> String {
     text
 }
 
-/// Loads of the wheels.
+/// Vertical loads of the wheels.
 const WHEELS: [&str; 3] = ["W1.FZ", "W2.FZ", "W3.FZ"];
 
-/// The table of wheel forces, kN; what points down in this model has the other sign.
+/// Returns the table of wheel forces, kN. A load that points down in this model has the opposite sign.
 pub fn runs_csv(frame: &Frame, forces: &[[f64; 3]]) -> String {
     let mut order = [0, 1, 2];
     if frame.reversed_tables {

@@ -1,5 +1,7 @@
-//! Relations that hold between the answers on two models of one structure: another form of the deck, another frame, other units, the other
-//! side up. Every command that uses strain is asked in memory, and its numbers are compared after names and signs are mapped back.
+//! Relations between the answers for two models of one structure: another form of the deck, another frame, other units,
+//! the other side up.
+//!
+//! The tests run every command that uses strain in memory. They convert names and signs back and compare the numbers.
 
 mod answers;
 mod cards;

@@ -1,5 +1,6 @@
-//! The structures: a ladder frame of plates, bars, a bush, RBE3s and a mass, and a flat plate. Nothing in them is symmetric, so that no
-//! layout of gauges is as good as another.
+//! The structures: a ladder frame of plates, bars, a bush, RBE3s and a mass, and a flat plate.
+//!
+//! They have no symmetry, so that no two layouts of gauges are equally good.
 
 use crate::frame::{Bush, Frame, Gauge, Grid, Kind, Load, MM_T_S, Mass, Seat, Shell, System, V};
 use nalgebra::Matrix3;
@@ -34,7 +35,7 @@ fn load(name: &'static str, grid: u32, direction: [f64; 3]) -> Load {
     }
 }
 
-/// A gauge on a shell, which `turned` and the writer of jobs carry along.
+/// Returns a gauge on a shell.
 fn gauge(frame: &Frame, name: &str, tag: u32, top: bool, direction: [f64; 3]) -> Gauge {
     Gauge {
         name: name.to_owned(),
@@ -50,7 +51,7 @@ fn gauge(frame: &Frame, name: &str, tag: u32, top: bool, direction: [f64; 3]) ->
     }
 }
 
-/// A gauge at a point of the skin: `share` of the way from the centre of the shell to its first corner.
+/// Returns a gauge at a point of the skin: `share` of the distance from the centre of the shell to its first corner.
 fn at_point(frame: &Frame, name: &str, tag: u32, top: bool, share: f64) -> Gauge {
     let centre = frame.centre(tag);
     let foot = centre + share * (frame.x(frame.shell(tag).corners[0]) - centre);
@@ -75,7 +76,8 @@ fn empty_frame() -> Frame {
         bushes: Vec::new(),
         spreads: Vec::new(),
         masses: Vec::new(),
-        // 1: the basic frame, which turns with the model; 2: the same with x and z reversed; 3 and 4: oblique.
+        // System 1 is the basic frame, which rotates with the model. System 2 has reversed x and z. Systems 3 and 4 are
+        // oblique.
         systems: vec![
             system(Kind::Rectangular, [0.0; 3], Matrix3::identity()),
             system(
@@ -105,17 +107,19 @@ fn system(kind: Kind, origin: [f64; 3], axes: Matrix3<f64>) -> System {
     }
 }
 
-/// A rotation about no axis of the frame.
+/// Returns a rotation about an axis that is not an axis of the frame.
 pub fn oblique_rotation() -> Matrix3<f64> {
     let axis = nalgebra::Unit::new_normalize(V::new(1.0, -2.0, 0.5));
     *nalgebra::Rotation3::from_axis_angle(&axis, 0.83).matrix()
 }
 
-/// Stations along a rail.
+/// Number of stations along a rail.
 const STATIONS: u32 = 12;
 
-/// Two rails along x, each a web with an upper flange, of other thickness and taper; bars and a plate across; a point above them on an RBE3,
-/// and a mass on it through a bush. Distances have few digits, so that small field holds them.
+/// Returns two rails along x with bars and a plate across, and a point above them on an RBE3 with a mass on a bush.
+///
+/// Each rail has a web and an upper flange with different thickness and taper. Distances have few digits, so that they
+/// fit into small field.
 pub fn ladder() -> Frame {
     let mut f = empty_frame();
     f.properties = vec![(1, 4.0), (2, 5.0), (3, 3.0)];
@@ -170,7 +174,7 @@ pub fn ladder() -> Frame {
     f
 }
 
-/// The plate between the rails at stations 6 and 7, in part of triangles, and two bars.
+/// Adds the plate between the rails at stations 6 and 7, partly of triangles, and two bars.
 fn add_cross_plate(f: &mut Frame) {
     let rows: Vec<[u32; 5]> = (6..=7)
         .map(|i| {
@@ -206,7 +210,7 @@ fn add_cross_plate(f: &mut Frame) {
     }
 }
 
-/// A point on an RBE3 between the rails, another above it on a bush, a mass there and one on a rail.
+/// Adds a point on an RBE3 between the rails, a point above it on a bush, a mass there, and a mass on a rail.
 fn upon(f: &mut Frame) {
     f.grids.push(grid(901, [350.0, 20.0, 140.0]));
     f.grids.push(grid(902, [350.0, 20.0, 180.0]));
@@ -240,7 +244,7 @@ fn gauges(f: &mut Frame) {
     g[3].rosette = true;
     g[3].angle_deg = 10.0;
     g[4].bridge = Some("half-bending");
-    // Reaches over the edge between two webs.
+    // The grid of this gauge extends over the edge between two webs.
     g[5].grid_length = 110.0;
     for rail in 0..2 {
         for (n, i) in [1, 3, 4, 6, 8, 10].into_iter().enumerate() {
@@ -268,7 +272,8 @@ fn gauges(f: &mut Frame) {
     f.gauges = g;
 }
 
-/// A flat plate in the plane z = 0 whose mid-surface is at height 0 with grids at `-offset` and ZOFFS `offset`; loads across it alone.
+/// Returns a flat plate whose middle surface is in the plane z = 0, with lateral loads only. Its grids are at
+/// `-offset`, and ZOFFS is `offset`.
 pub fn plate(offset: f64) -> Frame {
     let mut f = empty_frame();
     f.offset = offset;

@@ -1,6 +1,8 @@
-//! Quarter and rear trucks on a random road with one effect hidden, simulated by means of its own: no code of the vehicle models.
+//! Simulates quarter trucks and rear trucks with one hidden effect on a random road. It uses no code of the vehicle
+//! models.
 //!
-//! Each wheel hangs on a sprung body by a spring, a damper and whatever is hidden; tyres are springs and dampers that only push.
+//! A spring, a damper and the hidden effect connect each wheel to a sprung body. Tyres are springs and dampers that
+//! only push.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -9,16 +11,16 @@ pub const RATE_HZ: f64 = 500.0;
 const SUBSTEPS: usize = 4;
 pub const G: f64 = 9.81;
 
-/// What surrounds the hidden effect.
+/// Errors that are present in addition to the hidden effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Background {
-    /// Sensor noise alone.
+    /// Sensor noise only.
     Clean,
-    /// Gains good to 1 %, channels synchronous to 0.4 ms, a weak roll coupling that is not measured.
+    /// Gain errors of 1 %, clock errors of 0.4 ms, and a weak roll coupling that is not measured.
     Messy,
 }
 
-/// Which vehicle is measured.
+/// Measured vehicle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Layout {
     Front,
@@ -27,7 +29,7 @@ pub enum Layout {
     Rear,
 }
 
-/// A case: records of both roads, and what is in them.
+/// Case: records of both roads, and their true effect.
 pub struct Case {
     pub layout: Layout,
     pub background: Background,
@@ -40,7 +42,7 @@ pub struct Case {
     pub noise: [f64; 2],
     /// Mass of the measured body.
     pub sprung: f64,
-    /// Linear rate of the spring at which the effect sits.
+    /// Linear rate of the spring that has the effect.
     pub spring: f64,
     pub rate_hz: f64,
 }
@@ -62,31 +64,31 @@ impl Dice {
     }
 }
 
-/// The law of one suspension.
+/// Force law of one suspension.
 #[derive(Clone, Debug)]
 struct Law {
     k: f64,
     c: f64,
     k3: f64,
-    /// Times the square of the stretch, and times the stretch and its size.
+    /// Coefficients of the square of the stretch, and of the stretch times its magnitude.
     k2: f64,
     kp: f64,
     friction: f64,
     fade: f64,
     stop: f64,
     gap: f64,
-    /// 0 both, 1 compression, 2 rebound.
+    /// Side of the stop: 0 both, 1 compression, 2 rebound.
     stop_side: usize,
     ca: f64,
-    /// Strangers.
+    /// Effects outside the library.
     modulation: f64,
     modulation_hz: f64,
     memory_k: f64,
     memory_s: f64,
     drag: f64,
-    /// Free play to either side.
+    /// Free play to each side.
     play: f64,
-    /// Share of stiffness that is lost or won over the record, and how long that takes.
+    /// Share of the stiffness that changes over the record, and the duration of the change.
     drift: f64,
     drift_s: f64,
 }
@@ -172,7 +174,7 @@ impl Machine {
                 && t >= at
             {
                 m += change;
-                // The added weight presses, too.
+                // The weight of the added mass acts too.
                 force[0] -= change * G;
             }
             out[n + b] = force[b] / m;
@@ -199,7 +201,7 @@ fn drive(
     let n = s + u;
     let h = 1.0 / (RATE_HZ * SUBSTEPS as f64);
     let steps = (seconds * RATE_HZ) as usize * SUBSTEPS;
-    // Each track: white slope with a slow leak, smoothed twice by the footprint; half steps for Runge-Kutta.
+    // Each track is white slope with a slow leak, smoothed twice by the footprint. Runge-Kutta needs half steps.
     let lead = (delay_s / h) as usize;
     let track = |dice: &mut Dice| {
         let (mut z, mut z1, mut z2) = (0.0, 0.0, 0.0);
@@ -218,7 +220,7 @@ fn drive(
     let roads: Vec<Vec<[f64; 2]>> = (0..u)
         .map(|w| {
             if s == 1 {
-                // Wheels behind each other see one track, later.
+                // Wheels behind each other follow the same track with a delay.
                 let from = if w == 0 { 2 * lead } else { 0 };
                 common[from..].to_vec()
             } else {
@@ -266,7 +268,7 @@ fn drive(
     out
 }
 
-/// x late by `delay` samples (Catmull-Rom between them).
+/// Returns x delayed by `delay` samples (Catmull-Rom interpolation).
 fn delay_samples(x: &[f64], delay: f64) -> Vec<f64> {
     let n = x.len() as isize;
     let at = |i: isize| x[i.clamp(0, n - 1) as usize];
@@ -284,7 +286,7 @@ fn delay_samples(x: &[f64], delay: f64) -> Vec<f64> {
         .collect()
 }
 
-/// A given gain on a given channel.
+/// Returns a case with a given gain error of a given channel.
 pub fn hide_gain(
     layout: Layout,
     channel: &str,
@@ -299,7 +301,7 @@ pub fn hide_gain(
     hide_exactly(layout, "accel_gain", 0, background, seed, &exact)
 }
 
-/// A given share of the body that joins or leaves, clean background.
+/// Returns a case in which the body gains or loses a given share of its mass, with a clean background.
 pub fn hide_mass_change(layout: Layout, share: f64, seed: u64) -> Case {
     let exact = Exact {
         mass: Some(share),
@@ -308,22 +310,22 @@ pub fn hide_mass_change(layout: Layout, share: f64, seed: u64) -> Case {
     hide_exactly(layout, "mass_change", 0, Background::Clean, seed, &exact)
 }
 
-/// Sizes that are not drawn.
+/// Sizes that are given instead of random.
 #[derive(Default)]
 struct Exact {
     gain: Option<(String, f64)>,
     mass: Option<f64>,
     rate_hz: Option<f64>,
-    /// Force of a cube beside a square in the same spring, over that of the square at 20 mm.
+    /// Force of a cubic term in the same spring as a quadratic term, divided by that of the quadratic term at 20 mm.
     cube: Option<f64>,
 }
 
-/// Hides `effect` of a size (0: small, 1: middle, 2: large) in a truck drawn from `seed`.
+/// Hides `effect` with a size (0: small, 1: medium, 2: large) in a random truck of `seed`.
 pub fn hide(layout: Layout, effect: &str, size: usize, background: Background, seed: u64) -> Case {
     hide_exactly(layout, effect, size, background, seed, &Exact::default())
 }
 
-/// Hides a large square in the springs, and a cube of `share` of its force at a stretch of 20 mm beside it.
+/// Hides a large quadratic term in the springs, and a cubic term with `share` of its force at a stretch of 20 mm.
 pub fn hide_square_and_cube(layout: Layout, share: f64, seed: u64) -> Case {
     let exact = Exact {
         cube: Some(share),
@@ -339,7 +341,7 @@ pub fn hide_square_and_cube(layout: Layout, share: f64, seed: u64) -> Case {
     )
 }
 
-/// A control (nothing hidden) of samples at `rate_hz`, a whole part of 2,000.
+/// Returns a control (no hidden effect) sampled at `rate_hz`, which must divide 2,000.
 pub fn hide_at(layout: Layout, rate_hz: f64, background: Background, seed: u64) -> Case {
     let exact = Exact {
         rate_hz: Some(rate_hz),
@@ -439,7 +441,7 @@ fn hide_exactly(
         Layout::Rear => ["k_sm", "c_sm", "k_sr", "c_sr"].map(String::from).to_vec(),
         _ => ["k_s", "c_s"].map(String::from).to_vec(),
     };
-    // Both sides of an axle are built alike.
+    // Both sides of an axle are equal.
     let laws: Vec<usize> = if n_sprung == 2 {
         vec![0, 1]
     } else {
@@ -462,7 +464,8 @@ fn hide_exactly(
                 law.c = of([2e3, 5e3, 9e3]);
             }
             "cubic_stiffness" => law.k3 = of([4e7, 1.2e8, 3.2e8]),
-            // At a stretch of 20 mm these shares of the linear rate; a square that reaches it would push the other way.
+            // Shares of the linear rate at a stretch of 20 mm. A quadratic term that reaches the linear rate would
+            // reverse the force.
             "quadratic_stiffness" => {
                 law.k2 = of([0.05, 0.1, 0.2]) * k / 0.02;
                 law.k3 = exact.cube.unwrap_or(0.0) * law.k2 / 0.02;
@@ -524,7 +527,7 @@ fn hide_exactly(
         _ => {}
     }
     if background == Background::Messy {
-        // A record that holds the other side measures its roll coupling.
+        // A record that includes the other side measures its roll coupling.
         if n_sprung == 2 && layout != Layout::Pair {
             m.roll = dice.draw_between(0.01, 0.03) * k;
         }
@@ -596,7 +599,7 @@ fn hide_exactly(
     if ["modulated_stiffness", "memory"].contains(&effect) {
         truth = "unknown".into();
     }
-    // What joins left and right of one axle is one effect, wherever it acts.
+    // A coupling between left and right of one axle is one effect, wherever it acts.
     if effect == "axle_coupling" && layout == Layout::Pair {
         truth = "roll_coupling".into();
     }

@@ -1,20 +1,20 @@
-//! Faults of a logger, made on finished records by means of their own: no code of the program.
+//! Adds faults of a logger to finished records. It uses no code of the program.
 
 use super::generator::{Background, Case, Layout, RATE_HZ, hide};
 use std::f64::consts::{PI, TAU};
 
-/// What a logger does to one channel.
+/// Fault of one channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fault {
-    /// Its clock is off by a share: reading(t) = truth(t - share t).
+    /// Relative clock error: reading(t) = truth(t - share t).
     Clock(f64),
-    /// So many samples are lost, at a share of the record.
+    /// Number of lost samples, and their position as a share of the record.
     Lost(usize, f64),
-    /// A first-order low-pass with a cut-off in Hz (bilinear transform).
+    /// First-order low-pass with a cut-off in Hz (bilinear transform).
     LowPass(f64),
-    /// A second-order Butterworth low-pass with a cut-off in Hz (bilinear transform).
+    /// Second-order Butterworth low-pass with a cut-off in Hz (bilinear transform).
     Butterworth(f64),
-    /// A line of a frequency in Hz and an amplitude.
+    /// Sine with a frequency in Hz and an amplitude.
     Hum(f64, f64),
 }
 
@@ -28,7 +28,7 @@ impl Fault {
         }
     }
 
-    /// The size that is to be found.
+    /// Returns the true size of the fault.
     pub fn size(self) -> f64 {
         match self {
             Self::Clock(share) => 1e6 * share,
@@ -72,7 +72,7 @@ impl Fault {
     }
 }
 
-/// A difference equation from rest at the first sample's level.
+/// Applies a difference equation that starts in equilibrium at the first sample.
 fn apply_filter(x: &mut [f64], b: [f64; 3], a: [f64; 2]) {
     let level = x[0];
     let (mut xs, mut ys) = ([0.0; 2], [0.0; 2]);
@@ -84,7 +84,7 @@ fn apply_filter(x: &mut [f64], b: [f64; 3], a: [f64; 2]) {
     }
 }
 
-/// x(t - share t), cubic between samples.
+/// Returns x(t - share t), interpolated by a cubic.
 fn stretch_time(x: &[f64], share: f64) -> Vec<f64> {
     let last = x.len() as isize - 1;
     let at = |i: isize| x[i.clamp(0, last) as usize];
@@ -93,7 +93,7 @@ fn stretch_time(x: &[f64], share: f64) -> Vec<f64> {
             let u = i as f64 * (1.0 - share);
             let (k, f) = (u.floor() as isize, u - u.floor());
             let (p, q, r, s) = (at(k - 1), at(k), at(k + 1), at(k + 2));
-            // Lagrange through four samples.
+            // Lagrange interpolation through four samples.
             p * (-f * (f - 1.0) * (f - 2.0) / 6.0)
                 + q * ((f + 1.0) * (f - 1.0) * (f - 2.0) / 2.0)
                 + r * (-(f + 1.0) * f * (f - 2.0) / 2.0)
@@ -102,7 +102,7 @@ fn stretch_time(x: &[f64], share: f64) -> Vec<f64> {
         .collect()
 }
 
-/// A healthy truck, one of its channels spoilt in both records.
+/// Returns a faultless truck with one faulty channel in both records.
 pub fn generate_faulty_case(
     layout: Layout,
     fault: Fault,

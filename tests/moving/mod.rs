@@ -1,4 +1,4 @@
-//! Generated dynamic cases as frames for the search.
+//! Converts generated dynamic cases to frames for the search.
 
 #![allow(dead_code)]
 
@@ -15,7 +15,7 @@ use strainbridge::units::UnitSystem;
 use strainbridge::vehicle::preset::{PresetRequest, vehicle};
 use strainbridge::vehicle::term::UnitNames;
 
-/// A record of channels with their samples.
+/// Returns a record of channels with their samples.
 pub fn record_of(rate_hz: f64, list: &[(String, Vec<f64>)]) -> Channels {
     let list = list
         .iter()
@@ -28,7 +28,7 @@ pub fn record_of(rate_hz: f64, list: &[(String, Vec<f64>)]) -> Channels {
     Channels::from_list(rate_hz, list).unwrap()
 }
 
-/// The frame that a job of the case would make.
+/// Returns the frame that corresponds to a job of the case.
 pub fn frame_of(case: &Case) -> MotionFrame {
     let model = match case.layout {
         Layout::Rear => "rear3",
@@ -68,13 +68,13 @@ pub fn frame_of(case: &Case) -> MotionFrame {
     }
 }
 
-/// How an answer compares with the truth.
+/// Comparison of an answer with the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Score {
     Exact,
-    /// The right effect at another channel, which the record can't tell from the right one: said so.
+    /// The correct effect at another channel, which the answer reports as indistinguishable from the correct channel.
     Group,
-    /// The right effect at another channel alone.
+    /// The correct effect at another channel only.
     Misplaced,
     Abstained,
     Missed,
@@ -82,7 +82,7 @@ pub enum Score {
     False,
 }
 
-/// The rule of `score.py`: families and channels count, `below-detectability` is none.
+/// Scores an answer by the rule of `score.py`: families and channels count, and `below-detectability` counts as none.
 pub fn score(case: &Case, outcome: &MotionOutcome) -> Score {
     let mut named: Vec<String> = match outcome.verdict {
         Verdict::Named => outcome
@@ -109,7 +109,7 @@ pub fn score(case: &Case, outcome: &MotionOutcome) -> Score {
     }
 }
 
-/// Whether the channel is the right one, or one of a group that is called a group.
+/// Tests whether the channel is the correct one, or one of a group that is reported as a group.
 fn at_place(case: &Case, outcome: &MotionOutcome) -> Score {
     let Some(channel) = &case.channel else {
         return Score::Exact;

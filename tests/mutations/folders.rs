@@ -1,4 +1,4 @@
-//! Jobs with all their files in memory, one of which is damaged, and the commands that answer them.
+//! Jobs with all their files in memory, one of them damaged, and the commands that read them.
 
 use super::{Context, InMemory, Job, Random, mutate};
 use std::fmt;
@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use strainbridge::host::outcome::Outcome;
 use strainbridge::{Faults, host};
 
-/// The files of a folder of `examples/`.
+/// Files of a folder of `examples/`.
 pub struct Folder {
     name: String,
     jobs: Vec<PathBuf>,
     files: Vec<(PathBuf, Vec<u8>)>,
 }
 
-/// A folder with a damaged file, and what is asked of it.
+/// Folder with a damaged file, and the command that reads it.
 pub struct Damaged {
     files: InMemory,
     bytes: Vec<u8>,
@@ -25,7 +25,7 @@ pub struct Damaged {
 type Ask = fn(&Path, &Context) -> Result<(), Faults>;
 type Command = (&'static str, Ask);
 
-/// Turns any answer into nothing; its serialisation must not fail either.
+/// Discards an answer. Its serialisation must not fail either.
 fn check_serialisation<A: host::outcome::Answer>(outcome: Outcome<A>) -> Result<(), Faults> {
     outcome.to_json(&host::outcome::Tables::new()).unwrap();
     Ok(())
@@ -39,8 +39,10 @@ macro_rules! command {
     };
 }
 
-/// Not so `identify` and `study`, whose answer takes seconds; `fleet`, which keeps results in a folder; `solve`, whose deck and solver
-/// `sensitivity`, `place` and `modes` go through; `strains` and `init`, which have no job.
+/// Commands that the test runs.
+///
+/// `identify` and `study` are omitted because they take seconds, and `fleet` because it stores results in a folder.
+/// `sensitivity`, `place` and `modes` test the deck and the solver of `solve`. `strains` and `init` have no job.
 const COMMANDS: [Command; 11] = [
     ("check", |job, cx| {
         check_serialisation(strainbridge::check(&[job.to_owned()], cx)?)
@@ -59,7 +61,7 @@ const COMMANDS: [Command; 11] = [
     }),
 ];
 
-/// Small jobs of every kind but those whose answer takes seconds.
+/// Returns small jobs of every kind, except those that take seconds.
 pub fn folders() -> Vec<Folder> {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     let all = ["bridge", "frame", "onboard"].map(|name| {
@@ -87,10 +89,10 @@ pub fn folders() -> Vec<Folder> {
 }
 
 impl Folder {
-    /// The folder with one file changed, a job of it and a command.
+    /// Returns the folder with one changed file, one of its jobs, and a command.
     pub fn damage_file(&self, random: &mut Random) -> Damaged {
         let job = &self.jobs[random.draw_below(self.jobs.len())];
-        // The job itself half the time, else any other file.
+        // In half of the cases the job itself, otherwise another file.
         let tables: Vec<&PathBuf> = self
             .files
             .iter()
@@ -110,7 +112,7 @@ impl Folder {
             }
             files = files.with_file(path, bytes);
         }
-        // What the job is made for, or any.
+        // The command for which the job is made, or any command.
         let stem = job.file_stem().map_or("", |s| s.to_str().unwrap());
         let own = COMMANDS.iter().find(|c| stem.starts_with(c.0));
         let command = match (own, random.draw_below(4)) {
@@ -128,12 +130,12 @@ impl Folder {
 }
 
 impl Damaged {
-    /// The bytes of the damaged file.
+    /// Returns the bytes of the damaged file.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// Asks; faults are as good as an answer.
+    /// Runs the command. Faults are a valid answer.
     pub fn run(&self) {
         let cx = Context::new(&self.files);
         let _ = (self.command.1)(&self.job, &cx);

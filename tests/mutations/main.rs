@@ -1,7 +1,8 @@
-//! Seeded damage to every kind of input: a reader or a command ends in an answer or an error, soon, in little memory, never in a panic.
+//! Seeded damage to every kind of input. A reader or a command must end in an answer or an error, without a panic,
+//! quickly and with little memory.
 //!
-//! `STRAINBRIDGE_MUTATIONS` sets how many (`.ci/long`: a million), `STRAINBRIDGE_FIRST_SEED` where to begin; every failure is printed with
-//! its seed, and the seed alone makes it again.
+//! `STRAINBRIDGE_MUTATIONS` sets their number (`.ci/long`: a million), and `STRAINBRIDGE_FIRST_SEED` the first seed.
+//! Every failure is printed with its seed, which is sufficient to reproduce it.
 
 mod folders;
 mod samples;
@@ -21,16 +22,16 @@ use strainbridge::measured::strain_file::{read_strain, wanted_columns};
 use strainbridge::model::Model;
 use strainbridge::series::record::{Options, open_record};
 
-/// Mutations where nothing else is asked for: some seconds.
+/// Default number of mutations, which takes some seconds.
 const USUAL: u64 = 4_000;
-/// The longest that a reader may take over a file of some kilobytes.
+/// Longest time of a reader for a file of some kilobytes.
 const LONGEST: Duration = Duration::from_secs(20);
-/// Memory that a reader may take beyond four times its file.
+/// Memory that a reader may use in addition to four times the size of its file.
 const ROOM: usize = 64 << 20;
-/// One in so many mutations is of a job's folder, which a command reads as a whole.
+/// One of this number of mutations is in the folder of a job, which a command reads as a whole.
 const COMMANDS: usize = 50;
 
-/// A small generator, the same everywhere (splitmix64; Steele, Lea, Flood 2014).
+/// Small generator that is equal on all platforms (splitmix64; Steele, Lea, Flood 2014).
 pub struct Random(u64);
 
 impl Random {
@@ -42,14 +43,15 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A number below `n`.
+    /// Returns a random number below `n`.
     pub fn draw_below(&mut self, n: usize) -> usize {
         (self.next() % n.max(1) as u64) as usize
     }
 }
 
-/// One change: a bit, a word that hurts, a number, a piece taken out, doubled, or a cut. Half of those of large files are near their
-/// beginning or their end, where lists and headers are.
+/// Makes one change: a bit, a critical word, a number, a removed or doubled piece, or a cut.
+///
+/// In large files, half of the changes are near the beginning or the end, where lists and headers are.
 pub fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
     const WORDS: [&[u8]; 20] = [
         &[0; 4],
@@ -102,7 +104,7 @@ pub fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
     }
 }
 
-/// The number in text at or after `at` becomes another one.
+/// Replaces the number in text at or after `at`.
 fn number(bytes: &mut Vec<u8>, at: usize, random: &mut Random) {
     const NUMBERS: [&str; 10] = [
         "0",
@@ -130,7 +132,7 @@ fn number(bytes: &mut Vec<u8>, at: usize, random: &mut Random) {
     bytes.splice(from..from + len, new.bytes());
 }
 
-/// Whether something is read.
+/// Reader of a file. It returns whether it could read something.
 type Reader = fn(&[u8]) -> bool;
 
 fn results(bytes: &[u8]) -> bool {
@@ -157,7 +159,7 @@ fn table(bytes: &[u8]) -> bool {
     read_table("t.csv", &String::from_utf8_lossy(bytes)).is_ok()
 }
 
-/// A record, every sample of it.
+/// Reads every sample of a record.
 fn record(bytes: &[u8]) -> bool {
     let Ok(record) = open_record(Arc::new(bytes.to_vec()), &Options::default()) else {
         return false;
@@ -167,7 +169,7 @@ fn record(bytes: &[u8]) -> bool {
         let mut rows = 0;
         let read = record.read(piece, &picks, &mut |block| {
             rows += block.rows;
-            // A damaged rate may promise more samples than anyone waits for.
+            // A damaged sample rate may result in a huge number of samples.
             if rows > 10_000_000 {
                 return ControlFlow::Break(());
             }
@@ -177,7 +179,7 @@ fn record(bytes: &[u8]) -> bool {
     })
 }
 
-/// A spreadsheet as the runs of a job.
+/// Reads a spreadsheet as the runs of a job.
 fn runs(bytes: &[u8]) -> bool {
     let job = samples::JOB.replace("s.csv", "s.xlsx");
     let files = InMemory::default()
@@ -216,7 +218,7 @@ fn samples() -> Vec<(&'static str, Vec<u8>, Reader)> {
     ]);
     #[cfg(all(feature = "report", feature = "xlsx"))]
     all.push(("xlsx", samples::xlsx(), runs));
-    // Files of real programs, where they are: of every kind the smaller ones.
+    // Files of real programs, if present. Of every kind, the smaller files.
     for (path, read) in [
         (
             "nastran/msc_bar_strain/pbarl_bar_100.op2",
@@ -248,12 +250,12 @@ fn every_sample_is_read_as_long_as_it_is_whole() {
     }
 }
 
-/// Lets the peak begin anew from what is taken now; where the system can't, it goes on rising.
+/// Resets the peak memory to the current memory. If the system does not support it, the peak continues to rise.
 fn forget_peak() {
     let _ = std::fs::write("/proc/self/clear_refs", "5");
 }
 
-/// The most memory that this process has taken since the peak was forgotten, bytes; `None` where the system doesn't tell.
+/// Returns the peak memory of this process since the last reset, in bytes, or `None` if the system does not report it.
 fn peak() -> Option<usize> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
@@ -261,15 +263,16 @@ fn peak() -> Option<usize> {
     Some(kib << 10)
 }
 
-/// Processor time of this process so far, or what a clock says where the system doesn't tell it: a machine that is busy with other things
-/// makes no reader slow.
+/// Returns the processor time of this process, or the elapsed time if the system does not report it.
+///
+/// Processor time does not depend on other load of the machine.
 fn read_processor_time() -> Duration {
     static START: std::sync::LazyLock<Instant> = std::sync::LazyLock::new(Instant::now);
-    /// Ticks of the system in a second, on every Linux there is.
+    /// Ticks per second, equal on every Linux.
     const TICKS: u64 = 100;
     let ticks = || -> Option<u64> {
         let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-        // User and system time are the 14th and 15th field, the name in brackets being the second.
+        // User and system time are the 14th and 15th field. The second field is the name in brackets.
         let fields = stat.rsplit_once(')')?.1.split_whitespace();
         let mut times = fields.skip(11);
         Some(times.next()?.parse::<u64>().ok()? + times.next()?.parse::<u64>().ok()?)
@@ -280,21 +283,21 @@ fn read_processor_time() -> Duration {
     )
 }
 
-/// What a mutation did wrong.
+/// Failure caused by a mutation.
 struct Failure {
     seed: u64,
     of: String,
     what: String,
 }
 
-/// Writes what was made of a seed where `STRAINBRIDGE_KEEP` says, to be looked at.
+/// Writes the damaged bytes of a seed to the file in `STRAINBRIDGE_KEEP`.
 fn keep(bytes: &[u8]) {
     if let Ok(path) = std::env::var("STRAINBRIDGE_KEEP") {
         std::fs::write(path, bytes).unwrap();
     }
 }
 
-/// Damages a sample or a file of a folder, and reads it; what went wrong, and how long it took.
+/// Damages a sample or a file of a folder, and reads it. Returns the failure and the time.
 fn try_one(
     seed: u64,
     samples: &[(&str, Vec<u8>, Reader)],
@@ -355,7 +358,7 @@ fn damaged_inputs_end_in_an_answer_or_an_error() {
             println!("seed {}, {}: {}", f.seed, f.of, f.what);
             failures.push(f.seed);
         }
-        // So that the seed of a signal, which ends all, is known to a few thousand.
+        // A signal ends the whole process, so this output limits the possible seeds to a few thousand.
         if (seed + 1) % 10_000 == 0 {
             println!(
                 "seeds up to {seed}: {} failures, the slowest {slowest:?}",

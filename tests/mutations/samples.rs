@@ -1,4 +1,4 @@
-//! Small whole files of every kind that is read.
+//! Small valid files of every supported kind.
 
 use nastran::op2::write_blocks;
 use nastran::results::{Analysis, Block, ElementType, Quantity, RowId, Rows, ShellForm, columns};
@@ -16,7 +16,7 @@ expected = 100.0\n[[gauge]]\nname = \"g1\"\nelement = 1\nsurface = \"top\"\ndire
 
 pub const TABLE: &str = "time,g1,g2\n0,1.5,-2\n0.01,1e3,\"4\"\n0.02,,nan\n0.03,2,#N/A\n0.05,1,1\n";
 
-/// Displacements of a subcase; lines are numbered in their last eight columns.
+/// Returns displacements of a subcase as a punch file. The last eight columns of each line contain its number.
 pub fn punch() -> Vec<u8> {
     let lines = [
         "$TITLE   = A",
@@ -37,7 +37,7 @@ pub fn punch() -> Vec<u8> {
     text.into()
 }
 
-/// Samples of each record.
+/// Number of samples of each record.
 const N: usize = 40;
 const STEP_S: f64 = 0.01;
 
@@ -83,7 +83,7 @@ pub fn op2() -> Vec<u8> {
     write_blocks([(&block, &rows), (&block, &rows)], [11, 22, 2026]).unwrap()
 }
 
-/// Displacements of two subcases as Nastran's HDF5 has them; the table in deflated chunks.
+/// Returns displacements of two subcases in Nastran's HDF5 format, in compressed chunks.
 pub fn h5() -> Vec<u8> {
     use hdf5_pure::{CompoundTypeBuilder, FileBuilder};
     let mut file = FileBuilder::new();
@@ -121,7 +121,7 @@ pub fn h5() -> Vec<u8> {
     file.finish().unwrap()
 }
 
-/// The binary record of strainbridge.
+/// Returns a binary record of strainbridge.
 pub fn binary_record() -> Vec<u8> {
     let mut out = Vec::new();
     binary::write_header(&mut out, &names(), N as u64, 0.0, STEP_S, 1.0).unwrap();
@@ -155,7 +155,7 @@ pub fn parquet() -> Vec<u8> {
     strainbridge::series::parquet::parquet_bytes(&names(), &[], [0.0, STEP_S], N, rows).unwrap()
 }
 
-/// MDF4 with two groups, deflated or not.
+/// Returns an MDF4 file with two groups, compressed or not.
 #[cfg(feature = "mdf")]
 pub fn mdf4(deflated: bool) -> Vec<u8> {
     let times: Vec<f64> = (0..N).map(|i| STEP_S * i as f64).collect();
@@ -171,7 +171,7 @@ pub fn mdf4(deflated: bool) -> Vec<u8> {
     out
 }
 
-/// TDMS of two segments: lists and samples, then samples alone.
+/// Returns a TDMS file with two segments: lists and samples, then only samples.
 ///
 /// # Reference
 /// National Instruments, TDMS File Format Internal Structure (2024).
@@ -213,7 +213,7 @@ pub fn tdms() -> Vec<u8> {
     out
 }
 
-/// Universal file, data sets 58 as text or 58b.
+/// Returns a universal file with data sets 58 as text or 58b.
 ///
 /// # Reference
 /// SDRC, Universal File Dataset 58 (Function at nodal DOF).
@@ -277,7 +277,7 @@ pub fn uff(binary: bool) -> Vec<u8> {
     out
 }
 
-/// A spreadsheet of runs.
+/// Returns a spreadsheet of runs.
 #[cfg(feature = "report")]
 pub fn xlsx() -> Vec<u8> {
     let mut book = rust_xlsxwriter::Workbook::new();

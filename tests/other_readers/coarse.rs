@@ -1,4 +1,4 @@
-//! A gauge dragged over a part that is drawn coarser than the model: it lands on the model.
+//! A gauge dragged over a part whose picture is coarser than the model. The gauge must land on the model.
 
 use crate::pointing::{folder, run_page_steps};
 use nastran::bdf::{MemoryLoader, read_deck};
@@ -12,7 +12,7 @@ use strainbridge::report::scene::{
     Field, FieldValues, Mark, PickTargets, Places, scene_of_model, scene_section,
 };
 
-/// Squares of 1 mm along x and y: more than a page draws one by one.
+/// Number of squares of 1 mm along x and y. A page cannot draw so many squares individually.
 const SIDE: u32 = 320;
 /// Height and length of the waves, mm.
 const HEIGHT: f64 = 1.0;
@@ -22,7 +22,7 @@ fn z(y: f64) -> f64 {
     HEIGHT * (TAU * y / LENGTH).cos()
 }
 
-/// A corrugated sheet, waves along y.
+/// Returns a corrugated sheet with waves along y.
 fn sheet() -> Model {
     let mut deck =
         String::from("SOL 101\nCEND\nBEGIN BULK\nMAT1,1,210000.,,.3,7.85-9\nPSHELL,1,1,2.0,1,,1\n");
@@ -45,7 +45,7 @@ fn a_gauge_that_is_dragged_over_a_coarser_picture_lands_on_the_elements() {
     let model = sheet();
     let mut scene = scene_of_model(&model, Places::default());
     scene.pointing = PickTargets::Gauges;
-    // Many fields to choose from make the picture coarser.
+    // A long list of fields makes the picture coarser.
     let field = |i: usize| Field {
         name: format!("F{i}"),
         unit: String::new(),
@@ -96,8 +96,9 @@ fn a_gauge_that_is_dragged_over_a_coarser_picture_lands_on_the_elements() {
             .map(|c| c.parse().unwrap())
             .collect();
         let off = cells[2] - z(cells[1]);
-        // Of a wave of radius 3.6 mm the middles of squares of 1 mm lie 0.034 mm off, and a plane through them as much again at its ends; the
-        // raster of the middles is 0.02 mm. What is drawn, 2 to 3 mm wide, lies up to 0.2 mm off.
+        // The wave has a radius of 3.6 mm. The middles of squares of 1 mm are 0.034 mm off, and a plane through them
+        // has the same error at its ends. The raster of the middles is 0.02 mm. The facets of the picture, 2 to 3 mm
+        // wide, are up to 0.2 mm off.
         assert!(off.abs() < 0.09, "{off} at {cells:?}");
     }
 }

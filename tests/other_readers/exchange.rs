@@ -1,4 +1,4 @@
-//! What `place` and `recover` write for others, and the records that others write.
+//! Files that `place` and `recover` write for other programs, and records from other programs.
 
 use crate::plate::{NoFiles, deck};
 use crate::python::read_by;
@@ -8,12 +8,12 @@ use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Samples of the record and the time between them, s.
+/// Number of samples of the record, and the time between them in s.
 const N: usize = 3000;
 const DT: f64 = 0.01;
 const LOADS: [&str; 3] = ["A.FZ", "B.FX", "C.MX"];
 
-/// Loads over time, N and N mm: whole periods of sines with different lengths, and a constant.
+/// Returns the loads at sample `i`, N and N mm: whole periods of sines of different lengths, and a constant.
 fn truth(i: usize) -> [f64; 3] {
     let t = i as f64 * DT;
     [
@@ -69,7 +69,8 @@ pub fn job(dir: &Path, name: &str, strain: &str) -> String {
     path.to_str().unwrap().to_owned()
 }
 
-/// A folder with the plate, its placed gauges, S of them, and strain that the truth makes: `strain.csv`, `runs.csv`.
+/// Creates a folder with the plate, its placed gauges, their S, and the strain of the true loads in `strain.csv` and
+/// `runs.csv`.
 pub fn plate(name: &str) -> PathBuf {
     let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
         .join("exchange")
@@ -167,8 +168,9 @@ fn pseudo_damage_of_sines_is_their_cycles_times_range_to_the_slope() {
     let result = strainbridge(&["recover", &job(&dir, "record.toml", "strain.csv")]);
     let damage = result["damage"].as_array().unwrap();
     assert_eq!(damage.len(), 3);
-    // 10 periods of 3 s and range 200: half a cycle less at the ends of the record, whose ranges are below half of that and count for
-    // 2 (1/2)^5 / 2 of a cycle or less. 20 periods of 1.5 s and range 100, from peak to a sample before the last peak.
+    // Load A has 10 periods of 3 s with a range of 200, minus half a cycle at the ends of the record. The ranges there
+    // are below half of 200 and count for 2 (1/2)^5 / 2 of a cycle at most. Load B has 20 periods of 1.5 s with a range
+    // of 100, from a peak to one sample before the last peak.
     let [a, b, c] = [0, 1, 2].map(|l| &damage[l]);
     let cycles = |d: &Value, range: f64| number(&d["damage"]) / range.powi(5);
     assert_near("A", cycles(a, 200.0), 9.5, 0.04);
@@ -179,7 +181,7 @@ fn pseudo_damage_of_sines_is_their_cycles_times_range_to_the_slope() {
         200.0,
         0.01,
     );
-    // Nothing but rounding in the constant moment.
+    // The constant moment has only rounding errors.
     assert!(number(&c["largest_range"]) < 1e-3 * 300.0);
     for d in [a, b] {
         assert!(number(&d["damage_low"]) < number(&d["damage"]));
@@ -327,7 +329,8 @@ fn records_that_rpc3_file_writes_give_the_same_loads_as_the_table_they_come_from
         return;
     };
     let expected = strainbridge(&["recover", &job(&dir, "csv.toml", "strain.csv")]);
-    // 16 bits of the largest strain leave some thousandths of the largest load; reals of 32 bits some millionths.
+    // 16 bits of the largest strain give an error of some thousandths of the largest load, 32-bit reals some
+    // millionths.
     for (file, allowed) in [("strain.rsp", 3e-3), ("strain_real.rsp", 3e-5)] {
         let got = strainbridge(&["recover", &job(&dir, "rpc.toml", file)]);
         assert_eq!(got["samples"], N);
@@ -349,7 +352,7 @@ fn records_that_pyarrow_and_asammdf_write_give_the_same_loads_as_the_table_they_
         return;
     }
     let expected = strainbridge(&["recover", &job(&dir, "csv.toml", "strain.csv")]);
-    // Reals of 64 bits are the same; of 32 bits off by some millionths.
+    // 64-bit reals give equal values. 32-bit reals give errors of some millionths.
     for (file, allowed) in [
         ("strain.parquet", 1e-9),
         ("strain_odd.parquet", 3e-5),
@@ -374,7 +377,7 @@ fn records_that_pyarrow_and_asammdf_write_give_the_same_loads_as_the_table_they_
         let values = numbers(&columns[*name]);
         assert_eq!(values.len(), N);
         for (i, v) in values.iter().enumerate() {
-            // Reals of 32 bits.
+            // 32-bit reals.
             assert_near(name, *v, truth(i)[l], 1e-6 * 300.0);
         }
     }

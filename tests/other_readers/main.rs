@@ -1,8 +1,10 @@
-//! Our files read by other programs, and theirs by us: pyNastran (OP2, bulk data), meshio (VTU), openpyxl (XLSX), rpc3-file (RPC III), pyarrow
-//! (Parquet), asammdf (MDF4); reports in Chromium, on paper by pypdf and PDFium.
+//! Other programs read the files of this project, and this project reads theirs.
 //!
-//! Needs Python with these packages: the interpreter named by STRAINBRIDGE_PYTHON, else `python3`. Skipped, said and
-//! counted as `support` does, where they are absent; with STRAINBRIDGE_TESTS=required that is a failure.
+//! The programs are pyNastran (OP2, bulk data), meshio (VTU), openpyxl (XLSX), rpc3-file (RPC III), pyarrow (Parquet)
+//! and asammdf (MDF4). Reports are opened in Chromium, and on paper by pypdf and PDFium.
+//!
+//! The tests need Python with these packages: the interpreter in STRAINBRIDGE_PYTHON, or `python3`. Without them,
+//! `support` counts and prints a skip, or fails if STRAINBRIDGE_TESTS=required is set.
 
 #![allow(clippy::print_stderr, reason = "says why it is skipped")]
 

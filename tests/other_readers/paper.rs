@@ -1,4 +1,4 @@
-//! `report.pdf` read by pypdf and drawn by PDFium: what those who sign must find in it.
+//! Reads `report.pdf` with pypdf and draws it with PDFium. The report must contain everything that a signature needs.
 
 use crate::exchange::{job, plate, strainbridge};
 use crate::python::read_by;
@@ -6,12 +6,13 @@ use crate::support;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// A title that a template language, JSON or a page could trip over.
+/// Title with characters that a template language, JSON or HTML could misread.
 const TITLE: &str = "Plate #panic(1) *b* $x$ _u_ <a> `c` @ref [r] {s} // & µε \u{4e2d} \u{202e}";
-/// The same on paper: no font here has the last but one, and the last would turn the direction of reading.
+/// The title on paper. No font here has the last character but one, and the last one would change the reading
+/// direction.
 const SHOWN: &str = "Plate #panic(1) *b* $x$ _u_ <a> `c` @ref [r] {s} // & µε [U+4E2D] [U+202E]";
 
-/// The job of `plate` as `name` under the nasty title.
+/// Writes the job of `plate` as `name` with this title.
 fn write_titled_job(dir: &Path, name: &str) -> PathBuf {
     let path = PathBuf::from(job(dir, name, "strain.csv"));
     let text = std::fs::read_to_string(&path).unwrap();
@@ -19,7 +20,7 @@ fn write_titled_job(dir: &Path, name: &str) -> PathBuf {
     path
 }
 
-/// A job on forces at the corners of the plate; the names of its runs are no easier than its title.
+/// Writes a job for forces at the corners of the plate. The names of its runs have special characters too.
 fn on_four_wheels(dir: &Path) -> String {
     let runs = "run,W1.FZ,W3.FZ,W13.FZ,W15.FZ\nR#1 *b* <i>,13.1,13.2,13.05,13.15\n\"a, b $\",26.1,26.2,26.05,26.15\n";
     std::fs::write(dir.join("wheels.csv"), runs).unwrap();
@@ -35,7 +36,7 @@ fn on_four_wheels(dir: &Path) -> String {
             [payload]\ngrid = 8\nposition = \"known\"\nuse = [\"reactions\"]\n"
 }
 
-/// What is read of the `report.pdf` of jobs that ran; `None`, with a message, without Python.
+/// Returns the content of `report.pdf` of completed jobs, or `None` with a message if Python is missing.
 fn read(jobs: &[&Path]) -> Option<Vec<Value>> {
     let reports: Vec<PathBuf> = jobs
         .iter()
@@ -46,20 +47,21 @@ fn read(jobs: &[&Path]) -> Option<Vec<Value>> {
     Some(paths.iter().map(|p| seen[*p].clone()).collect())
 }
 
-/// Text without spaces and breaks of lines: where a line ends is of no interest.
+/// Returns the text without spaces and line breaks, as the position of line breaks does not matter.
 fn remove_whitespace(text: &str) -> String {
     let kept = |c: &char| !c.is_whitespace() && *c != '\u{200b}';
     text.chars().filter(kept).collect()
 }
 
-/// Bare text of all pages.
+/// Returns the text of all pages without white space.
 fn text_of(paper: &Value) -> String {
     let pages = paper["pages"].as_array().unwrap();
     let all: Vec<&str> = pages.iter().filter_map(|p| p["text"].as_str()).collect();
     remove_whitespace(&all.join(" "))
 }
 
-/// What holds of every report: A4, nothing blank, numbered pages, program, units, hashes and findings as in `result.json`.
+/// Tests the properties of every report: A4, no blank page, page numbers, program, units, hashes, and findings as in
+/// `result.json`.
 fn is_sound(paper: &Value, result: &Value, words: &[&str]) {
     let text = text_of(paper);
     let pages = paper["pages"].as_array().unwrap();
@@ -67,9 +69,9 @@ fn is_sound(paper: &Value, result: &Value, words: &[&str]) {
     for (i, page) in pages.iter().enumerate() {
         let mut size = [0, 1].map(|k| page["size"][k].as_f64().unwrap());
         size.sort_by(f64::total_cmp);
-        // A4 in points, upright or turned.
+        // A4 in points, portrait or landscape.
         assert!((size[0] - 595.28).abs() < 0.1 && (size[1] - 841.89).abs() < 0.1);
-        // Header and footer alone ink less than half a percent.
+        // Header and footer alone cover less than half a percent.
         assert!(page["inked"].as_f64().unwrap() > 0.01, "page {i}");
         let number = format!("page {} of {}", i + 1, pages.len());
         assert!(
@@ -110,7 +112,7 @@ fn is_sound(paper: &Value, result: &Value, words: &[&str]) {
     }
 }
 
-/// A value of `result.json` with one digit after the point, as the plan shows places and angles.
+/// Formats a value of `result.json` with one decimal, as the plan shows places and angles.
 fn format_tenths(v: &Value) -> String {
     format!("{:.1}", v.as_f64().unwrap())
 }
@@ -123,7 +125,7 @@ fn plan_and_payload_on_paper_state_inputs_units_and_the_numbers_of_result_json_a
     let weighed = dir.join("payload.toml");
     std::fs::write(&weighed, on_four_wheels(&dir)).unwrap();
     let weights = strainbridge(&["payload", weighed.to_str().unwrap()]);
-    // The same inputs twice are the same file, under another name.
+    // Equal inputs give an equal file with another name.
     let bytes = std::fs::read(plan.with_extension("out").join("report.pdf")).unwrap();
     strainbridge(&[
         "place",
@@ -150,7 +152,7 @@ fn plan_and_payload_on_paper_state_inputs_units_and_the_numbers_of_result_json_a
     }
     let words: Vec<&str> = rows.iter().map(String::as_str).chain(signed).collect();
     is_sound(&papers[0], &placed, &words);
-    // Forces at the corners say sum and, being alike, that it stands in the middle.
+    // The forces at the corners give the sum. As they are equal, the payload is in the middle.
     let runs = weights["payload"].as_array().unwrap();
     let mut rows = vec![SHOWN.to_owned()];
     for (r, force) in runs.iter().zip(["52.50", "104.5"]) {

@@ -1,9 +1,9 @@
-//! A folded plate, small enough to look at.
+//! A small folded plate.
 
 use nastran::bdf::{IncludeRequest, LoadedFile, Loader};
 use std::fmt::Write;
 
-/// No INCLUDE.
+/// Loader for a deck without INCLUDE.
 pub struct NoFiles;
 
 impl Loader for NoFiles {
@@ -12,7 +12,7 @@ impl Loader for NoFiles {
     }
 }
 
-/// Quadrilaterals with a fold, two triangles, a force at two grids, one a subcase.
+/// Returns quadrilaterals with a fold, two triangles, and forces at two grids, each in a subcase.
 pub fn deck() -> String {
     let mut deck = String::from(
         "SOL 101\nCEND\nSUBCASE 1\n  LOAD = 1\nSUBCASE 2\n  LOAD = 2\nBEGIN BULK\nPARAM,INREL,-2\n\

@@ -1,4 +1,7 @@
-//! A plan made by pointing at a report: real mouse and touch events in Chromium, the lines that the page writes, the layout that they give.
+//! Plans by pointing at a report.
+//!
+//! The tests use real mouse and touch events in Chromium. They compare the lines that the page writes, and the layout
+//! from these lines.
 
 use crate::exchange::strainbridge;
 use crate::python::read_by;
@@ -8,7 +11,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Squares along x and y of the plate, mm of an edge.
+/// Squares along x and y of the plate, and their edge in mm.
 const NX: u32 = 20;
 const NY: u32 = 10;
 const EDGE: f64 = 10.0;
@@ -22,7 +25,8 @@ pub fn folder(name: &str) -> PathBuf {
     dir
 }
 
-/// A flat plate: element `1 + 20 j + i` is the square from (10 i, 10 j); property 1 left of x = 100, property 2 right of it.
+/// Returns a flat plate. Element `1 + 20 j + i` is the square from (10 i, 10 j). Property 1 is left of x = 100,
+/// property 2 right of it.
 fn flat_plate_deck() -> String {
     let mut deck = String::from(
         "SOL 101\nCEND\nBEGIN BULK\nPARAM,INREL,-2\nMAT1,1,210000.,,.3,7.85-9\nPSHELL,1,1,2.0,1,,1\nPSHELL,2,1,2.0,1,,1\n",
@@ -50,8 +54,9 @@ fn flat_plate_deck() -> String {
     deck
 }
 
-/// A square tube of squares of 10 mm: walls 1 (z = 0), 2 (y = 500), 3 (z = 500), 4 (y = 0), rings of 200 from x = 0;
-/// element `1 + 200 i + 50 (wall - 1) + k`.
+/// Returns a square tube with squares of 10 mm and rings of 200 squares from x = 0.
+///
+/// The walls are 1 (z = 0), 2 (y = 500), 3 (z = 500) and 4 (y = 0). Element ids are `1 + 200 i + 50 (wall - 1) + k`.
 fn tube(rings: u32) -> String {
     let mut deck = String::from("SOL 101\nCEND\nBEGIN BULK\nMAT1,1,210000.,,.3,7.85-9\n");
     for wall in 1..=4 {
@@ -106,7 +111,7 @@ expected = 100.0
 "#;
 const PLACEMENT: &str = "[placement]\ngauges = 6\nspacing = 8.0\n";
 
-/// What the page says after these steps; `None` without Chromium.
+/// Returns the output of the page after these steps, or `None` without Chromium.
 pub fn run_page_steps(report: &Path, width: u32, steps: &Value) -> Option<Value> {
     let plan = report.with_file_name(format!("steps-{width}.json"));
     let text = json!({ "width": width, "touch": width < 600, "steps": steps }).to_string();
@@ -118,7 +123,7 @@ pub fn run_page_steps(report: &Path, width: u32, steps: &Value) -> Option<Value>
     Some(said)
 }
 
-/// Ids of a list of the page's lines, by key.
+/// Returns the ids of a list in the lines of the page, by key.
 fn ids(lines: &str, key: &str) -> BTreeSet<u32> {
     let table: toml::Table = lines.parse().unwrap();
     let word = |w: &str| w.trim().parse::<u32>().unwrap();
@@ -143,8 +148,10 @@ fn lines(said: &Value, k: usize) -> &str {
     said["lines"][k][0].as_str().unwrap()
 }
 
-/// Picked on the page of `place` or `check`: property 1 allowed, of its row at y = 55 six elements brushed out, of two elements at its corner
-/// both wanted by a box. A stroke that is undone leaves nothing.
+/// Steps on the page of `place` or `check`.
+///
+/// They allow property 1 and remove six elements of its row at y = 55 with the brush. A box requests two elements at
+/// its corner. A stroke that is undone has no effect.
 fn steps() -> Value {
     json!([
         ["view", "z"],
@@ -169,7 +176,7 @@ fn steps() -> Value {
     ])
 }
 
-/// The layout of the job with `more` in it, by (element, place).
+/// Returns the layout of the job with the additional lines `more`, as (element, place).
 fn layout(dir: &Path, name: &str, more: &str) -> Vec<(u32, [f64; 3])> {
     let job = dir.join(format!("{name}.toml"));
     std::fs::write(&job, format!("{JOB}{PLACEMENT}{more}")).unwrap();
@@ -201,7 +208,7 @@ fn lines_written_by_pointing_with_mouse_and_finger_give_the_layout_that_was_poin
     let left: BTreeSet<u32> = (0..NY).flat_map(|j| row(0, NX / 2, j)).collect();
     let brushed: BTreeSet<u32> = row(2, 8, 5).collect();
     let wanted: BTreeSet<u32> = row(8, 10, 8).collect();
-    // Without any rule the layout does otherwise: what follows shows something.
+    // Without any rule, the layout is different, so the following comparison is significant.
     assert!(free.iter().any(|g| !left.contains(&g.0)));
     for (report, width) in [
         (dir.join("free.out/report.html"), 1280),
@@ -218,7 +225,7 @@ fn lines_written_by_pointing_with_mouse_and_finger_give_the_layout_that_was_poin
         assert_eq!(ids(last, "wanted_elements"), wanted);
         let allowed: BTreeSet<u32> = left.difference(&brushed).copied().collect();
         assert_eq!(ids(last, "elements"), allowed);
-        // The file that is saved holds the same lines; the job names it, or has the lines itself.
+        // The saved file contains the same lines. The job names the file or contains the lines.
         assert_eq!(said["saved"]["name"], "picked.toml");
         assert_eq!(said["saved"]["text"], last);
         std::fs::write(dir.join("picked.toml"), last).unwrap();
@@ -234,14 +241,14 @@ fn lines_written_by_pointing_with_mouse_and_finger_give_the_layout_that_was_poin
             let on = elements.iter().filter(|g| *g == e).count();
             assert!(on >= 1, "{e} of {elements:?}");
         }
-        // Two fingers (with a mouse the wheel) come nearer and don't turn.
+        // Two fingers, or the wheel of a mouse, zoom in and do not rotate.
         let [before, after] = [0, 1].map(|k| said["camera"][k].clone());
         assert!(after[0].as_f64() < before[0].as_f64());
         assert_eq!(before[1], after[1]);
     }
 }
 
-/// S of the one gauge of the job, microstrain by load.
+/// Returns S of the single gauge of the job, microstrain by load.
 fn sensitivity(dir: &Path, gauges: &str) -> Vec<f64> {
     let job = dir.join("moved.toml");
     std::fs::write(&job, format!("{JOB}{gauges}")).unwrap();
@@ -249,7 +256,7 @@ fn sensitivity(dir: &Path, gauges: &str) -> Vec<f64> {
         .args(["sensitivity", job.to_str().unwrap()])
         .output()
         .unwrap();
-    // One gauge does not tell three loads: a finding, and S.
+    // One gauge does not determine three loads, so there is a finding, and S.
     assert_eq!(done.status.code(), Some(1));
     let table = std::fs::read_to_string(dir.join("moved.out/sensitivity.csv")).unwrap();
     let row = table.lines().nth(1).unwrap();
@@ -282,19 +289,21 @@ fn a_gauge_that_is_dragged_is_written_with_the_place_on_the_surface_where_it_was
         let of = |name: &str| cells[head.split(',').position(|h| h == name).unwrap()];
         let number = |name: &str| of(name).parse::<f64>().unwrap();
         assert_eq!(of("name"), "P01");
-        // Let go within two pixels of the place, on the shell's middle surface (z = 0; the picture's points have steps of 2e-4 mm).
+        // The gauge is dropped within two pixels of the place, on the middle surface of the shell (z = 0). The points
+        // of the picture have steps of 2e-4 mm.
         let pixel = said["gauges"][0][0]["pixel"].as_f64().unwrap();
         let away = (number("x") - x).hypot(number("y") - y);
         assert!(away < 2.0 * pixel, "{away} of {pixel}");
         assert!(number("z").abs() < 1e-3, "{row}");
-        // Seen from above it sits on the top; its axis lies in the plate.
+        // In the view from above, the gauge is on the top. Its axis is in the plate.
         assert_eq!(of("surface"), "top");
         let length = number("dir_x").hypot(number("dir_y"));
         assert!(
             (length - 1.0).abs() < 1e-5 && number("dir_z").abs() < 1e-6,
             "{row}"
         );
-        // As the job's table of gauges the lines mean that place: two pixels are a millimetre, over which S changes by less than 2 % here.
+        // As table of gauges of the job, the lines give the same place. Two pixels are a millimetre, over which S
+        // changes by less than 2 % here.
         let axis = ["dir_x", "dir_y", "dir_z"].map(of).join(", ");
         let stated = format!(
             "[[gauge]]\nname = \"P01\"\nposition = [{x}, {y}, 0.0]\nsurface = \"top\"\ndirection = [{axis}]\n"
@@ -307,7 +316,7 @@ fn a_gauge_that_is_dragged_is_written_with_the_place_on_the_surface_where_it_was
         for (a, b) in moved.iter().zip(&there) {
             assert!((a - b).abs() < 0.02 * most, "{moved:?} {there:?}");
         }
-        // The others stay where they were.
+        // The other gauges do not move.
         let all = said["gauges"].as_array().unwrap();
         for (a, b) in all[0]
             .as_array()
@@ -332,7 +341,8 @@ fn on_eighty_thousand_elements_that_are_drawn_coarser_brush_and_box_take_the_sam
     picked_on_a_tube(400, 2_000_000);
 }
 
-/// A stroke, a box and a box through all on a tube of so many rings, whose page has at most so many bytes.
+/// Selects elements by a stroke, a box and a box through all layers on a tube with this number of rings. The page has
+/// at most `bytes` bytes.
 fn picked_on_a_tube(rings: u32, bytes: u64) {
     let dir = folder(&format!("tube-{rings}"));
     let deck = dir.join("tube.bdf");
@@ -348,7 +358,8 @@ fn picked_on_a_tube(rings: u32, bytes: u64) {
     let report = out.join("report.html");
     assert!(std::fs::metadata(&report).unwrap().len() < bytes);
     let length = EDGE * f64::from(rings);
-    // From above: wall 3 alone is seen. A stroke along its middle, a box about all, a box through all.
+    // From above, only wall 3 is visible. The steps are a stroke along its middle, a box around everything, and a box
+    // through all layers.
     let all = json!(["drag", [-20, -100, 500], [length + 20.0, 600, 500]]);
     let steps = json!([
         ["view", "z"],
@@ -372,10 +383,11 @@ fn picked_on_a_tube(rings: u32, bytes: u64) {
             return;
         };
         let brushed = ids(lines(&said, 0), "exclude_elements");
-        // The squares whose middles the stroke passes over: 25th of wall 3 from y = 500, rings 50 to 199.
+        // The stroke passes over the middles of these squares: the 25th of wall 3 from y = 500, rings 50 to 199.
         let under: Vec<u32> = (50..200).map(|i| 1 + 200 * i + 100 + 24).collect();
         assert!(under.iter().all(|e| brushed.contains(e)), "{brushed:?}");
-        // Nothing but wall 3, and nothing further than the brush and a pixel: 3 pixels of the length and a fifth in 1140 or 350.
+        // Only wall 3, and nothing beyond the brush and one pixel: 3 pixels of 1.2 times the length in 1140 or 350
+        // pixels.
         let reach = 3.0 * 1.2 * length / if width == 1280 { 1140.0 } else { 350.0 } + EDGE;
         for e in &brushed {
             let (ring, k) = ((e - 1) / 200, (e - 1) % 200);

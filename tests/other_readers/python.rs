@@ -5,10 +5,11 @@ use serde_json::Value;
 use std::process::Command;
 use std::sync::Mutex;
 
-/// One browser at a time: they draw in software.
+/// One browser at a time, as they draw in software.
 static BROWSER: Mutex<()> = Mutex::new(());
 
-/// The JSON object that a script prints; `None`, said and counted, where Python, a package or the browser is absent.
+/// Returns the JSON object that a script prints. If Python, a package or the browser is missing, prints and counts a
+/// skip and returns `None`.
 pub fn read_by(script: &str, arguments: &[&str]) -> Option<Value> {
     let opens = ["open_report.py", "point_report.py"].contains(&script);
     let _alone = opens.then(|| {

@@ -1,4 +1,4 @@
-//! Records that other programs write, read a piece at a time.
+//! Records from other programs, read piece by piece.
 
 use crate::python::read_by;
 use serde_json::Value;
@@ -82,11 +82,11 @@ fn records_that_nptdms_pyuff_asammdf_and_pandas_write_hold_the_samples_they_were
         }
         let values = rows(&record, &columns);
         assert_eq!(values.len(), 3 * n, "{file}");
-        // Half a count of .01; reals of 32 bits of some two hundred; twelve digits of text.
+        // Half a count of .01, 32-bit reals of about two hundred, twelve digits of text.
         let allowed = match file {
             "counts.mf4" => 0.00501,
             "scaled.tdms" => 0.00501,
-            // Half of the last bit of a real of 16 bits up to 256.
+            // Half of the last bit of a 16-bit real up to 256.
             "half.parquet" => 0.0625,
             _ => 1e-9,
         };
@@ -99,7 +99,8 @@ fn records_that_nptdms_pyuff_asammdf_and_pandas_write_hold_the_samples_they_were
                 );
             }
         }
-        // Cut anywhere: a fault when it is opened or read, not a shorter record. A table of text may end with any line.
+        // A record cut at any place gives a fault when it is opened or read, not a shorter record. A text table may end
+        // with any line.
         for part in 1..10 {
             let cut = bytes.get(..bytes.len() * part / 10).unwrap().to_vec();
             let Ok(record) = open_record(Arc::new(cut), &options()) else {

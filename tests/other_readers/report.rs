@@ -1,4 +1,4 @@
-//! `report.html` in a real browser: Chromium, headless, wide and at the width of a phone.
+//! `report.html` in a real browser: headless Chromium, on a wide screen and with the width of a phone.
 
 use crate::exchange::{job, plate, strainbridge};
 use crate::python::read_by;
@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Opens reports and gives what was seen by file and width; `None` without Chromium.
+/// Opens reports and returns the observations by file and width, or `None` without Chromium.
 fn open_reports(reports: &[&Path]) -> Option<Vec<Value>> {
     let paths: Vec<&str> = reports.iter().map(|p| p.to_str().unwrap()).collect();
     let seen = read_by("open_report.py", &paths)?;
@@ -14,11 +14,11 @@ fn open_reports(reports: &[&Path]) -> Option<Vec<Value>> {
     Some(paths.iter().flat_map(by_width).collect())
 }
 
-/// What holds of every report.
+/// Tests the properties of every report.
 fn is_sound(page: &Value, titles: &[&str], figures: &[&str]) {
     assert_eq!(page["errors"], serde_json::json!([]));
     assert_eq!(page["requests"], serde_json::json!([]));
-    // Nothing stands out to the side, so a phone needs no scrolling there.
+    // No element extends beyond the screen, so a phone needs no horizontal scrolling.
     assert_eq!(page["wider"], 0);
     assert_eq!(page["overlaps"], serde_json::json!([]));
     assert_eq!(page["rules"], serde_json::json!([]));
@@ -31,12 +31,12 @@ fn is_sound(page: &Value, titles: &[&str], figures: &[&str]) {
         assert!(drawn.iter().any(|f| f["label"] == *label), "{label}");
     }
     for figure in drawn {
-        // A sentence of its own at least.
+        // At least a full sentence.
         assert!(
             figure["caption"].as_str().unwrap().len() > 30,
             "no caption: {figure}"
         );
-        // An empty picture has one colour; thin lines on white cover about a hundredth.
+        // An empty picture has one colour. Thin lines on white cover about a hundredth.
         assert!(figure["other"].as_f64().unwrap() > 0.005, "{figure}");
         assert!(figure["colours"].as_u64().unwrap() > 20, "{figure}");
         let (label, frame) = (figure["label"].as_str().unwrap(), &figure["frame"]);
@@ -54,11 +54,13 @@ fn is_sound(page: &Value, titles: &[&str], figures: &[&str]) {
     }
 }
 
-/// Parts of a first screen: sentence, key numbers, picture, table of the result.
+/// Parts of the first screen: sentence, key numbers, picture, table of the result.
 const PARTS: [&str; 4] = ["verdict", "numbers", "picture", "table"];
 
-/// The first screen of 1280 x 800 shows all its parts, with JavaScript on and off. The first screen of a phone shows sentence and numbers; picture and
-/// table are no wider than the phone.
+/// Tests the first screen.
+///
+/// With 1280 x 800 it shows all parts, with JavaScript on and off. On a phone it shows sentence and numbers, and
+/// picture and table are no wider than the phone.
 fn answers_first(page: &Value, has_picture: bool) {
     let shown = |seen: &Value, size: [f64; 2], parts: &[&str]| {
         for part in parts.iter().filter(|p| has_picture || **p != "picture") {
@@ -80,7 +82,7 @@ fn answers_first(page: &Value, has_picture: bool) {
             shown(still, [1280.0, 800.0], &PARTS);
             assert_eq!(still["summary"], page["first"]["summary"]);
             assert_eq!(still["empty"], 0);
-            // The first frame of every figure is a picture.
+            // Every figure has a picture without JavaScript.
             assert_eq!(still["without_picture"], serde_json::json!([]));
             assert_eq!(still["overlaps"], serde_json::json!([]));
             assert!(!has_picture || still["pictures"].as_u64() >= Some(1));
@@ -92,14 +94,15 @@ fn answers_first(page: &Value, has_picture: bool) {
     }
 }
 
-/// A gauge that is pointed at says its name. Those behind the structure can't be hit: one of the first dozen will do.
+/// Tests that a gauge shows its name under the pointer. Gauges behind the structure cannot be hit, so one of the first
+/// dozen is enough.
 fn names_a_gauge(page: &Value) {
     let picked = page["picked"].as_array().unwrap();
     let hit = |p: &Value| p[1].as_str().unwrap().starts_with(p[0].as_str().unwrap());
     assert!(picked.iter().any(hit), "{picked:?}");
 }
 
-/// The model says its size, has its views, and leaves the wheel to the page until it is clicked.
+/// Tests that the model states its size, has its views, and does not capture the wheel before a click.
 fn has_a_model(page: &Value) {
     let size = page["size"].as_str().unwrap();
     assert!(
@@ -124,7 +127,7 @@ fn has_a_model(page: &Value) {
     );
 }
 
-/// The folder of the answer of a command on files of a folder of `examples/`.
+/// Returns the output folder of a command on files of a folder of `examples/`.
 fn folder_of(command: &str, folder: &str) -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR"))
         .join("pages")
@@ -132,7 +135,7 @@ fn folder_of(command: &str, folder: &str) -> PathBuf {
         .join(folder)
 }
 
-/// Runs a command on files of a folder of `examples/`; where its page lies.
+/// Runs a command on files of a folder of `examples/`, and returns the path of its page.
 fn page_of(command: &str, folder: &str, files: &[&str]) -> PathBuf {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     let out = folder_of(command, folder);
@@ -150,7 +153,7 @@ fn page_of(command: &str, folder: &str, files: &[&str]) -> PathBuf {
     out.join("report.html")
 }
 
-/// Bytes that a page without a model may have; those here with one, of a few hundred elements, have no more.
+/// Largest size of a page without a model. Pages with a model of a few hundred elements have the same limit here.
 const MOST_BYTES: f64 = 1e6;
 
 #[test]
@@ -194,7 +197,7 @@ fn every_kind_of_page_opens_wide_and_on_a_phone_without_errors_requests_or_texts
     for (i, page) in seen.iter().enumerate() {
         let (command, folder, _) = pages[i / 2];
         is_sound(page, &[], &[]);
-        // `verify` compares bytes and numbers: a table of its checks, and no picture.
+        // `verify` compares bytes and numbers. Its page has a table of its checks and no picture.
         answers_first(page, command != "verify");
         assert!(
             page["bytes"].as_f64().unwrap() < MOST_BYTES,
@@ -213,7 +216,8 @@ fn every_kind_of_page_opens_wide_and_on_a_phone_without_errors_requests_or_texts
     }
 }
 
-/// The demo's page: a card a step, each with a picture that can be seen and no text of a terminal; true loads next to their intervals.
+/// Tests the page of the demo: one card per step, each with a visible picture and no terminal text, and true loads next
+/// to their intervals.
 #[test]
 fn the_page_of_the_demo_has_a_picture_in_each_card_and_the_truth_beside_the_intervals() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("demo");
@@ -249,7 +253,7 @@ fn the_page_of_the_demo_has_a_picture_in_each_card_and_the_truth_beside_the_inte
 
 const SCENE: &str = "the model in three dimensions";
 
-/// A finding that names a gauge shows it in every picture while its name has the focus.
+/// While the gauge name in a finding has the focus, every picture shows the gauge.
 #[test]
 fn a_finding_shows_the_gauge_that_it_names() {
     let dir = plate("shown");
@@ -277,7 +281,7 @@ fn a_finding_shows_the_gauge_that_it_names() {
         let of_gauge = of_gauge.unwrap_or_else(|| panic!("{gauge}: {shown:?}"));
         let said = of_gauge["said"].as_str().unwrap();
         assert!(said.starts_with(&format!("{gauge}: ")), "{said}");
-        // A label of the first screen and a label of the model.
+        // One label of the first screen and one label of the model.
         assert_eq!(of_gauge["lit"], serde_json::json!([gauge, gauge]));
         assert_eq!(of_gauge["after"], serde_json::json!([]));
     }

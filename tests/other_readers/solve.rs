@@ -1,4 +1,4 @@
-//! What `solve` writes: pyNastran (OP2) and meshio (VTU).
+//! Files that `solve` writes, read by pyNastran (OP2) and meshio (VTU).
 
 use crate::plate::{NoFiles, deck};
 use crate::python::read_by;
@@ -20,7 +20,7 @@ fn list(v: &Value) -> &[Value] {
     v.as_array().map_or(&[], Vec::as_slice)
 }
 
-/// Rows [element, grid, fibre, exx, eyy, gxy] of one subcase against our strain.
+/// Compares rows [element, grid, fibre, exx, eyy, gxy] of one subcase with the strain of the solution.
 fn compare_strain(model: &Model, case: &CaseResult, rows: &[Value]) -> usize {
     let strains = case.shells.centre.iter().flatten().flatten();
     let largest = strains.fold(0.0_f64, |a, v| a.max(v.abs()));
@@ -103,7 +103,7 @@ fn pynastran_and_meshio_read_what_solve_writes() {
         }
         let vtu = &read["vtu"];
         let name = format!("strain top {}", case.subcase);
-        // Quadrilaterals and triangles alternate in no other order than the model's.
+        // Quadrilaterals and triangles have the order of the model.
         let strain: Vec<&Value> = list(&vtu["cell_data"][&name])
             .iter()
             .flat_map(list)

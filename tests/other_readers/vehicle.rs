@@ -1,4 +1,4 @@
-//! Accelerations in the files of other programs.
+//! Accelerations in files of other programs.
 
 use crate::python::read_by;
 use crate::support;
@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Parameters that `identify` finds with the record in `data` and the held-out one in `holdout`.
+/// Returns the parameters that `identify` finds with the record in `data` and the held-out record in `holdout`.
 fn identify_parameters(dir: &Path, text: &str, ending: &str) -> Vec<Value> {
     let job = dir.join(format!("job_{ending}.toml"));
     let text = text
@@ -61,7 +61,7 @@ fn accelerations_in_rpc_iii_parquet_and_mdf4_give_the_parameters_of_the_table() 
                 assert_eq!(a, b, "{ending} {}", e["name"]);
                 continue;
             };
-            // Reals of 32 bits move an estimate far less than its own uncertainty.
+            // 32-bit reals change an estimate far less than its uncertainty.
             let allowed = 0.01 * sigma.unwrap_or(b.abs());
             assert!(
                 (a - b).abs() <= allowed,

@@ -1,4 +1,4 @@
-//! The unit-load decks of three real decks, read back by our reader and, where Python has it, by pyNastran.
+//! Unit-load decks of three real decks. The reader of the project reads them again, and pyNastran too if Python has it.
 
 use super::command::{Outcome, find_shared_path, run, scratch};
 use crate::support::skip;
@@ -7,21 +7,23 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A deck of the reference material.
+/// Deck of the reference material.
 struct Source {
     case: &'static str,
     units: &'static str,
-    /// A grid for each of two loads.
+    /// Grid for each of two loads.
     grids: [u32; 2],
-    /// Exit code, and what is an error: the cases are written all the same.
+    /// Exit code, and codes of errors. The program writes the cases in spite of these errors.
     code: i32,
     errors: &'static [&'static str],
-    /// Warnings on the deck.
+    /// Expected warnings about the deck.
     warnings: &'static [&'static str],
 }
 
-/// Densities of d173 are in kg/mm3, a thousand times those of t/mm3; those of the ring (0.5) and of the satellite (0.101) are weights without
-/// WTMASS, and the ring's modulus is 1000 psi.
+/// Decks with unusual units.
+///
+/// Densities of d173 are in kg/mm3, a thousand times those in t/mm3. The densities of the ring (0.5) and of the
+/// satellite (0.101) are weights without WTMASS. The modulus of the ring is 1000 psi.
 const DECKS: [Source; 3] = [
     Source {
         case: "msc64_two_cases",
@@ -63,7 +65,7 @@ impl Loader for Folder {
     }
 }
 
-/// Name of the deck of a case.
+/// Returns the file name of the deck of a case.
 fn deck_of(folder: &Path) -> String {
     let text = std::fs::read(folder.join("case.json")).unwrap();
     let case: Value = serde_json::from_slice(&text).unwrap();
@@ -150,7 +152,7 @@ fn three_decks_come_back_with_one_load_a_subcase_and_the_analysts_model_untouche
     }
 }
 
-/// The same by pyNastran, with the interpreter that STRAINBRIDGE_PYTHON names, else `python3`.
+/// Compares with pyNastran, using the interpreter in STRAINBRIDGE_PYTHON, or `python3`.
 fn by_the_other_reader(case: &str, path: &Path, grids: [u32; 2], n_grids: usize) {
     let python = std::env::var("STRAINBRIDGE_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/python/read_cases.py");
@@ -163,7 +165,7 @@ fn by_the_other_reader(case: &str, path: &Path, grids: [u32; 2], n_grids: usize)
         return;
     }
     let text = String::from_utf8_lossy(&done.stdout);
-    // Its readers may print warnings before.
+    // pyNastran may print warnings before the last line.
     let last = text.lines().last().unwrap_or_default();
     let read: Value = serde_json::from_str(last)
         .unwrap_or_else(|e| panic!("{case}: {e}: {}", String::from_utf8_lossy(&done.stderr)));

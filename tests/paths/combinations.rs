@@ -1,4 +1,4 @@
-//! SUBCOM, SYMCOM and REPCASE against closed forms of rods.
+//! Compares SUBCOM, SYMCOM and REPCASE with closed forms of rods.
 
 use std::path::Path;
 use strainbridge::fe::{Corners, SolveOptions};
@@ -11,7 +11,7 @@ use strainbridge::{Context, Faults, strains};
 
 /// Axial stiffness of the bars.
 const EA: f64 = 1e8;
-/// Rounding of a solution of a few unknowns.
+/// Rounding error of a solution with a few unknowns.
 const ROUNDING: f64 = 1e-12;
 
 fn deck(case_control: &str, bulk: &str) -> String {
@@ -29,7 +29,7 @@ fn solve_bars(case_control: &str, bulk: &str) -> Result<Outcome<SolvedCases>, Fa
     solve_deck(Path::new("bars.bdf"), options, &Context::new(&files))
 }
 
-/// Subcase ids and axial displacement of the grid of that index.
+/// Returns subcase ids and the axial displacement of the grid with this index.
 fn displacements(o: &SolvedCases, grid: usize) -> Vec<(u32, f64)> {
     let cases = o.solution.cases.iter();
     cases
@@ -37,7 +37,7 @@ fn displacements(o: &SolvedCases, grid: usize) -> Vec<(u32, f64)> {
         .collect()
 }
 
-/// A bar of length 2, held at grid 1, pulled at grid 2.
+/// Bar of length 2, fixed at grid 1, with axial forces at grid 2.
 const BAR: &str = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\nSPC1,1,123456,1\n\
      FORCE,1,2,,1000.,1.,0.,0.\nFORCE,2,2,,300.,1.,0.,0.\n";
 
@@ -46,7 +46,7 @@ fn subcom_adds_the_subcases_above_it() {
     let cases = "SPC = 1\nSUBCASE 1\nLOAD = 1\nSUBCASE 2\nLOAD = 2\nSUBCOM 3\nLABEL = both\nSUBSEQ = 1., -2.\n\
          REPCASE 4\nSUBCASE 11\nLOAD = 2\nSUBCOM 12\nSUBSEQ = 0., 1., 1.\n";
     let o = solve_bars(cases, BAR).unwrap();
-    // R_n belongs to the SUBCASE directly above; SUBCOMs are not counted.
+    // R_n refers to the SUBCASEs directly above. SUBCOMs do not count.
     let forces = [
         (1, 1000.0),
         (2, 300.0),
@@ -70,14 +70,14 @@ fn subcom_adds_the_subcases_above_it() {
     assert!(o.findings.0.iter().all(|f| f.code != "subcase-left-out"));
 }
 
-/// A bar from -2 to 2 held at both ends, F at x = 1. Its right half with symmetric and antisymmetric supports in the plane x = 0:
-/// u(1) = 3/4 F / EA, u(0) = 1/2 F / EA, u(-1) = 1/4 F / EA.
+/// A bar from -2 to 2 fixed at both ends, with F at x = 1. The model is its right half with symmetric and antisymmetric
+/// supports at x = 0. u(1) = 3/4 F / EA, u(0) = 1/2 F / EA, u(-1) = 1/4 F / EA.
 #[test]
 fn symcom_adds_symmetric_and_antisymmetric_halves() {
     let half = "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,2.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\nCBAR,2,1,2,3,0.,1.,0.\n\
          SPC1,1,123456,1,3\nSPC1,2,23456,1\nSPC1,2,123456,3\nFORCE,1,2,,500.,1.,0.,0.\n";
     let cases = "LOAD = 1\nSYM 1\nSPC = 1\nSYM 2\nSPC = 2\nSYMCOM 3\nSYMCOM 4\nSYMSEQ = 1., -1.\n";
-    // Both SYMCOMs inherit LOAD from above the subcases, as in Nastran.
+    // Both SYMCOMs inherit the LOAD above the subcases, as in Nastran.
     let o = solve_bars(cases, half).unwrap();
     let unit = 1000.0 / EA;
     let at = |grid: usize| displacements(&o, grid);

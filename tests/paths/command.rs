@@ -5,7 +5,7 @@ use std::process::Command;
 
 pub use crate::support::find_shared_path;
 
-/// An empty folder for one test.
+/// Creates an empty folder for one test.
 pub fn scratch(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = std::fs::remove_dir_all(&folder);
@@ -13,18 +13,18 @@ pub fn scratch(name: &str) -> PathBuf {
     folder
 }
 
-/// What a run gave.
+/// Outcome of a run of the program.
 pub struct Outcome {
     /// Exit code.
     pub code: i32,
-    /// `result.json`; null where none was written.
+    /// `result.json`, or null if the program wrote none.
     pub result: serde_json::Value,
     /// Standard error.
     pub stderr: String,
 }
 
 impl Outcome {
-    /// Codes of the findings of one severity.
+    /// Returns the codes of the findings of one severity.
     pub fn codes(&self, severity: &str) -> Vec<String> {
         let findings = self.result["findings"]
             .as_array()
@@ -37,7 +37,7 @@ impl Outcome {
             .collect()
     }
 
-    /// A number of the result.
+    /// Returns a number of the result.
     pub fn number(&self, key: &str) -> f64 {
         self.result[key].as_f64().unwrap_or(f64::NAN)
     }
@@ -59,7 +59,7 @@ pub fn run(arguments: &[&str], out: &Path) -> Outcome {
     }
 }
 
-/// Rows of a CSV file: header, then fields.
+/// Reads a CSV file: header, then rows of fields.
 pub fn csv(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
     let text = std::fs::read_to_string(path).unwrap();
     let mut lines = text

@@ -1,4 +1,4 @@
-//! Rules of the quick reference guides on decks, through the commands.
+//! Rules of the quick reference guides for decks, tested through the commands.
 
 use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Job, cases, sensitivity};
@@ -10,7 +10,8 @@ const FORCE: f64 = 100.0;
 /// Distance of recovery point C from the axis.
 const Y: f64 = 20.0;
 
-/// A cantilever along x with a force along y at its free end; its section grows linearly to twice the inertia.
+/// Returns a cantilever along x with a force along y at its free end. Its second moment doubles linearly along its
+/// length.
 fn cantilever(station: &str) -> String {
     format!(
         "SOL 101\nCEND\nSPC = 1\nLOAD = 11\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,{LENGTH:.1},0.,0.\nCBEAM,10,1,1,2,0.,1.,0.\n\

@@ -1,17 +1,19 @@
-//! From an export with unit loads to recovered loads, as a new user gets there: `check`, `init`, `place`, `recover`, and a few edited lines.
+//! From an export with unit loads to recovered loads, in the steps of a new user: `check`, `init`, `place`, `recover`,
+//! and a few edited lines.
 //!
-//! The readings are made from other solutions than the unit loads: of decks that apply all loads of a run together, by the tensors of `strains`.
+//! The readings do not come from the unit loads. They come from decks that apply all loads of a run together, through
+//! the tensors of `strains`.
 
 use crate::command::{csv, find_shared_path, run, scratch};
 use std::fmt::Write;
 use std::path::Path;
 
-/// A subcase of a deck with one load: LABEL, load set, size in it.
+/// Subcase of a deck with one load: LABEL, load set, and the size of the load.
 struct Unit {
     label: &'static str,
     set: u32,
     applied: f64,
-    /// Values in the runs, units of the deck.
+    /// Values in the runs, in units of the deck.
     runs: [f64; 3],
 }
 
@@ -24,7 +26,7 @@ const fn unit(label: &'static str, set: u32, applied: f64, runs: [f64; 3]) -> Un
     }
 }
 
-/// The deck with a subcase a run, each of which applies every load at once.
+/// Returns the deck with one subcase for each run. The subcase applies all loads together.
 fn with_runs(deck: &str, units: &[Unit]) -> String {
     let (control, bulk) = deck.split_once("BEGIN BULK\n").unwrap();
     let head = control.split("SUBCASE").next().unwrap();
@@ -44,11 +46,11 @@ fn with_runs(deck: &str, units: &[Unit]) -> String {
     format!("{head}{cases}BEGIN BULK\n{cards}{bulk}")
 }
 
-/// Times that each run is repeated, with other errors of the readings.
+/// Number of repetitions of each run, each with other errors of the readings.
 const REPEATS: usize = 40;
 
-/// Readings of `gauges.csv` in the runs, microstrain, from the tensors of `strains.csv`, each run repeated with an error of 1 microstrain,
-/// uniform.
+/// Returns readings of `gauges.csv` in the runs, microstrain, from the tensors of `strains.csv`. Each repetition of a
+/// run has a uniform error with a standard deviation of 1 microstrain.
 fn readings(gauges: &Path, strains: &Path) -> String {
     let (head, rows) = csv(strains);
     let at = |name: &str| head.iter().position(|h| h == name).unwrap();
@@ -85,7 +87,7 @@ fn readings(gauges: &Path, strains: &Path) -> String {
     text
 }
 
-/// Walks from deck to loads, and compares the loads with those applied.
+/// Runs the steps from deck to loads, and compares the loads with the applied loads.
 fn walk(name: &str, deck: &str, units: &[Unit], expected: &[&str]) {
     let folder = scratch(name);
     std::fs::write(folder.join("export.bdf"), deck).unwrap();
@@ -149,7 +151,7 @@ fn walk(name: &str, deck: &str, units: &[Unit], expected: &[&str]) {
     let (head, rows) = csv(&folder.join("recovered/loads.csv"));
     let kilo = |unit: &str| match unit {
         "kN" => 1e3,
-        // Of a deck in millimetres.
+        // The deck is in millimetres.
         "kN m" => 1e6,
         other => panic!("{other}"),
     };
@@ -172,13 +174,15 @@ fn walk(name: &str, deck: &str, units: &[Unit], expected: &[&str]) {
             }
         }
     }
-    // Nineteen of twenty intervals hold the truth. Loads of one run share its errors: at worst a run counts once, 1 sd of the share is then
-    // sqrt(0.95 * 0.05 / 120) = 2 %.
+    // Nineteen of twenty intervals contain the true load. The loads of one run share the errors of its readings. In the
+    // worst case, a run counts as one interval, and the standard deviation of the share is sqrt(0.95 * 0.05 / 120) = 2
+    // %.
     let held = 1.0 - missed.len() as f64 / (3 * REPEATS * units.len()) as f64;
     assert!((held - 0.95).abs() < 0.04, "{name}: {held}: {missed:?}");
 }
 
-/// A square tube along x from `x0`, of `n` cells of 250, side 200, about `y`: ring of eight grids a station; ids from `first`.
+/// Adds a square tube along x from `x0` with `n` cells of 250 and side 200 at `y`. A station has a ring of eight grids,
+/// with ids from `first`.
 fn tube(t: &mut String, first: u32, property: u32, y: f64, n: u32) {
     const RING: [[f64; 2]; 8] = [
         [-1.0, -1.0],
@@ -211,7 +215,7 @@ fn tube(t: &mut String, first: u32, property: u32, y: f64, n: u32) {
     }
 }
 
-/// A rigid ring at a station of a tube, held by a grid at its middle.
+/// Adds a rigid ring at a station of a tube. A grid in its middle is the independent grid.
 fn hub(t: &mut String, grid: u32, x: f64, y: f64, ring: u32) {
     let _ = writeln!(t, "GRID,{grid},,{x:.1},{y:.1},0.0");
     let ids: Vec<String> = (ring..ring + 8).map(|i| i.to_string()).collect();
@@ -242,7 +246,7 @@ fn boom_units() -> [Unit; 4] {
     ]
 }
 
-/// A boom of 5 m held at its root, with a hook at its end and a winch at its middle.
+/// Returns a boom of 5 m fixed at its root, with a hook at its end and a winch at its middle.
 fn boom() -> String {
     let mut t = control("SPC = 1\n", &boom_units());
     t.push_str("PSHELL,1,1,6.0,1,,1\nSPC1,1,123456,1,THRU,8\n");
@@ -268,7 +272,7 @@ fn fewer_gauges_than_loads_are_a_layout_where_the_other_loads_are_nuisance_of_kn
         assert!(job.contains(&named));
         job.replace(&named, &format!("{named}role = \"nuisance\"\n"))
     });
-    // Three gauges, four loads, two of them wanted.
+    // Three gauges for four loads, of which two are wanted.
     let few = nuisance.replace("gauges = 8 ", "gauges = 3 ");
     assert_ne!(few, nuisance);
     std::fs::write(&path, few).unwrap();

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 const CASE: &str = "nastran/mystran_frame_units";
 
-/// The job, changed by `edit`, in a folder of its own; paths in it lead to the case.
+/// Writes the job, changed by `edit`, to a separate folder. Its paths refer to the case.
 fn job(name: &str, edit: impl Fn(String) -> String) -> Option<(PathBuf, PathBuf)> {
     let case = find_shared_path(CASE)?;
     let folder = scratch(name);
@@ -26,7 +26,7 @@ fn job(name: &str, edit: impl Fn(String) -> String) -> Option<(PathBuf, PathBuf)
     Some((path, folder))
 }
 
-/// The truth in kN and kN m, payload force along the basic z axis.
+/// Returns the true loads in kN and kN m, with the payload force along the basic z axis.
 fn truth() -> (Vec<String>, Vec<Vec<f64>>) {
     let (header, rows) = csv(&find_shared_path(CASE)
         .unwrap()
@@ -89,7 +89,7 @@ fn nine_loads_come_out_within_a_tenth_of_a_kilonewton_and_inside_their_intervals
 #[test]
 fn with_the_sensitivity_of_another_solver_and_its_error_stated_nine_intervals_in_ten_hold_the_truth()
  {
-    // Readings follow MYSTRAN's strain; without `results` S comes from the built-in solver on the same mesh.
+    // The readings come from strain of MYSTRAN. Without `results`, the built-in solver computes S on the same mesh.
     let edit = |t: String| {
         let lines: Vec<&str> = t.lines().filter(|l| !l.starts_with("results")).collect();
         lines
@@ -169,7 +169,7 @@ fn with_gravity_as_reference_gauges_at_zero_mean_the_wheels_carry_the_models_wei
         "{sum} of {weight}: {}",
         got.stderr
     );
-    // About the centre of gravity, in kN mm; the wheels stand metres from it.
+    // About the centre of gravity, in kN mm. The wheels are metres away from it.
     assert!(moment.iter().all(|m| m.abs() < 1e-3 * weight), "{moment:?}");
 }
 
@@ -210,7 +210,8 @@ fn sensitivities_at_the_gauges_are_those_of_the_op2() {
         assert_eq!(a[0], b[0]);
         let row: Vec<f64> = b[1..].iter().map(|v| v.parse().unwrap()).collect();
         for (l, name) in header[1..].iter().enumerate() {
-            // Theirs: per kN and kN m, payload force down. Ours: per N and N mm, along the axis.
+            // The reference is per kN and kN m with the payload force down. S is per N and N mm with the force along
+            // the axis.
             let unit = if name.ends_with("FZ") { 1e3 } else { 1e6 };
             let sign = if name == "payload.FZ" { -1.0 } else { 1.0 };
             let v: f64 = a[l + 1].parse::<f64>().unwrap() * unit * sign;
@@ -258,7 +259,7 @@ fn a_layout_is_placed_beside_the_installed_one_and_its_file_serves_as_a_jobs_gau
         got.number("log_det") > got.result["installed"]["log_det"].as_f64().unwrap(),
         "better than the installed one"
     );
-    // The file it wrote, named again, gives the same S.
+    // The written file gives the same S if the job uses it.
     let placed = folder
         .join("out/gauges.csv")
         .display()

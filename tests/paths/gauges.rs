@@ -1,10 +1,13 @@
-//! Gauges of a job on closed forms: directions in cylindrical systems, second pairs, names, corrections, reference states, placed grids.
+//! Compares gauges of a job with closed forms: directions in cylindrical systems, second pairs, names, corrections,
+//! reference states, grids.
 
 use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Job, place, recover, sensitivity, study};
 
-/// A square plate of 4 by 4 elements of 10 mm, 2 mm thick, its middle at the origin, with the coordinate system 7 (cylindrical) there and the
-/// pull of 2,000 N along x on two edges: 100 MPa, so that the strain along x is `100 / E` everywhere.
+/// Returns a square plate of 4 by 4 elements of 10 mm, 2 mm thick, with its middle at the origin.
+///
+/// The cylindrical coordinate system 7 is there. A force of 2,000 N along x on each 10 mm of two edges gives 100 MPa,
+/// so the strain along x is `100 / E` everywhere.
 fn plate() -> String {
     let mut deck = String::from(
         "SOL 101\nCEND\nSUBCASE 3\n LOAD = 5\nSUBCASE 4\n SPC = 1\nSUBCOM 6\n LOAD = 5\n SUBSEQ = 2.,0.\n\
@@ -17,7 +20,7 @@ fn plate() -> String {
             let [x, y] = [i, j].map(|k| 10.0 * f64::from(k) - 20.0);
             deck += &format!("GRID,{},,{x:.1},{y:.1},0.\n", grid(i, j));
         }
-        // Half of the force of an element at each of its grids.
+        // Each grid of an element takes half of the force of the element.
         let force = if j == 0 || j == 4 { 1000.0 } else { 2000.0 };
         let [left, right] = [grid(0, j), grid(4, j)];
         for set in [2, 5] {
@@ -52,7 +55,7 @@ fn files(job: &str) -> InMemory {
         .with_file("job.toml", format!("{HEAD}{job}"))
 }
 
-/// Names and readings under the load, strain.
+/// Returns names and readings under the load, strain.
 fn readings(files: &InMemory) -> Vec<(String, f64)> {
     let job = Job::read("job.toml", files).unwrap();
     let s = sensitivity(&job, &Context::new(files)).unwrap();
@@ -64,7 +67,7 @@ fn readings(files: &InMemory) -> Vec<(String, f64)> {
         .collect()
 }
 
-/// Faults of reading or laying the job, as text.
+/// Returns the faults of reading or preparing the job, as text.
 fn collect_job_faults(files: &InMemory) -> String {
     let faults: strainbridge::Faults = match Job::read("job.toml", files) {
         Ok(job) => sensitivity(&job, &Context::new(files)).err().unwrap(),
@@ -73,7 +76,7 @@ fn collect_job_faults(files: &InMemory) -> String {
     faults.iter().map(|f| format!("{f}\n")).collect()
 }
 
-/// Rounding of the solution of a small plate.
+/// Rounding error of the solution of a small plate.
 const ROUNDING: f64 = 1e-9 * EX;
 
 #[test]
@@ -105,7 +108,8 @@ fn a_direction_in_a_cylindrical_system_is_taken_at_the_element() {
 
 #[test]
 fn the_second_pair_and_the_legs_of_a_rosette_have_the_direction_of_their_place() {
-    // Radial at (15, 15) and at (-15, 5): difference of the strain along both; the third is the tangent.
+    // Radial directions at (15, 15) and at (-15, 5). The half bridge reads the difference of both strains. The third
+    // leg is tangential.
     let job = "[[gauge]]\nname = \"h\"\nelement = 16\nsurface = \"top\"\nelement2 = 9\nsurface2 = \"top\"\ncid = 7\ndirection = [1, 0, 0]\n\
                bridge = \"half-bending\"\n[[gauge]]\nname = \"R\"\nelement = 9\ncid = 7\ndirection = [1, 0, 0]\nrosette = \"rectangular\"\n";
     let got = readings(&files(job));
@@ -124,7 +128,7 @@ fn the_second_pair_and_the_legs_of_a_rosette_have_the_direction_of_their_place()
             "{name}: {got} {expected}"
         );
     }
-    // On the axis of the system there is no radial direction.
+    // On the axis of the system, the radial direction is undefined.
     let centred =
         files("[[gauge]]\nname = \"r\"\nposition = [0, 0, 1]\ncid = 7\ndirection = [1, 0, 0]\n");
     assert!(
@@ -139,7 +143,7 @@ fn the_second_side_left_out_is_the_opposite_one() {
     let gauge = |keys: &str| {
         format!("[[gauge]]\nname = \"g\"\nelement = 6\nbridge = \"half-bending\"\n{keys}")
     };
-    // Half bridges read nothing under tension. Their arms show the difference.
+    // Half bridges read zero under tension, but the strain of their arms differs.
     let arms = |keys: &str| {
         let files = files(&gauge(keys));
         let job = Job::read("job.toml", &files).unwrap();
@@ -209,7 +213,7 @@ fn two_channels_of_one_name_are_refused_with_both_lines() {
     );
 }
 
-/// A rosette and two gauges, and what they read under 3 times the load, microstrain.
+/// Returns a job with a rosette and two gauges, and their readings under 3 times the load, microstrain.
 fn build_measured_job(corrections: &str, change: impl Fn(&str, f64) -> f64) -> InMemory {
     let mut gauges = String::from(
         "[[gauge]]\nname = \"R\"\nelement = 6\ndirection = [1, 0, 0]\nrosette = \"rectangular\"\n",
@@ -285,7 +289,7 @@ fn corrections_of_a_rosette_and_of_its_legs_act() {
         ),
     ] {
         let value = recover_first_load(&build_measured_job(&correct(keys), change));
-        // Rounding of readings that were written with all digits.
+        // Rounding error of readings that are written with all digits.
         assert!((value - 3.0).abs() < 1e-8, "{keys}: {value}");
         let plain = recover_first_load(&build_measured_job("", change));
         assert!((plain - 3.0).abs() > 1e-3, "{keys} has no effect: {plain}");
@@ -305,7 +309,7 @@ fn corrections_of_a_rosette_and_of_its_legs_act() {
 
 #[test]
 fn a_reference_subcase_is_that_of_the_deck_where_the_solver_is_built_in() {
-    // Subcase 3 is 7 times the load, and subcase 7 is twice subcase 3; the readings are 3 times the load.
+    // Subcase 3 is 7 times the load, subcase 7 is twice subcase 3, and the readings are 3 times the load.
     let with = |n: u32| {
         let reference = format!("reference = {n}\n");
         build_measured_job(&reference, |_, e| e)
@@ -314,7 +318,7 @@ fn a_reference_subcase_is_that_of_the_deck_where_the_solver_is_built_in() {
         let value = recover_first_load(&with(n));
         assert!((value - total).abs() < 1e-8, "{n}: {value}");
     }
-    // Subcase 6 is a combination with a LOAD of its own, and subcase 8 is not statics.
+    // Subcase 6 is a combination that states LOAD, and subcase 8 is not a static subcase.
     for n in [1, 4, 6, 8, 9] {
         let files = with(n);
         let job = Job::read("job.toml", &files).unwrap();
@@ -367,7 +371,8 @@ fn a_placed_grid_reads_the_same_from_the_table_of_gauges() {
 
 #[test]
 fn a_placed_grid_that_reaches_past_the_edge_is_replaced_by_one_that_fits() {
-    // A grid of 20 mm along x fits where its middle is 10 mm or more from the edges at x = -20 and 20: in the two columns at x = -5 and 5.
+    // A grid of 20 mm along x fits only if its middle is at least 10 mm from the edges at x = -20 and 20. This holds in
+    // the columns at x = -5 and 5.
     let keys = "[candidates]\nangle_step_deg = 180\ngrid_length = 20.0\n";
     let plan = files(&format!("{keys}[placement]\ngauges = 4\nspacing = 1.0\n"));
     let job = Job::read("job.toml", &plan).unwrap();
@@ -376,7 +381,7 @@ fn a_placed_grid_that_reaches_past_the_edge_is_replaced_by_one_that_fits() {
         let column = (g.element - 1) % 4;
         assert!(column == 1 || column == 2, "element {}", g.element);
     }
-    // Without such a place the refusal names the keys that help.
+    // If no place fits, the message names the keys that help.
     let long =
         files("[candidates]\nangle_step_deg = 180\ngrid_length = 41.0\n[placement]\ngauges = 3\n");
     let job = Job::read("job.toml", &long).unwrap();
@@ -432,7 +437,7 @@ fn tables_that_a_job_names_and_that_are_missing_are_faults_of_every_command_on_g
 
 #[test]
 fn a_direction_of_a_gauge_on_a_bar_is_taken_at_its_station() {
-    // A bar along y at x = 20: the tangent of the system is along it at its middle alone.
+    // A bar along y at x = 20. The tangential direction of the system is along the bar only in its middle.
     let bar = "CBAR,99,9,10,20,1.,0.,0.\nPBAR,9,1,10.,10.,10.,10.\n,1.,0.,-1.,0.\nENDDATA\n";
     let with = |station: f64| {
         let job = format!(

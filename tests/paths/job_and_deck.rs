@@ -1,9 +1,9 @@
-//! Jobs compared with their deck and with the labels and element types of their results.
+//! Compares jobs with their deck, and with the labels and element types of their results.
 
 use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Faults, Job, Severity, strains};
 
-/// A plate held at x = 0, with unit forces at grid 3.
+/// Returns a plate fixed at x = 0, with unit forces at grid 3.
 fn deck(case_control: &str, bulk: &str) -> String {
     format!(
         "SOL 101\nCEND\n{case_control}BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,10.,0.,0.\nGRID,3,,10.,10.,0.\nGRID,4,,0.,10.,0.\n\
@@ -17,7 +17,7 @@ const CASES: &str =
 const FX: &str = "[[load]]\nname = \"FX\"\ngrid = 3\ncomponent = \"FX\"\n";
 const FZ: &str = "[[load]]\nname = \"FZ\"\ngrid = 3\ncomponent = \"FZ\"\n";
 
-/// Strain of element 5 in a punch file: subcase and label, element type.
+/// Returns strain of element 5 as a punch file, from subcases with labels and from the element type.
 fn punch(subcases: &[(u32, &str)], element: &str) -> String {
     let mut lines = Vec::new();
     for (id, label) in subcases {
@@ -43,7 +43,7 @@ fn punch(subcases: &[(u32, &str)], element: &str) -> String {
 
 const QUAD: &str = "  33  QUAD4";
 
-/// Warnings of `sensitivity`, or its faults.
+/// Returns the warnings of `sensitivity`, or its faults.
 fn collect_warnings(deck: &str, results: &str, job: &str) -> Result<Vec<String>, String> {
     let text = format!(
         "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\nresults = [\"plate.pch\"]\n{job}[[gauge]]\nname = \"T\"\nelement = 5\n"
@@ -107,7 +107,7 @@ fn a_pressure_or_gravity_in_addition_to_the_unit_load_is_refused_with_its_line()
             fault.contains("job-contradicts-deck") && fault.contains(&place),
             "{fault}"
         );
-        // The whole set may be meant.
+        // The user may mean the whole set.
         let set = format!("{FX}[[load]]\nname = \"P\"\nload_set = 77\n");
         collect_warnings(&deck, &punch_both_cases(), &set).unwrap();
     }
@@ -130,7 +130,7 @@ fn supports_that_differ_from_the_job_or_between_loads_are_reported() {
 
 #[test]
 fn a_load_that_takes_the_subcase_of_another_load_by_its_number_is_refused() {
-    // The deck has no subcases: labels alone connect loads and results.
+    // The deck has no subcases, so only labels connect loads and results.
     let deck = deck("SPC = 1\n", "");
     let swapped = collect_warnings(&deck, &punch_both_cases(), &format!("{FZ}{FX}")).unwrap_err();
     assert!(swapped.contains("job-contradicts-deck"), "{swapped}");
@@ -146,7 +146,7 @@ fn a_load_that_takes_the_subcase_of_another_load_by_its_number_is_refused() {
         &format!("{FZ}subcase = 2\n{FX}subcase = 1\n"),
     )
     .unwrap();
-    // Labels that are no load names are free text, and so is a label of every subcase.
+    // A label that is not a load name is free text. The same applies to a label that all subcases share.
     for labels in [[(1, "tip along x"), (2, "tip up")], [(1, "FX"), (2, "FX")]] {
         collect_warnings(&deck, &punch(&labels, QUAD), &format!("{FZ}{FX}")).unwrap();
     }

@@ -1,4 +1,4 @@
-//! From files to results, through the program.
+//! Runs the program from files to results.
 
 mod cases;
 mod combinations;

@@ -1,4 +1,5 @@
-//! Decks, results and jobs that are easily misread: each gives the right number, or a refusal that names what is not carried.
+//! Decks, results and jobs that are easily misread. Each gives the correct number, or a refusal that names the
+//! unsupported item.
 
 use crate::support::find_shared_path;
 use std::collections::BTreeMap;
@@ -9,9 +10,9 @@ use strainbridge::{Context, Disk, Faults, Job, Outcome, Severity};
 /// Displacements of grids: grid, component, value.
 type Moves = &'static [(u32, usize, f64)];
 
-/// Deck, displacements, and the word of a refusal that is right as well.
+/// Deck, displacements, and a word of the refusal that is accepted as well.
 const DECKS: [(&str, Moves, Option<&str>); 16] = [
-    // A name that no Nastran knows: an error at the line that has it.
+    // A name that is unknown in Nastran is an error at its line.
     ("case_control_typo/deck.bdf", &[], Some("SPCC")),
     ("unknown_card_typo/deck.bdf", &[], Some("FORCEE")),
     // F L / (E A) with offsets that make the bar 3 long.
@@ -29,7 +30,7 @@ const DECKS: [(&str, Moves, Option<&str>); 16] = [
     ("deqatn_continuation/deck.bdf", &[(9, 2, 1.0)], None),
     ("implicit_spoint/deck.bdf", &[(9, 2, 1.0)], Some("CMASS3")),
     ("ese_list/deck.bdf", &[(2, 0, 2.0e-5)], None),
-    // F / k at the spring, F L / (E A) more at the other end.
+    // F / k at the spring, and F L / (E A) more at the other end.
     (
         "held_by_springs_alone/deck.bdf",
         &[(1, 0, 1.0e-3), (2, 0, 1.02e-3)],
@@ -41,9 +42,9 @@ const DECKS: [(&str, Moves, Option<&str>); 16] = [
         None,
     ),
     ("include_bare_name/main.bdf", &[(2, 0, 2.0e-5)], None),
-    // The modulus of the table at the temperature: twice that of MAT1.
+    // The modulus from the table at the temperature is twice that of MAT1.
     ("matt1_ignored/deck.bdf", &[(3, 0, 5.0e-6)], Some("MATT1")),
-    // Areas .01 + .01 + .02.
+    // The areas are .01 + .01 + .02.
     (
         "nastran95_elements_ignored/deck.bdf",
         &[(2, 0, 1.0e-5)],
@@ -55,7 +56,7 @@ const DECKS: [(&str, Moves, Option<&str>); 16] = [
         Some("CRIGD1"),
     ),
     ("p2g_ignored/deck.bdf", &[(3, 0, 4.0e-5)], Some("P2G")),
-    // 1000 N and pi^2 2 N of the mass that turns.
+    // A force of 1000 N, and pi^2 2 N from the rotating mass.
     (
         "rforce1_ignored/deck.bdf",
         &[(2, 0, 2.039_48e-5)],
@@ -68,7 +69,7 @@ const DECKS: [(&str, Moves, Option<&str>); 16] = [
     ),
 ];
 
-/// Files hold single precision or six digits of a closed form.
+/// Files contain single precision values, or six digits of a closed form.
 const DIGITS: f64 = 2e-6;
 
 fn cases(of: &str) -> Option<PathBuf> {
@@ -80,12 +81,12 @@ fn words(faults: &Faults) -> String {
     lines.join("\n")
 }
 
-/// Fails with every line that is not right.
+/// Fails with every wrong line.
 fn all_right(wrong: &[String]) {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Codes of the findings of a severity.
+/// Returns the codes of the findings of a severity.
 fn codes<A>(outcome: &Outcome<A>, severity: Severity) -> Vec<String> {
     let findings = outcome.findings.iter().filter(|f| f.severity == severity);
     findings.map(|f| f.code.to_string()).collect()
@@ -131,7 +132,7 @@ fn decks_give_the_right_displacement_or_are_refused_by_name() {
     all_right(&wrong);
 }
 
-/// A yielding material under SOL 106 with large displacements: refused, or a finding names all three.
+/// A material with yielding under SOL 106 with large displacements. It is refused, or a finding names all three.
 #[test]
 fn a_nonlinear_deck_is_not_solved_as_a_linear_one_in_silence() {
     let Some(folder) = cases("decks/nonlinear_solved_linear") else {
@@ -168,7 +169,7 @@ fn check_counts_mass_of_elements_and_reads_names_of_properties() {
         let (found, _) = check_files(&[folder.join(name)]);
         found["decks"][0].clone()
     };
-    // 20 of each element and 3 on each of 2.
+    // 20 on each element, and 3 on each of 2.
     let mass = deck("nsm_element_not_in_mass/deck.bdf")["mass"].clone();
     let names =
         ["n.bdf", "p.bdf"].map(|f| deck(&format!("property_names/{f}"))["property_names"].clone());
@@ -221,7 +222,7 @@ fn a_subcase_that_is_twice_in_results_is_named_and_refused_where_s_comes_from_it
     all_right(&wrong);
 }
 
-/// Microstrain per job unit of the first load, by channel; the words of a refusal.
+/// Returns microstrain per job unit of the first load by channel, or the text of the refusal.
 fn rows(folder: &str, job: &str) -> Result<BTreeMap<String, Vec<f64>>, String> {
     let path = cases(folder).unwrap_or_default().join(job);
     let job = Job::read(path.display().to_string(), &Disk).map_err(|e| words(&e))?;
@@ -232,7 +233,7 @@ fn rows(folder: &str, job: &str) -> Result<BTreeMap<String, Vec<f64>>, String> {
     Ok(named.map(|(g, name)| (name.clone(), row(g))).collect())
 }
 
-/// Job, refusal that is right as well, and readings of the first load.
+/// Job, word of an accepted refusal, and readings for the first load.
 type Readings = (
     &'static str,
     Option<&'static str>,
@@ -256,7 +257,7 @@ const READINGS: [Readings; 9] = [
             ("el16", 8.75),
         ],
     ),
-    // The lower skin is pressed, the upper one pulled.
+    // The lower skin is in compression, the upper one in tension.
     (
         "position_zoffs/half.toml",
         None,
@@ -294,7 +295,7 @@ const READINGS: [Readings; 9] = [
             ("g75", -9.920_635),
         ],
     ),
-    // M = F (0.4 L - x), and none beyond the force.
+    // M = F (0.4 L - x), and zero beyond the force.
     (
         "pload1_station/pt_CBAR.toml",
         Some("station"),
@@ -336,7 +337,7 @@ fn gauges_read_what_closed_forms_give() {
         };
         for (gauge, right) in readings {
             let got = rows[*gauge][0];
-            // Five digits of the reference; nothing is a millionth of the rest.
+            // The reference has five digits. A millionth of the other values counts as zero.
             if (got - right).abs() > 5e-5 * right.abs().max(0.02) {
                 wrong.push(format!("{job} {gauge}: {got} for {right}"));
             }
@@ -377,7 +378,8 @@ fn rows_do_not_depend_on_the_numbering_of_shells_or_the_form_of_a_table() {
             (a, b) => wrong.push(format!("{folder}: {:?} {:?}", a.err(), b.err())),
         }
     }
-    // Without `surface2` the other pair is on the other side; `surface2` without `element2` is not dropped.
+    // Without `surface2`, the second pair is on the other side. The program does not ignore `surface2` without
+    // `element2`.
     match rows("jobs/surface2_default", "s2.toml") {
         Err(text) if text.contains("surface2") => {}
         Err(text) => wrong.push(text),
@@ -406,7 +408,7 @@ fn recover_job(
     strainbridge::recover(&job, &Context::new(&Disk)).map_err(|e| words(&e))
 }
 
-/// The first run's value of a load.
+/// Returns the value of a load in the first run.
 fn load_of(got: &Outcome<strainbridge::workflow::recover::RecoveredLoads>, name: &str) -> f64 {
     let runs = got.runs().expect("runs");
     let load = runs.loads.iter().find(|l| l.name == name);
@@ -432,7 +434,7 @@ fn loads_of_runs_count_corrections_references_units_and_roles() {
     match recover_job("reference_subcase/rfdeck.toml") {
         Err(text) => wrong.extend((!text.contains("reference")).then_some(text)),
         Ok(got) => {
-            // 10,000 N of the deck's subcase and the change.
+            // 10,000 N of the subcase of the deck plus the change.
             let a = load_of(&got, "a");
             wrong.extend(
                 (!is_within_tolerance(a, 10_628.651, 1e-5)).then(|| format!("reference: a {a}")),
@@ -442,7 +444,7 @@ fn loads_of_runs_count_corrections_references_units_and_roles() {
     match recover_job("per_default/case.toml") {
         Err(text) => wrong.push(text),
         Ok(got) => {
-            // S counts by the job's units where `per` is left out: 3 N and 2 N.
+            // Without `per`, S is in the units of the job: 3 N and 2 N.
             let loads = [("A", 3e-3), ("B", 2e-3)];
             let off = loads
                 .iter()
@@ -453,7 +455,7 @@ fn loads_of_runs_count_corrections_references_units_and_roles() {
     match recover_job("reserve_role/gr.toml") {
         Err(text) => wrong.push(text),
         Ok(got) => {
-            // P08 is for validation: what it reads moves no load.
+            // P08 is a validation gauge. Its reading changes no load.
             let n = load_of(&got, "N.FZ");
             wrong.extend((!is_within_tolerance(n, 1.0, 1e-3)).then(|| format!("role: N.FZ {n}")));
         }
@@ -494,19 +496,19 @@ fn records_have_the_times_that_their_files_state() {
         match recover_job(job) {
             Err(text) => wrong.push(text),
             Ok(got) => {
-                // Times 0, 10, 20 have no unit of their own.
+                // The times 0, 10, 20 have no stated unit.
                 if codes(&got, Severity::Error) == ["time-unit-doubtful"] {
                     continue;
                 }
                 let found = got.record().and_then(|r| r.sample_rate_hz);
-                // Serial days of ten digits are off by 5 microseconds.
+                // Serial days with ten digits have errors of 5 microseconds.
                 if !found.is_some_and(|f| is_within_tolerance(f, rate, 1e-3)) {
                     wrong.push(format!("{job}: {found:?} Hz"));
                 }
             }
         }
     }
-    // A channel that starts later than the rest: common times, or a refusal that names it.
+    // A channel that starts later than the others: the result uses common times, or a refusal names the channel.
     let tdms = [
         ("tdms_start/case.toml".to_owned(), "P05", 400, 399),
         (

@@ -1,9 +1,10 @@
-//! Properties that a job names as the deck does.
+//! Properties that the job names with the names of the deck.
 
 use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Job, place};
 
-/// A plate of 6 by 2 elements of 10 mm under pull along x and y: the left half is property 1, the right half properties 2 and 3.
+/// Returns a plate of 6 by 2 elements of 10 mm under forces along x and y. The left half is property 1, the right half
+/// properties 2 and 3.
 fn deck(names: [&str; 3]) -> String {
     let mut deck = String::from("SOL 101\nCEND\nBEGIN BULK\nPARAM,INREL,-2\n");
     let grid = |i: u32, j: u32| 1 + i + 7 * j;
@@ -51,7 +52,7 @@ fn files(names: [&str; 3], candidates: &str) -> InMemory {
 
 const NAMES: [&str; 3] = ["RailLeft", "RailRight", "Web"];
 
-/// Elements on which gauges are placed, or the faults.
+/// Returns the elements on which gauges are placed, or the faults.
 fn place_gauges(files: &InMemory) -> Result<Vec<u32>, String> {
     let text = |faults: strainbridge::Faults| faults.to_string();
     let job = Job::read("job.toml", files).map_err(text)?;

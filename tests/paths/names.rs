@@ -9,15 +9,15 @@ use strainbridge::finding::Finding;
 use strainbridge::host::context::InMemory;
 use strainbridge::workflow::{check::check, solve::solve_deck};
 
-/// A rod of length 2, EA = 1e8, held at grid 1 and pulled by 1000 at grid 2.
+/// Rod of length 2 with EA = 1e8, fixed at grid 1, with a force of 1000 at grid 2.
 const ROD: &str = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCROD,1,1,1,2\nPROD,1,1,.01\nMAT1,1,1.+10,,.3,100.\n\
      FORCE,1,2,,1000.,1.,0.,0.\nSPC1,1,123456,1\nSPC1,1,23456,2\nTEMPD,3,20.\n";
 
-/// Answers of `check` and `solve` to a deck.
+/// Answers of `check` and `solve` for a deck.
 struct Tried {
     faults: Vec<String>,
     findings: Vec<Finding>,
-    /// Names of reasons with cards without influence.
+    /// Reasons of the cards without influence.
     idle: String,
     solved: Result<Vec<Finding>, String>,
 }
@@ -42,11 +42,11 @@ fn rod(case_control: &str, bulk: &str) -> String {
     format!("SOL 101\nCEND\nSPC = 1\nLOAD = 1\n{case_control}BEGIN BULK\n{ROD}{bulk}ENDDATA\n")
 }
 
-/// Line of the card after the rod, and of the statement above it.
+/// Line of the card after the rod, and line of the case control statement.
 const CARD_LINE: usize = 15;
 const STATEMENT_LINE: usize = 5;
 
-/// Reason of a card that acts only together with what this deck lacks.
+/// Reason of a card that acts only together with an item that this deck lacks.
 const UNUSED: &str = "acts on no element of this deck 1";
 
 fn warns_of(t: &Tried, name: &str) -> bool {
@@ -54,7 +54,7 @@ fn warns_of(t: &Tried, name: &str) -> bool {
     t.findings.iter().any(|f| of(&f))
 }
 
-/// Whether `solve` refuses by name and line.
+/// Returns whether `solve` refuses with name and line.
 fn refuses(t: &Tried, name: &str, line: usize) -> bool {
     let place = format!("rod.bdf:{line}: {name}");
     t.solved.as_ref().is_err_and(|e| e.contains(&place))
@@ -83,7 +83,7 @@ fn no_name_of_bulk_data_is_silent() {
                 warns_of(&t, name) && refuses(&t, name, line) && elsewhere.solved.is_ok()
             }
             Effect::ActsWith(_) => t.idle.contains(UNUSED) && t.solved.is_ok(),
-            // A card that is read, or whose fields are missed.
+            // The reader reads the card, or reports its missing fields.
             Effect::Carried | Effect::Request => true,
             Effect::Executive | Effect::ExecutiveActs => true,
         };
@@ -111,7 +111,7 @@ fn model_parameters_are_counted_unless_they_act() {
 fn no_word_of_case_control_is_silent() {
     let mut silent = Vec::new();
     for (written, CaseWord { name, effect, .. }) in all_words() {
-        // MODEL_CHECK is read as the word before the underscore below CEND.
+        // Below CEND, MODEL_CHECK is read as the word before the underscore.
         if ["BEGIN", "INCLUDE", "CEND", "ENDDATA", "MODEL_CHECK"].contains(&written) {
             continue;
         }
@@ -119,7 +119,7 @@ fn no_word_of_case_control_is_silent() {
         let is_reported = match effect {
             Effect::None(_) => t.faults.is_empty() && t.solved.is_ok(),
             Effect::Acts => warns_of(&t, name) && refuses(&t, name, STATEMENT_LINE),
-            // Below CEND this name is a word of case control.
+            // Below CEND, this name is a word of case control.
             Effect::ExecutiveActs if name == "RESTART" => t.solved.is_ok(),
             Effect::Executive | Effect::ExecutiveActs => {
                 t.faults.iter().any(|f| f.contains(":5: "))
@@ -133,7 +133,8 @@ fn no_word_of_case_control_is_silent() {
     assert!(silent.is_empty(), "{silent:?}");
 }
 
-/// Words made of known ones by one letter more, less, other or exchanged; the same ones in each run.
+/// Returns known words with one letter added, removed, replaced or exchanged. They are the same in each run of the
+/// test.
 fn misspelt(known: &[&str], longest: usize, count: usize) -> BTreeSet<String> {
     let mut state: u64 = 20;
     let mut draw = |n: usize| {
@@ -189,7 +190,7 @@ fn misspelt_words_of_case_control_are_refused() {
     let mut refused = 0;
     for word in misspelt(&known, 20, 300) {
         let t = check_and_solve(&rod(&format!("{word} = 7\n"), ""));
-        // Some are the beginning of another word, an abbreviation, or the plural of an output request.
+        // Some results are the beginning of another word, an abbreviation, or the plural of an output request.
         if case_word(&word).is_none() {
             let place = format!("rod.bdf:{STATEMENT_LINE}: {word}: ");
             assert!(
@@ -306,7 +307,7 @@ fn a_suport1_set_that_the_deck_lacks_is_refused() {
     assert!(of("SUPORT1 = 6\n", "SUPORT1,6,1,1\n").is_ok());
 }
 
-/// Loads act only where case control selects them.
+/// Loads act only if case control selects them.
 #[test]
 fn what_is_not_selected_does_not_act() {
     let matrices = "DMIG,PX,0,9,1,0,,,1\nDMIG,PX,2,0,,2,1,3000.\nBCTSET,5,1,2\nMATT2,1,7\n";

@@ -1,4 +1,5 @@
-//! Entries of an OP2's geometry blocks that are not read: named with their count, and refused where the mesh is solved.
+//! Entries of the geometry blocks of an OP2 that are not read. `check` names them with their count, and the solver
+//! refuses the mesh.
 
 use nastran::bdf::{MemoryLoader, read_deck};
 use nastran::op2::Op2;
@@ -10,7 +11,7 @@ use strainbridge::host::context::InMemory;
 use strainbridge::model::Model;
 use strainbridge::workflow::{check::check, solve::solve_deck};
 
-/// The bytes of an OP2 in the making.
+/// Bytes of an OP2 under construction.
 #[derive(Default)]
 struct Bytes(Vec<u8>);
 
@@ -62,7 +63,7 @@ fn encode_real(v: f32) -> i32 {
     v.to_bits() as i32
 }
 
-/// A rod from grid 1 to 2 with a force in set 1, and further records of tables.
+/// Returns a rod from grid 1 to 2 with a force in set 1, and further records of tables.
 fn rod(more: &[(&str, Vec<i32>)]) -> Vec<u8> {
     let zero = encode_real(0.0);
     let grid = |id: i32, x: f32| [id, 0, encode_real(x), zero, zero, 0, 0, 0];
@@ -116,7 +117,7 @@ fn rod(more: &[(&str, Vec<i32>)]) -> Vec<u8> {
     out.0
 }
 
-/// Findings of `check` and what `solve` refuses.
+/// Returns the findings of `check` and the refusal of `solve`.
 fn check_and_solve(bytes: &[u8]) -> (Vec<Finding>, String) {
     let files = InMemory::default().with_file("rod.op2", bytes.to_vec());
     let cx = Context::new(&files);
@@ -134,7 +135,7 @@ fn find_unsolved_card(findings: &[Finding]) -> Option<(&str, f64)> {
 
 #[test]
 fn unread_elements_are_named_with_their_count_and_refused() {
-    // Two CGAP of nine words, one RSSCON of no fixed length, and a code that no table has.
+    // Two CGAP of nine words, one RSSCON without a fixed length, and a code that is in no table.
     let gap = |id: i32| [id, 5, 1, 2, 0, 0, 0, 0, 0];
     let gaps = [[1908, 19, 104].as_slice(), &gap(31), &gap(32)].concat();
     for (table, record, named, count) in [
@@ -180,7 +181,7 @@ fn records_without_influence_are_silent() {
 
 #[test]
 fn unread_loads_act_where_their_set_is_selected() {
-    // FORCE2 of set 5; MATT1, which acts where case control selects temperatures.
+    // FORCE2 in set 5, and MATT1, which acts if case control selects temperatures.
     let force2 = vec![4101, 41, 22, 5, 2, encode_real(1.0), 1, 2, 1, 2];
     let matt1 = [vec![703, 7, 91], vec![3; 12]].concat();
     let bytes = rod(&[("GEOM3", force2), ("MPT", matt1)]);
@@ -211,7 +212,7 @@ fn unread_loads_act_where_their_set_is_selected() {
 
 #[test]
 fn springs_between_scalar_points_are_read_as_from_a_deck() {
-    // Grid 2 of the rod hangs on three springs in a row: CELAS2 to point 90, CELAS4 to point 91, CELAS3 to ground.
+    // Three springs in a row support grid 2 of the rod: CELAS2 to point 90, CELAS4 to point 91, CELAS3 to ground.
     let k = [2e7_f32, 5e7, 8e7];
     let first = vec![
         701,
@@ -271,7 +272,7 @@ fn springs_between_scalar_points_are_read_as_from_a_deck() {
         let u = solution.cases[0].displacement.iter().map(|u| u[0]);
         ids.zip(u).collect::<Vec<_>>()
     });
-    // A force that the rod passes on stretches each spring by F/k; grid 1 is free and moves with grid 2.
+    // The force through the rod stretches each spring by F/k. Grid 1 is free and moves with grid 2.
     let stretch = k.map(|k| 1000.0 / f64::from(k));
     let at_91 = stretch[2];
     let at_90 = at_91 + stretch[1];

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 const CASE: &str = "nastran/mystran_frame_units";
 
-/// The case's job with `[candidates]` and `[placement]` replaced.
+/// Writes the job of the case with another `[candidates]` and `[placement]`.
 fn job(name: &str, candidates: &str, placement: &str) -> Option<(PathBuf, PathBuf)> {
     let case = find_shared_path(CASE)?;
     let folder = scratch(name);
@@ -29,7 +29,7 @@ fn job(name: &str, candidates: &str, placement: &str) -> Option<(PathBuf, PathBu
     Some((path, folder))
 }
 
-/// A layout with nothing wrong.
+/// Runs `place`, which must end without an error.
 fn place_without_fault(
     name: &str,
     candidates: &str,
@@ -75,10 +75,11 @@ fn criterion_a_gives_smaller_variances_and_d_a_larger_determinant() {
         s.iter().zip(expected).map(|(s, e)| (s / e).powi(2)).sum()
     };
     assert!(spread(&a) < spread(&d), "{} {}", spread(&a), spread(&d));
-    // The criterion of A is -k ln of that sum.
+    // The value of criterion A is -k ln of that sum.
     let value = -9.0 * spread(&a).ln();
     assert!((a.number("log_det") - value).abs() < 1e-6, "{value}");
-    // The relaxation is loose where gauges are not many more than loads; a ratio of variances is looser than the ninth root of one of determinants.
+    // The bound of the relaxation is loose if there are few gauges more than loads. A ratio of variances is looser than
+    // the ninth root of a ratio of determinants.
     for (o, least) in [(&a, 0.85), (&d, 0.9)] {
         let e = o.number("efficiency_bound");
         assert!(e > least && e <= 1.0, "{e}");
@@ -96,12 +97,12 @@ fn a_layout_for_the_condition_number_has_a_smaller_one_than_d_and_states_the_lea
     let own = got.number("condition_number_scaled");
     let least = got.number("least_condition_number_scaled");
     assert!(own < d.number("condition_number_scaled"), "{own}");
-    // S of the result is that of gauges with a length and a transverse sensitivity, the search's is that of points.
+    // S of the result includes gauge length and transverse sensitivity. S of the search is that of points.
     assert!(own <= 1.2 * least, "{own} {least}");
     assert_eq!(gauges(&got).len(), 12);
     assert!(got.number("log_det") <= d.number("upper_bound") + 1e-9);
     assert!(got.number("efficiency_bound") <= 1.0);
-    // Pairs are not among what it looks for, and it says so.
+    // This search does not support pairs, and the error reports it.
     let words = "gauges = 12\ncriterion = \"condition\"\nsymmetric = \"y\"";
     let (job, folder) = job("place_condition_pairs", WIDE, words).unwrap();
     let got = run(&["place", job.to_str().unwrap()], &folder.join("out"));
@@ -175,7 +176,7 @@ fn gauges_stay_inside_boxes_and_clear_of_edges_joints_loads_and_attachments() {
     let (model, _) = strainbridge::model::Model::from_deck(&read);
     use strainbridge::placement::region::{attachments, free_edges, joints};
     let near = |x: &[f64], s: &[[strainbridge::model::Vec3; 2]]| -> f64 {
-        // Distance to the middles and ends: never less than the distance to the segment.
+        // Distance to the middle and the ends. It is never less than the distance to the segment.
         let x = strainbridge::model::Vec3::new(x[0], x[1], x[2]);
         s.iter()
             .flat_map(|[a, b]| [*a, *b, (a + b) * 0.5])
@@ -194,7 +195,7 @@ fn gauges_stay_inside_boxes_and_clear_of_edges_joints_loads_and_attachments() {
             (joints(&model), 30.0),
             (attachments(&model), 60.0),
         ] {
-            // Centres keep the distance, surfaces are half a thickness beside.
+            // Centres of elements keep the distance. Surfaces are half a thickness away from them.
             assert!(near(&x, &s) >= least - 4.0, "{x:?} {}", near(&x, &s));
         }
     }
@@ -328,7 +329,7 @@ fn a_layout_for_the_worst_loss_keeps_more_after_it_and_the_curve_falls() {
         .filter(|g| g["role"] == "validation")
         .collect();
     assert_eq!(kept.len(), 2);
-    // Tolerances are scatter: no gauge reads better than its noise.
+    // Tolerances add scatter, so no gauge has less than its noise.
     assert!(
         gauges(&plain)
             .iter()

@@ -1,5 +1,6 @@
-//! The side of a shell that a gauge is on, on closed forms: a plate under constant moment, whose strain is proportional to the height over its
-//! middle surface.
+//! The side of a shell that a gauge is on, compared with closed forms.
+//!
+//! The plate is under a constant moment, and its strain is proportional to the height above its middle surface.
 
 use strainbridge::finding::Finding;
 use strainbridge::host::context::InMemory;
@@ -7,16 +8,16 @@ use strainbridge::{Context, Job, Severity, sensitivity};
 
 /// Strain of the upper skin under the load: 100 N mm per mm on a plate of 2 mm, 150 MPa.
 const BENT: f64 = 150.0 / 200_000.0;
-/// Rounding of the solution of a small plate, and of numbers in fields of eight characters.
+/// Rounding error of the solution of a small plate, and of numbers in fields of eight characters.
 const ROUNDING: f64 = 1e-9 * BENT;
 
-/// A plate of 4 by 4 elements of 10 mm in the xy plane, 2 mm thick, bent about y by moments on two edges.
+/// Plate of 4 by 4 elements of 10 mm in the xy plane, 2 mm thick. Moments on two edges bend it about y.
 struct Plate {
     /// Offset of every element along its normal.
     zoffs: f64,
     /// Elements whose normals point down.
     flipped: Vec<u32>,
-    /// Z1 and Z2, where the property states them.
+    /// Z1 and Z2, if the property states them.
     fibres: &'static str,
 }
 
@@ -66,7 +67,7 @@ impl Plate {
     }
 }
 
-/// Readings under the load, strain, and the findings.
+/// Returns the readings under the load (strain) and the findings.
 fn read(files: &InMemory) -> (Vec<f64>, Vec<Finding>) {
     let job = Job::read("job.toml", files).unwrap();
     let s = sensitivity(&job, &Context::new(files)).unwrap();
@@ -92,7 +93,7 @@ fn gauge(keys: &str) -> String {
 
 #[test]
 fn a_point_next_to_an_element_decides_the_side() {
-    // A mixture of normals with an offset would be no plate in pure bending.
+    // Mixed normals with an offset would not give a plate in pure bending.
     let plates = [
         (0.0, vec![7]),
         (0.0, Vec::new()),
@@ -125,7 +126,7 @@ fn a_point_next_to_an_element_decides_the_side() {
             }
         }
     }
-    // Without a point the top is taken.
+    // Without a point, the gauge is on the top.
     let (got, _) = read(&Plate::new().files(&gauge("element = 7\n")));
     assert!((got[0] - BENT).abs() < ROUNDING);
 }
@@ -149,19 +150,19 @@ fn a_surface_that_contradicts_the_point_is_an_error() {
             for near in [sign, 0.0, -0.4 * sign] {
                 assert_eq!(severity(&with(surface, near).1, code), None, "{near}");
             }
-            // Far off the plate it may be a point of something else.
+            // A point far from the plate may belong to another part.
             let (_, findings) = with(surface, -4.0 * sign);
             assert_eq!(severity(&findings, code), Some(Severity::Warning));
         }
     }
-    // The distance is that of the stated side.
+    // The distance refers to the stated side.
     let keys = gauge("surface = \"top\"\nposition = [25.0, 15.0, -1.0]\n");
     let (_, findings) = read(&Plate::new().files(&keys));
     let found = findings
         .iter()
         .find(|f| f.code == "gauge-at-nearest-surface");
     assert!(found.unwrap().message.contains("2.0000 from the stated"));
-    // A table may state the middle of the element, which is on its grids.
+    // A table may state the middle of the element, which is in the plane of its grids.
     let offset = Plate {
         zoffs: 1.0,
         ..Plate::new()
@@ -194,7 +195,7 @@ fn fibres_off_the_skin_are_named_and_do_not_move_the_skin() {
         let keys = gauge(&format!("position = [25.0, 15.0, {z:?}]\n"));
         read(&plate.files(&keys))
     };
-    // Strain is proportional to the height: at 2 twice that of the skin, at 0 none.
+    // Strain is proportional to the height. At height 2 it is twice the strain of the skin, at 0 it is zero.
     for (z, expected, field) in [(1.0, 2.0 * BENT, "Z2 = 2"), (-1.0, 0.0, "Z1 = 0")] {
         let (got, findings) = at(z);
         assert!((got[0] - expected).abs() < ROUNDING, "{z}: {got:?}");
@@ -210,7 +211,7 @@ fn fibres_off_the_skin_are_named_and_do_not_move_the_skin() {
         );
         assert_eq!(severity(&findings, "gauge-side-contradicted"), None);
     }
-    // Fibres at the skins need no word.
+    // Fibres at the skins cause no finding.
     let stated = Plate {
         fibres: ",-1.,1.\n",
         ..Plate::new()
@@ -236,7 +237,7 @@ fn the_second_side_left_out_is_the_opposite_one_in_space() {
             ("element = 7\nposition = [25, 15, -1]\n", -1.0),
         ] {
             let (got, _) = read(&plate.files(&half(keys)));
-            // Twice the strain of a skin: one skin less the other.
+            // Twice the strain of a skin, because the reading is the difference of both skins.
             let expected = 2.0 * sign * BENT;
             assert!((got[0] - expected).abs() < 2.0 * ROUNDING, "{keys}{got:?}");
         }
@@ -244,7 +245,7 @@ fn the_second_side_left_out_is_the_opposite_one_in_space() {
     let same = half("element = 7\nsurface = \"top\"\nsurface2 = \"top\"\n");
     let (got, _) = read(&Plate::new().files(&same));
     assert!(got[0].abs() < 2.0 * ROUNDING);
-    // A stated point may put the first pair onto the stated side of the second one.
+    // A stated point may put the first pair on the side that is stated for the second one.
     let keys =
         "bridge = \"half-bending\"\nelement = 7\nposition = [25, 15, -1]\nsurface2 = \"bottom\"\n";
     let text = collect_job_faults(&Plate::new().files(&gauge(keys)));
@@ -281,7 +282,7 @@ fn a_column_of_sides_has_sides_of_the_shell_or_of_the_vehicle() {
         let text = collect_job_faults(&table("side", word));
         assert!(text.contains("g.csv:2: surface"), "{word}: {text}");
     }
-    // Sides of the vehicle are named as not read, and no remedy makes something else of them.
+    // A finding names the column for the side of the vehicle as not read. Its remedy does not suggest another name.
     for (column, word) in [("side", "left"), ("nx", "0.0"), ("kg", "1")] {
         let (_, findings) = read(&table(column, word));
         let found = findings
@@ -306,7 +307,7 @@ fn a_column_of_sides_has_sides_of_the_shell_or_of_the_vehicle() {
     );
 }
 
-/// A cantilever of one bar pulled along its axis, with the recovery point C alone.
+/// A cantilever of one bar under an axial force, with the recovery point C only.
 #[test]
 fn a_bar_gauge_at_a_point_without_coordinates_is_named() {
     let deck = "SOL 101\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,100.,0.,0.\nCBAR,1,1,1,2,0.,0.,1.\nPBAR,1,1,10.,100.,100.,100.\n\

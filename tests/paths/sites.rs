@@ -1,4 +1,4 @@
-//! Candidates against gauges built at the same places.
+//! Compares candidates with gauges built at the same places.
 
 use crate::command::find_shared_path;
 use strainbridge::fe::CaseResult;
@@ -130,7 +130,8 @@ fn forms_of_misplacement_are_the_changes_of_gauges_moved_along_both_directions()
                     one(0.0).direction,
                     one(std::f64::consts::FRAC_PI_2).direction,
                 ];
-                // On these rectangles the neighbours lie along the element's axes, so that a fit along each is the fit in the plane.
+                // On these rectangles, the neighbours are along the axes of the element. A fit along each axis then
+                // equals the fit in the plane.
                 let square: Option<f64> = ways
                     .into_iter()
                     .map(|w| {
@@ -148,7 +149,7 @@ fn forms_of_misplacement_are_the_changes_of_gauges_moved_along_both_directions()
                     &angle_variance::of_row(form),
                     &angle_variance::phases(angle),
                 );
-                // A ten-thousandth: the small share that keeps a direction without neighbours at 0.
+                // The limit is 1e-4, because of the small share that keeps a direction without neighbours at zero.
                 assert!(
                     (form - square).abs() < 1e-4 * (square + 1e-6),
                     "{bridge:?} {shell:?} {form} {square}"

@@ -1,10 +1,10 @@
-//! Named spots: gauges chosen from a table of places with fixed directions, against exhaustive search.
+//! Named spots: compares gauges chosen from a table of places and directions with an exhaustive search.
 
 use strainbridge::host::context::InMemory;
 use strainbridge::report::command::save;
 use strainbridge::{Context, Faults, Job, place, sensitivity, study};
 
-/// A free strip of plates along x, 11 by 2 grids 20 mm apart, 2 mm thick, with a bar along its lower edge.
+/// Returns a free strip of plates along x, 11 by 2 grids 20 mm apart, 2 mm thick, with a bar along its lower edge.
 fn strip() -> String {
     let mut deck = String::from("SOL 101\nCEND\nBEGIN BULK\n");
     for i in 0..11 {
@@ -88,7 +88,7 @@ fn collect_placement_faults(files: &InMemory) -> String {
     faults.to_string()
 }
 
-/// Strain of the loads of expected size at every spot, microstrain: noise of 1 is then the standard deviation.
+/// Returns the strain of loads of expected size at every spot, microstrain. The noise is 1 in these units.
 fn rows(files: &InMemory) -> Vec<Vec<f64>> {
     let job = job(files);
     let s = sensitivity(&job, &Context::new(files)).unwrap();
@@ -104,7 +104,7 @@ fn rows(files: &InMemory) -> Vec<Vec<f64>> {
     (0..s.gauges.len()).map(scaled).collect()
 }
 
-/// Determinant by elimination.
+/// Returns the determinant, by elimination.
 fn determinant(mut m: Vec<Vec<f64>>) -> f64 {
     let mut out = 1.0;
     for c in 0..m.len() {
@@ -126,7 +126,7 @@ fn determinant(mut m: Vec<Vec<f64>>) -> f64 {
     out
 }
 
-/// ln det of the information of the rows in `subset`, with `known` added to the last diagonal entry.
+/// Returns ln det of the information of the rows in `subset`, with `known` added to the last diagonal entry.
 fn value(rows: &[Vec<f64>], subset: u32, known: f64) -> f64 {
     let k = rows[0].len();
     let mut m = vec![vec![0.0; k]; k];
@@ -144,14 +144,14 @@ fn value(rows: &[Vec<f64>], subset: u32, known: f64) -> f64 {
     }
     let det = determinant(m.clone());
     match known > 0.0 {
-        // Ds: without the block of the nuisance load, the last one.
+        // Criterion Ds: without the block of the nuisance load, which is the last one.
         true => det.ln() - m[k - 1][k - 1].ln(),
         false if det > 0.0 => det.ln(),
         false => f64::NEG_INFINITY,
     }
 }
 
-/// The best of all subsets that `is_allowed` admits: its value and its names.
+/// Returns the best of all subsets that `is_allowed` accepts: its value and its names.
 fn find_best_subset(
     rows: &[Vec<f64>],
     known: f64,
@@ -192,7 +192,7 @@ fn a_nuisance_load_counts_as_known_to_its_expected_size() {
     let nuisance = format!("{SIDE}role = \"nuisance\"\n");
     let files = files(&format!("{nuisance}{SPOTS}gauges = 4\n"), &table(false));
     let placed = place(&job(&files), &Context::new(&files)).unwrap();
-    // Columns are in expected sizes: a load that is known to its size adds 1.
+    // Columns are scaled by expected sizes. A load whose size is known adds 1.
     let (value, names) = find_best_subset(&rows(&files), 1.0, |s| s.count_ones() == 4);
     let chosen: Vec<&str> = placed.gauges.iter().map(|g| g.name.as_str()).collect();
     assert!(
@@ -201,7 +201,7 @@ fn a_nuisance_load_counts_as_known_to_its_expected_size() {
         placed.log_det
     );
     assert_eq!(chosen, names);
-    // Two gauges determine two loads next to a nuisance load of stated size, in every command.
+    // In every command, two gauges determine two loads together with a nuisance load of stated size.
     let two = self::files(&format!("{nuisance}{SPOTS}gauges = 2\n"), &table(false));
     let placed = place(&job(&two), &Context::new(&two)).unwrap();
     let of_two = format!("{nuisance}[gauges]\nfile = \"two.csv\"\n");
@@ -252,7 +252,8 @@ fn the_budget_limits_the_total_cost_of_the_best_subset() {
     }
 }
 
-/// The table of gauges of a plan, read by a job, gives the plan's S: bridges, grids, rosettes, positions and points of bars.
+/// A job that reads the table of gauges of a plan gets the S of the plan: bridges, grids, rosettes, positions and
+/// points of bars.
 #[test]
 fn chosen_spots_read_the_same_from_the_table_of_gauges() {
     let spots = "name,element,surface,dir_x,dir_y,dir_z,angle_deg,x,y,z,bridge,bridge_factor,grid_length,rosette,point,member\n\
@@ -460,13 +461,13 @@ fn a_study_names_the_gauges_of_each_layout() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
-/// With a given S, spots need neither place nor direction: their names are rows of the table.
+/// With a given S, spots need neither place nor direction. Their names are rows of the table.
 #[test]
 fn a_study_of_a_given_s_chooses_among_named_spots() {
     let job_text = "units = \"m-kg-s\"\nload = [{ name = \"a\", expected = 1.0 }, { name = \"b\", expected = 1.0 }]\n\
                     [sensitivity]\nfile = \"s.csv\"\n[candidates]\nfile = \"spots.csv\"\n\
                     [study]\nlayouts = [\"D\"]\ngauges = [2]\ntrials = 20\n";
-    // Without G1, the largest determinant is that of G2 and G4: 3 x 2.
+    // Without G1, G2 and G4 have the largest determinant: 3 x 2.
     let files = InMemory::default()
         .with_file("job.toml", job_text)
         .with_file("s.csv", "gauge,a,b\nG1,9,0\nG2,3,0\nG3,1,1\nG4,0,2\n")
@@ -518,7 +519,7 @@ fn a_table_corrected_by_hand_is_not_overwritten_by_place_or_study() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
-/// The gauges that a search chose, listed as spots, have the same uncertainty and the same gluing sheet.
+/// If the gauges that a search chose are listed as spots, they have the same uncertainty and the same gluing sheet.
 #[test]
 fn spots_have_the_uncertainty_of_the_same_gauges_found_by_a_search() {
     let errors = "gauges = 5\nnoise_microstrain = 0.5\nangle_tolerance_deg = 1.0\nposition_tolerance = 2.0\n\

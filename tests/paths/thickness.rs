@@ -1,7 +1,8 @@
-//! Gauges on shells whose elements state their thickness: the skins are half the local thickness from the reference plane.
+//! Gauges on shells whose elements state their thickness. The skins are half the local thickness away from the
+//! reference plane.
 //!
-//! MSC Nastran Quick Reference Guide, PSHELL: `T` of the defaults of Z1 and Z2 is the local thickness, that of the connection entry if it
-//! states one.
+//! MSC Nastran Quick Reference Guide, PSHELL: `T` in the defaults of Z1 and Z2 is the local thickness. If the
+//! connection entry states a thickness, that one is the local thickness.
 
 use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Job, place, respond, sensitivity};
@@ -11,7 +12,8 @@ const E: f64 = 200_000.0;
 const FORCE: f64 = 200.0;
 const MOMENT: f64 = 200.0;
 
-/// A free square plate of 4 by 4 elements of 10 mm with PSHELL `property`; `corners` are the fields behind PID and grids of each element.
+/// Returns a free square plate of 4 by 4 elements of 10 mm with PSHELL `property`. `corners` are the fields after PID
+/// and grids of each element.
 fn plate(property: &str, triangles: bool, corners: &str) -> String {
     let mut deck = String::from("SOL 101\nCEND\nLOAD = 2\nBEGIN BULK\nPARAM,INREL,-2\n");
     let grid = |i: u32, j: u32| 1 + i + 5 * j;
@@ -20,7 +22,7 @@ fn plate(property: &str, triangles: bool, corners: &str) -> String {
             let [x, y] = [i, j].map(|k| 10.0 * f64::from(k) - 20.0);
             deck += &format!("GRID,{},,{x:.1},{y:.1},0.\n", grid(i, j));
         }
-        // Half of the load of an element at each of its grids.
+        // Each grid of an element takes half of the load of the element.
         let length = if j == 0 || j == 4 { 5.0 } else { 10.0 };
         for (g, sign) in [(grid(0, j), -1.0), (grid(4, j), 1.0)] {
             let [f, m] = [FORCE, MOMENT].map(|v| sign * v * length);
@@ -56,12 +58,13 @@ fn files(deck: String, job: &str) -> InMemory {
         .with_file("job.toml", format!("{HEAD}{job}"))
 }
 
-/// Strain along x at height `z` of a plate of thickness `t` under the force and the moment: `N / (E t)` and `12 m z / (E t^3)`.
+/// Returns the strain along x at height `z` of a plate of thickness `t` under the force and the moment: `N / (E t)` and
+/// `12 m z / (E t^3)`.
 fn strain(t: f64, z: f64) -> [f64; 2] {
     [FORCE / (E * t), 12.0 * MOMENT * z / (E * t.powi(3))]
 }
 
-/// Rows of S, strain.
+/// Returns the rows of S, strain.
 fn rows(files: &InMemory) -> Vec<[f64; 2]> {
     let job = Job::read("job.toml", files).unwrap();
     let s = sensitivity(&job, &Context::new(files)).unwrap();
@@ -131,7 +134,7 @@ fn a_place_on_the_skin_of_the_stated_thickness_is_found_there() {
             &format!("{zoffs}\n,,,4.,4.,4.,4."),
         );
         let found = rows(&files(deck, &(at(high) + &at(low))));
-        // The force at the grids, below the middle of a plate with an offset, bends it, too.
+        // The force at the grids is below the middle of a plate with an offset, so it bends the plate too.
         let arm = if zoffs.is_empty() { 0.0 } else { -2.0 };
         let of = |z: f64| {
             let [pull, bend] = strain(4.0, z);
@@ -151,7 +154,7 @@ fn placed_gauges_and_stress_are_at_the_skin_of_the_stated_thickness() {
     let job = Job::read("job.toml", &plan).unwrap();
     let placed = place(&job, &Context::new(&plan)).unwrap();
     assert!(placed.gauges.iter().all(|g| g.position[2].abs() == 2.0));
-    // Of a moment of 1: stress 6 m / t^2 along x, nothing across.
+    // A moment of 1 gives the stress 6 m / t^2 along x and none across.
     let asked = files(
         deck,
         &format!(

@@ -1,4 +1,4 @@
-//! Two load cases of a wing box solved by MSC, 64-bit OP2, skewed shells.
+//! Two load cases of a wing box solved by MSC: 64-bit OP2, skewed shells.
 
 use super::command::{csv, find_shared_path, run, scratch};
 
@@ -54,8 +54,9 @@ fn two_load_cases_with_the_same_strain_everywhere_are_refused_as_inseparable() {
     let job = folder.join("job.toml");
     std::fs::write(&job, &text).unwrap();
     let placed = run(&["place", job.to_str().unwrap()], &folder.join("placed"));
-    // Both subcases put the same strain into every shell of this file (`raw_shell_strain` of the oracle is the same to the last digit):
-    // no layout separates them. The program says so, and still gives the best layout for what is left.
+    // Both subcases give the same strain in every shell of this file (`raw_shell_strain` of the oracle agrees to the
+    // last digit). No layout separates them. The program reports it, and still gives the best layout for the remaining
+    // combination.
     assert_eq!(placed.code, 1, "{}", placed.stderr);
     assert!(
         placed.stderr.contains("separate the 2 loads"),
@@ -79,7 +80,7 @@ fn a_known_multiple_of_a_load_comes_back_from_the_files_own_strain() {
     };
     let folder = scratch("wing_one");
     let path = |f: &str| case.join(f).display().to_string().replace('\\', "/");
-    // The first load alone, from skewed quads in 64 bits.
+    // Only the first load, from skewed quads in 64 bits.
     let second = JOB.find("[[load]]\nname = \"B\"").unwrap();
     let rest = JOB.find("[candidates]").unwrap();
     let text = format!("{}{}", &JOB[..second], &JOB[rest..])
@@ -91,7 +92,8 @@ fn a_known_multiple_of_a_load_comes_back_from_the_files_own_strain() {
     std::fs::write(&place, &text).unwrap();
     let placed = run(&["place", place.to_str().unwrap()], &folder.join("placed"));
     assert_eq!(placed.code, 0, "{}", placed.stderr);
-    // Strain of a gauge n at a surface from the basic-frame tensor that `strains` writes: n' E n.
+    // Strain of a gauge with direction n on a surface, from the tensor in the basic frame that `strains` writes: n' E
+    // n.
     let strains = run(
         &["strains", &path("d173.bdf"), &path("d173.op2")],
         &folder.join("strains"),

@@ -1,4 +1,4 @@
-"""Chromium and axe-core for the scripts in this folder: exit code 77 where playwright, axe-core or chromium is absent."""
+"""Chromium and axe-core for the scripts in this folder. Exit code 77 if playwright, axe-core or chromium is missing."""
 import re
 import shutil
 import sys
@@ -17,7 +17,7 @@ if EXECUTABLE is None:
     print("absent: chromium")
     sys.exit(77)
 
-# The program that tests a page for everyone's use.
+# Program that tests the accessibility of a page.
 AXE_CORE = (Path(axe_playwright_python.__file__).parent / "axe.min.js").read_text(encoding="utf-8")
 
 FLAGS = [
@@ -25,10 +25,10 @@ FLAGS = [
     "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage",
 ]
 
-# What Chromium says of software rendering, and of our own look at the pixels.
+# Messages of Chromium about software rendering, and about the access of these scripts to the pixels.
 HARMLESS = re.compile("GPU stall|willReadFrequently")
 
-# Pairs of texts whose boxes lie over each other by more than a pixel and a half, as far as they are seen: what an element clips does not count.
+# Pairs of texts whose visible boxes overlap by more than a pixel and a half. Parts that an element clips do not count.
 OVERLAPS = """() => {
   const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT), found = [];
   for (let node = walk.nextNode(); node; node = walk.nextNode()) {

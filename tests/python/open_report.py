@@ -1,11 +1,12 @@
-"""Opens reports in headless Chromium, wide and at the width of a phone, and says what is seen there.
+"""Opens reports in headless Chromium, on a wide screen and with the width of a phone, and prints the observations.
 
     python open_report.py REPORT.html...
 
-Prints one JSON object: by file and width the seconds until all is drawn, errors of the console, requests that leave the file, titles,
-what each figure shows, texts that lie over each other, whether the page is wider than the screen, whether the wheel scrolls it, the size
-of the model drawn, and what the scene says when a gauge is pointed at. Exit code 77 where playwright or chromium is absent. Pictures go to
-the folder that SHOTS names.
+Prints one JSON object by file and width. It has the seconds until everything is drawn, errors of the console, requests
+that leave the file, and titles. It also has the content of each figure, overlapping texts, whether the page is wider
+than the screen, and whether the wheel scrolls it. Finally, it has the size of the model, and the name that the scene
+shows if the pointer is on a gauge. Exit code 77 if playwright or chromium is missing. Pictures go to the folder in
+SHOTS.
 """
 import base64
 import json
@@ -15,7 +16,7 @@ import time
 
 from browser import AXE_CORE, HARMLESS, OVERLAPS, chromium
 
-# Share of the pixels that differ from the one in the corner, and the number of colours, of a PNG.
+# Share of the pixels that differ from the corner pixel, and the number of colours, of a PNG.
 COLOURS = """async (png) => {
   const image = new Image();
   image.src = "data:image/png;base64," + png;
@@ -30,7 +31,7 @@ COLOURS = """async (png) => {
   return { other: other / words.length, colours: new Set(words).size };
 }"""
 
-# Where the gauges stand on the screen, and their names.
+# Screen positions of the gauges, and their names.
 GAUGES = """() => {
   const { camera, marks, box, lifted } = document.querySelector(".scene").scene, at = box.getBoundingClientRect();
   return marks.map((m) => { const p = camera.project(lifted(m)); return { name: m.name, x: at.left + box.clientLeft + p[0], y: at.top + box.clientTop + p[1] }; });
@@ -49,20 +50,20 @@ FIRST = """() => {
   return { verdict: box(".verdict"), numbers: box(".tiles"), picture: box(".picture svg"), table: box(".result table"), summary: summary && summary.textContent };
 }"""
 
-# Width and height of the space of a figure, and its legend.
+# Width and height of the plot area of a figure, and its legend.
 FRAME = """(f) => {
   const r = f.querySelector("svg > rect[stroke]"), legend = f.querySelector(".legend");
   return { size: r && [+r.getAttribute("width"), +r.getAttribute("height")], legend: legend ? legend.textContent : "" };
 }"""
 
-# By card: its heading, the size of its picture and the words in it.
+# Heading, size of the picture, and words in the picture, by card.
 CARDS = """() => [...document.querySelectorAll(".card")].map((c) => {
   const r = (c.querySelector("svg") || c).getBoundingClientRect(), words = [...c.querySelectorAll("svg text")].map((t) => t.textContent);
   return { title: c.querySelector("h3").textContent, size: c.querySelector("svg") ? [r.width, r.height] : [0, 0], words: words.join(" ") };
 })"""
 
-# Violations of the rules of WCAG 2 (A, AA) and of good practice that axe-core finds: rule, impact, the first elements. Tables and figures that
-# are folded are opened first.
+# Violations of the rules of WCAG 2 (A, AA) and of good practice that axe-core finds: rule, impact, the first elements.
+# Folded tables and figures are opened first.
 AXE = """async () => {
   document.querySelectorAll("details").forEach((d) => { d.open = true; });
   const found = await axe.run(document, { runOnly: { type: "tag", values: ["wcag2a", "wcag2aa", "best-practice"] }, resultTypes: ["violations"] });
@@ -72,7 +73,7 @@ AXE = """async () => {
 
 
 def violations(page):
-    """What axe-core finds on a page that is drawn, light and, if the page has a dark scheme, dark."""
+    """Returns the violations on a complete page, in the light scheme and, if the page has one, in the dark scheme."""
     page.evaluate(AXE_CORE)
     found = page.evaluate(AXE)
     if "prefers-color-scheme" in page.content():
@@ -82,7 +83,7 @@ def violations(page):
     return found
 
 
-# Figures that show no picture where JavaScript is off.
+# Figures without a picture if JavaScript is off.
 WITHOUT_PICTURE = """() => [...document.querySelectorAll("[data-figure=chart]")].filter((f) => {
   const still = f.nextElementSibling;
   return !still || still.localName !== "noscript" || ![...still.querySelectorAll("svg")].some((e) => e.checkVisibility() && e.getBoundingClientRect().height > 40);
@@ -90,7 +91,7 @@ WITHOUT_PICTURE = """() => [...document.querySelectorAll("[data-figure=chart]")]
 
 
 def without_scripts(browser, path):
-    """What a page shows where JavaScript is off: the first screen, and whether anything that needs scripts is left empty."""
+    """Returns the content of a page without JavaScript: the first screen, and whether parts that need scripts are empty."""
     context = browser.new_context(viewport={"width": 1280, "height": 800}, java_script_enabled=False)
     page = context.new_page()
     page.goto("file://" + os.path.abspath(path))
@@ -155,7 +156,7 @@ def look(browser, path, width):
         seen["shown"] = subjects(page)
         if not phone:
             seen["wheel"] = wheel(page, view)
-        # Every view, so that no names lie over each other in any.
+        # Every view, to find overlapping names in each of them.
         seen["overlaps"] = []
         for button in page.locator(".scene [data-view]").all():
             button.click()
@@ -175,7 +176,10 @@ def look(browser, path, width):
 
 
 def subjects(page):
-    """By gauge in the subject of a visible finding: words under the model and bold labels of the pictures while it has the focus, and after."""
+    """Returns the marked words by gauge in the subject of a visible finding.
+
+    These are words under the model and bold labels of the pictures, while the gauge has the focus and afterwards.
+    """
     out = []
     page.evaluate("document.querySelectorAll('.f details, .folded').forEach((d) => { d.open = true; })")
     for subject in page.locator(".subject").all()[:4]:
@@ -191,7 +195,9 @@ def subjects(page):
 
 
 def wheel(page, view):
-    """How far the wheel scrolls the page over the picture, before and after it is clicked, and by how much it zooms."""
+    """Returns how far the wheel scrolls the page over the picture, before and after a click on it, and by how much it
+    zooms.
+    """
     far = "document.querySelector('.scene').scene.camera.far"
     out = {}
     for name in ["before", "after"]:
@@ -210,7 +216,9 @@ def wheel(page, view):
 
 
 def sees_overlaps(browser):
-    """Of two words over each other, one beside them and one that is clipped away, the first pair is said."""
+    """Tests the search for overlaps: two overlapping words, one separate word, and one clipped word give the first pair
+    only.
+    """
     page = browser.new_page()
     at = "margin:0;position:absolute;left:20px;top:%dpx"
     page.set_content(

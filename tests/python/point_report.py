@@ -1,13 +1,15 @@
-"""Plans on a report in headless Chromium, by real mouse and touch events, and says what the page wrote.
+"""Makes a plan on a report in headless Chromium, with real mouse and touch events, and prints the lines of the page.
 
     python point_report.py REPORT.html PLAN.json
 
-The plan: {"width": 1280, "touch": false, "steps": [[word, ..]..]}. Steps: ["view", "z"], ["state", "allowed"], ["tool", "brush"],
-["radius", 3], ["through", true], ["property", 7], ["drag", [x, y, z], ..] over these places of the model, ["two fingers"], ["undo"],
-["clear"], ["save"], ["lines"], ["choose", "field", "-1"], ["picture", "scene.png"] (the model), ["page", "page.png"] (what the window
-shows, "height" pixels of it, 900 if left out). Prints one JSON object: "lines" (of every step "lines": those for the job, those of
-gauges), "saved", "camera" (before and after two fingers), "gauges", "errors", "requests", "seconds" of the longest drag. Exit code 77 where playwright or
-chromium is absent.
+The plan is {"width": 1280, "touch": false, "steps": [[word, ..]..]}. The steps are ["view", "z"], ["state",
+"allowed"], ["tool", "brush"], ["radius", 3], ["through", true], ["property", 7], ["drag", [x, y, z], ..] over these
+places of the model, ["two fingers"], ["undo"], ["clear"], ["save"], ["lines"], ["choose", "field", "-1"], ["picture",
+"scene.png"] (the model), and ["page", "page.png"] (the window, "height" pixels of it, 900 by default).
+
+Prints one JSON object: "lines" (of every step "lines", for the job and for gauges), "saved", "camera" (before and
+after two fingers), "gauges", "errors", "requests", and "seconds" of the longest drag. Exit code 77 if playwright or
+chromium is missing.
 """
 import json
 import os
@@ -39,7 +41,7 @@ class Hand:
         locator.scroll_into_view_if_needed()
         if not self.touch:
             return locator.click()
-        # A tap is over before the click that it makes is heard.
+        # The tap ends before the page has processed its click.
         locator.evaluate("(e) => { window.clicked = false; e.addEventListener('click', () => { window.clicked = true; }, { once: true }); }")
         locator.tap()
         self.page.wait_for_function("window.clicked")
@@ -70,7 +72,9 @@ class Hand:
         self.page.wait_for_timeout(50)
 
     def spread(self):
-        """Two fingers apart, from the middle of the picture; with a mouse the wheel, which zooms in the picture that has focus."""
+        """Moves two fingers apart from the middle of the picture. A mouse uses the wheel, which zooms the picture that
+        has the focus.
+        """
         view = self.page.locator(".scene .canvas")
         view.scroll_into_view_if_needed()
         box = view.bounding_box()

@@ -1,4 +1,4 @@
-"""Reads unit_loads.bdf by pyNastran, prints one JSON object; exit code 77 where the package is absent.
+"""Reads unit_loads.bdf with pyNastran and prints one JSON object. Exit code 77 if the package is missing.
 
     python read_cases.py FILE
 """
@@ -7,7 +7,7 @@ import sys
 
 try:
     from pyNastran.bdf.bdf import read_bdf
-except Exception as e:  # absent, or of versions that don't go together
+except Exception as e:  # missing, or incompatible versions
     print(f"absent: {e}")
     sys.exit(77)
 

@@ -1,9 +1,10 @@
-"""Reads what place and recover write: XLSX by openpyxl, VTU by meshio, RPC III by rpc3-file, bulk data by pyNastran.
+"""Reads the files of place and recover: XLSX with openpyxl, VTU with meshio, RPC III with rpc3-file, bulk data with
+pyNastran.
 
     python read_exchange.py FILE...
 
-Prints one JSON object, a key a file; exit code 77 where a package is absent. A `.csv` is turned into RPC III (`.rsp` beside it, reals
-where its name ends in `_real`).
+Prints one JSON object with a key for each file. Exit code 77 if a package is missing. A `.csv` is converted to RPC III
+(`.rsp` in the same folder, with reals if its name ends in `_real`).
 """
 import csv
 import json
@@ -16,7 +17,7 @@ try:
     import openpyxl
     import rpc3
     from pyNastran.bdf.bdf import read_bdf
-except Exception as e:  # absent, or of versions that don't go together
+except Exception as e:  # missing, or incompatible versions
     print(f"absent: {e}")
     sys.exit(77)
 

@@ -2,8 +2,8 @@
 
     python read_paper.py REPORT.pdf...
 
-Prints one JSON object: by file the title, and by page its text, width and height in points, and the share of the drawn page that isn't
-white. Exit code 77 where a package is absent.
+Prints one JSON object: the title of each file. For each page it has the text, width and height in points, and the
+share of pixels that are not white. Exit code 77 if a package is missing.
 """
 import json
 import sys
@@ -17,9 +17,9 @@ except Exception as e:
 
 
 def inked(page):
-    """Share of the pixels that aren't white."""
+    """Returns the share of the pixels that are not white."""
     bitmap = page.render(scale=0.5)
-    # Rows may be longer than the page is wide.
+    # Rows may be longer than the width of the page.
     width = bitmap.width * bitmap.n_channels
     data = bytes(bitmap.buffer)
     rows = (data[i * bitmap.stride : i * bitmap.stride + width] for i in range(bitmap.height))

@@ -2,8 +2,8 @@
 
     python read_records.py FILE...
 
-A `.csv` is written as Parquet and MDF4 beside it; a `.parquet` is read. Prints one JSON object, a key a file; exit code 77 where a
-package is absent.
+A `.csv` is written as Parquet and MDF4 to the same folder. A `.parquet` is read. Prints one JSON object with a key for
+each file. Exit code 77 if a package is missing.
 """
 import csv
 import json
@@ -15,7 +15,7 @@ try:
     import numpy as np
     import pyarrow
     import pyarrow.parquet
-except Exception as e:  # absent, or of versions that don't go together
+except Exception as e:  # missing, or incompatible versions
     print(f"absent: {e}")
     sys.exit(77)
 
@@ -41,7 +41,7 @@ def write(path):
         signals = [asammdf.Signal(v, time, name=name, unit=unit_of(name)) for name, v in zip(names, columns[1:])]
         remark = asammdf.Signal(np.array([b"dry"] * len(time)), time, name="remark", encoding="utf-8")
         mdf.append([*signals, remark])
-        # A slower group beside them.
+        # An additional slower group.
         mdf.append([asammdf.Signal(np.arange(5.0), np.arange(5.0), name="battery", unit="V")])
         mdf.save(stem + tail + ".mf4", overwrite=True, compression=2 if tail else 0)
     return stem

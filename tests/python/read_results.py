@@ -1,4 +1,5 @@
-"""Reads results.op2 by pyNastran and results.vtu by meshio, prints one JSON object; exit code 77 where a package is absent.
+"""Reads results.op2 with pyNastran and results.vtu with meshio, and prints one JSON object. Exit code 77 if a package is
+missing.
 
     python read_results.py FOLDER
 """
@@ -9,7 +10,7 @@ try:
     import meshio
     import numpy as np
     from pyNastran.op2.op2 import OP2
-except Exception as e:  # absent, or of versions that don't go together
+except Exception as e:  # missing, or incompatible versions
     print(f"absent: {e}")
     sys.exit(77)
 
@@ -34,7 +35,7 @@ mesh = meshio.read(f"{folder}/results.vtu")
 
 
 def values(array):
-    """Rows; plain numbers where there is one component."""
+    """Returns rows, or plain numbers if there is one component."""
     array = np.asarray(array)
     return (array[:, 0] if array.ndim == 2 and array.shape[1] == 1 else array).tolist()
 

@@ -1,8 +1,10 @@
-"""One record as loggers and their programs store it: TDMS by npTDMS, universal files by pyuff, MDF4 by asammdf, Parquet, Feather and CSV by pandas.
+"""Writes one record in the formats of loggers and their programs.
+
+These are TDMS by npTDMS, universal files by pyuff, MDF4 by asammdf, and Parquet, Feather and CSV by pandas.
 
     python write_loggers.py FOLDER
 
-Prints one JSON object: the samples, and the files written; exit code 77 where a package is absent.
+Prints one JSON object: the samples, and the written files. Exit code 77 if a package is missing.
 """
 import json
 import os
@@ -15,7 +17,7 @@ try:
     import pandas
     import pyarrow  # noqa: F401  (pandas writes Parquet and Feather with it)
     import pyuff
-except Exception as e:  # absent, or of versions that don't go together
+except Exception as e:  # missing, or incompatible versions
     print(f"absent: {e}")
     sys.exit(77)
 
@@ -36,7 +38,7 @@ def path(name):
 def tdms(name, scaled):
     waveform = {"wf_increment": DT, "wf_start_offset": 0.0, "wf_samples": 1, "unit_string": UNIT}
     with nptdms.TdmsWriter(path(name)) as writer:
-        # Segments of uneven length, as a logger flushes them.
+        # Segments of different length, as a logger writes them.
         for begin, end in [(0, 1000), (1000, 2000), (2000, 40_001), (40_001, N)]:
             objects = [nptdms.RootObject(properties={"title": "a day"}), nptdms.GroupObject("strain")]
             for k, (key, v) in enumerate(columns.items()):
@@ -55,7 +57,7 @@ def tdms(name, scaled):
                 elif scaled:
                     data = data.astype("float32")
                 objects.append(nptdms.ChannelObject("strain", key, data, properties=properties))
-            # A slow channel and a text beside them.
+            # An additional slow channel and a text.
             objects.append(nptdms.ChannelObject("slow", "battery", np.arange(3.0), properties={"wf_increment": 1.0}))
             objects.append(nptdms.ChannelObject("notes", "remark", ["dry"]))
             writer.write_segment(objects)

@@ -1,4 +1,4 @@
-//! Cases whose effect must be found through the solver, from job to extended deck.
+//! Cases whose effect is found through the solver, from the job to the extended deck.
 
 use super::hidden;
 use serde_json::Value;
@@ -12,7 +12,7 @@ fn run(command: &str, job: &Path, out: &Path) -> Output {
         .arg(job)
         .arg("--out")
         .arg(out)
-        // Nothing is written beside the cases of ../shared.
+        // The program writes nothing next to the cases of ../shared.
         .arg("--no-cache")
         .output()
         .expect("the program runs")
@@ -23,12 +23,12 @@ fn result(out: &Path) -> Value {
     serde_json::from_str(&text).expect("valid json")
 }
 
-/// Folder of a case of ../shared.
+/// Returns the folder of a case of ../shared.
 fn case(name: &str) -> Option<PathBuf> {
     Some(hidden::find_shared_folder()?.join("deck").join(name))
 }
 
-/// Reconciles a case of ../shared: its result, the folder it was written to, the truth.
+/// Reconciles a case of ../shared. Returns its result, its output folder, and the truth.
 fn reconcile_case(name: &str) -> Option<(Value, PathBuf, Value)> {
     let dir = case(name)?;
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("reconcile_{name}"));
@@ -45,7 +45,7 @@ fn reconcile_case(name: &str) -> Option<(Value, PathBuf, Value)> {
     Some((result(&out), out, truth))
 }
 
-/// Fields on the first line of the cards that begin with `name`, eight or sixteen columns wide.
+/// Returns the fields on the first line of the cards that begin with `name`. Fields have eight or sixteen columns.
 fn cards(deck: &str, name: &str) -> Vec<Vec<String>> {
     let mut found = Vec::new();
     for line in deck.lines() {
@@ -61,7 +61,7 @@ fn cards(deck: &str, name: &str) -> Vec<Vec<String>> {
     found
 }
 
-/// Thickness of each PSHELL.
+/// Returns the thickness of each PSHELL.
 fn thicknesses(deck: &str) -> BTreeMap<u32, f64> {
     let number = |f: &String| f.parse::<f64>().expect("a thickness");
     let all = cards(deck, "PSHELL");
@@ -70,7 +70,8 @@ fn thicknesses(deck: &str) -> BTreeMap<u32, f64> {
     all.iter().map(pair).collect()
 }
 
-/// (before^2 - after^2) / (before^2 - left^2), with `left` what remains when the effect is known, by the case's author.
+/// Returns (before^2 - after^2) / (before^2 - left^2), where `left` is the gap that remains if the effect is known. The
+/// author of the case states `left`.
 fn closed_gap_share(result: &Value, truth: &Value) -> f64 {
     let square = |v: &Value| v.as_f64().unwrap_or(f64::NAN).powi(2);
     let before = square(&truth["gap_before"]);
@@ -87,7 +88,7 @@ fn a_zone_15_percent_thicker_is_found_through_the_solver_and_its_deck_solves_and
     let effect = &found["effects"][0];
     let (size, sigma) = (effect["size"].as_f64(), effect["sigma"].as_f64());
     let (size, sigma) = (size.expect("a size"), sigma.expect("its sigma"));
-    // The truth is a thickness times 1.15.
+    // The true thickness is 1.15 times the thickness of the model.
     assert!(
         (size - 15.0).abs() < 3.0 * sigma && sigma < 3.0,
         "{size} +- {sigma}"
@@ -96,14 +97,14 @@ fn a_zone_15_percent_thicker_is_found_through_the_solver_and_its_deck_solves_and
     assert!(found["gap"]["explained_share"].as_f64().expect("a share") > 0.7);
     let job = out.join("job_extended.toml");
     let deck = std::fs::read_to_string(out.join("deck_extended.bdf")).expect("the extended deck");
-    // Property 14 is as much thicker as was found, the others stay.
+    // The thickness of property 14 changes by the identified size. The other properties are unchanged.
     let nominal = std::fs::read_to_string(case("dev-f1").expect("the case").join("nominal.bdf"));
     let (before, after) = (thicknesses(&nominal.expect("the deck")), thicknesses(&deck));
     assert_eq!(before.len(), after.len());
     for (id, thickness) in &before {
         let factor = if *id == 14 { 1.0 + size / 100.0 } else { 1.0 };
         let ratio = after[id] / thickness;
-        // Seven digits of a card.
+        // A field of the card has seven digits.
         assert!((ratio / factor - 1.0).abs() < 1e-6, "{id}: {ratio}");
     }
     for (command, table) in [("solve", "results.op2"), ("recover", "loads.csv")] {
@@ -122,7 +123,7 @@ fn a_turned_sign_is_found_on_a_deck_whose_mesh_makes_two_percent_and_nothing_els
     };
     assert_eq!(found["named"], serde_json::json!(["sign_flip:G09"]));
     assert!(closed_gap_share(&found, &truth) > 0.7, "{}", found["gap"]);
-    // The mesh alone causes 2.2 % by another program's finer mesh; ours is half as wide, not infinitely fine.
+    // By the finer mesh of another program, the mesh alone causes 2.2 %. The reference mesh here is only twice as fine.
     let mesh = found["gap"]["mesh"].as_f64().expect("a number");
     let known = truth["model_error_gap"].as_f64().expect("a number");
     assert!((mesh - known).abs() < 0.3 * known, "{mesh} {known}");
@@ -133,7 +134,8 @@ fn a_turned_sign_is_found_on_a_deck_whose_mesh_makes_two_percent_and_nothing_els
     );
     let said = String::from_utf8_lossy(&done.stderr);
     assert_eq!(done.status.code(), Some(0), "{said}");
-    // The channel is put right in all readings, those to come as well; nothing is left to name.
+    // The correction applies to the channel in all readings, including future ones. No further effect remains to
+    // identify.
     let job = out.join("job_extended.toml");
     let text = std::fs::read_to_string(&job).expect("the extended job");
     let table: toml::Table = text.parse().expect("valid toml");
@@ -175,7 +177,7 @@ fn without_zones_each_property_with_gauges_is_one_and_the_thicker_plate_is_named
         "{}",
         String::from_utf8_lossy(&done.stderr)
     );
-    // A plate 1.5 m long, property 14, is 15 % thicker.
+    // In a plate 1.5 m long, property 14 is 15 % thicker.
     let found = result(&out);
     assert_eq!(found["verdict"], "named", "{}", found["remains"]);
     assert_eq!(
@@ -184,7 +186,7 @@ fn without_zones_each_property_with_gauges_is_one_and_the_thicker_plate_is_named
     );
     let effect = &found["effects"][0];
     let number = |key: &str| effect[key].as_f64().expect("a number");
-    // Percent of the thickness, within 3.5 standard deviations.
+    // Size in percent of the thickness, within 3.5 standard deviations.
     let off = (number("size") - 15.0) / number("sigma");
     assert!(off.abs() < 3.5, "{effect}");
 }

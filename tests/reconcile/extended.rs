@@ -1,5 +1,8 @@
-//! The extended model holds the effect: reconciled again as it stands there is nothing to name and the gap is at its floor, on the runs it
-//! was found in and, their raw readings put in, on runs that were never seen. One case a kind of effect.
+//! The extended model contains the effect. A second `reconcile` identifies nothing more, and the gap is at the expected
+//! residual.
+//!
+//! The tests use the runs in which the effect was found, and further runs with raw readings. There is one case for each
+//! kind of effect.
 
 use super::hidden;
 use hidden::generator::{Background, hide};
@@ -9,7 +12,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use strainbridge::reconcile::strain::StrainFrame;
 
-/// What the gap may be above its floor: the floor is a root mean square of some hundred readings, whose own scatter is a tenth.
+/// Largest ratio of the gap to the expected residual. The latter is a root mean square of some hundred readings with a
+/// scatter of a tenth.
 const AT_FLOOR: f64 = 1.25;
 
 fn run(command: &str, job: &Path, out: &Path) -> (Option<i32>, Value) {
@@ -28,7 +32,7 @@ fn run(command: &str, job: &Path, out: &Path) -> (Option<i32>, Value) {
     (code, result)
 }
 
-/// The frame with as many runs again.
+/// Returns the frame with twice as many runs.
 fn double_runs(base: &StrainFrame) -> StrainFrame {
     let mut out = base.clone();
     let o = &mut out.observations;
@@ -41,7 +45,7 @@ fn double_runs(base: &StrainFrame) -> StrainFrame {
     out
 }
 
-/// Readings and notes of some runs, as files of a folder.
+/// Writes readings and recorded values of some runs as files into a folder.
 fn write_runs(frame: &StrainFrame, runs: std::ops::Range<usize>, folder: &Path) {
     std::fs::create_dir_all(folder).expect("a folder");
     let (n_g, n_l) = (frame.n_gauges(), frame.n_loads());
@@ -63,7 +67,7 @@ fn write_runs(frame: &StrainFrame, runs: std::ops::Range<usize>, folder: &Path) 
     std::fs::write(folder.join("runs.csv"), notes).expect("written");
 }
 
-/// The job of the shared case, its tables where they are, its runs those of the folder.
+/// Writes the job of the shared case with absolute paths to its tables. Its runs are the files in the folder.
 fn write_job(frame: &StrainFrame, shared: &Path, folder: &Path) -> PathBuf {
     let text = std::fs::read_to_string(shared.join("job.toml")).expect("the job");
     let mut job: toml::Table = text.parse().expect("valid toml");
@@ -120,18 +124,18 @@ fn write_job(frame: &StrainFrame, shared: &Path, folder: &Path) -> PathBuf {
 }
 
 struct Found {
-    /// Result of the first pass.
+    /// Result of the first `reconcile`.
     result: Value,
     /// Folder of the case.
     folder: PathBuf,
-    /// The case.
+    /// Frame with the hidden effect.
     frame: StrainFrame,
-    /// What was hidden and where.
+    /// Hidden effects with their places.
     truth: Vec<String>,
 }
 
 impl Found {
-    /// Asserts that what was hidden is named, or named as one of several that the readings can't tell apart and are listed as such.
+    /// Fails if the hidden effect is neither identified nor listed as indistinguishable from the identified effect.
     fn assert_named(&self, effect: &str) {
         let r = &self.result;
         let said = format!("{effect} {:?}: {} {}", self.truth, r["named"], r["rivals"]);
@@ -146,9 +150,9 @@ impl Found {
     }
 }
 
-/// A case in which `effect` is hidden, reconciled on the first half of its runs.
+/// Reconciles a case with the hidden `effect` on the first half of its runs.
 fn reconcile_hidden_effect(effect: &str, size: f64, seed: u64) -> Option<Found> {
-    // Tests run beside each other, and some hide the same.
+    // Tests run in parallel, and some hide the same effect.
     let test = std::thread::current()
         .name()
         .map_or_else(String::new, |n| n.replace("::", "_"));
@@ -156,7 +160,9 @@ fn reconcile_hidden_effect(effect: &str, size: f64, seed: u64) -> Option<Found> 
     found_in(&name, (effect, size, seed), |_, _| String::new())
 }
 
-/// The same in a folder of this name; `besides` may change the case and write files beside it, what it returns goes to the job's end.
+/// Reconciles a case with a hidden effect in the folder `name`.
+///
+/// `besides` may change the case and write further files into the folder. Its return value is appended to the job.
 fn found_in(
     name: &str,
     (effect, size, seed): (&str, f64, u64),
@@ -165,7 +171,7 @@ fn found_in(
     let shared = hidden::find_shared_folder()?.join("static/dev-s1");
     let once = hidden::frame_of(&shared);
     let n = once.n_runs();
-    // What is wrong with the note of one run is nothing to prove on others.
+    // Other runs cannot confirm an error in the record of one run.
     let of_runs = effect.starts_with("run_");
     let base = if of_runs { once } else { double_runs(&once) };
     let mut case = hide(&base, effect, size, Background::Clean, seed);
@@ -187,7 +193,7 @@ fn found_in(
     })
 }
 
-/// The extended job; the effect is named.
+/// Returns the path of the extended job. Fails if the effect is not identified.
 fn extended_job_path(found: &Found, effect: &str) -> PathBuf {
     let r = &found.result;
     assert_eq!(
@@ -213,7 +219,7 @@ fn assert_nothing_left(effect: &str, result: &Value) {
     );
 }
 
-/// The extended job with the raw readings and notes of runs that were never seen.
+/// Writes the extended job with raw readings and records of further runs.
 fn with_new_runs(found: &Found, extended: &Path) -> PathBuf {
     let text = std::fs::read_to_string(extended).expect("the extended job");
     let mut job: toml::Table = text.parse().expect("valid toml");
@@ -270,11 +276,11 @@ fn the_extended_model_holds_every_kind_of_effect_on_runs_never_seen_too() {
     }
 }
 
-/// Faults of channels are `[[correction]]` entries; readings stay those of the job.
+/// Faults of channels become `[[correction]]` entries. The readings of the job are unchanged.
 #[test]
 fn a_fault_of_a_channel_is_a_correction_of_the_extended_job() {
     enum Is {
-        /// This number within this much.
+        /// The number, and the largest difference from it.
         About(f64, f64),
         True,
         /// The other channel of the exchange.
@@ -282,9 +288,9 @@ fn a_fault_of_a_channel_is_a_correction_of_the_extended_job() {
     }
     for (effect, size, key, value) in [
         ("sign_flip", 1.0, "sign", Is::About(-1.0, 0.0)),
-        // Noise of a gauge among the better three quarters: some per cent of its reading.
+        // The noise of a gauge among the better three quarters is some per cent of its reading.
         ("gauge_gain", 0.7, "gain", Is::About(0.7, 0.07)),
-        // Noise of 2 microstrain over seven runs, four standard deviations, and forces that are not exact.
+        // Four standard deviations of noise of 2 microstrain over seven runs, and of forces that are not exact.
         (
             "zero_drift",
             80.0,
@@ -314,7 +320,7 @@ fn a_fault_of_a_channel_is_a_correction_of_the_extended_job() {
         match value {
             Is::About(v, apart) => {
                 let number = number.unwrap_or_else(|| panic!("{effect}: {entry}"));
-                // A zero may have moved either way.
+                // The zero can drift in both directions.
                 let number = if effect == "zero_drift" {
                     number.abs()
                 } else {
@@ -334,26 +340,27 @@ fn a_fault_of_a_channel_is_a_correction_of_the_extended_job() {
     }
 }
 
-/// A note of one run may be wrong in several ways: the extended model holds the one that was found.
+/// The record of one run may contain several errors. The extended model contains the error that was found.
 #[test]
 fn the_note_that_was_wrong_is_the_one_that_is_put_right() {
     for seed in [41, 42, 43, 44] {
         let Some(found) = reconcile_hidden_effect("run_record", 0.8, seed) else {
             return;
         };
-        // A mass that is 80 % too large in one loaded run of ten is many times the noise of any seed.
+        // A mass that is 80 % too large in one loaded run of ten exceeds the noise many times, for every seed.
         found.assert_named("run_record");
         let extended = extended_job_path(&found, "run_record");
         let again = run("reconcile", &extended, &found.folder.join("again"));
         assert_nothing_left("run_record", &again.1);
-        // What was noted of the run, and what stands there now.
+        // The recorded value of the run, and its replacement.
         let added = &found.result["added"][0];
         assert!(
             added["path"]
                 .as_str()
                 .is_some_and(|p| p.starts_with("runs_extended.csv: run R"))
         );
-        // What is put in is the mass as it was before, noted / 1.8: of 2400 kg four standard deviations are a twentieth.
+        // The replacement is the true mass, which is the recorded one / 1.8. For 2400 kg, four standard deviations are
+        // a twentieth.
         let words = |key: &str| added[key].as_str().unwrap_or_default();
         let number = |key: &str| words(key).strip_suffix(" kg")?.parse::<f64>().ok();
         let [old, new] = ["old", "new"].map(|k| number(k).unwrap_or_else(|| panic!("{added}")));
@@ -361,7 +368,8 @@ fn the_note_that_was_wrong_is_the_one_that_is_put_right() {
     }
 }
 
-/// Faults of a channel that no entry undoes leave it out, in all runs to come as well; notes are put right in the runs at hand.
+/// A channel fault that no entry can correct excludes the channel, also in future runs. Records of the present runs are
+/// corrected.
 #[test]
 fn the_extended_model_holds_channels_that_come_and_go_and_notes_that_are_wrong() {
     for (effect, size, seed) in [
@@ -376,7 +384,8 @@ fn the_extended_model_holds_channels_that_come_and_go_and_notes_that_are_wrong()
             return;
         };
         if effect == "cross_sensitivity" {
-            // The gauge and its neighbour sit alike, left and right: half of the other's reading on top is 1.5 of its own.
+            // The gauge and its neighbour are symmetric, left and right. Half of the neighbour's reading is therefore
+            // equivalent to a gain of 1.5.
             let gauge = found.truth[0].split(':').nth(1).expect("a gauge");
             let named = &found.result["named"];
             let [leak, gain] = ["cross_sensitivity", "gauge_gain"].map(|e| format!("{e}:{gauge}"));
@@ -399,8 +408,9 @@ fn the_extended_model_holds_channels_that_come_and_go_and_notes_that_are_wrong()
     }
 }
 
-/// Adds 0.8 of a change of S that is like none of the library, and writes it as a table whose columns bear the names that `named` makes of
-/// those of S.
+/// Adds 0.8 times a change of S that no effect of the library resembles, and writes the change as a table.
+///
+/// `named` converts the column names of S to those of the table.
 fn own_hypothesis(
     frame: &mut StrainFrame,
     folder: &Path,
@@ -419,7 +429,7 @@ fn own_hypothesis(
     }
     for file in ["own.csv", "other.csv"] {
         std::fs::write(folder.join(file), &table).expect("written");
-        // The other one is turned upside down: nothing like it is there.
+        // The second table is upside down. The readings contain nothing similar to it.
         let lines: Vec<&str> = table.lines().collect();
         let cells = |l: &&str| {
             l.split_once(',')
@@ -468,7 +478,7 @@ fn a_table_of_ones_own_goes_into_s_and_leaves_the_job_the_others_stay() {
         );
         let effect = &found.result["effects"][0];
         let number = |key: &str| effect[key].as_f64().expect("a number");
-        // Four standard deviations: the noise is one draw.
+        // Four standard deviations, because the noise is one random sample.
         assert!(
             (number("size") - 0.8).abs() < 4.0 * number("sigma"),
             "{effect}"
@@ -479,7 +489,7 @@ fn a_table_of_ones_own_goes_into_s_and_leaves_the_job_the_others_stay() {
         let left = table["reconcile"]["effect"].as_array().expect("effects");
         let ids: Vec<&str> = left.iter().filter_map(|e| e["id"].as_str()).collect();
         assert_eq!(ids, ["other_bracket"]);
-        // Tables beside S go on naming their columns as S does.
+        // Other tables still name their columns as S does.
         assert_eq!(
             table["sensitivity"]["columns"]["RR.FZ"].as_str(),
             Some("FZ_RR")
@@ -492,7 +502,8 @@ fn a_table_of_ones_own_goes_into_s_and_leaves_the_job_the_others_stay() {
     }
 }
 
-/// An effect is accepted; in the runs after it the gauge that reads most is found with its sign turned, and that is accepted too.
+/// Accepts a first effect. In further runs, the gauge with the largest readings has a reversed sign, which is accepted
+/// as a second effect.
 #[test]
 fn two_effects_are_accepted_one_after_the_other() {
     let Some(mut found) = reconcile_hidden_effect("rail_stiffness", 20.0, 18) else {
@@ -522,7 +533,8 @@ fn two_effects_are_accepted_one_after_the_other() {
     assert_nothing_left("both", &last);
 }
 
-/// The word is for runs that were never used: where none are, neither the page nor the result says it. The page tells its story in order.
+/// "Held out" refers to runs that no fit uses. Without such runs, neither the page nor the result uses the term. The
+/// page has a fixed order of sections.
 #[test]
 fn without_hold_out_nothing_is_called_held_out_and_the_page_goes_from_verdict_to_notes() {
     let Some(found) = reconcile_hidden_effect("sign_flip", 1.0, 81) else {
@@ -565,7 +577,8 @@ fn without_hold_out_nothing_is_called_held_out_and_the_page_goes_from_verdict_to
     );
 }
 
-/// Ground that is not flat is a load of the extended job, in the unit of its runs; beside measured wheel forces, which hold it, it is refused.
+/// Uneven ground becomes a load of the extended job, in the unit of its runs. It is refused together with measured
+/// wheel forces, which include it already.
 #[test]
 fn uneven_ground_is_a_load_of_the_extended_job() {
     let Some(found) = reconcile_hidden_effect("uneven_ground", 4.0, 51) else {

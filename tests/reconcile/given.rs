@@ -1,4 +1,4 @@
-//! The static workflow on cases whose hidden effect is known, and on seeded ones of our own.
+//! The static workflow on cases with a known hidden effect, and on seeded cases.
 
 use super::hidden;
 use super::hidden::generator::{Background, EFFECTS, UNMODELLED, hide};
@@ -16,7 +16,7 @@ fn case(name: &str) -> Option<(StrainFrame, serde_json::Value)> {
     Some((frame, serde_json::from_str(&truth).ok()?))
 }
 
-/// Ids with places, as the truth of a case has them.
+/// Returns effect ids with places, in the form of the truth of a case.
 fn list_expected_effects(truth: &serde_json::Value) -> Vec<String> {
     let ids = truth["truth"].as_array().cloned().unwrap_or_default();
     let with_place = |id: &str| match truth["location"][id].as_str() {
@@ -50,13 +50,14 @@ fn hidden_effects_of_the_shared_static_cases_are_named_and_the_held_out_gap_clos
             ids.sort();
             ids
         };
-        // In any order: the set is one explanation.
+        // The order does not matter, as the set is one explanation.
         assert_eq!(
             sorted(list_named_effects(&outcome)),
             sorted(list_expected_effects(&truth)),
             "{name}"
         );
-        // Readings that four digits of the tables round: the gap of the analyst's model is that of the case's author.
+        // The tables round readings to four digits. The gap of the original model must agree with that of the author of
+        // the case.
         if let Some(before) = truth["gap_before"].as_f64() {
             assert!(
                 (outcome.gap.before - before).abs() < 1e-3 * before,
@@ -64,7 +65,8 @@ fn hidden_effects_of_the_shared_static_cases_are_named_and_the_held_out_gap_clos
             );
         }
         if outcome.verdict == Verdict::Named {
-            // With the errors of the wheel scales in it before and after alike, an effect hardly above them closes a part.
+            // The gap contains the errors of the wheel scales before and after. If an effect hardly exceeds them, it
+            // closes only a part of the gap.
             let (share, gap) = (outcome.gap.explained_share(), outcome.gap);
             assert!(share > 0.5 && share < 1.1, "{name}: {gap:?}");
             let found = gap.loads_found.expect("both pairs");
@@ -103,7 +105,7 @@ fn a_drifted_zero_is_found_to_a_few_microstrain_and_a_swap_by_its_two_gauges() {
     let drift = hide(&base, "zero_drift", 40.0, Background::Clean, 300);
     let outcome = examine(&drift.frame, &[]);
     assert_eq!(list_named_effects(&outcome), drift.truth);
-    // Noise of 2 microstrain at most over ten runs leaves 0.6; three sigma.
+    // Noise of 2 microstrain at most over ten runs leaves a sigma of 0.6. The limit is three sigma.
     assert!((outcome.effects[0].size[0].abs() - 40.0).abs() < 2.0);
     let swap = hide(&base, "gauge_swap", 1.0, Background::Clean, 100);
     assert_eq!(list_named_effects(&examine(&swap.frame, &[])), swap.truth);
@@ -118,7 +120,7 @@ fn every_effect_of_the_library_at_its_fourth_size_is_named_on_an_exact_model() {
         let hidden = hide(&base, effect, sizes[3], Background::Clean, 302);
         assert!(hidden.signal > 0.5, "{effect} is hidden in the noise");
         let outcome = examine(&hidden.frame, &[]);
-        // A rival that the program itself lists as not to be told apart counts.
+        // An alternative explanation that the program lists as indistinguishable is a correct answer too.
         let answer = judge(&hidden, &outcome);
         assert!(
             matches!(answer, Answer::Hit | Answer::Alias),
@@ -172,7 +174,7 @@ fn an_effect_of_size_zero_explains_nothing_of_the_gap() {
                 let gap = proof_residuals(&frame, &member, &[], anew)
                     .expect("a covariance")
                     .numbers();
-                // The same numbers in another order of summation.
+                // Another order of summation of equal numbers.
                 assert!(
                     (gap.after - gap.before).abs() < 1e-9,
                     "{name} {} {gap:?}",
@@ -217,7 +219,7 @@ fn a_payload_moved_in_the_runs_strains_as_the_offset_that_was_found() {
     let Some((frame, _)) = case("dev-s1") else {
         return;
     };
-    // Forward and to the left, where the library tries both at once.
+    // Offsets forward and to the left. The library tries both together.
     let (dx, dy) = (0.17, -0.08);
     let both = library(&frame, &["payload_offset".into()])
         .into_iter()
@@ -248,7 +250,7 @@ fn a_gauge_that_sits_elsewhere_is_named_where_the_gradient_along_it_is_known() {
         return;
     };
     let mut frame = hide(&base, "none", 0.0, Background::Clean, 310).frame;
-    // Two per cent of the influence a millimetre, of either sign: like no gain and no angle.
+    // Two per cent of the influence per millimetre, with either sign. No gain and no angle resembles it.
     let mut numbers = hidden::drawn::Numbers(11);
     let along = frame.influence.iter().map(|a| 0.02 * numbers.next() * a);
     frame.per_mm = Some(along.collect());

@@ -1,14 +1,17 @@
-//! The sun on half of a structure of our own: the pattern is a temperature set of the analyst's deck, how warm it was in a run nobody wrote
-//! down. The readings come from a mesh three times as fine.
+//! Sun on one half of a structure.
+//!
+//! The pattern is a temperature set of the deck, and the temperature of each run is unknown. The readings come from a
+//! mesh three times as fine.
 
 use super::strips::{
     GAUGES, MEASURED, Mesh, result, run, sensitivity, simulate_measured_tables, workplace,
 };
 
-/// The first strip is a degree warmer than the second, and warmer on its top (0.2 degrees a millimetre): it bows, and the bushes hold it.
+/// The first strip is one degree warmer than the second and has a gradient of 0.2 degrees per millimetre. It bows, and
+/// the bushes resist.
 const WARM: [f64; 3] = [0.0, 1.0, 0.2];
 
-/// A `[[load]]` of the temperature set, degrees.
+/// Table `[[load]]` of the temperature set, in degrees.
 const HEAT: &str = "[[load]]\nname = \"HEAT\"\nload_set = 31\n";
 
 #[test]
@@ -21,14 +24,14 @@ fn a_warm_part_by_the_decks_temperature_set_is_named_and_its_strain_comes_from_t
     let forces: Vec<Vec<f64>> = truth.iter().map(|row| row[..6].to_vec()).collect();
     let hottest = per_degree.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
     assert!(hottest > 0.1, "microstrain a degree: {per_degree:?}");
-    // Between 4 and 20 degrees, run by run.
+    // Between 4 and 20 degrees, depending on the run.
     let degrees = |r: usize| 12.0 + 8.0 * (2.4 * r as f64).sin();
     let [strain, runs] = simulate_measured_tables(&forces, |r| {
         per_degree.iter().map(|s| s * degrees(r)).collect()
     });
     write("model/strain.csv", &strain);
     write("model/runs.csv", &runs);
-    // The analyst's set counts from 20 degrees and is twice as large: only its pattern matters.
+    // The set of the deck starts at 20 degrees and is twice as large. Only its pattern matters.
     write(
         "model/deck.bdf",
         &Mesh(1).deck(1.0, Some([20.0, 22.0, 0.4])),
@@ -45,7 +48,7 @@ fn a_warm_part_by_the_decks_temperature_set_is_named_and_its_strain_comes_from_t
     );
     let share = found["gap"]["explained_share"].as_f64().expect("a share");
     assert!(share > 0.7, "{}", found["gap"]);
-    // The extended job recovers the forces with the heat as a nuisance load; the job as it was can't tell one from the other.
+    // The extended job recovers the forces with the heat as a nuisance load. The original job cannot separate them.
     assert_eq!(GAUGES.len(), per_degree.len());
     let extended = std::fs::read_to_string(out.join("job_extended.toml")).expect("the job");
     assert!(

@@ -1,5 +1,6 @@
-//! A joint half as stiff as modelled, hidden in a structure of our own, found through the solver and put into the deck. The readings
-//! come from a mesh three times as fine, in which the middle bush has half its stiffness.
+//! A joint with half of its modelled stiffness, found through the solver and written to the deck.
+//!
+//! The readings come from a mesh three times as fine, in which the middle bush has half of its stiffness.
 
 use super::strips::{
     GAUGES, MEASURED, Mesh, ends, result, run, sensitivity, simulate_measured_tables, workplace,
@@ -24,13 +25,14 @@ fn a_joint_of_half_its_stiffness_is_named_and_the_extended_deck_strains_as_the_t
         "{}",
         found["best_attempt"]
     );
-    // The page marks the joint, with what its stiffness is multiplied by: a half, as far as it is told.
+    // The page marks the joint with the factor of its stiffness, about one half.
     let page = std::fs::read_to_string(out.join("report.html")).expect("the page");
     assert!(page.contains("stiffness times 0."), "no joint is marked");
-    // Natural log times 100 of one half.
+    // 100 times the natural logarithm of one half.
     let number = |key: &str| found["effects"][0][key].as_f64().expect("a number");
     let (size, sigma) = (number("size"), number("sigma"));
-    // The mesh leaves a hundredth. Bushes carry what goes from strip to strip: their stiffness is told to a tenth.
+    // The mesh causes an error of a hundredth. The bushes carry the force between the strips, which determines their
+    // stiffness within a tenth.
     assert!((size + 69.3).abs() < 3.0 * sigma.max(1.0), "{size} {sigma}");
     assert!(sigma < 10.0, "{sigma}");
     assert!(
@@ -38,7 +40,8 @@ fn a_joint_of_half_its_stiffness_is_named_and_the_extended_deck_strains_as_the_t
         "{}",
         found["gap"]
     );
-    // On the same mesh the extended deck strains as one with the true stiffness does; the unchanged one does not.
+    // On the same mesh, the extended deck has the strain of a deck with the true stiffness. The unchanged deck does
+    // not.
     write("right/deck.bdf", &Mesh(1).deck(0.5, None));
     write("right/job.toml", &Mesh(1).job(""));
     let right = sensitivity(&run("sensitivity", &folder.join("right/job.toml")));
@@ -54,12 +57,14 @@ fn a_joint_of_half_its_stiffness_is_named_and_the_extended_deck_strains_as_the_t
     )));
     assert!(after < 0.15 * before, "{before} {after}");
     run("solve", &extended);
-    // What the mesh leaves is more than the half per cent that is stated of the model, and the loads are not told to be right.
+    // The residual of the mesh exceeds the stated model error of half a per cent. An error therefore states that the
+    // loads are not explained.
     let (_, said) = ends("recover", &extended, 1);
     assert!(said.contains("error [strain-not-explained]"), "{said}");
 }
 
-/// Half of its stiffness is the root of a quarter: the user's own hypothesis at half of its size. The bushes stand in a file of their own.
+/// The user's hypothesis is a quarter of the stiffness. The truth is half, the square root of a quarter, so the
+/// hypothesis has half of its size. The bushes are in a separate file.
 #[test]
 fn an_edit_of_ones_own_goes_into_the_deck_through_its_includes_and_leaves_the_job() {
     let (folder, write) = workplace("reconcile_own_edit");
@@ -89,7 +94,7 @@ fn an_edit_of_ones_own_goes_into_the_deck_through_its_includes_and_leaves_the_jo
     );
     let number = |key: &str| found["effects"][0][key].as_f64().expect("a number");
     let (size, sigma) = (number("size"), number("sigma"));
-    // The mesh leaves a hundredth; a tenth of the stiffness, as above, is .07 of this size.
+    // The mesh causes an error of a hundredth. A tenth of the stiffness, as above, is .07 of this size.
     assert!((size - 0.5).abs() < 3.0 * sigma.max(0.01), "{size} {sigma}");
     assert!(sigma < 0.07, "{sigma}");
     let lines = std::fs::read_to_string(out.join("deck_extended.bdf")).expect("the deck");

@@ -1,8 +1,8 @@
-//! Effects hidden in a ladder frame by beam theory: none of the library's own forms makes the readings.
+//! Effects hidden in a ladder frame by beam theory. The formulas of the library do not generate the readings.
 //!
-//! Two simply supported rails carry wheels from below and a payload from above. Strain at a gauge is `M z / (E I)` by the closed form of a beam under
-//! a point force, so a payload that sits elsewhere and a rail of other thickness act by their own formulas, not by the linear signatures that
-//! the frame holds.
+//! Two simply supported rails carry wheels from below and a payload from above. Strain at a gauge is `M z / (E I)` from
+//! the closed form of a beam under a point force. A payload at another place and a rail of another thickness therefore
+//! act by exact formulas, and not by the linear signatures in the frame.
 
 use super::hidden::drawn::draw_normal;
 use super::hidden::plain_frame;
@@ -21,18 +21,18 @@ const AXLES: [f64; 2] = [1.3, 6.4];
 const PAYLOAD: f64 = 4.4;
 /// Microstrain per kN m at the flange of a rail.
 const PER_MOMENT: f64 = 22.0;
-/// The zone of the left rail whose thickness may differ.
+/// Zone of the left rail with the uncertain thickness.
 const ZONE: [f64; 2] = [1.7, 3.5];
 const G: f64 = 9.80665e-3;
 const RUNS: usize = 12;
 const HELD_OUT: usize = 3;
 
-/// A station with the stretch left out in which the payload stands: there strain has a kink under it, and no gauge is put.
+/// Skips the stations close to the payload. Strain has a kink there, and no gauge is placed there.
 fn away_from_payload(x: f64) -> f64 {
     if x < 3.5 { x } else { x + 1.8 }
 }
 
-/// A gauge: rail (+1 left), station, share of the flange distance.
+/// Gauge: rail (+1 left), station, share of the flange distance.
 struct Site {
     side: f64,
     x: f64,
@@ -40,20 +40,22 @@ struct Site {
 }
 
 impl Site {
-    /// Strain of an upward force of 1 kN at station `a`, `y` to the left: the rails share it by the lever; bending moment `x (L - a) / L` up to it.
+    /// Strain under an upward force of 1 kN at station `a`, `y` to the left. The rails share it by the lever rule. The
+    /// bending moment is `x (L - a) / L` up to the station.
     fn strain_of_vertical_force(&self, a: f64, y: f64) -> f64 {
         let share = 0.5 * (1.0 + self.side * y / HALF);
         let (low, high) = (self.x.min(a), self.x.max(a));
         PER_MOMENT * self.z * share * low * (LENGTH - high) / LENGTH
     }
 
-    /// Strain of a side force of 1 kN at station `a`: both rails bend the same way about the upright axis, a third as stiff there.
+    /// Strain under a lateral force of 1 kN at station `a`. Both rails bend in the same direction about the vertical
+    /// axis, with a third of the strain.
     fn side(&self, a: f64) -> f64 {
         let (low, high) = (self.x.min(a), self.x.max(a));
         PER_MOMENT / 3.0 * self.side * self.z.abs() * low * (LENGTH - high) / LENGTH
     }
 
-    /// Strain of a force along the rail of 1 kN at the tyre, 0.5 m below it: its moment jumps at station `a`.
+    /// Strain under a longitudinal force of 1 kN at the tyre, 0.5 m below the rail. Its moment jumps at station `a`.
     fn strain_of_longitudinal_force(&self, a: f64, y: f64) -> f64 {
         let share = 0.5 * (1.0 + self.side * y / HALF);
         let moment = if self.x < a {
@@ -69,31 +71,31 @@ impl Site {
     }
 }
 
-/// What the noise is.
+/// Kind of noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Noise {
     White,
-    /// Student's t of 4 degrees of freedom, scaled to the stated variance.
+    /// Student's t with 4 degrees of freedom, scaled to the stated variance.
     Heavy,
-    /// Correlation .8 from run to run, of the stated variance.
+    /// Correlation of .8 from run to run, with the stated variance.
     Wandering,
-    /// One and a half times what is stated.
+    /// One and a half times the stated noise.
     Larger,
 }
 
-/// How the model errs, 2 % as stated.
+/// Error of the model, 2 % as stated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Errors {
     Nothing,
-    /// A gain by gauge.
+    /// A gain for each gauge.
     Gauge,
-    /// Each influence coefficient, neighbours along a rail alike.
+    /// An error of each influence coefficient. Neighbours along a rail have similar errors.
     Coefficient,
 }
 
 struct Case {
     frame: StrainFrame,
-    /// Ids with places; empty for a control.
+    /// Effect ids with places. Empty for a control.
     truth: Vec<String>,
 }
 
@@ -109,14 +111,14 @@ const EFFECTS: [&str; 9] = [
     "lateral_wheel_loads",
 ];
 
-/// A case with `effects`, each of `scale` times a usual size.
+/// Returns a case with `effects`, each with `scale` times its usual size.
 fn case(seed: u64, effects: &[&str], scale: f64, noise: Noise, errors: Errors) -> Case {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let n_g = rng.random_range(14..22);
     let sites: Vec<Site> = (0..n_g)
         .map(|g| Site {
             side: if g % 2 == 0 { 1.0 } else { -1.0 },
-            // Three gauges at least read the zone: one alone could not separate its thickness from a gain.
+            // At least three gauges are in the zone. A single gauge could not separate the thickness from a gain.
             x: match g {
                 0 | 2 | 4 => rng.random_range(ZONE[0]..ZONE[1]),
                 _ => away_from_payload(rng.random_range(0.6..5.6)),
@@ -134,7 +136,7 @@ fn case(seed: u64, effects: &[&str], scale: f64, noise: Noise, errors: Errors) -
         .collect();
     let names = ["LF", "RF", "LR", "RR"];
     let n_c = wheels.len() + 4;
-    // The analyst's model: payload to first order about its nominal place.
+    // The analyst's model, with the payload to first order about its nominal place.
     let mut influence = Vec::new();
     let step = 0.05;
     for s in &sites {
@@ -163,7 +165,7 @@ fn case(seed: u64, effects: &[&str], scale: f64, noise: Noise, errors: Errors) -
     } else {
         0.0
     };
-    // Wheels carry the payload by the lever, wherever it is said to be, and not the extra mass: they are measured.
+    // The wheels carry the payload at its true place and the extra mass, by the lever rule. Wheel forces are measured.
     let lever = |x: f64| (x - AXLES[0]) / (AXLES[1] - AXLES[0]);
     let mut loads = Vec::new();
     let mut true_loads = Vec::new();
@@ -180,7 +182,7 @@ fn case(seed: u64, effects: &[&str], scale: f64, noise: Noise, errors: Errors) -
     }
     let stated = 1.5;
     let rel = if errors == Errors::Nothing { 0.0 } else { 0.02 };
-    // Errors of coefficients along a rail: three waves of random height.
+    // Errors of coefficients along a rail: three waves with random amplitudes.
     let waves: Vec<[f64; 7]> = (0..2 * n_c)
         .map(|_| std::array::from_fn(|_| draw_normal(&mut rng)))
         .collect();
@@ -225,7 +227,8 @@ fn case(seed: u64, effects: &[&str], scale: f64, noise: Noise, errors: Errors) -
                     v += scale * scrub[r][4 + k] * 0.7 * s.strain_of_longitudinal_force(*a, -HALF);
                 }
             }
-            // Bending stiffness goes with thickness: strain in the zone of a statically determinate rail with its inverse.
+            // Bending stiffness is proportional to thickness. In a statically determinate rail, strain in the zone is
+            // inversely proportional to it.
             if s.is_in_zone() {
                 v /= thin;
             }
@@ -237,7 +240,7 @@ fn case(seed: u64, effects: &[&str], scale: f64, noise: Noise, errors: Errors) -
     }
     let mut truth: Vec<String> = Vec::new();
     let name = |g: usize| format!("G{:02}", g + 1);
-    // The gauges that read most, so that their faults show.
+    // Gauges with large readings, so that their faults are visible.
     let power = |g: usize| (0..RUNS).map(|r| values[r * n_g + g].powi(2)).sum::<f64>();
     let mut order: Vec<usize> = (0..n_g).collect();
     order.sort_by(|a, b| power(*b).total_cmp(&power(*a)));
@@ -328,7 +331,7 @@ fn case(seed: u64, effects: &[&str], scale: f64, noise: Noise, errors: Errors) -
         prior_percent: 15.0,
     }];
     let column = |f: &dyn Fn(&Site) -> f64| sites.iter().map(f).collect::<Vec<f64>>();
-    // An extra mass presses on the frame; its wheels are measured.
+    // An extra mass acts on the frame, whose wheel forces are measured.
     let masses = [("front", 2.0), ("rear", 7.1)].map(|(place, a)| MassSignature {
         place: place.into(),
         per_kg: column(&|s| -G * s.strain_of_vertical_force(a, 0.0)),
@@ -360,7 +363,7 @@ fn case(seed: u64, effects: &[&str], scale: f64, noise: Noise, errors: Errors) -
     }
 }
 
-/// Counts of answers: all of it and nothing else, nothing wrong, something that is not there.
+/// Counts of answers: exact, nothing wrong, an effect that is not there.
 #[derive(Clone, Copy, Debug, Default)]
 struct Score {
     exact: usize,
@@ -397,7 +400,7 @@ impl Score {
     }
 }
 
-/// The noise and errors of a control.
+/// Noise and model errors of the controls.
 const CONTROLS: [(Noise, Errors); 6] = [
     (Noise::White, Errors::Nothing),
     (Noise::Heavy, Errors::Nothing),
@@ -407,13 +410,13 @@ const CONTROLS: [(Noise, Errors); 6] = [
     (Noise::White, Errors::Coefficient),
 ];
 
-/// Number of cases of a kind: few in the gate, `STRAINBRIDGE_TRIALS` in a longer run.
+/// Returns the number of cases of a kind: `few` by default, `STRAINBRIDGE_TRIALS` in a longer run.
 fn trials(few: usize) -> usize {
     let asked = std::env::var("STRAINBRIDGE_TRIALS").ok();
     asked.and_then(|n| n.parse().ok()).unwrap_or(few)
 }
 
-/// Effects of a seed: one, two or three of them, all at different gauges.
+/// Returns the effects of a seed: one, two or three, all at different gauges.
 fn effects_of(seed: u64) -> Vec<&'static str> {
     let mut rng = ChaCha8Rng::seed_from_u64(1_000_000 + seed);
     let n = 1 + (seed % 3) as usize;
@@ -437,7 +440,7 @@ fn controls_of_every_noise_and_background_get_no_name() {
         }
     }
     println!("controls: {} of {n} named: {wrong:?}", wrong.len());
-    // One in a hundred by the rule `decisive`.
+    // One in a hundred, as the rule `decisive` requires.
     assert!(wrong.len() * 100 <= n, "{wrong:?}");
 }
 

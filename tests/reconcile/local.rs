@@ -1,11 +1,12 @@
-//! A small region of a plate that lost stiffness (a crack), hidden in a mesh three times as fine; no zone is given to the analyst.
+//! A small region of a plate with reduced stiffness (a crack), hidden in a mesh three times as fine. The job states no
+//! zone.
 
 use super::strips::{
     ALONG, GAUGES, MEASURED, Mesh, result, run, sensitivity, simulate_measured_tables, workplace,
 };
 use std::path::Path;
 
-/// Strip, rows and stations of the analyst's mesh that a region holds, as far as they go.
+/// Strip of the analyst's mesh that contains the region, and the ranges of its rows and stations.
 struct Crack {
     strip: usize,
     rows: [f64; 2],
@@ -13,7 +14,7 @@ struct Crack {
 }
 
 impl Crack {
-    /// The deck of a mesh with the region's moduli times a factor.
+    /// Returns the deck of a mesh with the moduli of the region multiplied by a factor.
     fn in_deck(&self, mesh: &Mesh, factor: f64) -> String {
         let m = mesh.0;
         let inside = |id: usize| {
@@ -42,7 +43,7 @@ impl Crack {
         mesh.deck(1.0, None).lines().map(line).collect()
     }
 
-    /// Its middle, mm.
+    /// Returns the middle of the region, mm.
     fn middle(&self) -> [f64; 2] {
         let mean = |[a, b]: [f64; 2]| 50.0 * 0.5 * (a + b);
         [
@@ -52,7 +53,7 @@ impl Crack {
     }
 }
 
-/// Middle of an element of the analyst's mesh, mm.
+/// Returns the middle of an element of the analyst's mesh, mm.
 fn middle_of(element: &str) -> [f64; 2] {
     let id: usize = element.parse().expect("an element");
     let k = id % 100_000 - 1;
@@ -63,7 +64,7 @@ fn middle_of(element: &str) -> [f64; 2] {
     ]
 }
 
-/// What `reconcile` says of a structure with a crack; of one without where the factor is one.
+/// Returns the result of `reconcile` for a structure with a crack. A factor of one means no crack.
 fn reconcile_crack(name: &str, crack: &Crack, factor: f64) -> serde_json::Value {
     let (folder, write) = workplace(name);
     write("true/deck.bdf", &crack.in_deck(&Mesh(3), factor));
@@ -111,8 +112,9 @@ fn a_region_that_lost_stiffness_is_named_where_it_is_and_not_as_several_bad_gaug
         let (found, truth) = (middle_of(place), crack.middle());
         let off = (found[0] - truth[0]).hypot(found[1] - truth[1]);
         assert!(off <= 100.0, "{said} {off}");
-        // Of a region as wide as the strip the size is that of its modulus, natural log times 100, to a few parts in a hundred; of one
-        // beside a rest that carries on, shape and size make up for each other.
+        // If the region is as wide as the strip, the size is 100 times the natural logarithm of the modulus factor,
+        // within a few hundredths. If a part of the strip carries on next to the region, shape and size of the region
+        // compensate each other.
         let size = r["effects"][0]["size"].as_f64().expect("a size");
         let whole = rows == [0.0, 2.0];
         assert!(
@@ -120,7 +122,8 @@ fn a_region_that_lost_stiffness_is_named_where_it_is_and_not_as_several_bad_gaug
             "{said}"
         );
         assert!(size < -20.0, "{said}");
-        // No property bounds the region: nothing is written, it is said why, and the page shows where it lies.
+        // No property contains exactly the region, so no deck is written. A finding gives the reason, and the page
+        // shows the place.
         assert!(r["extended_model"].is_null(), "{said}");
         let findings = r["findings"].as_array().expect("findings");
         let is_said = |f: &serde_json::Value| f["code"] == "effect-not-in-model";

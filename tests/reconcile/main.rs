@@ -1,4 +1,5 @@
-//! Find the gap, name the missing effect, add it, show the gap shrink: cases whose effect is known.
+//! Finds the gap, identifies the missing effect, adds it, and shows that the gap shrinks, for cases with a known
+//! effect.
 
 mod deck;
 mod extended;

@@ -1,11 +1,11 @@
-//! Reconcile on measured records: a bridge whose support was lowered, and the puzzle of two gauges on a truck.
+//! Reconcile on measured records: a bridge with a lowered support, and a truck with two contradictory gauges.
 
 use super::hidden::{self, plain_frame};
 use std::path::Path;
 use strainbridge::reconcile::strain::{GaugeFacts, PayloadWeight, StrainFrame, Wiring, examine};
 use strainbridge::reconcile::{Cause, Observations, Verdict, evaluate_cause_sets};
 
-/// Columns of a record by name, rows in time.
+/// Returns the columns of a record by name, with rows in time.
 fn record(dir: &Path, file: &str) -> (Vec<String>, Vec<Vec<f64>>) {
     let text = std::fs::read_to_string(dir.join("real").join(file)).expect("a record");
     let mut lines = text.lines();
@@ -18,7 +18,7 @@ fn record(dir: &Path, file: &str) -> (Vec<String>, Vec<Vec<f64>>) {
     (header.collect(), lines.map(row).collect())
 }
 
-/// Means over seconds `from..to` of force 1, force 2, strain (NaN where the record has none) and air temperature.
+/// Returns means over seconds `from..to` of force 1, force 2, strain (NaN if the record has none) and air temperature.
 fn means(dir: &Path, file: &str, from: f64, to: f64) -> ([f64; 3], f64) {
     let (header, rows) = record(dir, file);
     let mean = |name: &str| {
@@ -38,7 +38,7 @@ fn means(dir: &Path, file: &str, from: f64, to: f64) -> ([f64; 3], f64) {
     )
 }
 
-/// Runs of the bridge: name, file, seconds, is the support lowered.
+/// Run of the bridge: file, start and end in seconds, and whether the support is lowered.
 struct Window(&'static str, f64, f64, bool);
 
 fn bridge(dir: &Path, windows: &[Window], held_out: &[usize]) -> (Observations, [Cause; 2]) {
@@ -74,7 +74,7 @@ const BEFORE: &str = "munich_ref_support_load_01.csv";
 const AFTER: &str = "munich_support_load_01.csv";
 const LOWERING: &str = "munich_support_01_lowering_01.csv";
 const LOWERED: &str = "munich_support_01_lowering_02.csv";
-/// Traffic moves minute means by some kN and microstrain: the scatter within one stage is 2.5 to 3.9.
+/// Traffic changes minute means by some kN and microstrain. The scatter within one stage is 2.5 to 3.9.
 const NOISE: [f64; 3] = [3.0; 3];
 
 #[test]
@@ -108,7 +108,8 @@ fn with_the_lowering_record_the_settlement_is_named_and_the_temperature_is_not()
     let Some(dir) = hidden::find_shared_folder() else {
         return;
     };
-    // Air warms by 0.4 degrees while the support still stands, and stays while it has been lowered.
+    // The air warms by 0.4 degrees before the support is lowered. The temperature is constant while the support is
+    // lowered.
     let mut windows = vec![
         Window(BEFORE, 0.0, 1e9, false),
         Window(AFTER, 0.0, 1e9, true),
@@ -140,7 +141,8 @@ fn with_the_lowering_record_the_settlement_is_named_and_the_temperature_is_not()
     };
     let (settlement, air) = (of(&["settlement"]), of(&["air temperature"]));
     assert!(settlement.log_evidence > air.log_evidence + 5.0);
-    // Held-out minutes: what is left is traffic and that the second record went down a little further.
+    // In the held-out minutes, the residual comes from traffic, and from the second record, in which the support was
+    // slightly lower.
     assert!(settlement.gap < 0.3 * of(&[]).gap, "{}", settlement.gap);
     assert!(
         settlement.gap < 0.5 * air.gap,
@@ -148,7 +150,8 @@ fn with_the_lowering_record_the_settlement_is_named_and_the_temperature_is_not()
         settlement.gap,
         air.gap
     );
-    // The supports lose 23 and 43 kN and the girder gains 34 microstrain between the stages' means.
+    // Between the means of both stages, the support forces fall by 23 and 43 kN, and the strain of the girder rises by
+    // 34 microstrain.
     for (slope, expected) in settlement.slopes[0].iter().zip([-23.4, -42.7, 34.3]) {
         assert!(
             (slope.0 - expected).abs() < 3.0 * NOISE[0],
@@ -163,7 +166,7 @@ fn the_command_asks_for_the_record_that_separates_two_causes_and_writes_a_page()
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).expect("a folder");
     let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).expect("written");
-    // Means of the bridge's two stages, rounded.
+    // Rounded means of the two stages of the bridge.
     write(
         "strain.csv",
         "run,force1,force2,strain\nbefore,238.59,237.93,1.51\nafter,215.19,195.27,35.79\n",
@@ -196,7 +199,7 @@ fn the_command_asks_for_the_record_that_separates_two_causes_and_writes_a_page()
         "{next}"
     );
     assert!(folder.join("job.out/report.html").exists());
-    // Columns of causes may have units, beside their names or below.
+    // Columns of causes may have units, in the header or in a row below it.
     for head in [
         "run,lowered [-],air_C [degC]",
         "run,lowered,air_C\n-,-,degC",
@@ -215,7 +218,7 @@ fn the_command_asks_for_the_record_that_separates_two_causes_and_writes_a_page()
     }
 }
 
-/// Payload that each gauge alone gives for two runs (kN), thesis tables C.1 and C.2.
+/// Payload from each gauge alone for two runs (kN), tables C.1 and C.2 of the thesis.
 const ESTIMATES: [(&str, [f64; 2]); 6] = [
     ("12", [281.064, -940.252]),
     ("13", [-380.649, -2599.416]),
@@ -226,12 +229,13 @@ const ESTIMATES: [(&str, [f64; 2]); 6] = [
 ];
 /// Payload on the wheels, kN.
 const ON_THE_TRUCK: [f64; 2] = [32.255, 54.414];
-/// The thesis calls these gauges sensitive because they moved by at least this much between runs 1 and 2, microstrain.
+/// Change of these gauges between runs 1 and 2 that the thesis calls sensitive, at least, microstrain.
 const LEAST_CHANGE: f64 = 15.0;
 
 #[test]
 fn gauges_12_and_13_of_the_thesis_are_unfit_for_the_payload_and_no_gain_or_sign_explains_them() {
-    // Strain per kN that the estimate of run 2 implies when the gauge moved by 15 microstrain: at 12 and 13 a tenth of that at 14 and 17.
+    // Strain per kN that the estimate of run 2 implies for a change of 15 microstrain. At 12 and 13 it is a tenth of
+    // the value at 14 and 17.
     let per_kn: Vec<f64> = ESTIMATES
         .iter()
         .map(|(_, e)| (LEAST_CHANGE / e[0]).abs())
@@ -271,7 +275,8 @@ fn gauges_12_and_13_of_the_thesis_are_unfit_for_the_payload_and_no_gain_or_sign_
         ..plain_frame(observations, gauges, load_names, influence, loads)
     };
     let outcome = examine(&frame, &[]);
-    // Estimates of 281 and -381 kN in one run, -940 and -2599 in the next: of no fixed ratio to the load, so no gain, sign or angle.
+    // The estimates are 281 and -381 kN in one run, -940 and -2599 kN in the next. Their ratio to the load varies, so
+    // no gain, sign or angle fits.
     assert_eq!(outcome.verdict, Verdict::Unknown);
     assert!(outcome.effects.is_empty());
     let mut worst: Vec<&str> = outcome
@@ -283,7 +288,7 @@ fn gauges_12_and_13_of_the_thesis_are_unfit_for_the_payload_and_no_gain_or_sign_
     worst.sort_unstable();
     assert_eq!(worst, ["12", "13"]);
     assert!(!outcome.remains.is_empty() && outcome.next_measurement != "none needed");
-    // Of 14 and 17 nothing is said: they give the payload to a tenth in both runs.
+    // Nothing is reported for 14 and 17. They give the payload within a tenth in both runs.
     for fit in ["14", "17"] {
         assert!(
             outcome.gauges_off_before.iter().all(|m| m.name != fit),

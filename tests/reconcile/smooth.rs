@@ -1,4 +1,5 @@
-//! A beam of our own under point loads: a model that is off by a smooth factor gets no name, effects of the library keep theirs.
+//! A beam under point loads. A model with a smooth error is not identified as a library effect, and library effects are
+//! still identified.
 
 use super::hidden::drawn::draw_normal;
 use super::hidden::plain_frame;
@@ -16,19 +17,20 @@ const GAUGES: usize = 24;
 const LOADS: [f64; 5] = [1.1, 2.7, 4.2, 5.6, 7.0];
 const RUNS: usize = 14;
 const HELD_OUT: usize = 3;
-/// Gauges of a zone, whose strain is in proportion to one over its stiffness.
+/// Gauges of a zone. Their strain is inversely proportional to the stiffness of the zone.
 const ZONE: std::ops::Range<usize> = 9..14;
 
 fn place(gauge: usize) -> f64 {
     0.4 + 7.2 * gauge as f64 / (GAUGES - 1) as f64
 }
 
-/// Bending moment at x of a beam on two supports under a unit load at a.
+/// Returns the bending moment at x of a beam on two supports under a unit load at a.
 fn moment(x: f64, a: f64) -> f64 {
     x.min(a) * (SPAN - x.max(a)) / SPAN
 }
 
-/// The beam as the analyst has it, readings of the right model with noise; `dumb` gauges are strained by nothing.
+/// Returns the beam model of the analyst, and readings of the correct model with noise. The `dumb` gauges have no
+/// strain.
 fn beam(seed: u64, dumb: &[usize]) -> StrainFrame {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let n_c = LOADS.len() + 4;
@@ -88,7 +90,8 @@ fn ids(outcome: &Outcome) -> Vec<&str> {
     outcome.effects.iter().map(|e| e.id.as_str()).collect()
 }
 
-/// A smooth factor of standard deviation `sd`: random waves over a third of the span, as a Gaussian process is made of.
+/// Returns a smooth factor with standard deviation `sd`. Random waves over a third of the span approximate a Gaussian
+/// process.
 fn smooth_factor(rng: &mut ChaCha8Rng, sd: f64) -> Vec<f64> {
     const WAVES: usize = 200;
     let waves: Vec<[f64; 2]> = (0..WAVES)
@@ -119,7 +122,7 @@ fn a_model_that_is_off_by_a_smooth_factor_is_unknown_smooth_and_its_curve_is_the
         let outcome = examine(&frame, &[]);
         let said = format!("{sd} {seed}: {:?} {:?}", ids(&outcome), outcome.remains);
         if outcome.verdict == Verdict::Named {
-            // A curve drawn at random may be one factor and nothing more, within what noise and the model's 1 % leave.
+            // A random curve may be a constant factor, within the noise and the model error of 1 %.
             let mean = factor.iter().sum::<f64>() / GAUGES as f64;
             let off = factor.iter().map(|f| (f / mean - 1.0).powi(2)).sum::<f64>();
             let off = (off / GAUGES as f64).sqrt();
@@ -130,7 +133,8 @@ fn a_model_that_is_off_by_a_smooth_factor_is_unknown_smooth_and_its_curve_is_the
             straight += 1;
             continue;
         }
-        // Noise stated too small may be as good as a small curve: then nothing stands for it.
+        // Noise that is larger than stated may explain a small curve as well. In that case the outcome has no best
+        // attempt.
         let Some(last) = outcome.best_attempt.last() else {
             others.push(said);
             continue;
@@ -140,7 +144,8 @@ fn a_model_that_is_off_by_a_smooth_factor_is_unknown_smooth_and_its_curve_is_the
         for at in outcome.smooth.iter().filter(|s| s.load.is_none()) {
             let gauge = frame.gauges.iter().position(|g| g.name == at.gauge);
             let truth = factor[gauge.expect("a gauge")];
-            // Four deviations of 24 gauges, and a tenth of what is to be found for waves that are shorter than those tried.
+            // Four standard deviations of 24 gauges, plus a tenth of `sd` for waves that are shorter than the tested
+            // ones.
             let allowed = 4.0 * at.sd + 0.1 * sd;
             assert!((at.factor - truth).abs() < allowed, "{said} {at:?} {truth}");
         }
@@ -158,7 +163,8 @@ fn a_model_that_is_off_by_a_smooth_factor_is_unknown_smooth_and_its_curve_is_the
         let is_drawn = |g: &String| page.contains(&format!("{g} at "));
         assert!(outcome.smooth.iter().all(|s| is_drawn(&s.gauge)), "{said}");
     }
-    // A curve of 5 % may lead by less than odds of a hundred to one, and then is none: that is asked of it so that it names nothing falsely.
+    // A curve of 5 % may have odds below a hundred to one, and is then not reported. This limit prevents false
+    // identification.
     let curves = 2 * SEEDS - straight;
     assert!(
         10 * followed >= 8 * curves && 2 * followed > 2 * SEEDS,
@@ -168,7 +174,8 @@ fn a_model_that_is_off_by_a_smooth_factor_is_unknown_smooth_and_its_curve_is_the
 
 #[test]
 fn effects_of_the_library_keep_their_names_beside_a_curve_that_could_follow_them() {
-    // Each five times and more the noise or what a model of 1 % leaves, at many gauges or in many runs.
+    // Each effect is at least five times the noise or the residual of a model error of 1 %, at many gauges or in many
+    // runs.
     let effects = [
         ("global_scale", 12.0),
         ("rail_stiffness:Z", -18.0),
@@ -198,7 +205,7 @@ fn effects_of_the_library_keep_their_names_beside_a_curve_that_could_follow_them
             .for_each(|(v, d)| *v += d);
         let outcome = examine(&frame, &[]);
         assert_eq!(ids(&outcome), [id], "{seed}: {}", outcome.remains);
-        // Four standard deviations: the noise is one draw of sixteen.
+        // Four standard deviations, because the noise is one of sixteen random samples.
         let (found, sigma) = (outcome.effects[0].size[0], outcome.effects[0].sigma[0]);
         assert!((found - size).abs() < 4.0 * sigma, "{id} {seed}: {found}");
         assert!(outcome.smooth.is_empty(), "{id} {seed}");
@@ -217,7 +224,7 @@ fn a_beam_without_an_effect_has_no_curve() {
 
 #[test]
 fn exact_aliases_win_drawings_of_runs_together() {
-    // A card of four channels; the one after it is strained by nothing: with it or without, the card is the same.
+    // A card of four channels. The next channel has no strain, so the card with it or without it is the same.
     const ALIASES: [&str; 2] = ["card_gain:G05-G08", "card_gain:G05-G09"];
     for seed in 31..37 {
         let mut frame = beam(seed, &[8]);

@@ -1,12 +1,14 @@
-//! A small structure of our own with decks and jobs on any mesh: two strips of plate (1000 x 100 x 5 mm, steel) side by side, tied by
-//! three bushes; forces across the plates at six places, gauges on the top.
+//! A small structure with decks and jobs on any mesh.
+//!
+//! It has two strips of steel plate (1000 x 100 x 5 mm) side by side, tied by three bushes. Forces act across the
+//! plates at six places, and gauges are on the top.
 
 use super::hidden::drawn::Numbers;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Elements along a strip of the analyst's mesh; two across.
+/// Elements along a strip of the analyst's mesh. It has two elements across.
 pub const ALONG: usize = 20;
 /// Bushes: element id and station along the strips.
 pub const BUSHES: [(usize, usize); 3] = [(9001, 0), (9002, 10), (9003, 20)];
@@ -26,7 +28,7 @@ pub const GAUGES: [(usize, usize, usize); 12] = [
     (2, 0, 17),
 ];
 
-/// A mesh `m` times as fine.
+/// Mesh that is finer by this factor.
 pub struct Mesh(pub usize);
 
 impl Mesh {
@@ -38,15 +40,17 @@ impl Mesh {
         10_000 * strip + row * (ALONG * self.0 + 1) + station + 1
     }
 
-    /// The element at the middle of the analyst's element.
+    /// Returns the element at the middle of an element of the analyst's mesh.
     pub fn element(&self, strip: usize, row: usize, station: usize) -> usize {
         let half = self.0 / 2;
         let (row, station) = (row * self.0 + half, station * self.0 + half);
         100_000 * strip + row * ALONG * self.0 + station + 1
     }
 
-    /// The deck, the middle bush `middle` times as stiff as the others; as temperature set 31, where given, that of the cold strip, that
-    /// of the first strip's middle plane, and the first strip's gradient through the thickness.
+    /// Returns the deck. The middle bush is `middle` times as stiff as the others.
+    ///
+    /// `heat` adds temperature set 31. It contains the temperatures of the cold strip and of the middle plane of the
+    /// first strip. The last number is the gradient through the thickness of the first strip.
     pub fn deck(&self, middle: f64, heat: Option<[f64; 3]>) -> String {
         let mut out = String::from("SOL 101\nCEND\nBEGIN BULK\nPARAM,INREL,-2\nPARAM,POST,-1\n");
         out += "MAT1,1,2.+5,,.3,7.85-9,1.2-5\nPSHELL,1,1,5.,1,,1\n";
@@ -137,12 +141,12 @@ pub const LOADS: [(&str, (usize, usize, usize)); 6] = [
     ("F", (2, 2, 20)),
 ];
 
-/// The folder that a command wrote, which has no error to tell.
+/// Runs a command that must end without an error, and returns its output folder.
 pub fn run(command: &str, job: &Path) -> PathBuf {
     ends(command, job, 0).0
 }
 
-/// The folder that a command wrote and what it said; it ends with this code.
+/// Runs a command that must end with this code, and returns its output folder and its messages.
 pub fn ends(command: &str, job: &Path, code: i32) -> (PathBuf, String) {
     let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
         .arg(command)
@@ -154,7 +158,7 @@ pub fn ends(command: &str, job: &Path, code: i32) -> (PathBuf, String) {
     (job.with_extension("out"), said)
 }
 
-/// S of a folder's job, microstrain per N, gauges by loads.
+/// Returns S of a folder's job, microstrain per N, gauges by loads.
 pub fn sensitivity(out: &Path) -> Vec<Vec<f64>> {
     let text = std::fs::read_to_string(out.join("sensitivity.csv")).expect("S");
     let row = |l: &str| {
@@ -166,8 +170,10 @@ pub fn sensitivity(out: &Path) -> Vec<Vec<f64>> {
     text.lines().skip(1).map(row).collect()
 }
 
-/// `strain.csv` and `runs.csv` of 14 runs under forces up to 50 N, noise of half a microstrain (uniform: 0.87 peak); `truth` is S of the
-/// true structure, microstrain per N, and `besides` what else each gauge reads in a run.
+/// Returns `strain.csv` and `runs.csv` of 14 runs under forces up to 50 N, with noise of half a microstrain (uniform:
+/// 0.87 peak).
+///
+/// `truth` is S of the true structure, microstrain per N. `besides` is the additional strain of each gauge in a run.
 pub fn simulate_measured_tables(
     truth: &[Vec<f64>],
     mut besides: impl FnMut(usize) -> Vec<f64>,
@@ -194,7 +200,7 @@ pub fn simulate_measured_tables(
     [strain, runs]
 }
 
-/// A folder of the tests' own, and what writes files into it.
+/// Creates a folder for the test, and returns a function that writes files into it.
 pub fn workplace(name: &str) -> (PathBuf, impl Fn(&str, &str)) {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = std::fs::remove_dir_all(&folder);
@@ -207,12 +213,12 @@ pub fn workplace(name: &str) -> (PathBuf, impl Fn(&str, &str)) {
     (folder, write)
 }
 
-/// What the job of 14 runs says of them, four held out.
+/// Part of the job that describes 14 runs, four of them held out.
 pub const MEASURED: &str = "[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\nmodel_uncertainty_rel = 0.005\n\
      hold_out = [\"R11\", \"R12\", \"R13\", \"R14\"]\n\
      [runs]\nfile = \"runs.csv\"\nunits = { force = \"kN\" }\nnoise = { force = 0.0001 }\n[reconcile]\npath = \"static\"\n";
 
-/// `result.json` of a folder.
+/// Returns `result.json` of a folder.
 pub fn result(out: &Path) -> serde_json::Value {
     let text = std::fs::read_to_string(out.join("result.json")).expect("result.json");
     serde_json::from_str(&text).expect("valid json")

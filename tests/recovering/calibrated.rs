@@ -1,4 +1,7 @@
-//! What else runs on a calibrated job: `place` says what its gauges give, `payload` weighs, a gauge that was turned stays turned.
+//! Commands on a calibrated job.
+//!
+//! `place` predicts the intervals of the gauges, `payload` weighs, and a gauge angle that is corrected already is not
+//! corrected again.
 
 use super::folder;
 use super::supported::{deck, job};
@@ -27,8 +30,10 @@ fn run(command: &str, job: &Path) -> (i32, Value, String) {
     )
 }
 
-/// Calibrates the plate of which every gauge reads a few per cent more or less than its model: each load alone six times with 2 % of scatter.
-/// The last two runs, all loads together, are not taught.
+/// Calibrates a plate. Every gauge reads a few per cent more or less than its model predicts.
+///
+/// Each load acts alone in six runs with a scatter of 2 %. The last two runs, with all loads together, are not
+/// calibration runs.
 fn calibrate_plate(name: &str, more: &str) -> std::path::PathBuf {
     let dir = folder(name);
     let write = |name: &str, text: &str| std::fs::write(dir.join(name), text).unwrap();
@@ -104,7 +109,8 @@ fn place_plans_with_the_sigma_that_recover_states_by_the_calibrated_s() {
             .find(|l| l["run"] == "T1" && l["name"] == p["name"])
             .unwrap();
         let [p, r] = [p, stated].map(|l| l["sigma"].as_f64().unwrap());
-        // Loads together differ from independent ones by the covariance between columns of S; by noise alone sigma is a tenth.
+        // In a run with all loads, the covariance between the columns of S changes sigma. Noise alone would give a
+        // tenth of it.
         assert!((0.6..1.6).contains(&(p / r)), "{p} planned, {r} stated");
     }
 }
@@ -113,7 +119,7 @@ fn place_plans_with_the_sigma_that_recover_states_by_the_calibrated_s() {
 fn a_payload_is_weighed_by_the_calibrated_s_with_its_uncertainty() {
     let payload = "[payload]\ngrid = 50\nposition = \"known\"\nuse = [\"strain\"]\n";
     let job = calibrate_plate("calibrated-payload", payload);
-    // The grid of the payload is that of load `tip`, whose column was calibrated; it pulls down.
+    // The payload pulls down at the grid of load `tip`, whose column is calibrated.
     let s = std::fs::read_to_string(job.with_file_name("sensitivity.csv")).unwrap();
     let mut lines = s.lines();
     let names: Vec<&str> = lines
@@ -139,7 +145,8 @@ fn a_payload_is_weighed_by_the_calibrated_s_with_its_uncertainty() {
     let number = |key: &str| p[key].as_f64().unwrap_or_else(|| panic!("{key}: {p}"));
     let (force, sigma) = (number("force"), number("force_sigma"));
     assert!((force / SIZE - 1.0).abs() < 0.01, "{p}");
-    // Nine gauges of 2 % each, taught six times: S is known to some tenths of a per cent as a whole, not to none.
+    // Nine gauges with errors of 2 %, calibrated with six runs, determine S within some tenths of a per cent. The error
+    // is not zero.
     assert!(sigma > 0.001 * SIZE && sigma < 0.1 * SIZE, "{p}");
 }
 

@@ -1,4 +1,5 @@
-//! `[compare]`, load columns of `[runs]` and `[[section]]`: recovered against recorded loads, damage by section.
+//! `[compare]`, load columns of `[runs]` and `[[section]]`: compares recovered with recorded loads, and computes damage
+//! by section.
 
 use super::{S, as_is, codes, recover as by_command, strain, table};
 use serde_json::Value;
@@ -8,13 +9,14 @@ use strainbridge::host::context::InMemory;
 use strainbridge::host::fault::Faults;
 use strainbridge::{Context, Job, recover};
 
-/// Noise of a reading that the jobs state, microstrain.
+/// Stated noise of a reading, microstrain.
 const NOISE: f64 = 0.3;
-/// Rate of the strain record, Hz, and time of its first sample, s.
+/// Sample rate of the strain record in Hz, and time of its first sample in s.
 const RATE: f64 = 100.0;
 const START: f64 = 5.0;
 
-/// Loads at a time by the clock of the strain record: sines whose periods have no common multiple.
+/// Returns the loads at a time of the clock of the strain record. They are sums of sines whose periods have no common
+/// multiple.
 fn loads_at(t: f64) -> [f64; 2] {
     let sum = |frequencies: [f64; 3]| -> f64 {
         let sines = frequencies.iter().zip([100.0, 70.0, 40.0]);
@@ -23,7 +25,7 @@ fn loads_at(t: f64) -> [f64; 2] {
     [300.0 + sum([0.31, 1.13, 2.71]), sum([0.47, 1.61, 2.23])]
 }
 
-/// A record of strain of `n` samples of these loads; `error` is added to the reading of a gauge.
+/// Returns a strain record with `n` samples of these loads. `error` is added to each reading.
 fn record(
     n: usize,
     start: f64,
@@ -58,7 +60,7 @@ fn files(strain: String, more: &str) -> InMemory {
         .with_file("strain.csv", strain)
 }
 
-/// `result.json` of a job without its frame: the answer, and its findings.
+/// Returns the answer of a job, as in `result.json`, and its findings.
 fn answer(files: &InMemory) -> Result<(Value, Vec<(String, String)>), Faults> {
     let job = Job::read("job.toml", files)?;
     let outcome = recover(&job, &Context::new(files))?;
@@ -77,7 +79,7 @@ fn of_load<'a>(answer: &'a Value, key: &str, load: &str) -> &'a Value {
     list.iter().find(|c| c["load"] == load).unwrap()
 }
 
-/// Normal numbers: sums of twelve even ones.
+/// Returns a generator of normal random numbers. Each one is a sum of twelve uniform numbers.
 fn normal_numbers(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;
     let mut even = move || {
@@ -89,7 +91,8 @@ fn normal_numbers(seed: u64) -> impl FnMut() -> f64 {
     move || (0..12).map(|_| even()).sum::<f64>() - 6.0
 }
 
-/// Recorded loads at 128 Hz, `shift` before the clock of the strain record, with errors of a mean of `off` at load A.
+/// Returns a table of loads recorded at 128 Hz. Its clock is `shift` behind that of the strain record. Load A has the
+/// mean error `off`.
 fn format_load_record(shift: f64, off: f64, seconds: f64) -> String {
     let mut text = "time [s],A.FZ [kN],Kraft B\n".to_owned();
     for i in 0..(seconds * 128.0) as usize {
@@ -103,14 +106,15 @@ fn format_load_record(shift: f64, off: f64, seconds: f64) -> String {
 #[test]
 fn a_shift_of_a_fraction_of_a_sample_and_an_offset_are_found_in_a_record() {
     let more = "[compare]\nfile = \"wft.csv\"\ncolumns = { \"B.FZ\" = \"Kraft B\" }\n";
-    // 234.56 samples of the strain record.
+    // The shift is 234.56 samples of the strain record.
     let shift = START + 2.3456;
     let strain = record(6000, START, loads_at, || 0.0);
     let wft = format_load_record(shift, 2.0, 40.0);
     let (found, findings) =
         answer(&files(strain.clone(), more).with_file("wft.csv", wft.clone())).unwrap();
     let estimated = &found["comparison_shift"];
-    // The cubic between samples errs by 3/128 (2 pi f / rate)^4 of a sine: 4e-4 of the fastest at 128 Hz is 1e-5 of its slope in s.
+    // The cubic between samples has the relative error 3/128 (2 pi f / rate)^4. At 128 Hz that is 4e-4 of the fastest
+    // sine, or 1e-5 s for its slope.
     assert!(
         (number(&estimated["shift_s"]) - shift).abs() < 2e-5,
         "{estimated}"
@@ -118,14 +122,15 @@ fn a_shift_of_a_fraction_of_a_sample_and_an_offset_are_found_in_a_record() {
     assert!(number(&estimated["half_width_s"]) < 1e-4, "{estimated}");
     let a = of_load(&found, "comparison", "A.FZ");
     let b = of_load(&found, "comparison", "B.FZ");
-    // The recovered samples from 2.3456 s on, to the end of the recorded ones 40 s less a sample later.
+    // The compared samples start at 2.3456 s. They end with the recorded samples, 40 s less one sample later.
     let n = (234.56_f64 + (40.0 * 128.0 - 1.0) / 128.0 * RATE).floor() - 234.0;
     assert_eq!((number(&a["n"]), number(&b["n"])), (n, n));
     assert_eq!(a["unit"], "N");
     for (v, expected) in [(&a["bias"], -2.0), (&a["rms"], 2.0), (&b["bias"], 0.0)] {
         assert!((number(v) - expected).abs() < 5e-3, "{a} {b}");
     }
-    // Sigma of load A is .23 N by hand (.3 microstrain over the norm of its column that B leaves), of B .2 N: the offset is outside.
+    // By hand, sigma is .2 N for load B. It is .23 N for load A: .3 microstrain over the norm of its column without the
+    // part along B. The offset of 2 N is therefore outside the interval.
     assert_eq!(
         (number(&a["share_within"]), number(&b["share_within"])),
         (0.0, 1.0)
@@ -136,13 +141,14 @@ fn a_shift_of_a_fraction_of_a_sample_and_an_offset_are_found_in_a_record() {
         .collect();
     assert_eq!(outside.len(), 1);
     assert_eq!(outside[0].1, "load `A.FZ`");
-    // An offset is in no range; peaks between samples are missed alike but for their squares.
+    // An offset changes no range of a cycle. Both records miss the peaks between samples, and their damage differs only
+    // to second order.
     for load in [a, b] {
         assert!((number(&load["damage_ratio"]) - 1.0).abs() < 0.01, "{load}");
         let [low, high] = ["damage_ratio_low", "damage_ratio_high"].map(|k| number(&load[k]));
         assert!(low < 1.0 && high > 1.0, "{load}");
     }
-    // A stated shift is used as it is.
+    // The program uses a stated shift without an estimate.
     let stated = format!("{more}shift_s = {shift}\n");
     let (as_stated, _) = answer(&files(strain, &stated).with_file("wft.csv", wft)).unwrap();
     assert_eq!(as_stated["comparison_shift"]["shift_s"], shift);
@@ -162,7 +168,8 @@ fn noise_as_stated_leaves_19_of_20_samples_inside_the_interval() {
     for load in ["A.FZ", "B.FZ"] {
         let load = of_load(&found, "comparison", load);
         assert_eq!(load["n"], 5000);
-        // Three standard deviations of a share of 5,000, and 0.1 % of the recorded loads' own interpolation.
+        // Three standard deviations of a share of 5,000 samples, plus 0.1 % for the interpolation of the recorded
+        // loads.
         assert!(
             (number(&load["share_within"]) - 0.95).abs() < 0.0103,
             "{load}"
@@ -186,7 +193,7 @@ fn runs_are_compared_by_name_and_loads_that_nobody_recorded_are_not() {
         let [a, b] = loads(i);
         let [g1, g2, g3, g4] = strain(a, b);
         let _ = writeln!(strains, "R{i},{g1},{g2},{g3},{g4}");
-        // B of the last two runs was not recorded; the order of the rows is another.
+        // Load B has no record in the last two runs. The rows are in reverse order.
         let j = 11 - i;
         let [a, b] = loads(j);
         let b = if j > 9 { String::new() } else { b.to_string() };
@@ -217,7 +224,7 @@ fn runs_are_compared_by_name_and_loads_that_nobody_recorded_are_not() {
             "{findings:?}"
         );
     }
-    // Noise of the recorded loads that the job states is in the interval.
+    // The interval includes the stated noise of the recorded loads.
     let noisy = format!("{more}noise = {{ force = 3.0 }}\n");
     let (found, _) = answer(&files(strains.clone(), &noisy).with_file("runs.csv", runs)).unwrap();
     assert_eq!(
@@ -228,7 +235,8 @@ fn runs_are_compared_by_name_and_loads_that_nobody_recorded_are_not() {
     assert!(found.get("comparison").is_none() && found.get("sections").is_none());
 }
 
-/// Load A: 25 periods of amplitude 100 from peak to peak, then 40 of amplitude 50; load B does not change.
+/// Returns load A with 25 periods of amplitude 100 from peak to peak, followed by 40 periods of amplitude 50. Load B is
+/// constant.
 fn two_stretches(t: f64) -> [f64; 2] {
     let a = match t < 10.005 {
         true => 100.0 * (TAU * t / 0.4).cos(),
@@ -237,7 +245,8 @@ fn two_stretches(t: f64) -> [f64; 2] {
     [a, 10.0]
 }
 
-/// From peak to peak, `n` periods are `n` cycles of twice the amplitude, whose damage is `n (2 a)^m` (ASTM E1049, half cycles added up).
+/// `n` periods from peak to peak are `n` cycles with twice the amplitude as range. Their damage is `n (2 a)^m` (ASTM
+/// E1049, with half cycles added up).
 #[test]
 fn sections_have_the_damage_of_their_sines_and_add_up_to_the_duty_cycle() {
     let more = "[[section]]\nname = \"smooth\"\nstart_s = 10.01\nend_s = 18.015\nrepeats = 10\n\
@@ -245,7 +254,7 @@ fn sections_have_the_damage_of_their_sines_and_add_up_to_the_duty_cycle() {
                 [[section]]\nname = \"apart\"\nfile = \"apart.csv\"\n\
                 [recover]\nslope = 4.0\n";
     let strain = record(2000, 0.0, two_stretches, || 0.0);
-    // Thirty periods from peak to peak in a record of its own.
+    // Thirty periods from peak to peak in a separate record.
     let apart = record(601, 0.0, |t| [20.0 * (TAU * t / 0.2).cos(), 10.0], || 0.0);
     let (found, _) = answer(&files(strain, more).with_file("apart.csv", apart)).unwrap();
     let list = found["sections"].as_array().unwrap();
@@ -261,7 +270,7 @@ fn sections_have_the_damage_of_their_sines_and_add_up_to_the_duty_cycle() {
         found.unwrap().clone()
     };
     let near = |v: &Value, expected: f64| {
-        // Samples are kept in single precision, and damage is a fourth power.
+        // The program keeps samples in single precision, and damage is a fourth power.
         let limit = 1e-6 * expected.abs().max(100.0);
         assert!((number(v) - expected).abs() < limit, "{v} {expected}");
     };
@@ -277,7 +286,7 @@ fn sections_have_the_damage_of_their_sines_and_add_up_to_the_duty_cycle() {
         near(&a["seconds"], samples / RATE);
         near(&a["min"], -amplitude);
         near(&a["max"], amplitude);
-        // Whole periods, and one peak more.
+        // Whole periods and one more peak.
         near(&a["mean"], amplitude / samples);
         assert!(number(&a["damage_low"]) < number(&a["damage"]));
         let b = of(section, "B.FZ");
@@ -419,7 +428,7 @@ fn tables_page_and_console_state_comparison_and_sections() {
         let _ = writeln!(wft, "{},{a},{b},1", i as f64 * 0.01);
     }
     let dir = super::folder("compared");
-    // The job is run once to make its files, then again with those that it names.
+    // The first run makes the files of the job. The second run has the files that the job names.
     let (code, said, _, dir) = {
         let _ = dir;
         by_command("compared", &table("time", 300, as_is), more)

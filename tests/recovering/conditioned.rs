@@ -1,4 +1,5 @@
-//! `[conditioning]`: readings with drift, spikes, an offset, apparent thermal strain and mains hum give the loads that were applied.
+//! `[conditioning]`: recovers the applied loads from readings with drift, spikes, offset, apparent thermal strain and
+//! mains hum.
 
 use crate::drawn::Numbers;
 use std::f64::consts::TAU;
@@ -12,7 +13,7 @@ const S: [[f64; 2]; 4] = [[0.10, 0.02], [0.02, 0.10], [0.05, 0.05], [0.08, -0.03
 const THERMAL: f64 = 1.4;
 const NOISE: f64 = 0.5;
 
-/// Loads, N: none in the first five seconds.
+/// Returns the loads in N. They are zero in the first five seconds.
 fn loads(t: f64) -> [f64; 2] {
     let moves = if t < 5.0 { 0.0 } else { 1.0 };
     [
@@ -33,7 +34,7 @@ const FAULTS: [[f64; 3]; 4] = [
     [0.0, 0.8, 2.0],
 ];
 
-/// Strain of a gauge with the faults that `on` leaves on: thermal strain, offset, drift, hum, spikes.
+/// Returns a strain table with the faults that `on` enables: thermal strain, offset, drift, hum, spikes.
 fn record(on: [bool; 5]) -> String {
     let mut numbers = Numbers(5);
     let mut out = String::from("time,G1,G2,G3,G4,T1\n");
@@ -77,7 +78,7 @@ fn files(on: [bool; 5], more: &str) -> InMemory {
         .with_file("job.toml", job(more))
 }
 
-/// Largest error of a load, the share of intervals that contain theirs, and the outcome as JSON.
+/// Returns the largest error of a load, the share of intervals that contain the true load, and the outcome as JSON.
 fn recover(on: [bool; 5], more: &str) -> (f64, f64, serde_json::Value) {
     let files = files(on, more);
     let job = Job::read("job.toml", &files).unwrap_or_else(|f| panic!("{f:?}"));
@@ -87,7 +88,7 @@ fn recover(on: [bool; 5], more: &str) -> (f64, f64, serde_json::Value) {
     let (mut worst, mut inside, mut all) = (0.0_f64, 0, 0);
     for row in history.rows() {
         let expected = loads(row.time);
-        // At the step in the loads after five seconds a filter smears.
+        // A filter smears the step of the loads after five seconds.
         if (row.time - 5.0).abs() < 0.5 || row.time < 0.5 || row.time > 39.5 {
             continue;
         }
@@ -116,7 +117,8 @@ fn faults_of_the_logger_are_removed_and_each_step_states_its_change() {
     assert!(raw > 500.0 && held < 0.6, "{raw} {held}");
     assert!(bare.get("conditioning").is_none());
     let (worst, held, got) = recover(on, ALL);
-    // Waves of the loads have a least squares slope of their own: 900 N of 0.7 Hz make up to 1.5 N a second over 40 s, and the line follows it.
+    // The loads themselves have a slope in a least squares fit. 900 N at 0.7 Hz give up to 1.5 N per second over 40 s,
+    // and the fitted line includes it.
     println!("{worst} {held}");
     assert!(worst < 22.0, "{worst}");
     assert!(held > 0.9, "{held}");
@@ -126,7 +128,7 @@ fn faults_of_the_logger_are_removed_and_each_step_states_its_change() {
         assert_eq!(named(step).count(), 4, "{step}: {got}");
     }
     assert!(named("spikes").all(|s| s["samples"] == 8), "{steps:?}");
-    // The drift of gauge G4 is 0.8 microstrain per second from the middle of the stretch of zero on.
+    // The drift of gauge G4 is 0.8 microstrain per second, measured from the middle of the zero interval.
     let drift = named("drift").find(|s| s["gauge"] == "G4").unwrap();
     let expected: f64 = (0..SAMPLES)
         .map(|i| (0.8 * (i as f64 / RATE - 2.5)).powi(2))
@@ -136,7 +138,8 @@ fn faults_of_the_logger_are_removed_and_each_step_states_its_change() {
     assert!(off.abs() < 0.1, "{off}");
 }
 
-/// The line of a drift that loads tilt by more than the noise is a warning: its error is in no interval. Without loads it is none.
+/// The loads can tilt the line of a drift by more than the noise. A warning reports this error, because no interval
+/// contains it. Without loads there is no warning.
 #[test]
 fn a_drift_that_loads_tilt_is_a_warning() {
     let section = "[conditioning]\ndrift = \"linear\"\n";
@@ -148,7 +151,7 @@ fn a_drift_that_loads_tilt_is_a_warning() {
         got.findings.iter().map(|f| (f.code, f.severity)).collect()
     };
     let warned = ("corrections-applied", Severity::Warning);
-    // The first five seconds of a record, without loads, and all of it, where 900 N swing in 24 cycles.
+    // The first five seconds of the record have no loads. In the whole record, 900 N oscillate in 24 cycles.
     let drifting = record([false, false, true, false, false]);
     let idle: Vec<&str> = drifting.lines().take(1000).collect();
     let found = codes(format!("{}\n", idle.join("\n")));
@@ -168,7 +171,8 @@ fn a_sound_record_keeps_its_loads() {
     assert!(worst <= plain && held > 0.95, "{worst} {plain} {held}");
 }
 
-/// Corrections come before conditioning, and once: a zero, thermal strain and an offset of a gauge that is corrected are those of the strain.
+/// Corrections are applied once, before conditioning. Zero, thermal strain and offset therefore refer to the corrected
+/// strain of the gauge.
 #[test]
 fn corrections_are_applied_once_and_before_conditioning() {
     let more = "[[correction]]\ngauge = \"G1\"\nsign = -1\noffset_microstrain = 300.0\n";
@@ -201,7 +205,8 @@ fn corrections_are_applied_once_and_before_conditioning() {
     assert!(worst < 1.5 * plain, "{worst} {plain}");
 }
 
-/// A gauge that is dead in a part of the record is blank there before a filter hides it, and the loads come from the others.
+/// A gauge that is dead in a part of the record is blank there, before a filter can hide it. The loads come from the
+/// other gauges.
 #[test]
 fn a_gauge_that_is_dead_for_a_while_is_blank_there() {
     let text = record([false; 5]);
@@ -229,7 +234,7 @@ fn a_gauge_that_is_dead_for_a_while_is_blank_there() {
     }
 }
 
-/// Faults of the section name their key: times beyond the record, corners, channels, two zeros, runs.
+/// Faults of `[conditioning]` name their key: times beyond the record, corner frequencies, channels, two zeros, runs.
 #[test]
 fn what_conditioning_cannot_do_is_a_fault() {
     let cases = [
@@ -262,7 +267,8 @@ fn what_conditioning_cannot_do_is_a_fault() {
             "{text}: {said}"
         );
     }
-    // A step that removes static strain next to a zero file, a temperature in another unit, and a section of another file.
+    // A step that removes static strain together with a zero file, a temperature in another unit, and a `[[section]]`
+    // with a separate file.
     let two = |conditioning: &str, more: &str, field: &str| {
         let text = format!("{more}[conditioning]\n{conditioning}\n");
         let files = files([false; 5], &text)

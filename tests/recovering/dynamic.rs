@@ -1,4 +1,5 @@
-//! `[dynamic]`: a beam shaken near its first mode and between its first two, against Euler and Bernoulli's beam.
+//! `[dynamic]`: a beam excited near its first mode and between its first two modes, compared with the Euler-Bernoulli
+//! beam.
 
 use crate::drawn::Numbers;
 use std::f64::consts::TAU;
@@ -7,16 +8,17 @@ use strainbridge::host::context::InMemory;
 use strainbridge::host::store::Memory;
 use strainbridge::{Context, Job};
 
-/// Elements along it.
+/// Number of elements along the beam.
 const N: usize = 60;
 const LENGTH: f64 = 2000.0;
-/// E, I, density times area: mm, t, s.
+/// Modulus E, second moment I, and mass per length, in the units mm, t, s.
 const E: f64 = 210_000.0;
 const I: f64 = 4000.0;
 const LINE_MASS: f64 = 7.85e-9 * 200.0;
-/// Gauged elements, counted from the clamp.
+/// Elements with gauges, counted from the clamp.
 const GAUGED: [usize; 3] = [3, 20, 40];
-/// Parts of the force at the tip: N, and Hz as shares of the first frequency; the second lies at 6.27.
+/// Sine components of the force at the tip: amplitude in N, and frequency divided by the first natural frequency. The
+/// second natural frequency is at 6.27.
 const PARTS: [[f64; 2]; 4] = [[10.0, 0.07], [6.0, 0.45], [3.0, 0.93], [8.0, 2.6]];
 const RATE: f64 = 250.0;
 const SAMPLES: usize = 5000;
@@ -36,7 +38,7 @@ fn deck() -> String {
     for i in 1..=N {
         let _ = writeln!(text, "CBAR,{i},2,{i},{},0.,1.,0.", i + 1);
     }
-    // The plane in which it bends: the other one and torsion have modes that no gauge here reads.
+    // Only the bending plane is free. No gauge here measures modes of the other plane or of torsion.
     text + "SPC1,1,123456,1\nENDDATA\n"
 }
 
@@ -63,8 +65,10 @@ fn first_hz() -> f64 {
     (1.875_104_07 / LENGTH).powi(2) * (E * I / LINE_MASS).sqrt() / TAU
 }
 
-/// Curvature at `x` under a force at the tip of the frequency `hz` over that at rest: with `b^4 = m w^2 / (E I)`, from
-/// `w'''' = b^4 w`, clamped at 0, `E I w'''(L) = -F`, `w''(L) = 0` (Timoshenko, Vibration Problems in Engineering, 1937, section 56).
+/// Returns the curvature at `x` under a tip force with the frequency `hz`, divided by the static curvature.
+///
+/// With `b^4 = m w^2 / (E I)` it follows from `w'''' = b^4 w`, clamped at 0, `E I w'''(L) = -F`, `w''(L) = 0`
+/// (Timoshenko, Vibration Problems in Engineering, 1937, section 56).
 fn curvature_amplification(x: f64, hz: f64) -> f64 {
     let b = ((TAU * hz).powi(2) * LINE_MASS / (E * I)).powf(0.25);
     let (l, y) = (b * LENGTH, b * x);
@@ -82,7 +86,8 @@ fn parts(t: f64, of_part: impl Fn(f64) -> f64) -> f64 {
     PARTS.iter().map(part).sum()
 }
 
-/// The beam's deck, and its record: `S` of the deck at rest times what the closed form adds.
+/// Returns the deck of the beam and its strain record. The record is the static S of the deck times the dynamic
+/// amplification in closed form.
 fn record() -> InMemory {
     let files = InMemory::default()
         .with_file("beam.bdf", deck())
@@ -97,7 +102,9 @@ fn record() -> InMemory {
     files.with_file("strain.csv", table)
 }
 
-/// A record of gauged elements: `strain` of the gauge by number at `x` and a time, over its strain at rest for 1 N, and noise.
+/// Returns a record of elements with gauges, with noise.
+///
+/// `strain` returns the strain of a gauge (by number) at `x` and a time, divided by the static strain for 1 N.
 fn table(
     gauged: &[usize],
     s: &[f64],
@@ -125,7 +132,8 @@ fn table(
     table
 }
 
-/// Largest error of the samples that are known, how many these are, the share of them whose interval holds, codes of findings.
+/// Returns the largest error of the recovered samples, their number, the share of intervals that contain the load, and
+/// the codes of findings.
 fn recover_record(files: InMemory, more: &str) -> (f64, usize, f64, Vec<&'static str>) {
     let files = files.with_file("job.toml", job(more));
     let job = Job::read("job.toml", &files).unwrap_or_else(|f| panic!("{f:?}"));
@@ -152,7 +160,8 @@ fn a_beam_shaken_near_its_first_mode_gives_its_force_once_its_vibration_is_taken
     assert!((curvature_amplification(500.0, 1e-3) - 1.0).abs() < 1e-6);
     let files = record();
     let (worst, known, _, codes) = recover_record(files.clone(), "");
-    // At .93 of the first frequency strain is seven times that at rest: 3 N read as 20, and those beyond it with the wrong sign.
+    // At .93 of the first natural frequency, strain is seven times the static strain, so 3 N read as 20 N. Beyond it
+    // the sign is wrong.
     assert!(worst > 20.0, "{worst}");
     assert_eq!(known, SAMPLES);
     assert!(codes.contains(&"content-near-first-mode"), "{codes:?}");
@@ -161,8 +170,8 @@ fn a_beam_shaken_near_its_first_mode_gives_its_force_once_its_vibration_is_taken
         "[dynamic]\nup_to_hz = {up_to:.4}\ndamping = 1e-5\nfrequency_uncertainty_rel = 0.001\n"
     );
     let (worst, known, held, codes) = recover_record(files, &dynamic);
-    // The force has 27 N at most. Lumped masses of 60 elements move frequencies by some 1e-4 and the answer at .93 by 15 times that; noise of .2
-    // microstrain where 10 N make 59 at the clamp is .05 N.
+    // The force is 27 N at most. Lumped masses of 60 elements change frequencies by about 1e-4, and the response at .93
+    // by 15 times as much. 10 N give 59 microstrain at the clamp, so noise of .2 microstrain is .05 N.
     assert!(worst < 0.3, "{worst}");
     assert!(known > SAMPLES * 9 / 10 && known < SAMPLES, "{known}");
     assert!(held > 0.93, "{held}");
@@ -181,7 +190,7 @@ fn what_lies_beyond_the_band_is_said() {
         "[dynamic]\nup_to_hz = {:.4}\ndamping = 1e-5\n",
         0.8 * first_hz()
     );
-    // Of the force 3 N of 12 lie at .93 of the first frequency, more than a hundredth of its power.
+    // 3 N of 12 N are at .93 of the first natural frequency. That is more than a hundredth of the power.
     let (_, _, _, codes) = recover_record(record(), &dynamic);
     assert!(codes.contains(&"content-beyond-band"), "{codes:?}");
 }
@@ -230,7 +239,7 @@ fn what_dynamic_cannot_do_is_a_fault_of_its_line() {
     assert!(given.contains("without a model"), "{given}");
 }
 
-/// S of gauged elements, by the job itself.
+/// Returns S of the elements with gauges, computed by the job.
 fn compute_sensitivity(gauged: &[usize]) -> Vec<f64> {
     let files = InMemory::default()
         .with_file("beam.bdf", deck())
@@ -240,8 +249,11 @@ fn compute_sensitivity(gauged: &[usize]) -> Vec<f64> {
     sensed.prepared.sensitivity.values.as_slice().to_vec()
 }
 
-/// A record of a force at the tip, `course` of the time, whose parts strain the gauge by number as `strain` says; share of intervals that hold,
-/// largest error, mean half width, codes.
+/// Recovers a tip force and returns the share of intervals that contain it, the largest error, the mean half width, and
+/// the codes.
+///
+/// `course` is the force over time. `strain` gives the strain of a gauge (by number) at `x` and a time, divided by the
+/// static strain for 1 N.
 fn recover_tip_force(
     gauged: &[usize],
     samples: usize,
@@ -276,7 +288,7 @@ fn recover_tip_force(
     (held as f64 / known, worst, width / known, codes)
 }
 
-/// The first mode lies at three times the band: what it answers there is an eighth of the load.
+/// The first mode is at three times the upper limit of the band. Its response within the band is an eighth of the load.
 #[test]
 fn a_mode_beyond_the_band_is_taken_out_all_the_same() {
     let wave = |t: f64| 10.0 * (TAU * t).sin();
@@ -287,7 +299,8 @@ fn a_mode_beyond_the_band_is_taken_out_all_the_same() {
     assert!(held > 0.93, "{held} {worst}");
     assert!(worst < 0.1, "{worst}");
     assert!(!codes.contains(&"content-near-first-mode"), "{codes:?}");
-    // With model and damping exact, frequencies but for the mesh, nothing is left of the second mode for gauges to be blamed for.
+    // Model and damping are exact, and frequencies are exact except for the mesh. The second mode leaves no residual
+    // that would blame a gauge.
     let two = |t: f64| [5.0 * (TAU * 0.3 * t).sin(), 10.0 * (TAU * 2.6 * t).sin()];
     let more = "[dynamic]\nup_to_hz = 4.0\ndamping = 1e-5\nfrequency_uncertainty_rel = 2e-4\ndamping_uncertainty_rel = 0\n";
     let (held, _, _, codes) = recover_tip_force(
@@ -309,8 +322,10 @@ fn a_mode_beyond_the_band_is_taken_out_all_the_same() {
     assert!(codes.iter().all(|c| !blamed.contains(c)), "{codes:?}");
 }
 
-/// Frequencies of 1 % and of 2 % over those of the model, where one standard deviation of 2 % is stated: no gauge is blamed for what is left of the
-/// vibration, and intervals are as wide as that, not wider; a gauge that is off by a third is still named or at least not explained away.
+/// The true frequencies are 1 % and 2 % above those of the model, and the stated standard deviation is 2 %.
+///
+/// The residual of the vibration blames no gauge, and the intervals are only as wide as the stated error requires. A
+/// gauge with an error of a third still causes a finding.
 #[test]
 fn an_error_of_frequency_blames_no_gauge() {
     let two = |t: f64| [5.0 * (TAU * 0.3 * t).sin(), 10.0 * (TAU * 2.6 * t).sin()];
@@ -328,12 +343,13 @@ fn an_error_of_frequency_blames_no_gauge() {
             |_, x, t| real(share, x, t),
         );
         assert!(held > 0.9, "{share} {held}");
-        // The frequency is estimated from the record. Errors of 1 % of the strain of the mode at each gauge remain: some .5 N of 15 N.
+        // The program estimates the frequency from the record. Errors of 1 % of the strain of the mode at each gauge
+        // remain, about .5 N of 15 N.
         assert!(worst < 0.3 && width < 1.0, "{share} {width} {worst}");
         let blamed = ["gauge-suspect", "strain-not-explained"];
         assert!(codes.iter().all(|c| !blamed.contains(c)), "{codes:?}");
     }
-    // A tenth is five stated standard deviations.
+    // 10 % is five times the stated standard deviation.
     let far = |_: usize, x: f64, t: f64| real(1.1, x, t);
     let (.., codes) = recover_tip_force(&GAUGED, 5000, more, |t| two(t).iter().sum(), far);
     assert!(codes.contains(&"modes-contradicted"), "{codes:?}");
@@ -347,7 +363,7 @@ fn an_error_of_frequency_blames_no_gauge() {
     assert!(codes.iter().any(|c| said.contains(c)), "{codes:?}");
 }
 
-/// Two gauges, each blank for a half: in no sample do both read.
+/// Two gauges, each without a reading in one half of the record. No sample has both.
 #[test]
 fn gauges_that_never_read_together_have_intervals_of_their_own() {
     let wave = |t: f64| 10.0 * (TAU * 2.6 * t).sin();
@@ -408,8 +424,8 @@ fn modes_are_solved_once_and_kept() {
     assert_eq!(values[0], values[1]);
 }
 
-/// Bands that state the same damping for all modes give the loads of the number; a damping that the record determines gives loads within their
-/// intervals too.
+/// Bands that state the same damping for all modes give the same loads as one number. A damping that the record
+/// determines gives loads within the intervals.
 #[test]
 fn damping_by_band_and_from_the_record_give_the_loads_of_a_number() {
     let head = format!(

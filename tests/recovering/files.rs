@@ -1,11 +1,11 @@
-//! Runs in files of their own, and in spreadsheets.
+//! Runs in several files, and in spreadsheets.
 
 use super::{as_is, load, loads, recover, table};
 use serde_json::Value;
 use std::fmt::Write;
 use std::process::Command;
 
-/// Runs `from .. to` with another zero at every gauge, and a run without load before and after them.
+/// Returns the runs `from .. to` with another zero of every gauge, and one run without load before and after them.
 fn with_own_zero(from: usize, to: usize, offset: f64, zeros: [&str; 2]) -> String {
     let plain = table("run", to, |_, g, v| {
         (v + offset * (1.0 + g as f64)).to_string()
@@ -38,7 +38,7 @@ fn runs_held_out_in_a_file_of_their_own_have_zeros_of_their_own() {
     };
     let strain = with_own_zero(0, 9, 300.0, ["Z1", "Z2"]);
     let reconcile = |name: &str, zeros: &[&str], held: &str| {
-        // Makes the job; the file that it holds out is written below.
+        // Creates the job. The test then writes the file with held-out runs.
         let (_, _, _, dir) = recover(name, &strain, &more(zeros));
         std::fs::write(dir.join("runs.csv"), &runs).unwrap();
         std::fs::write(dir.join("held.csv"), held).unwrap();
@@ -56,7 +56,7 @@ fn runs_held_out_in_a_file_of_their_own_have_zeros_of_their_own() {
         let result = text.map_or(Value::Null, |t| serde_json::from_str(&t).unwrap());
         (done.status.code(), said, result)
     };
-    // The logger was switched off between the files: every zero is elsewhere.
+    // The logger was switched off between the files, so every zero differs.
     let all = ["Z1", "Z2", "Z3", "Z4"];
     let (code, said, result) = reconcile(
         "held-zero",
@@ -65,7 +65,7 @@ fn runs_held_out_in_a_file_of_their_own_have_zeros_of_their_own() {
     );
     assert_eq!(code, Some(0), "{said}");
     assert_eq!(result["verdict"], "none");
-    // Readings are off by half a microstrain, a thousandth of what the other zero would make.
+    // Readings have an error of half a microstrain. The other zero would give a thousand times as much.
     let gap = result["gap"]["before"].as_f64().unwrap();
     assert!(gap < 5e-3, "{gap}");
     let none = table("run", 12, as_is);
@@ -148,7 +148,7 @@ fn a_spreadsheet_of_runs_is_read_as_the_same_table_in_text() {
     let result = std::fs::read(dir.join("sheet.out/result.json")).unwrap();
     let from_sheet: Value = serde_json::from_slice(&result).unwrap();
     assert_eq!(from_sheet["loads"], from_text["loads"]);
-    // Half of it, and the list at its end claiming what no memory holds.
+    // Half of the file, and a file with a directory that claims an impossible size.
     std::fs::write(dir.join("strain.xlsx"), &bytes[..bytes.len() / 2]).unwrap();
     assert_eq!(run("recover").status.code(), Some(2));
     let mut bomb = bytes;
@@ -163,7 +163,7 @@ fn a_spreadsheet_of_runs_is_read_as_the_same_table_in_text() {
     );
 }
 
-/// The table of twelve runs, readings in these units, which stand beside the names or in a row below them.
+/// Returns the table of twelve runs with readings in these units. The units are in the header or in a row below it.
 fn in_units(units: [(&str, f64); 4], below: bool) -> String {
     let text = table("run", 12, |_, g, v| (v * units[g].1).to_string());
     let rows = text.split_once('\n').unwrap().1;
@@ -196,12 +196,12 @@ fn units_of_run_tables_are_read_as_those_of_records() {
         for run in ["R0", "R11"] {
             for l in ["A", "B"] {
                 let [a, b] = [&plain, &result].map(|r| load(r, run, l)[0]);
-                // Readings were divided and multiplied: the last digit.
+                // Division and multiplication change the last digit of a reading.
                 assert!((a - b).abs() < 1e-9 * a.abs(), "{name} {run} {l}: {a} {b}");
             }
         }
     }
-    // What is no strain is a fault that names gauge, unit and remedy; columns of other things may have any unit.
+    // A unit that is not strain is a fault with gauge, unit and remedy. Columns that are not gauges may have any unit.
     let volts = [("um/m", 1.0), ("mV/V", 1.0), ("um/m", 1.0), ("um/m", 1.0)];
     for below in [true, false] {
         let (code, said, _, _) = recover("units-volts", &in_units(volts, below), "");
@@ -248,7 +248,7 @@ fn a_rosette_of_a_given_s_reads_by_its_legs() {
         for name in ["A", "B"] {
             let [own, own_sigma] = load(&legs, &format!("R{run}"), name);
             let [value, sigma] = load(&single, &format!("R{run}"), name);
-            // Gauges stand in another order: rounding alone.
+            // The gauges are in another order, which changes only rounding.
             assert!(
                 (own - value).abs() < 1e-9 * value.abs().max(1.0),
                 "{run} {name}"

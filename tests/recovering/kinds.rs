@@ -1,4 +1,5 @@
-//! Files of every kind: results that hold a subcase twice, records in several units of time, files of an unexpected kind.
+//! Files of every kind: results that contain a subcase twice, records in several units of time, files of an unexpected
+//! kind.
 
 use super::{S, loads, strain};
 use std::fmt::Write;
@@ -7,7 +8,7 @@ use strainbridge::host::context::InMemory;
 use strainbridge::workflow::check::CheckedFiles;
 use strainbridge::{Context, Faults, Job, Outcome, check, sensitivity, strains};
 
-/// A plate of two quads in m, kg, s, pulled by a force.
+/// Plate of two quads in m, kg, s under an axial force.
 const PLATE: &str = "SOL 101\nCEND\nBEGIN BULK
 GRID,1,,0.,0.,0.
 GRID,2,,1.,0.,0.
@@ -23,7 +24,7 @@ FORCE,1,5,,1.,1.,0.,0.
 ENDDATA
 ";
 
-/// Strain of shells in subcase 1 as a punch file has it: element, strain along x at both fibres.
+/// Returns shell strain of subcase 1 as a punch file: element, strain along x at both fibre distances.
 fn punch(elements: &[(u32, f64)]) -> String {
     let mut text = "$TITLE   = T\n$SUBTITLE=\n$LABEL   =\n$ELEMENT STRAINS\n$REAL OUTPUT\n\
                     $SUBCASE ID = 1\n$ELEMENT TYPE = 33 QUAD4\n"
@@ -54,7 +55,7 @@ fn plate_job(results: &str, load: &str) -> String {
     )
 }
 
-/// S of both gauges in microstrain per N.
+/// Returns S of both gauges in microstrain per N.
 fn s_of(files: &InMemory, job: &str) -> Result<Vec<f64>, Faults> {
     let files = files.clone().with_file("job.toml", job);
     let read = Job::read("job.toml", &files)?;
@@ -96,7 +97,7 @@ fn a_subcase_that_two_results_hold_with_other_values_is_not_taken_from_the_first
         "{}",
         words(&refused)
     );
-    // The file is named, holds the same, or holds other elements.
+    // Accepted cases: the job names the file, both files have equal values, or the files have different elements.
     close(
         s_of(&files, &plate_job(both, "result = \"last.pch\"")),
         [18.0, 20.0],
@@ -128,7 +129,7 @@ fn a_subcase_that_two_results_hold_with_other_values_is_not_taken_from_the_first
     }
 }
 
-/// A job whose S is given, and a record of four gauges with these times.
+/// Returns a job with a given S, and a record of four gauges with these times.
 fn build_record_job(head: &str, time: impl Fn(usize) -> String) -> InMemory {
     let mut s = "gauge,A,B\n".to_owned();
     for (g, row) in S.iter().enumerate() {
@@ -170,7 +171,7 @@ fn times_in_any_unit_give_the_rate_and_an_unknown_unit_is_an_error() {
             build_record_job("time", |i| format!("{:.0}", (noon + at(i)) * 1e3)),
             Some("time-unit-recognised"),
         ),
-        // Milliseconds, or samples ten seconds apart.
+        // The unit may be milliseconds, or the samples may be ten seconds apart.
         (
             build_record_job("time", |i| (10 * i).to_string()),
             Some("time-unit-doubtful"),

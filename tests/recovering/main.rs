@@ -1,6 +1,7 @@
-//! `recover` of a job whose S is given: sums of loads, channels put right, records with a dead channel, and input that can't be right.
+//! `recover` for a job with a given S: sums of loads, corrected channels, records with a dead channel, and impossible
+//! input.
 //!
-//! Two loads A and B, four gauges; strain is made here from S, so every expected load is known.
+//! There are two loads A and B and four gauges. The tests compute strain from S, so every expected load is known.
 
 mod calibrated;
 mod compared;
@@ -26,7 +27,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::Command;
 
-/// Microstrain per N, gauge by gauge.
+/// S in microstrain per N, by gauge.
 const S: [[f64; 2]; 4] = [[1.0, 0.2], [-0.3, 1.1], [0.8, -0.5], [0.4, 0.9]];
 
 fn folder(name: &str) -> PathBuf {
@@ -38,29 +39,29 @@ fn folder(name: &str) -> PathBuf {
     path
 }
 
-/// Readings of the four gauges, microstrain, at these loads.
+/// Returns the readings of the four gauges at these loads, microstrain.
 fn strain(a: f64, b: f64) -> [f64; 4] {
     S.map(|row| row[0] * a + row[1] * b)
 }
 
-/// Loads of row `i`: hundreds of N that change from row to row.
+/// Returns the loads of row `i`: hundreds of N that change from row to row.
 fn loads(i: usize) -> [f64; 2] {
     let t = i as f64 * 0.37;
     [300.0 + 100.0 * t.sin(), 200.0 * (0.7 * t).cos()]
 }
 
-/// A table of `rows` rows, `key` first; `change` gives the text of a reading.
+/// Returns a table of `rows` rows with `key` as its first column. `change` formats a reading.
 fn table(key: &str, rows: usize, change: impl Fn(usize, usize, f64) -> String) -> String {
     let mut text = format!("{key},G1,G2,G3,G4\n");
     for i in 0..rows {
         let [a, b] = loads(i);
-        // A record at 100 Hz; runs by name.
+        // A record at 100 Hz, or runs with names.
         let _ = match key {
             "time" => write!(text, "{}", i as f64 * 0.01),
             _ => write!(text, "R{i}"),
         };
         for (g, v) in strain(a, b).into_iter().enumerate() {
-            // What noise there is repeats every seven rows, half a microstrain at most.
+            // The noise repeats every seven rows and is half a microstrain at most.
             let noise = ((i * 5 + g * 3) % 7) as f64 / 7.0 - 0.43;
             let _ = write!(text, ",{}", change(i, g, v + noise));
         }
@@ -73,7 +74,8 @@ fn as_is(_: usize, _: usize, v: f64) -> String {
     v.to_string()
 }
 
-/// Runs `recover` on that table and these further lines of the job; exit code, standard error, `result.json`.
+/// Runs `recover` on this table, with further lines in the job. Returns exit code, standard error, `result.json` and
+/// folder.
 fn recover(name: &str, strain: &str, more: &str) -> (i32, String, Value, PathBuf) {
     let dir = folder(name);
     let mut s = "gauge,A,B\n".to_owned();
@@ -103,7 +105,7 @@ fn recover(name: &str, strain: &str, more: &str) -> (i32, String, Value, PathBuf
     )
 }
 
-/// Value and sigma of a load of a run.
+/// Returns value and sigma of a load in a run.
 fn load(result: &Value, run: &str, name: &str) -> [f64; 2] {
     let list = result["loads"].as_array().unwrap();
     let row = list
@@ -130,7 +132,7 @@ fn a_sum_of_loads_has_the_interval_of_their_covariance() {
     let [a, b, sum, difference] = ["A", "B", "total", "difference"].map(|n| load(&result, "R3", n));
     assert!((sum[0] - a[0] - b[0]).abs() < 1e-9 * sum[0].abs());
     assert!((difference[0] - a[0] + b[0]).abs() < 1e-9 * a[0].abs());
-    // var(A + B) + var(A - B) = 2 var A + 2 var B, whatever their covariance; which is not zero here.
+    // var(A + B) + var(A - B) = 2 var A + 2 var B for any covariance. Here the covariance is not zero.
     let square = |v: [f64; 2]| v[1] * v[1];
     let both = 2.0 * (square(a) + square(b));
     assert!((square(sum) + square(difference) - both).abs() < 1e-9 * both);
@@ -140,7 +142,7 @@ fn a_sum_of_loads_has_the_interval_of_their_covariance() {
         csv.starts_with("run,A,A.low,A.high,B,B.low,B.high,total,total.low"),
         "{csv}"
     );
-    // The same rows as a record: the same sums with the same intervals, to the digits of its table.
+    // The same rows as a record give the same sums and intervals, within the digits of the table.
     let (code, errors, _, dir) = recover("sum_record", &table("time", 12, as_is), more);
     assert_eq!(code, 0, "{errors}");
     let record = std::fs::read_to_string(dir.join("job.out/loads.csv")).unwrap();
@@ -160,7 +162,7 @@ fn a_sum_of_loads_has_the_interval_of_their_covariance() {
 
 #[test]
 fn channels_are_put_right_in_runs_and_in_records() {
-    // G1 backwards, G2 and G3 exchanged, G4 with 0.7 of the strain and 20 microstrain too much.
+    // G1 has reversed polarity, G2 and G3 are exchanged, and G4 has the factor 0.7 and an offset of 20 microstrain.
     let wrong = |_: usize, g: usize, v: f64| match g {
         0 => (-v).to_string(),
         3 => (0.7 * v + 20.0).to_string(),
@@ -222,7 +224,7 @@ fn every_result_of_a_record_states_rate_duration_and_gaps() {
     assert!((number("sample_rate_hz") - 100.0).abs() < 1e-6);
     assert!((number("duration_s") - 5.0).abs() < 1e-9);
     assert_eq!((number("samples"), number("gaps")), (501.0, 20.0));
-    // Three gauges are left for two loads: no sample is blank.
+    // Three gauges remain for two loads, so no sample is blank.
     let csv = std::fs::read_to_string(dir.join("job.out/loads.csv")).unwrap();
     assert!(!csv.contains(",,"), "blank loads");
 }
@@ -238,7 +240,7 @@ fn readings_and_times_in_another_unit_are_asked_for() {
             "{result}"
         );
     }
-    // 1 kHz in milliseconds, loads that take a second to change.
+    // 1 kHz in milliseconds. The loads change within a second.
     let mut text = "time,G1,G2,G3,G4\n".to_owned();
     for i in 0..2000 {
         let t = f64::from(i) * 1e-3;
@@ -275,7 +277,7 @@ fn a_reading_of_1e308_is_no_reading_and_a_header_alone_is_a_fault() {
 #[test]
 fn a_load_at_a_grid_that_the_deck_lacks_is_a_fault_with_results_too() {
     let dir = folder("missing_grid");
-    // A free strip of ten plates, 20 mm long each.
+    // A free strip of ten plates, each 20 mm long.
     let mut deck = "SOL 101\nCEND\nBEGIN BULK\n".to_owned();
     for i in 0..11 {
         for j in 0..2 {
@@ -321,7 +323,7 @@ fn a_load_at_a_grid_that_the_deck_lacks_is_a_fault_with_results_too() {
     let results = "results = [\"solved.out/results.op2\"]";
     let (code, errors) = run("recover", &job("there.toml", 6, results));
     assert!(code != 2, "{errors}");
-    // Line 11 of the job: the second [[load]].
+    // Line 11 of the job is the second [[load]].
     for (name, results) in [("with.toml", results), ("without.toml", "")] {
         let lacking = job(name, 999, results);
         for command in ["recover", "sensitivity", "place", "respond"] {
@@ -338,10 +340,11 @@ fn a_load_at_a_grid_that_the_deck_lacks_is_a_fault_with_results_too() {
     }
 }
 
-/// Rows at which nothing acts, among the others.
+/// Rows without load.
 const EMPTY: [usize; 4] = [0, 4, 9, 13];
 
-/// Strain of runs whose gauges' zeros move by up to 6 microstrain from row to row, and of which some are without load.
+/// Returns strain of runs, some of them without load. The zeros of the gauges move by up to 6 microstrain from row to
+/// row.
 fn drifting_strain_table() -> String {
     table("run", 14, |i, g, v| {
         let [a, b] = loads(i);
@@ -350,7 +353,7 @@ fn drifting_strain_table() -> String {
         } else {
             strain(a, b)[g]
         };
-        // What `table` adds as noise stays.
+        // Only the noise that `table` adds remains.
         let noise = v - strain(a, b)[g];
         let zero = 40.0 - 6.0 * (g as f64 - 1.0) * i as f64;
         (acts + noise + zero).to_string()
@@ -372,7 +375,8 @@ fn a_zero_that_drifts_is_followed_through_runs_without_load() {
         let at = |key: &str| found[key].as_f64().unwrap();
         (at("value"), at("sigma"))
     };
-    // Half a microstrain of noise and the zero's own, on gauges of one microstrain per N; the drift itself would make 100 N.
+    // Errors are half a microstrain of noise in each reading and in the zero, with about one microstrain per N. The
+    // drift itself would give 100 N.
     for run in 0..14 {
         let [a, b] = if EMPTY.contains(&run) {
             [0.0, 0.0]
@@ -381,7 +385,8 @@ fn a_zero_that_drifts_is_followed_through_runs_without_load() {
         };
         for (name, truth) in [("A", a), ("B", b)] {
             let (value, sigma) = of(run, name);
-            // The first and the last run without load have a neighbour on one side alone, which is a step of the drift away.
+            // The first and the last run without load have a neighbour on one side only. That neighbour differs by one
+            // step of the drift.
             let near = (value - truth).abs() < 2.0 || [0, 13].contains(&run);
             assert!(near, "R{run} {name}: {value}, truth {truth}");
             assert!(
@@ -408,7 +413,8 @@ fn a_zero_that_drifts_is_followed_through_runs_without_load() {
     assert!(said.contains("is a record and has no runs"), "{said}");
 }
 
-/// What `reconcile` answers of the same runs, plain and with 300 microstrain more at every gauge that the zero file takes off.
+/// Compares the results of `reconcile` for equal runs, with and without 300 microstrain at every gauge that the zero
+/// file removes.
 #[test]
 fn a_zero_file_counts_in_reconcile_as_in_recover() {
     let mut runs = "run,A,B\n".to_owned();

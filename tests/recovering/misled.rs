@@ -1,4 +1,4 @@
-//! Input that looks right and isn't: a channel that is stuck, a run that no file has.
+//! Input that looks right but is wrong: a stuck channel, a run that no file contains.
 
 use super::{as_is, codes, load, recover, table};
 
@@ -32,7 +32,7 @@ fn a_channel_that_dies_within_a_record_counts_as_blank_from_there_on() {
     };
     let (code, said, blank, _) = recover("died-blank", &died(""), "");
     assert_eq!(code, 0, "{said}");
-    // Without G3 a sample tells A to .90 of the noise, with it to .73.
+    // With G3, sigma of A in one sample is .73 of the noise. Without G3 it is .90.
     let (_, _, clean, _) = recover("died-not", &table("time", 400, as_is), "");
     let width = |r: &serde_json::Value| {
         let of = |key: &str| r["damage"][0][key].as_f64().unwrap();
@@ -63,7 +63,7 @@ fn a_channel_that_dies_within_a_record_counts_as_blank_from_there_on() {
 
 #[test]
 fn a_truck_that_stops_has_no_stuck_channels() {
-    // Rounded readings of loads that don't change from sample 150 on.
+    // Rounded readings, and loads that are constant from sample 150 on.
     let still = |_: usize, g: usize| super::strain(250.0, 130.0)[g].round().to_string();
     let text = table("time", 400, |i, g, v| {
         if i >= 150 { still(i, g) } else { v.to_string() }
@@ -74,7 +74,7 @@ fn a_truck_that_stops_has_no_stuck_channels() {
 
 #[test]
 fn a_truck_that_stands_still_has_no_stuck_channels() {
-    // Rounded readings of a load that doesn't change: every channel gives one value.
+    // Rounded readings of a constant load: every channel has one value.
     let parked = table("time", 1, as_is);
     let first = parked
         .lines()
@@ -113,7 +113,8 @@ fn a_held_out_run_that_no_file_has_is_a_fault_of_every_command_that_reads_runs()
 
 #[test]
 fn a_gap_blanks_what_it_touches_and_loads_that_no_sample_tells_are_an_error() {
-    // From sample 200 on one gauge alone reads for a while, which tells neither load; from 300 on 30 lines are missing.
+    // From sample 200 on, only one gauge reads for a while, which determines neither load. From 300 on, 30 lines are
+    // missing.
     let lost = |i: usize, g: usize, v: f64| match (i, g) {
         (200..=219, 1..) => String::new(),
         _ => v.to_string(),
@@ -131,7 +132,7 @@ fn a_gap_blanks_what_it_touches_and_loads_that_no_sample_tells_are_an_error() {
     let csv = std::fs::read_to_string(dir.join("job.out/loads.csv")).unwrap();
     let blank = csv.lines().filter(|l| l.contains(",,")).count();
     assert_eq!(blank, 50, "{csv}");
-    // Every gauge reads somewhere, two of them nowhere together.
+    // Every gauge reads in some samples, but no two gauges read in the same one.
     let in_turn = |i: usize, g: usize, v: f64| match i % 4 == g {
         true => v.to_string(),
         false => String::new(),

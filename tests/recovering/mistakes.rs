@@ -1,4 +1,5 @@
-//! Mistakes that people make with runs: each is named by every command that reads them, and right runs are not named.
+//! Common mistakes in runs. Every command that reads the runs reports the mistake, and reports nothing for correct
+//! runs.
 
 use super::{S, loads, strain};
 use std::fmt::Write;
@@ -8,7 +9,7 @@ use strainbridge::{Context, Disk, Job, Severity, calibrate, payload, reconcile, 
 
 const RUNS: usize = 10;
 
-/// Readings and recorded loads of ten runs; `record` changes the recorded loads.
+/// Returns readings and recorded loads of ten runs. `record` changes the recorded loads.
 fn files(record: impl Fn([f64; 2]) -> [f64; 2]) -> InMemory {
     let (mut readings, mut runs) = ("run,G1,G2,G3,G4\n".to_owned(), "run,A.FZ,B.FZ\n".to_owned());
     for i in 0..RUNS {
@@ -38,7 +39,7 @@ fn files(record: impl Fn([f64; 2]) -> [f64; 2]) -> InMemory {
         )
 }
 
-/// The findings of `recover`, `calibrate` and `reconcile`.
+/// Returns the findings of `recover`, `calibrate` and `reconcile`.
 fn findings(files: &InMemory) -> [Vec<Finding>; 3] {
     let job = Job::read("job.toml", files).unwrap();
     let cx = Context::new(files);
@@ -63,7 +64,7 @@ fn right_records_are_named_by_no_command() {
 
 #[test]
 fn every_command_names_the_mistake_of_the_records() {
-    /// What the records are instead.
+    /// Changes that the mistake makes in the recorded loads.
     type Mistake = fn([f64; 2]) -> [f64; 2];
     let mistakes: [(Mistake, &str, &str); 6] = [
         (|[a, b]| [-a, -b], "input-sign-reversed", "all"),
@@ -89,7 +90,7 @@ fn every_command_names_the_mistake_of_the_records() {
                 (code, subject),
                 "{command}"
             );
-            // `recover` does not use the records: it is sure of an error only where the readings may be wrong.
+            // `recover` does not use the recorded loads. It reports an error only if the readings may be wrong.
             if command != "recover" || subject == "all" && code != "inputs-exchanged" {
                 assert_eq!(named[0].severity, Severity::Error, "{command} {code}");
             }
@@ -97,7 +98,7 @@ fn every_command_names_the_mistake_of_the_records() {
     }
 }
 
-/// The carrier of `examples/frame`, in memory, with another table of gauges.
+/// Returns the findings of `recover` on the carrier of `examples/frame` with another table of gauges.
 fn carrier(gauges: &str) -> Vec<Finding> {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/frame");
     let text = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
@@ -128,7 +129,7 @@ fn gauges_on_the_other_side_or_with_angles_in_radians_are_named() {
         .map(|f| f.subject.as_str())
         .collect();
     assert_eq!(named, ["all"], "{found:?}");
-    // The directions stated by angles from the element's x axis; the numbers are radians.
+    // The angles from the x axis of the element state the directions. In the second case, the numbers are radians.
     let mut lines = table.lines();
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();
     let column = |name: &str| header.iter().position(|h| *h == name).unwrap();
@@ -183,7 +184,7 @@ fn readings_in_another_unit_of_strain_leave_all_loads_far_below_their_size() {
     assert!(found.iter().all(|f| f.code != "load-far-below-expected"));
 }
 
-/// The findings of `payload` on the carrier: its job, its strain and its runs file changed.
+/// Returns the findings of `payload` on the carrier after a change of its job, its strain and its runs file.
 fn collect_payload_findings(
     job: impl Fn(String) -> String,
     strain: impl Fn(String) -> String,
@@ -201,7 +202,7 @@ fn collect_payload_findings(
     payload(&job, &Context::new(&files)).unwrap().findings.0
 }
 
-/// The payload at the grid of the deck, weighed by strain alone.
+/// Returns the job with the payload at the grid of the deck, weighed by strain alone.
 fn at_the_grid(job: String) -> String {
     let (head, rest) = job.split_once("[runs]").unwrap();
     let (_, section) = rest.split_once("[payload]").unwrap();
@@ -227,12 +228,12 @@ fn a_stated_place_that_the_strain_refutes_is_named_and_a_right_one_is_not() {
             kept.map(|l| format!("{l}\n")).collect()
         }
     };
-    // The payload of R01 is at the grid, those of R05 and R06 are 300 mm away from it.
+    // The payload of R01 is at the grid. The payloads of R05 and R06 are 300 mm away from it.
     let right = collect_payload_findings(at_the_grid, only(["R01", "R01"]), |t| t);
     assert_eq!(of(&right), Vec::<String>::new(), "{right:?}");
     let wrong = collect_payload_findings(at_the_grid, only(["R05", "R06"]), |t| t);
     assert_eq!(of(&wrong).len(), 1, "{wrong:?}");
-    // The runs file states the place of each run, in metres, at the grid or away from it: only a wrong one is named.
+    // The runs file states the place of each run in metres. A finding names only runs with a wrong place.
     let known = |job: String| {
         let job = job.replace("\"free\"", "\"known\"");
         job.replace("support = \"known\"", "support = \"free\"")

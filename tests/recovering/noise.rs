@@ -1,10 +1,10 @@
-//! Noise by gauge and its correlation as the job states them.
+//! Noise by gauge and its correlation, as stated in the job.
 
 use super::folder;
 use serde_json::Value;
 use std::process::Command;
 
-/// Runs `recover` for one load on two gauges that read 3 and 5 microstrain at 1 microstrain for each N.
+/// Runs `recover` for one load and two gauges that read 3 and 5 microstrain. S is 1 microstrain per N.
 fn two_gauges(name: &str, noise: &str) -> (i32, String, Value) {
     let dir = folder(name);
     let write = |name: &str, text: &str| std::fs::write(dir.join(name), text).unwrap();
@@ -27,8 +27,8 @@ fn two_gauges(name: &str, noise: &str) -> (i32, String, Value) {
     )
 }
 
-/// Generalised least squares of two readings with variances .25 and 1 and covariance .1, in closed form: weights .9 / 1.05 and .15 / 1.05, variance
-/// .24 / 1.05.
+/// Generalised least squares in closed form, with variances .25 and 1 and covariance .1: weights .9 / 1.05 and .15 /
+/// 1.05, variance .24 / 1.05.
 #[test]
 fn loads_are_weighted_by_the_stated_noise() {
     let noise = "noise_microstrain = { G1 = 0.5, G2 = 1.0 }\nnoise_correlation = 0.2";
@@ -40,7 +40,7 @@ fn loads_are_weighted_by_the_stated_noise() {
         (value - (0.9 * 3.0 + 0.15 * 5.0) / 1.05).abs() < 1e-9,
         "{value}"
     );
-    // The readings differ by 2, whose variance is 1.05: as much as stated.
+    // The readings differ by 2. The variance of the difference is 1.05, which agrees with the stated noise.
     assert!((sigma - (0.24_f64 / 1.05).sqrt()).abs() < 1e-9, "{sigma}");
 }
 

@@ -1,4 +1,4 @@
-//! Results of another version of the deck: ids agree, and strain differs from that of the deck.
+//! Results from another version of the deck: ids agree, but strain differs.
 
 use super::folder;
 use serde_json::Value;
@@ -6,13 +6,13 @@ use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
 
-/// A version of the deck: a free strip of ten plates, each 20 mm long.
+/// Version of the deck: a free strip of ten plates, each 20 mm long.
 #[derive(Clone, Copy)]
 struct Strip {
     length: f64,
     thickness: f64,
     modulus: f64,
-    /// Shells whose grids are in the opposite order.
+    /// Shells with the reverse grid order.
     turned: &'static [u32],
 }
 
@@ -76,7 +76,7 @@ fn run(dir: &Path, command: &str, results: &str) -> Value {
         .unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&out.stderr)))
 }
 
-/// Severity and message of the finding on the results of a strip, used with the deck of [`STRIP`].
+/// Returns severity and message of the finding, if the results of `other` are used with the deck of [`STRIP`].
 fn contradiction(name: &str, other: Strip, command: &str) -> Option<(String, String)> {
     let dir = folder(&format!("other_results_{name}_{command}"));
     std::fs::write(dir.join("strain.csv"), "run,a,b\nR1,1,2\n").unwrap();
@@ -99,7 +99,7 @@ fn results_of_the_same_deck_agree() {
     for command in ["recover", "sensitivity", "place"] {
         assert_eq!(contradiction("same", STRIP, command), None);
     }
-    // Two percent more thickness is a tolerance of sheet metal: strain in bending falls by 4 %.
+    // A thickness that is 2 % larger is within the tolerance of sheet metal. Bending strain falls by 4 %.
     let other = Strip {
         thickness: 2.04,
         ..STRIP
@@ -117,7 +117,7 @@ fn results_of_another_material_thickness_length_or_normal_are_errors() {
             assert!(message.contains(words), "{name}, {command}: {message}");
         }
     };
-    // Strain is the inverse of the modulus, and of the square of the thickness in bending.
+    // Strain is inversely proportional to the modulus and, in bending, to the square of the thickness.
     let stiff = Strip {
         modulus: 630_000.0,
         ..STRIP
@@ -132,9 +132,9 @@ fn results_of_another_material_thickness_length_or_normal_are_errors() {
         turned: &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10],
         ..STRIP
     };
-    // Bending changes its sign at each surface, shear does not.
+    // At each surface, bending strain changes its sign, but shear does not.
     named("turned", turned, "`middle` by 1");
-    // One shell alone, the one below gauge `a`.
+    // Only one shell, the one below gauge `a`.
     let one = Strip {
         turned: &[3],
         ..STRIP

@@ -1,4 +1,7 @@
-//! A payload by a calibrated S: the intervals hold over calibrations of their own, and weight and place are what `recover` makes of the same strain.
+//! Payloads with a calibrated S.
+//!
+//! The intervals have the right coverage over many calibrations. Weight and place agree with `recover` on the same
+//! strain.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -12,11 +15,13 @@ use strainbridge::sensitivity::{Load, Sensitivity};
 use strainbridge::{Context, Job};
 
 const NOISE: f64 = 0.5e-6;
-/// Scatter of each gauge in a run. (Where the gauges scatter together, a dozen runs of eight gauges know the covariance too badly: intervals of
-/// `recover` and of `payload` hold 91 %.)
+/// Scatter of each gauge in a run.
+///
+/// If the gauges scatter together, a dozen runs of eight gauges estimate the covariance too inaccurately. The coverage
+/// of `recover` and `payload` is then 91 %.
 const SCATTER: f64 = 0.03;
 
-/// Microstrain a kN, and a kN m of shift.
+/// Microstrain per kN, and per kN m of shift.
 const ROWS: [[f64; 2]; 8] = [
     [3.1, 1.2],
     [2.4, -0.9],
@@ -45,7 +50,7 @@ impl Lot {
         ROWS.iter().map(one).collect()
     }
 
-    /// Weight, kN, and its shift, m.
+    /// Returns the weight in kN and its shift in m.
     fn payload(&mut self) -> [f64; 2] {
         [
             self.0.random_range(20.0..100.0),
@@ -54,7 +59,7 @@ impl Lot {
     }
 }
 
-/// S from a dozen payloads; `loads` of the two that act.
+/// Returns S calibrated with a dozen payloads. `loads` is the number of loads, one or two.
 fn calibrate_sensitivity(lot: &mut Lot, loads: usize) -> Sensitivity {
     let runs = (0..12).map(|i| {
         let [weight, x] = lot.payload();
@@ -138,11 +143,13 @@ fn intervals_of_payloads_hold_over_calibrations() {
             let half = strainbridge::estimate::student_95(w.dof) * w.shift_covariance[0].sqrt();
             held_place += usize::from((w.shift[0] - x).abs() <= half);
         }
-        // 95 +- 3 %: three times the chance of 600 trials, and what Student's factor leaves of a scatter that few runs show.
+        // The limit is 95 +- 3 %. It contains three standard errors of 600 trials, and the error of Student's factor
+        // with few runs.
         let share = |n: usize| n as f64 / f64::from(trials);
         assert!((0.92..=0.98).contains(&share(held)), "{place:?} {held}");
         if place == Place::Free {
-            // Scatter of a place near the gauges' zero is less than the mean over places that the calibration knows: more hold.
+            // Near the zero of the gauges, the scatter is less than the calibration's mean over all places. The
+            // coverage is therefore larger.
             assert!(share(held_place) >= 0.92, "{held_place}");
         }
     }
@@ -184,14 +191,14 @@ fn weight_and_moment_have_the_sigma_of_recover_where_both_ask_the_same() {
 /// Wheels at the corners of the plate.
 const WHEELS: [(&str, u32); 4] = [("A", 10), ("B", 12), ("C", 210), ("D", 212)];
 
-/// A gauge along the plate, or at an angle to it.
+/// Returns a gauge along the plate, or at an angle to it.
 fn gauge(name: &str, element: usize, surface: &str, angle_deg: u32) -> String {
     format!(
         "[[gauge]]\nname = \"{name}\"\nelement = {element}\nsurface = \"{surface}\"\ndirection = [1, 0, 0]\nangle_deg = {angle_deg}\n"
     )
 }
 
-/// A plate of 20 by 2 of this density, with the loads, gauges and further lines of a job that reads `strain`.
+/// Returns a plate of 20 by 2 with this density. The job has these loads, gauges and further lines, and reads `strain`.
 fn plate_on_wheels(
     density: &str,
     (loads, gauges): (&[(&str, u32)], &str),
@@ -233,7 +240,7 @@ fn plate_on_wheels(
         .with_file("strain.csv", strain)
 }
 
-/// Readings limit a payload, the mass of the model does not.
+/// The readings limit the payload. The mass of the model does not.
 #[test]
 fn a_payload_of_many_times_the_mass_of_the_model_is_weighed() {
     let strain = "run,TOP,BOTTOM\nR1,-50,50\nR2,-500,500\nR3,-750,750\n";
@@ -250,7 +257,7 @@ fn a_payload_of_many_times_the_mass_of_the_model_is_weighed() {
             .collect()
     };
     let (heavy, light) = (weights("7800."), weights(".1"));
-    // The light plate has a mass of 0.2 kg.
+    // The mass of the light plate is 0.2 kg.
     assert!(light[2] > 100.0 * 0.2 * 9.81, "{light:?}");
     for (run, size) in [1.0, 10.0, 15.0].into_iter().enumerate() {
         let (expected, found) = (size * heavy[0], light[run]);
@@ -259,7 +266,7 @@ fn a_payload_of_many_times_the_mass_of_the_model_is_weighed() {
     }
 }
 
-/// Total loads of a model on its wheels add up to its weight, not to zero.
+/// The total loads of a model on its wheels add up to its weight, not to zero.
 #[test]
 fn total_loads_are_compared_with_the_weight_of_the_model() {
     let places = [40, 41, 100, 101, 160, 161];
@@ -280,6 +287,6 @@ fn total_loads_are_compared_with_the_weight_of_the_model() {
     assert_eq!(unbalanced(0.0), None);
     let words = unbalanced(2000.0).unwrap();
     assert!(words.contains("the weight of the model"), "{words}");
-    // 7800 x 20 x 2 x .05 kg, standard gravity.
+    // 7800 x 20 x 2 x .05 kg times standard gravity.
     assert!(words.contains("expected 152983.740"), "{words}");
 }

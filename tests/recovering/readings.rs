@@ -1,10 +1,10 @@
-//! Measured strain and recorded runs in the forms in which loggers and spreadsheets write them.
+//! Measured strain and recorded runs in the formats of loggers and spreadsheets.
 
 use std::fmt::Write;
 use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Faults, Job, calibrate, payload, reconcile, recover, sensitivity};
 
-/// Two loads, three gauges; of each load the column of S is known.
+/// S with two loads and three gauges.
 const S: &str = "gauge,A.FZ,B.FZ\nG1,1,0\nG2,0,1\nG3,1,1\n";
 
 fn job(more: &str) -> String {
@@ -21,7 +21,7 @@ fn files(strain: impl AsRef<[u8]>, more: &str) -> InMemory {
         .with_file("strain.csv", strain.as_ref())
 }
 
-/// Strain of five runs or samples in a unit of `micro` microstrain.
+/// Returns strain of five runs or samples in a unit of `micro` microstrain.
 fn strain(key: &str, unit: &str, micro: f64) -> String {
     let mut text = format!("{key},G1 [{unit}],G2 [{unit}],G3 [{unit}]\n");
     for i in 0..5 {
@@ -36,7 +36,7 @@ fn strain(key: &str, unit: &str, micro: f64) -> String {
     text
 }
 
-/// Recovered loads, run by run or sample by sample.
+/// Returns the recovered loads, by run or by sample.
 fn loads(files: &InMemory) -> Vec<f64> {
     let found = recover(&Job::read("job.toml", files).unwrap(), &Context::new(files)).unwrap();
     match found.runs() {
@@ -63,7 +63,7 @@ fn utf16(text: &str) -> Vec<u8> {
     out
 }
 
-/// The loads are the readings of G1 and G2: S is the identity there, and G3 reads their sum.
+/// The loads equal the readings of G1 and G2, because S is the identity there. G3 reads their sum.
 #[test]
 fn every_unit_and_code_of_text_gives_the_same_loads_in_runs_and_in_records() {
     for key in ["run", "time"] {
@@ -88,7 +88,7 @@ fn every_unit_and_code_of_text_gives_the_same_loads_in_runs_and_in_records() {
             ] {
                 let found = loads(&files(bytes, ""));
                 let pairs = found.iter().zip(&right);
-                // Readings divided by a unit and multiplied again are off in the last digit.
+                // Division by a unit and multiplication change the last digit of a reading.
                 let off = pairs.map(|(a, b)| (a - b).abs() / b.abs());
                 assert_eq!(found.len(), right.len());
                 assert!(off.fold(0.0, f64::max) < 1e-12, "{key} {unit} {code}");
@@ -162,14 +162,14 @@ fn a_load_without_a_column_is_one_fault_that_names_the_column_meant() {
     assert!(one.contains("columns = { \"B.FZ\" = \"FZ_B\" }"), "{one}");
 }
 
-/// A square plate that is held at one side, and a coordinate system whose x axis is the basic y axis.
+/// Square plate that is fixed at one side, and a coordinate system whose x axis is the basic y axis.
 const PLATE: &str = "SOL 101\nCEND\nSPC = 1\nBEGIN BULK\n\
     GRID,1,,0.,0.,0.\nGRID,2,,100.,0.,0.\nGRID,3,,100.,100.,0.\nGRID,4,,0.,100.,0.\n\
     CORD2R,5,0,30.,20.,0.,30.,20.,1.\n,30.,120.,0.\n\
     CQUAD4,7,1,1,2,3,4\nPSHELL,1,1,2.,1,,1\nMAT1,1,210000.,,.3,7.85-9\n\
     SPC1,1,123456,1,4\nENDDATA\n";
 
-/// The strain is that of a force of -250 N along basic y at the grid of the payload, by the S of the job.
+/// By the S of the job, the strain corresponds to a force of -250 N along basic y at the grid of the payload.
 #[test]
 fn a_payload_acts_along_a_force_that_is_stated_in_another_coordinate_system() {
     let weight = |load: &str| {
@@ -205,7 +205,7 @@ fn a_payload_acts_along_a_force_that_is_stated_in_another_coordinate_system() {
     assert!(interval[0] < 250.0 && 250.0 < interval[1], "{interval:?}");
     assert!(interval[1] - interval[0] < 25.0, "{interval:?}");
     let (in_system_5, _) = weight("component = \"FX\"\ncid = 5");
-    // The same force: the turned vector is off in its last digit.
+    // The same force. The last digit of the rotated vector differs.
     assert!(
         (in_system_5 - along_y).abs() < 1e-9 * along_y,
         "{in_system_5} {along_y}"

@@ -1,4 +1,5 @@
-//! Intervals on a structure that its deck holds: S by the built-in solver on the supports, 2,000 seeded trials of runs and of samples.
+//! Intervals on a structure with supports in its deck. The built-in solver computes S, and 2,000 seeded trials use runs
+//! and samples.
 
 use crate::drawn::Numbers;
 use std::fmt::Write;
@@ -9,7 +10,7 @@ use strainbridge::sensitivity::Sensitivity;
 use strainbridge::{Context, Job};
 
 const TRIALS: usize = 2000;
-/// Squares along and across a plate of 10 mm squares, held along its short edge.
+/// Numbers of 10 mm squares along and across the plate, which is fixed along its short edge.
 const LONG: usize = 12;
 const WIDE: usize = 3;
 
@@ -94,7 +95,8 @@ fn intervals_on_a_supported_structure_cover() {
     let job = Job::read("job.toml", &files).unwrap_or_else(|f| panic!("{f:?}"));
     let sensed = strainbridge::sensitivity(&job, &cx).unwrap_or_else(|f| panic!("{f:?}"));
     let s = &sensed.prepared.sensitivity;
-    // On its support one load bends the plate as F L over the section: under inertia relief it would not.
+    // On its support, one load bends the plate with the stress F L over the section modulus. With inertia relief it
+    // would not.
     let root = s.gauges.iter().position(|g| g == "G0").unwrap();
     let bending = 6.0 * (10.0 * LONG as f64 - 5.0) / (10.0 * WIDE as f64 * 16.0) / 2.1e5;
     let got = s.values[(root, 0)].abs();
@@ -159,7 +161,7 @@ fn intervals_on_a_supported_structure_cover() {
         100.0 * runs,
         100.0 * samples
     );
-    // 8,000 intervals tell the share to .25 %.
+    // 8,000 intervals determine the share within .25 %.
     for share in [runs, samples] {
         assert!(
             (0.935..=0.965).contains(&share),
@@ -168,7 +170,8 @@ fn intervals_on_a_supported_structure_cover() {
     }
 }
 
-/// A record of 2,000 samples at 1 kHz: the tip load alternates at 100 Hz and the corner's at 7 Hz; `change` wrongs the readings of a sample.
+/// Returns a record of 2,000 samples at 1 kHz. The tip load has 100 Hz, the corner load 7 Hz. `change` alters the
+/// readings of a sample.
 fn record(change: impl Fn(&mut [f64])) -> InMemory {
     let files = InMemory::default()
         .with_file("plate.bdf", deck())
@@ -210,13 +213,14 @@ fn content_is_held_against_the_mode_of_the_structure_as_it_is_held() {
     let found: Vec<_> = got
         .findings
         .iter()
-        // Noise is all that is fast in other loads.
+        // The other loads contain only noise at high frequencies.
         .filter(|f| f.code == "content-near-first-mode" && f.subject == "load `tip`")
         .collect();
     assert_eq!(found.len(), 1, "{found:?}");
     assert!(found[0].message.contains("held by SPC set 1"), "{found:?}");
     assert!(!found[0].message.contains("free"), "{found:?}");
-    // A cantilever bends first at 3.516 / (2 pi) sqrt(E I / (m L^4)); a plate a third as wide as long is near it.
+    // The first bending frequency of a cantilever is 3.516 / (2 pi) sqrt(E I / (m L^4)). A plate with a width of a
+    // third of its length is close to it.
     let bends = 3.516 / std::f64::consts::TAU * 4.0 / 12.0_f64.sqrt()
         * (2.1e5_f64 / 7.85e-9).sqrt()
         / (10.0 * LONG as f64).powi(2);
@@ -240,7 +244,7 @@ fn a_gauge_that_is_backwards_is_the_first_thing_said_and_no_finding_is_a_list_of
         .iter()
         .find(|f| f.code == "strain-not-explained");
     let unexplained = unexplained.unwrap();
-    // Which samples: a few of them, or all.
+    // The subject gives a few samples, or states that all are affected.
     assert!(unexplained.subject.len() < 150, "{}", unexplained.subject);
     for f in got.findings.iter() {
         assert!(f.subject.len() + f.message.len() < 1000, "{f:?}");

@@ -1,11 +1,12 @@
-//! Columns of tables that a job names: read where the meaning is certain, else named once.
+//! Columns of the tables of a job: the program reads a column with an unambiguous meaning, and reports every other
+//! column once.
 
 use std::fmt::Write;
 use strainbridge::finding::Finding;
 use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Faults, Job, recover, respond, sensitivity};
 
-/// A square plate of one element, its element x axis along x, held at one side.
+/// Square plate of one element, fixed at one side. The x axis of the element is along x.
 const PLATE: &str = "SOL 101\nCEND\nSPC = 1\nBEGIN BULK\n\
 GRID,1,,0.,0.,0.\nGRID,2,,100.,0.,0.\nGRID,3,,100.,100.,0.\nGRID,4,,0.,100.,0.\n\
 CQUAD4,7,1,1,2,3,4\nPSHELL,1,1,2.,1,,1\nMAT1,1,210000.,,.3,7.85-9\n\
@@ -20,7 +21,7 @@ fn plate(gauges: &str) -> InMemory {
         .with_file("gauges.csv", gauges)
 }
 
-/// S of the first gauge and the findings, or the faults.
+/// Returns S of the first gauge and the findings, or the faults.
 fn compute_sensitivity(gauges: &str) -> Result<(f64, Vec<Finding>), Faults> {
     let files = plate(gauges);
     let job = Job::read("job.toml", &files)?;
@@ -34,7 +35,7 @@ fn find_unread_columns(findings: &[Finding]) -> Vec<&Finding> {
     of_code.collect()
 }
 
-/// A direction is read by whatever name is certain; each of these tables states the same gauge.
+/// Several column names state a direction unambiguously. Each of these tables states the same gauge.
 #[test]
 fn other_names_of_the_columns_of_a_gauge_table_are_read() {
     let (right, _) =
@@ -57,7 +58,7 @@ fn other_names_of_the_columns_of_a_gauge_table_are_read() {
             "{header}: {findings:?}"
         );
     }
-    // 45 degrees from the element x axis is the diagonal.
+    // 45 degrees from the x axis of the element is the diagonal.
     for (header, angle) in [
         ("angle_deg", "45"),
         ("angle [deg]", "45"),
@@ -109,7 +110,7 @@ fn what_can_not_be_meant_in_a_gauge_table_is_a_fault() {
     }
 }
 
-/// One warning names all columns that nothing reads; columns that `place` writes for information are not among them.
+/// One warning names all columns that no command reads. It omits columns that `place` writes for information.
 #[test]
 fn columns_of_a_gauge_table_that_nothing_reads_are_named_once() {
     let text = "name,element,surface,angle_deg,leverage,role,colour,wire\nA,7,bottom,45,0.5,estimate,red,3\n";
@@ -120,7 +121,7 @@ fn columns_of_a_gauge_table_that_nothing_reads_are_named_once() {
     assert_eq!(one.subject, "gauges.csv");
     assert!(one.message.contains("`colour`, `wire`"), "{}", one.message);
     assert!(!one.message.contains("leverage"), "{}", one.message);
-    // `side` of a vehicle is not a side of a shell.
+    // The `side` of a vehicle is not the side of a shell.
     let (_, findings) = compute_sensitivity("name,element,side,angle_deg\nA,7,left,45\n").unwrap();
     assert!(find_unread_columns(&findings)[0].message.contains("`side`"));
 }
@@ -134,7 +135,7 @@ fn a_gauge_table_without_directions_states_where_its_gauges_point() {
     assert!(findings.iter().all(|f| f.code != "gauges-assumed"));
 }
 
-/// Two loads and three gauges of a given S.
+/// Returns a job with a given S of two loads and three gauges.
 fn build_sensitivity_job(s: &str, runs: Option<&str>, more: &str) -> InMemory {
     let mut strain = "run,G1,G2,G3\n".to_owned();
     for i in 0..5 {
@@ -169,7 +170,7 @@ fn recover_load_values(files: &InMemory) -> Result<(Vec<f64>, Vec<Finding>), Fau
 fn columns_of_a_table_of_s_are_read_or_named_or_refused() {
     let (right, findings) = recover_load_values(&build_sensitivity_job(S, None, "")).unwrap();
     assert!(find_unread_columns(&findings).is_empty(), "{findings:?}");
-    // Case and separators apart.
+    // Case and separators do not matter.
     let (found, _) =
         recover_load_values(&build_sensitivity_job(&S.replace("A.FZ", "a_fz"), None, "")).unwrap();
     assert_eq!(found, right);
@@ -188,7 +189,7 @@ fn columns_of_a_table_of_s_are_read_or_named_or_refused() {
     let (found, findings) = recover_load_values(&build_sensitivity_job(more, None, "")).unwrap();
     assert_eq!(found, right);
     assert!(find_unread_columns(&findings)[0].message.contains("`C.FZ`"));
-    // Without its column the other load would take the strain of B.
+    // Without the column of load B, the other load would absorb the strain of B.
     let faults = recover_load_values(&build_sensitivity_job(
         "gauge,A.FZ,Z\nG1,1,0\nG2,0,1\nG3,1,1\n",
         None,
@@ -248,7 +249,7 @@ fn columns_of_the_runs_file_are_read_or_named() {
     );
 }
 
-/// A file that the job names is there, whether or not the command reads it.
+/// A file that the job names must exist, even if the command does not read it.
 #[test]
 fn a_runs_file_that_is_missing_is_a_fault() {
     let files = build_sensitivity_job(S, None, "[runs]\nfile = \"absent.csv\"\n");
@@ -286,7 +287,8 @@ fn columns_of_a_table_of_loads_that_nothing_reads_are_named() {
     );
 }
 
-/// The same loads as a table, as a binary record and in RPC III give the same stress; the 16 bits of RPC III are a step of 1/32,000 of the largest.
+/// A table, a binary record and an RPC III file with equal loads give equal stress. The 16 bits of RPC III have a step
+/// of 1/32,000 of the largest value.
 #[test]
 fn loads_of_every_record_format_give_the_stress_of_their_table() {
     let loads = [1.0, -12.5, 40.0, 25.0, 0.0];
@@ -342,7 +344,7 @@ fn loads_of_every_record_format_give_the_stress_of_their_table() {
             "{name}: {found} {stress}"
         );
     }
-    // A record without the load is refused.
+    // A record without a column for the load is refused.
     let files = plate("name,element,surface,angle_deg\nA,7,bottom,45\n");
     let job = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"Q\"\ngrid = 2\ncomponent = \"FY\"\n\
                [respond]\nloads = \"loads.bin\"\n";
@@ -361,8 +363,8 @@ fn loads_of_every_record_format_give_the_stress_of_their_table() {
     );
 }
 
-/// Loads in kN, by the header, by the `result.json` of the command that wrote the table or by the notes of a Parquet file, give the stress of the
-/// same loads in N.
+/// Loads in kN give the same stress as the same loads in N. The unit comes from the header, from `result.json` next to
+/// the table, or from the notes of a Parquet file.
 #[test]
 fn loads_in_another_unit_than_the_report_give_the_same_stress() {
     let loads = [1.0, -12.5, 40.0, 25.0, 0.0];
@@ -411,7 +413,7 @@ fn loads_in_another_unit_than_the_report_give_the_same_stress() {
             None,
         ),
         ("loads.csv", table(plain, 1e-3), Some(result)),
-        // Beside the name goes before what another file states.
+        // A unit in the header has priority over the unit in another file.
         (
             "loads.csv",
             table("time,P [N],P.low [N],P.high [N]", 1.0),
@@ -427,7 +429,8 @@ fn loads_in_another_unit_than_the_report_give_the_same_stress() {
     }
 }
 
-/// Damage of twice the loads is `2^m` times the damage, with intervals of the loads it has one, and runs form no cycles.
+/// Twice the loads give `2^m` times the damage. With intervals of the loads, the damage has an interval. Runs form no
+/// cycles.
 #[test]
 fn fatigue_scales_with_the_power_of_the_loads_and_needs_a_history() {
     let answer = |key: &str, factor: f64| {

@@ -8,7 +8,7 @@ use strainbridge::{Context, Job, calibrate, payload, reconcile, recover};
 
 const NOISE: f64 = 0.3;
 
-/// A table of `n` rows without noise; the reading of gauge 4 is off by `off` microstrain.
+/// Returns a table of `n` rows without noise. The reading of gauge 4 has the error `off`, microstrain.
 fn readings(key: &str, n: usize, off: f64) -> String {
     let mut text = format!("{key},G1,G2,G3,G4\n");
     for i in 0..n {
@@ -23,7 +23,7 @@ fn readings(key: &str, n: usize, off: f64) -> String {
     text
 }
 
-/// The job of these tests, of which gauge 4 has a role, and further lines.
+/// Returns the job of these tests, with a role for gauge 4 and further lines.
 fn files(strain: String, role: &str, more: &str) -> InMemory {
     let mut s = "gauge,A.FZ,B.FZ\n".to_owned();
     for (g, row) in S.iter().enumerate() {
@@ -46,7 +46,7 @@ fn recover_job(files: &InMemory) -> RecoveredLoads {
     recover(&job, &Context::new(files)).unwrap().answer
 }
 
-/// Loads of all runs, or the sums of all samples.
+/// Returns the loads of all runs, or statistics over all samples.
 fn numbers(found: &RecoveredLoads) -> Vec<f64> {
     match (found.runs(), found.record()) {
         (Some(runs), _) => runs.loads.iter().map(|l| l.value).collect(),
@@ -63,7 +63,7 @@ fn require_single_gauge(list: &[ValidationGauge]) -> &ValidationGauge {
     gauge
 }
 
-/// An error of 50 microstrain at the validation gauge is its difference, and changes no load.
+/// An error of 50 microstrain at the validation gauge appears in its difference and changes no load.
 #[test]
 fn a_validation_gauge_changes_no_load_and_shows_its_own_error() {
     for key in ["run", "time"] {
@@ -84,7 +84,7 @@ fn a_validation_gauge_changes_no_load_and_shows_its_own_error() {
             (off.rms_microstrain.unwrap() - 50.0).abs() < 1e-9,
             "{off:?}"
         );
-        // The variance of reading less prediction, by hand: noise^2 (1 + s4 (S' S)^-1 s4').
+        // The variance of reading minus prediction, by hand: noise^2 (1 + s4 (S' S)^-1 s4').
         let [mut aa, mut ab, mut bb] = [0.0; 3];
         for row in &S[..3] {
             aa += row[0] * row[0];
@@ -113,7 +113,7 @@ fn a_validation_gauge_that_contradicts_its_prediction_is_named() {
         .iter()
         .any(|f| f.code == "prediction-poor" && f.subject == "G4");
     assert!(named, "{:?}", found.findings);
-    // Its column is known all the same.
+    // The column of the validation gauge is not reported as unknown.
     let unknown = found
         .findings
         .iter()
@@ -133,7 +133,7 @@ fn a_job_of_validation_gauges_alone_is_refused() {
     assert!(faults.iter().any(|f| f.field == "role"), "{faults:?}");
 }
 
-/// Two answers of a command that differ by the reading of the validation gauge alone are the same.
+/// Runs a command twice. Only the reading of the validation gauge differs, so the results must be equal.
 #[test]
 fn commands_that_estimate_from_readings_leave_validation_gauges_out() {
     let runs = |with_mass: bool| {

@@ -1,5 +1,7 @@
-//! Each fault of measured channels, planted in the readings of three models, by each command that reads them: it is named, alone or among the
-//! faults that look the same, or it does no harm; a wrong result never comes without an error. Sound readings raise no alarm.
+//! Faults of measured channels, planted in the readings of three models, for each command that reads them.
+//!
+//! A fault must either be harmless or be reported, alone or among the faults that look equal. A wrong result always has
+//! an error. Correct readings cause no error.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -9,17 +11,17 @@ use strainbridge::finding::Finding;
 use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Job, Severity, calibrate, payload, reconcile, recover};
 
-/// A fault of the readings, by run and gauge.
+/// Planted fault of the readings, by run and gauge.
 struct Planted {
     name: &'static str,
     change: fn(&mut [Vec<f64>]),
-    /// Codes of which one names it.
+    /// Codes that report the fault. One of them is enough.
     codes: &'static [&'static str],
-    /// Gauges at fault, by number.
+    /// Faulty gauges, by number.
     gauges: &'static [usize],
 }
 
-/// The gauges that are at fault: two that read much in all three models.
+/// Faulty gauges. Both have large readings in all three models.
 const AT: usize = 2;
 const OTHER: usize = 6;
 
@@ -78,13 +80,13 @@ const FAULTS: [Planted; 8] = [
     },
 ];
 
-/// What a command made of readings: its findings, and whether all of its values lie within three standard deviations of the truth.
+/// Result of a command: its findings, and whether all values are within three standard deviations of the truth.
 struct Outcome {
     findings: Vec<Finding>,
     harmless: bool,
 }
 
-/// Holds a command to the rule of this file.
+/// Tests the result of a command against the rule of this file.
 fn check(place: &str, planted: &Planted, gauges: &[String], out: &Outcome) {
     let findings = &out.findings;
     let errs = findings.iter().any(|f| f.severity == Severity::Error);
@@ -117,7 +119,7 @@ fn text_of(header: &str, key: impl Fn(usize) -> String, rows: &[Vec<f64>]) -> St
     text
 }
 
-/// Whether each value lies within three standard deviations of `truth(run, load)`, where that is known.
+/// Returns whether each value is within three standard deviations of `truth(run, load)`, if that is known.
 fn holds(list: &Value, truth: impl Fn(&str, &str) -> Option<f64>) -> bool {
     let within = |l: &Value| {
         let (run, name) = (l["run"].as_str().unwrap(), l["name"].as_str().unwrap());
@@ -132,7 +134,7 @@ fn holds(list: &Value, truth: impl Fn(&str, &str) -> Option<f64>) -> bool {
     list.as_array().unwrap().iter().all(within)
 }
 
-/// A given S with loads of one size, and readings of runs or of a record.
+/// Given S with loads of one size, and readings of runs or of a record.
 struct Matrix {
     s: Vec<Vec<f64>>,
     loads: Vec<Vec<f64>>,
@@ -142,7 +144,7 @@ struct Matrix {
 const NOISE: f64 = 0.5;
 
 impl Matrix {
-    /// `n` gauges, `k` loads whose strain differs as that of wheel forces and of moments of a truck does.
+    /// Returns `n` gauges and `k` loads. The columns differ in size as wheel forces and moments of a truck do.
     fn new((n, k): (usize, usize), rows: usize, is_record: bool, seed: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut gaussian = || {
@@ -203,7 +205,7 @@ impl Matrix {
             )
     }
 
-    /// The job with recorded loads.
+    /// Returns the job with recorded loads.
     fn with_runs(files: InMemory) -> InMemory {
         let path = std::path::Path::new("job.toml");
         let text = strainbridge::host::context::Files::load(&files, path)
@@ -280,7 +282,8 @@ fn calibrate_names_each_fault_of_a_gauge_that_recorded_loads_show() {
                 harmless: false,
             };
             let errs = Finding::new(Severity::Error, "none", "", "", "");
-            // S is learnt from the runs: what a gauge does in all of them is in it.
+            // The runs determine S, so S includes a fault that a gauge has in all runs. The added error replaces the
+            // missing one.
             let out = Outcome {
                 findings: [out.findings, vec![errs]].concat(),
                 ..out
@@ -322,7 +325,7 @@ fn reconcile_names_the_gauge_at_fault_of_a_matrix() {
     }
 }
 
-/// The carrier of `examples/frame` with a file and a table of gauges of its own.
+/// The carrier of `examples/frame` with a separate file and table of gauges.
 struct Carrier {
     files: InMemory,
     header: String,
@@ -439,7 +442,7 @@ fn recover_and_payload_name_each_fault_of_a_gauge_of_a_frame() {
     }
 }
 
-/// Sound jobs of all shapes, runs and records: `STRAINBRIDGE_TRIALS` of them, 200 otherwise.
+/// Correct jobs of all shapes, with runs and records. `STRAINBRIDGE_TRIALS` sets their number, 200 by default.
 #[test]
 fn sound_readings_are_an_error_in_one_job_of_a_hundred_at_most() {
     let trials: u64 = std::env::var("STRAINBRIDGE_TRIALS").map_or(200, |t| t.parse().unwrap());
@@ -452,13 +455,14 @@ fn sound_readings_are_an_error_in_one_job_of_a_hundred_at_most() {
         let of_search = |f: &Finding| f.code.starts_with("input") || f.code == "gauge-dead";
         named += u64::from(out.findings.iter().any(of_search));
     }
-    // Of a binomial with 1 %, more than this come by a chance of one in a hundred.
+    // A binomial variable with a probability of 1 % exceeds this limit with a chance of one in a hundred.
     let most = 0.01 * trials as f64 + 2.4 * (0.01 * trials as f64).sqrt() + 0.5;
     assert!((errors as f64) < most, "{errors} of {trials}");
     assert_eq!(named, 0);
 }
 
-/// Forces of three wheels that all pull in all runs may be readings with the other sign; one wheel that pushes is enough against it.
+/// If three wheels have tensile forces in all runs, the sign of the readings may be wrong. One wheel in compression
+/// excludes it.
 #[test]
 fn wheels_that_all_pull_are_a_warning_and_wheels_that_push_are_not() {
     use strainbridge::host::context::InMemory;

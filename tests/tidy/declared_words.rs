@@ -1,9 +1,10 @@
-//! Words that plain technical English replaces, in the texts that declare keys, columns, fields and findings.
+//! Words with a plain replacement, in the texts that declare keys, columns, fields and findings.
 
 use super::english::{REPLACED, contains_word};
 use super::root;
 
-/// Declaration texts, with the columns that are prose; of findings, the lines `cause:`, `limit:`, `remedy:`, `example:`.
+/// Declaration texts, with the columns that contain prose. For findings, these are the lines `cause:`, `limit:`,
+/// `remedy:`, `example:`.
 const TEXTS: [(&str, std::ops::Range<usize>); 7] = [
     ("src/job/keys.txt", 1..4),
     ("src/report/reference/columns.txt", 3..5),
@@ -14,7 +15,7 @@ const TEXTS: [(&str, std::ops::Range<usize>); 7] = [
     ("src/finding/codes/vehicle.txt", 0..0),
 ];
 
-/// Prose of a line of a declaration text; quoted names and values are cut out.
+/// Returns the prose of a line of a declaration text, without quoted names and values.
 fn prose(line: &str, columns: &std::ops::Range<usize>) -> String {
     let parts = ["cause", "limit", "remedy", "example"];
     let text = if columns.is_empty() {
@@ -33,7 +34,7 @@ fn prose(line: &str, columns: &std::ops::Range<usize>) -> String {
     unquoted.collect::<Vec<_>>().join("``")
 }
 
-/// Words and phrases of [`REPLACED`] that a text contains as whole words.
+/// Returns the words and phrases of [`REPLACED`] that a text contains as whole words.
 fn replaced_words(text: &str) -> Vec<&'static str> {
     let found = REPLACED.iter().filter(|w| contains_word(text, w));
     found.copied().collect()

@@ -1,10 +1,11 @@
-//! What who takes the library alone has to build.
+//! Dependencies of a program that uses the library without its features.
 
 use super::root;
 use std::collections::BTreeSet;
 use std::process::Command;
 
-/// Crates that draw, print, parse arguments or read the formats of features: none of the library without its features.
+/// Crates that draw, print, parse arguments or read optional formats. The library without its features uses none of
+/// them.
 const OF_FEATURES: [&str; 12] = [
     "calamine",
     "clap",
@@ -22,7 +23,7 @@ const OF_FEATURES: [&str; 12] = [
 
 #[test]
 fn the_library_without_features_builds_no_terminal_pages_or_spreadsheets() {
-    // Unset where this file is compiled by itself.
+    // CARGO is unset if this file is compiled alone.
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
     let done = Command::new(cargo)
         .args(["tree", "-e", "normal", "--no-default-features"])
@@ -35,7 +36,7 @@ fn the_library_without_features_builds_no_terminal_pages_or_spreadsheets() {
     assert!(done.status.success(), "{error}");
     let tree = String::from_utf8(done.stdout).unwrap();
     let crates: BTreeSet<&str> = tree.lines().filter_map(|l| l.split(' ').next()).collect();
-    // A tree that isn't read would hold nothing that is forbidden either.
+    // If the tree could not be read, it would contain no forbidden crate either.
     assert!(crates.contains("strainbridge") && crates.contains("nastran"));
     let found: Vec<&str> = OF_FEATURES
         .into_iter()

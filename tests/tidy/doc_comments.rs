@@ -1,9 +1,9 @@
-//! Doc comments: first words that leave the reader looking back, and words that have a plain replacement.
+//! Doc comments: first words that refer to the preceding text, and words with a plain replacement.
 
 use super::english::{REPLACED, contains_word};
 use super::{root, rust_files};
 
-/// First words of a comment that does not stand alone.
+/// First words of a comment that is not understandable alone.
 const FIRST: [&str; 8] = [
     "As",
     "Everything",
@@ -15,7 +15,7 @@ const FIRST: [&str; 8] = [
     "What",
 ];
 
-/// Text of a line of a doc comment with the kind of the comment; code spans are left out.
+/// Returns kind and text of a line of a doc comment, without code spans.
 fn doc_text(line: &str) -> Option<(&str, String)> {
     let line = line.trim_start();
     let kind = ["///", "//!"].into_iter().find(|k| line.starts_with(k))?;
@@ -75,7 +75,8 @@ fn doc_comments_stand_alone_and_use_the_words_of_the_field() {
     assert!(wrong.is_empty(), "{wrong}");
 }
 
-/// Names that `lib.rs` re-exports, each with the path of its module: `pub use workflow::init::{init, init_for};`.
+/// Returns the names that `lib.rs` re-exports, each with the path of its module, as in `pub use workflow::init::{init,
+/// init_for};`.
 fn list_reexported_names(lib: &str) -> Vec<(String, String)> {
     let lines = lib.lines().filter_map(|l| l.strip_prefix("pub use "));
     let names = lines.flat_map(|line| {
@@ -92,7 +93,7 @@ fn list_reexported_names(lib: &str) -> Vec<(String, String)> {
     names.collect()
 }
 
-/// Doc comment of a public item, without the marks of its lines; `None` if the file does not define the item.
+/// Returns the doc comment of a public item without the line marks, or `None` if the file does not define the item.
 fn doc_of(text: &str, name: &str) -> Option<String> {
     let lines: Vec<&str> = text.lines().collect();
     let defines = |l: &&str| {

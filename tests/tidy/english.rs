@@ -1,8 +1,8 @@
-//! ENGLISH.md's rules that a machine can hold, on the pages that are written in its manner; and the questions of a new user.
+//! Rules of plain English that a program can test, on the pages that follow them, and the questions of a new user.
 
 use super::root;
 
-/// Pages that follow the rules; a page that is rewritten joins the list.
+/// Pages that follow the rules. Add every page that is rewritten.
 const PAGES: [&str; 38] = [
     "CHANGELOG.md",
     "CONTRIBUTING.md",
@@ -103,7 +103,7 @@ fn paragraphs(page: &str) -> Vec<String> {
     out
 }
 
-/// Returns the sentences of a paragraph; cells of a table and code spans count as one word or one sentence each.
+/// Returns the sentences of a paragraph. A cell of a table counts as a sentence, and a code span counts as a word.
 pub(super) fn sentences(paragraph: &str) -> Vec<String> {
     let mut plain = String::new();
     for (n, part) in paragraph.split('`').enumerate() {
@@ -166,7 +166,7 @@ fn pages_have_short_sentences_and_the_words_of_the_field() {
     assert!(wrong.is_empty(), "{wrong}");
 }
 
-/// Question of a new user, page that answers it, heading there, and what the answer must name.
+/// Question of a new user, page with the answer, heading there, and a word that the answer contains.
 const QUESTIONS: [[&str; 4]; 15] = [
     [
         "Which side is Z1?",

@@ -1,19 +1,20 @@
-//! Who imports whom, file by file: paths of `use` and of expressions, followed through re-exports to the file that defines the name.
+//! Imports between files: paths of `use` and of expressions, followed through re-exports to the file that defines the
+//! name.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A module's path from the crate's root.
+/// Path of a module from the root of the crate.
 pub type Module = Vec<String>;
 
-/// The files of one crate as modules, their code without comments.
+/// Files of one crate as modules, with their code without comments.
 pub struct Crate {
     code: BTreeMap<Module, String>,
-    /// By module: name -> module it is taken from; `*` names lie under the empty name.
+    /// Names by module, with the module that they come from. Names imported by `*` have an empty name.
     reexports: BTreeMap<Module, Vec<(String, Module)>>,
 }
 
 impl Crate {
-    /// The modules below `root` (`src/`, say) of files given as path and code.
+    /// Reads the modules below `root` (such as `src/`) from files given as path and code.
     pub fn from_files<'a>(root: &str, files: impl Iterator<Item = (&'a str, String)>) -> Self {
         let mut code = BTreeMap::new();
         for (path, text) in files {
@@ -24,7 +25,7 @@ impl Crate {
             if module.last().is_some_and(|m| m == "mod") {
                 module.pop();
             }
-            // Tests inside a file name it as their parent.
+            // Tests inside a file refer to it as their parent.
             let text = match text.find("mod tests {") {
                 Some(at) => text[..at].to_owned(),
                 None => text,
@@ -63,7 +64,7 @@ impl Crate {
         list
     }
 
-    /// The module that a path leads into, and what is left of the path.
+    /// Returns the module of a path, and the remaining part of the path.
     fn resolve_path(&self, here: &Module, path: &str) -> Option<(Module, Vec<String>)> {
         let mut parts: Vec<String> = path
             .split("::")
@@ -105,7 +106,7 @@ impl Crate {
         Some((module, parts))
     }
 
-    /// The module that defines a name, followed through re-exports.
+    /// Returns the module that defines a name, through re-exports.
     fn definer(&self, module: Module, name: &str, depth: usize) -> Module {
         if depth > 6 || self.defines(&module, name) {
             return module;
@@ -138,7 +139,7 @@ impl Crate {
         })
     }
 
-    /// By module, the modules whose names it uses. A `mod.rs` that only passes names on uses nothing by that.
+    /// Returns the modules whose names each module uses. A `mod.rs` that only re-exports names does not use them.
     pub fn edges(&self) -> BTreeMap<&Module, BTreeSet<Module>> {
         let mut out = BTreeMap::new();
         for (module, code) in &self.code {
@@ -165,7 +166,7 @@ impl Crate {
         out
     }
 
-    /// Circles: sets of modules each of which reaches every other.
+    /// Returns the circles: sets of modules that all reach each other.
     pub fn circles(&self) -> Vec<Vec<String>> {
         let edges = self.edges();
         let reach = |from: &Module| -> BTreeSet<Module> {
@@ -193,7 +194,7 @@ impl Crate {
     }
 }
 
-/// `use` statements of a file: what stands between `use` and `;`, and whether it is public.
+/// Returns the `use` statements of a file: the text between `use` and `;`, and whether it is public.
 fn uses(code: &str) -> Vec<(String, bool)> {
     let mut out = Vec::new();
     for (at, _) in code.match_indices("use ") {
@@ -209,7 +210,7 @@ fn uses(code: &str) -> Vec<(String, bool)> {
     out
 }
 
-/// The paths of a `use` with its braces written out.
+/// Returns the paths of a `use` with expanded braces.
 fn expand_use(statement: &str) -> Vec<String> {
     let statement = statement.trim();
     let Some(open) = statement.find('{') else {
@@ -237,9 +238,9 @@ fn expand_use(statement: &str) -> Vec<String> {
         .collect()
 }
 
-/// Paths of two names and more in code.
+/// Returns the paths of at least two names in code.
 fn paths_in(code: &str) -> Vec<String> {
-    // `pub(in crate::x)` says who may see a name, not what is used.
+    // `pub(in crate::x)` states the visibility, not a use.
     let code = code.replace("(in crate::", "(in ");
     let is_path = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
     code.split(|c: char| !is_path(c))

@@ -1,5 +1,5 @@
-//! The rules of the house as tests: layers, who may print, open files or be unsafe, what must have a README, what the
-//! library alone builds.
+//! Rules of the repository as tests: layers, printing, file access, unsafe code, README files, and dependencies of the
+//! library.
 
 mod declared_words;
 mod dependencies;
@@ -12,8 +12,10 @@ mod words;
 
 use std::path::{Path, PathBuf};
 
-/// Row of each module of the root crate; imports go strictly downward. `finding` and `linalg` are below all others of row 1:
-/// estimates carry findings, series use linear algebra. `units` stand between: columns of series state units.
+/// Row of each module of the root crate. Imports go strictly downward.
+///
+/// `finding` and `linalg` are below all others of row 1, because estimates carry findings and series use linear
+/// algebra. `units` is between them, because columns of series state units.
 const ROWS: [(&str, f64); 27] = [
     ("cli", 10.0),
     ("report", 9.0),
@@ -44,7 +46,7 @@ const ROWS: [(&str, f64); 27] = [
     ("lib", 11.0),
 ];
 
-/// Linear-algebra crates that only `linalg` names.
+/// Linear algebra crates. Only `linalg` may name them.
 const LINEAR_ALGEBRA: [&str; 4] = ["faer", "nalgebra", "feral_metis", "levenberg_marquardt"];
 
 fn root() -> PathBuf {
@@ -64,7 +66,7 @@ fn rust_files(folder: &Path, out: &mut Vec<PathBuf>) {
     }
 }
 
-/// Source files of both crates: path from the root with `/`, and lines of code (comments cut off).
+/// Returns the source files of both crates: path from the root with `/`, and lines of code without comments.
 fn sources() -> Vec<(String, Vec<String>)> {
     let mut files = Vec::new();
     rust_files(&root().join("src"), &mut files);
@@ -89,7 +91,7 @@ fn is_test(path: &str) -> bool {
     path.ends_with("/tests.rs") || path.contains("/tests/")
 }
 
-/// Module of the root crate that a file belongs to.
+/// Returns the module of the root crate that contains a file.
 fn module(path: &str) -> Option<&str> {
     let rest = path.strip_prefix("src/")?;
     let first = rest.split('/').next()?;
@@ -250,7 +252,7 @@ fn main_is_a_summary_and_every_model_says_what_it_proves() {
     }
 }
 
-/// Circles that are still to be untied; the list only shrinks.
+/// Known circles of imports. The list may only shrink.
 const CIRCLES: &[&str] = &[];
 
 #[test]

@@ -2,11 +2,11 @@
 
 use super::{is_test, root, rust_files, sources};
 
-/// Lines of a file at most.
+/// Largest number of lines of a file.
 const FILE: usize = 500;
-/// Lines of a function at most.
+/// Largest number of lines of a function.
 const FUNCTION: usize = 120;
-/// Characters of a line of comment at most: the formatter breaks code alone.
+/// Largest number of characters of a comment line, because the formatter wraps only code.
 const COMMENT: usize = 150;
 
 #[test]
@@ -46,7 +46,7 @@ fn lines_of_comment_fit_a_screen() {
     assert!(long.is_empty(), "break these lines: {long:#?}");
 }
 
-/// Name and lines of each function, by its indentation.
+/// Returns name and number of lines of each function, found by its indentation.
 fn functions(lines: &[String]) -> Vec<(String, usize)> {
     let mut out = Vec::new();
     for (start, line) in lines.iter().enumerate() {

@@ -1,9 +1,9 @@
-//! Texts that the programs print: sentences of at most [`LONGEST`] words, and no word that has a plain replacement.
+//! Texts that the programs print: sentences of at most [`LONGEST`] words, and no word with a plain replacement.
 
 use super::english::{LONGEST, REPLACED, contains_word, length, sentences};
 use super::{is_test, root, rust_files};
 
-/// Words from which a literal is a text, and not a name, a key or a pattern.
+/// Least number of words of a literal that counts as a text, and not as a name, a key or a pattern.
 const TEXT: usize = 4;
 
 /// Returns the string literals of a source text with their lines. Comments and characters are skipped.
@@ -41,7 +41,7 @@ fn find_closing_quote(text: &str) -> usize {
     end.map_or(text.len(), |e| e.0)
 }
 
-/// Returns a raw literal that begins after its `r`, if it is one, and the bytes it takes together with the `r`.
+/// Returns a raw literal that begins after its `r`, if there is one, and its number of bytes including the `r`.
 fn read_raw_literal(text: &str) -> (Option<String>, usize) {
     let marks = text.len() - text.trim_start_matches('#').len();
     let Some(body) = text[marks..].strip_prefix('"') else {
@@ -55,7 +55,7 @@ fn read_raw_literal(text: &str) -> (Option<String>, usize) {
     )
 }
 
-/// Returns the bytes of a character literal; 1 for the mark of a lifetime.
+/// Returns the bytes of a character literal, or 1 for the mark of a lifetime.
 fn character(text: &str) -> usize {
     let mut letters = text.char_indices().skip(1);
     match letters.next() {
@@ -70,7 +70,7 @@ fn character(text: &str) -> usize {
     }
 }
 
-/// Returns a literal without its escapes and with one word for each place that is filled in.
+/// Returns a literal without its escapes, with one word for each placeholder.
 fn remove_escapes(literal: &str) -> String {
     let joined: Vec<&str> = literal.split("\\\n").map(str::trim_start).collect();
     let text = joined.concat().replace("\\n", "\n").replace("\\\"", "\"");

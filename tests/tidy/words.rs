@@ -1,21 +1,22 @@
-//! Words of STYLE.md that names of ours must not have.
+//! Words that STYLE.md excludes from names.
 
 use super::sources;
 
-/// Starts of names that say nothing of what is done; `from_`, `to_`, `read_`, `write_`, `solve_`, `check_`, `n_` do.
+/// First words of names that do not state an action, unlike `from_`, `to_`, `read_`, `write_`, `solve_`, `check_`,
+/// `n_`.
 const STARTS: [&str; 4] = ["get_", "process_", "handle_", "do_"];
-/// Names that say nothing of what is held.
+/// Names that do not state their content.
 const WHOLE: [&str; 10] = [
     "utils", "util", "data", "info", "misc", "helpers", "helper", "common", "manager", "stuff",
 ];
-/// Methods of traits of the Parquet crate.
+/// Methods of traits in the Parquet crate.
 const OF_OTHERS: [&str; 3] = ["get_next_page", "get_read", "get_bytes"];
-/// Ends of types that say nothing of what they are.
+/// Last words of type names that do not describe the type.
 const ENDS: [&str; 5] = ["Manager", "Helper", "Util", "Utils", "Info"];
-/// What a definition begins with.
+/// Keywords that begin a definition.
 const DEFINES: [&str; 6] = ["fn", "struct", "enum", "trait", "mod", "type"];
 
-/// Kind and name of what a line defines.
+/// Returns kind and name of the definition in a line.
 fn read_definition(line: &str) -> Option<(&str, &str)> {
     let words: Vec<&str> = line.split_whitespace().collect();
     let before = ["pub", "pub(super)", "pub(crate)", "const", "async"];
@@ -36,7 +37,7 @@ fn says_nothing((kind, name): (&str, &str)) -> bool {
     }
 }
 
-/// Prepositions, and participles that do not end in `ed`: no name of a function.
+/// Prepositions, and participles that do not end in `ed`. They are not names of functions.
 const NO_NAME: [&str; 78] = [
     "above",
     "across",
@@ -117,13 +118,13 @@ const NO_NAME: [&str; 78] = [
     "worn",
     "written",
 ];
-/// Nouns and verbs that end as participles do.
+/// Nouns and verbs that end like participles.
 const NAMES: [&str; 16] = [
     "seed", "speed", "need", "feed", "embed", "spring", "string", "ring", "heading", "warning",
     "bearing", "finding", "reading", "meaning", "wiring", "coupling",
 ];
 
-/// Whether the name of a function is one word that states neither what it does nor what it returns.
+/// Returns whether the name of a function is one word that states neither its action nor its result.
 fn is_bare(name: &str) -> bool {
     let participle = (name.ends_with("ed") || name.ends_with("ing")) && !NAMES.contains(&name);
     !name.contains('_') && (participle || NO_NAME.contains(&name))
@@ -135,7 +136,7 @@ fn functions_are_no_bare_participles_and_prepositions() {
     let mut wrong = String::new();
     for (path, lines) in sources() {
         for (n, line) in lines.iter().enumerate() {
-            // A visitor of serde has `expecting`.
+            // A serde visitor must have `expecting`.
             let function = read_definition(line).filter(|f| f.0 == "fn" && f.1 != "expecting");
             if let Some((_, name)) = function.filter(|f| is_bare(f.1)) {
                 wrong += &format!("{path}:{}: `{name}`\n", n + 1);

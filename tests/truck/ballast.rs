@@ -1,4 +1,4 @@
-//! Table 3.2 and section 6.4 through the program.
+//! Table 3.2 and section 6.4, through the program.
 
 use crate::program::{codes, head, run, scratch};
 use crate::world::*;
@@ -35,7 +35,7 @@ fn reaction_errors_percent(result: &serde_json::Value) -> Vec<f64> {
 #[test]
 fn table_3_2_two_masses_bring_the_truck_to_the_measured_reactions() {
     let folder = scratch("thesis");
-    // Table 3.2 in our wheel order, kN.
+    // Table 3.2 in the wheel order of this model, kN.
     job(
         &folder,
         "Run 1,24.530,26.220,19.660,18.700,18.860,18.220",
@@ -52,7 +52,8 @@ fn table_3_2_two_masses_bring_the_truck_to_the_measured_reactions() {
         "3.2: reactions of the thesis: {e:.2?} %, worst {worst:.2} %, masses {}",
         result["masses"]
     );
-    // Middle and rear axle share as the camelback's levers say (25 to 23 inches), 4 % from what was measured: no mass can change that.
+    // The levers of the camelback determine the ratio of middle and rear axle (25 to 23 inches). It differs by 4 % from
+    // the measured ratio, and no mass can change that.
     assert!(worst < 2.5, "{e:?}");
     assert!(
         codes(&result, "warning").contains(&"masses-not-separable".to_owned()),
@@ -95,7 +96,7 @@ fn reactions_of_a_truck_with_its_masses_are_matched_and_the_ranges_hold_the_trut
         (together["mass"].as_f64().unwrap() / 6795.8 - 1.0).abs() < 1e-3,
         "{together}"
     );
-    // The analyst's other lines stay: the completed deck holds every line of the deck.
+    // The completed deck contains every line of the original deck.
     let before = std::fs::read_to_string(folder.join("truck.bdf")).unwrap();
     let after = std::fs::read_to_string(folder.join("out").join("completed.bdf")).unwrap();
     let (body, _) = before.split_once("ENDDATA").unwrap();
@@ -115,7 +116,8 @@ fn section_6_4_eleven_gauges_as_poor_as_the_thesis_end_in_exit_code_1_and_say_wh
         deck_text(45.0, Frame::Shell, true, PAYLOAD_TONNES),
     )
     .unwrap();
-    // Eleven gauges along the left rail between the axles, all on the upper flange: they see bending of one rail.
+    // Eleven gauges along the left rail between the axles, all on the upper flange. They measure the bending of one
+    // rail.
     let mut table = String::from("name,x,y,z,dir_x,dir_y,dir_z\n");
     let mut names = Vec::new();
     let mut there = Vec::new();

@@ -1,4 +1,4 @@
-//! Gauges on the trucks: candidates, layouts, readings on the own and on the other model.
+//! Gauges on the trucks: candidates, layouts, and readings on this model and on the other model.
 
 use crate::world::{Lot, Truck, analyst_truck};
 use std::sync::OnceLock;
@@ -12,10 +12,10 @@ use strainbridge::placement::{Layout, Spec, place};
 use strainbridge::sensitivity::{Load, LoadCaseOf, Sensitivity, from_cases};
 
 pub const MICRO: f64 = 1e-6;
-/// Prior size of a wheel load, N.
+/// Expected size of a wheel load, N.
 pub const EXPECTED: f64 = 25_000.0;
 
-/// Rails and cross members: where a gauge can be glued.
+/// Returns the rails and cross members, where gauges can be glued.
 pub fn sites(model: &Model) -> Vec<Site> {
     use strainbridge::fe::strain_tensor::Surface;
     let allowed =
@@ -32,10 +32,12 @@ pub fn sites(model: &Model) -> Vec<Site> {
     out
 }
 
-/// From a joint a gauge keeps this far: what a spider does to the plate beside it is not what a bolt does.
+/// Least distance of a gauge from a joint, mm. Close to it, the rigid elements of a joint strain the plate differently
+/// from a bolt.
 pub const CLEARANCE: f64 = 110.0;
 
-/// Grids of bolts and brackets (rigid elements); the wide RBE3 of masses and payload put little on each grid.
+/// Returns the grids of bolts and brackets (rigid elements). Wide RBE3 elements of masses and payload are omitted, as
+/// each grid takes little force.
 fn joints(model: &Model) -> Vec<Vec3> {
     model
         .rigids
@@ -50,7 +52,7 @@ fn joints(model: &Model) -> Vec<Vec3> {
         .collect()
 }
 
-/// Columns for S: cases with names and sizes.
+/// Returns the columns of S: cases with names and sizes.
 pub fn columns<'a>(cases: &'a [CaseResult], names: &[&str], expected: f64) -> Vec<LoadCaseOf<'a>> {
     cases
         .iter()
@@ -68,12 +70,13 @@ pub fn columns<'a>(cases: &'a [CaseResult], names: &[&str], expected: f64) -> Ve
         .collect()
 }
 
-/// The six vertical wheel loads of a truck.
+/// Returns the six vertical wheel loads of a truck.
 pub fn vertical_load_cases(truck: &Truck) -> Vec<LoadCaseOf<'_>> {
     columns(&truck.standing.contacts, &crate::world::NAMES, EXPECTED)
 }
 
-/// Candidates of the own truck for given columns, microstrain at the expected loads over 1 microstrain of noise.
+/// Returns the candidates of a truck for given columns, in microstrain at the expected loads divided by 1 microstrain
+/// of noise.
 pub fn candidates_of(
     truck: &Truck,
     loads: &[LoadCaseOf],
@@ -97,8 +100,10 @@ pub fn candidates_of(
     (sites, c)
 }
 
-/// Variance of a reading for what changes within an element, microstrain squared: a fifth of the rms difference between its corners and
-/// its centre stands for two millimetres of misplacement and for the mesh.
+/// Returns the variance of a reading for changes within an element, microstrain squared.
+///
+/// A fifth of the rms difference between corners and centre accounts for a position error of two millimetres and for
+/// the mesh.
 fn unevenness(loads: &[LoadCaseOf], scales: &[f64], (shell, side): Site) -> f64 {
     loads
         .iter()
@@ -118,8 +123,8 @@ fn unevenness(loads: &[LoadCaseOf], scales: &[f64], (shell, side): Site) -> f64 
         .sum()
 }
 
-/// What gluing and models do to a reading: 1 degree, and 5 % of every load's part of it, so that readings made of parts that cancel
-/// count for little.
+/// Returns the scatter from gluing and from the model: 1 degree, and 5 % of the contribution of every load. A reading
+/// that is a small difference of large contributions then has little weight.
 pub fn conservative_scatter() -> Scatter {
     Scatter {
         noise: 1.0,
@@ -130,7 +135,7 @@ pub fn conservative_scatter() -> Scatter {
     }
 }
 
-/// Gauges of a layout on the own truck.
+/// Returns the gauges of a layout.
 pub fn glue_gauges(model: &Model, sites: &[Site], layout: &Layout) -> Vec<Gauge> {
     layout
         .gauges
@@ -148,12 +153,12 @@ pub fn glue_gauges(model: &Model, sites: &[Site], layout: &Layout) -> Vec<Gauge>
         .collect()
 }
 
-/// The D-optimal layout of `n` gauges from all candidates for the six vertical loads, 60 mm apart.
+/// Returns the D-optimal layout of `n` gauges from all candidates for the six vertical loads, 60 mm apart.
 pub fn find_best_layout(n: usize) -> (Vec<Gauge>, Layout) {
     best_with(n, conservative_scatter())
 }
 
-/// The same with other scatter.
+/// Returns the D-optimal layout with the given scatter.
 pub fn best_with(n: usize, scatter: Scatter) -> (Vec<Gauge>, Layout) {
     let truck = analyst_truck();
     let (sites, c) = candidates_of(truck, &vertical_load_cases(truck), scatter);
@@ -163,19 +168,18 @@ pub fn best_with(n: usize, scatter: Scatter) -> (Vec<Gauge>, Layout) {
     (glue_gauges(&truck.model, &sites, &layout), layout)
 }
 
-/// The ten best gauges.
+/// Returns the ten best gauges.
 pub fn best_ten() -> &'static [Gauge] {
     static GAUGES: OnceLock<Vec<Gauge>> = OnceLock::new();
     GAUGES.get_or_init(|| find_best_layout(10).0)
 }
 
-/// S of gauges for given columns.
+/// Returns S of gauges for given columns.
 pub fn sensitivity(gauges: &[Gauge], loads: &[LoadCaseOf]) -> Sensitivity {
     from_cases(gauges, loads).unwrap()
 }
 
-/// What gauges of the own truck read in a case of another one, glued with scatter: 2 mm along both surface directions, 1 degree, and
-/// (in [`measured`]) 1 % of gain.
+/// Returns the gauges on another truck, with gluing errors of 2 mm along both surface directions and 1 degree.
 pub fn on_other(other: &Truck, gauges: &[Gauge], lot: &mut Lot) -> Vec<Gauge> {
     gauges
         .iter()
@@ -198,7 +202,7 @@ pub fn on_other(other: &Truck, gauges: &[Gauge], lot: &mut Lot) -> Vec<Gauge> {
         .collect()
 }
 
-/// The side of the other truck's shell that faces as the gauge does.
+/// Returns the side of the shell of the other truck that faces in the direction of the gauge.
 fn side_like(other: &Truck, g: &Gauge, shift: Vec3) -> strainbridge::fe::strain_tensor::Surface {
     use strainbridge::fe::strain_tensor::Surface;
     let foot = strainbridge::gauge::nearest_skin(&other.model, g.position + shift, None).unwrap();
@@ -224,7 +228,7 @@ fn side_like(other: &Truck, g: &Gauge, shift: Vec3) -> strainbridge::fe::strain_
     }
 }
 
-/// Strain of gauges under loads, by superposition.
+/// Returns the strain of gauges under loads, by superposition.
 pub fn strain(gauges: &[Gauge], cases: &[CaseResult], loads: &[f64]) -> Vec<f64> {
     gauges
         .iter()
@@ -238,7 +242,7 @@ pub fn strain(gauges: &[Gauge], cases: &[CaseResult], loads: &[f64]) -> Vec<f64>
         .collect()
 }
 
-/// The same with 1 % of gain and 1 microstrain of noise.
+/// Adds an error of 1 % of gain and 1 microstrain of noise.
 pub fn simulate_readings(lot: &mut Lot, clean: &[f64]) -> Vec<f64> {
     clean
         .iter()
@@ -246,7 +250,7 @@ pub fn simulate_readings(lot: &mut Lot, clean: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Least-squares loads.
+/// Returns the least squares loads.
 pub fn solve_least_squares(s: &Matrix, y: &[f64]) -> Vec<f64> {
     let y = strainbridge::linalg::Vector::from_column_slice(y);
     s.clone()
@@ -258,7 +262,7 @@ pub fn solve_least_squares(s: &Matrix, y: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Relative errors, in percent.
+/// Returns relative errors, in percent.
 pub fn percent(found: &[f64], truth: &[f64]) -> Vec<f64> {
     found
         .iter()

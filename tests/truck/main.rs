@@ -1,7 +1,8 @@
-//! The rows of the thesis (Stellenbosch 2020, chapters 3.5 and 6) on the truck of `models/`: what the table in `docs/reference/truck.md` shows.
+//! The rows of the thesis (Stellenbosch 2020, chapters 3.5 and 6) on the truck of `models/`, as in the table of
+//! `docs/reference/truck.md`.
 //!
-//! "Other model": readings from the same truck meshed half as fine in every direction, at points up to millimetres from where the gauges
-//! should be, turned by a degree, with 1 % of gain and 1 microstrain of noise.
+//! "Other model" means readings from the same truck with a mesh twice as fine in every direction. Its gauges have
+//! position errors of millimetres, an angle error of a degree, 1 % of gain and 1 microstrain of noise.
 
 #[allow(dead_code)]
 #[path = "../../examples/truck/beam_frame.rs"]

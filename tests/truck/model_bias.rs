@@ -1,4 +1,4 @@
-//! What the workflow says of a model that differs from the structure everywhere a little: shells against bars.
+//! Results of the workflow for a model that differs slightly from the structure everywhere: shells against bars.
 
 use crate::gauges::*;
 use crate::other_model::{bar_strain, build_thesis_gauges};
@@ -11,7 +11,7 @@ use strainbridge::reconcile::{Observations, Verdict};
 
 const RUNS: usize = 14;
 
-/// Fourteen runs on the beam truck as an analyst with S of the shell truck sees them.
+/// Returns fourteen runs on the beam truck, with S of the shell truck.
 fn frame() -> StrainFrame {
     let list = build_thesis_gauges();
     let gauges: Vec<Gauge> = list.iter().map(|g| g.0.clone()).collect();
@@ -105,7 +105,7 @@ fn table_6_9_shells_against_bars_are_no_fault_of_a_gauge() {
         outcome.verdict == Verdict::Unknown || named == ["global_scale"],
         "{named:?}"
     );
-    // What is left is told by gauge, so that a reader sees that it is spread over many.
+    // The residual is reported by gauge, which shows that it is distributed over many gauges.
     assert!(
         outcome.remains.contains("reduced chi-square") && outcome.sits.matches('T').count() > 2,
         "{}; {}",

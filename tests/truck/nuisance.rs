@@ -1,4 +1,4 @@
-//! Table 6.3: thirty other loads act at the wheels while the six vertical ones are asked for.
+//! Table 6.3: thirty other loads act at the wheels, and the six vertical loads are wanted.
 
 use crate::gauges::*;
 use crate::world::*;
@@ -9,10 +9,10 @@ use strainbridge::placement::{Criterion, Spec, place};
 use strainbridge::recovery::{ErrorModel, Readings, estimate};
 use strainbridge::sensitivity::{Load, LoadCaseOf, Sensitivity};
 
-/// Vertical loads of Table 6.2 in our wheel order LF RF LM RM LR RR, N.
+/// Vertical loads of Table 6.2 in the wheel order LF RF LM RM LR RR, N.
 const VERTICAL: [f64; 6] = [24_530.0, 26_220.0, 19_660.0, 18_700.0, 18_860.0, 18_220.0];
 
-/// Root mean squares over the wheels of Table 6.2: FX FY in N, MX MY MZ in N mm.
+/// Root mean squares over the wheels of Table 6.2: FX and FY in N, MX, MY and MZ in N mm.
 const SIZES: [f64; 5] = [1_647.0, 4_135.0, 1.581e6, 0.4151e6, 0.2579e6];
 
 const COMPONENTS: [&str; 5] = ["FX", "FY", "MX", "MY", "MZ"];
@@ -37,7 +37,7 @@ fn all_loads() -> Vec<LoadCaseOf<'static>> {
     loads
 }
 
-/// The root mean squares above are those of the printed table.
+/// The root mean squares above agree with the printed table.
 #[test]
 fn sizes_are_those_of_table_6_2() {
     let fx: [f64; 6] = [1.015, -3.554, 1.045, 0.365, -1.172, 0.116];
@@ -57,7 +57,7 @@ struct Outcome {
     coverage: f64,
 }
 
-/// A thousand draws: vertical loads of the table, the others normal of its size.
+/// Simulates a thousand samples with the vertical loads of the table and normally distributed other loads of its size.
 fn draws(s_true: &Sensitivity, s: &Sensitivity, seed: u64) -> Outcome {
     let mut lot = Lot::new(seed);
     let errors = ErrorModel {
@@ -107,14 +107,16 @@ fn draws(s_true: &Sensitivity, s: &Sensitivity, seed: u64) -> Outcome {
     }
 }
 
-/// Layout on the frame for the vertical loads with the others estimated along (Ds), nuisance columns first; `kept` rows are there already.
+/// Returns a layout on the frame for the vertical loads, with the other loads estimated as well (Ds).
+///
+/// Nuisance columns come first. The `kept` gauges are in place already.
 fn layout(n: usize, kept: &[Gauge]) -> Vec<Gauge> {
     let truck = analyst_truck();
     let mut loads = all_loads();
     loads.rotate_left(6);
     let (sites, c) = candidates_of(truck, &loads, Scatter::with_uniform_noise(1.0));
     let mut spec = Spec::new(n, 36);
-    // Both sides of a plate may carry a gauge: together they tell bending from stretching.
+    // Both sides of a plate may have a gauge. Together they separate bending from tension.
     spec.spacing = 5.0;
     spec.criterion = Criterion::Ds(30);
     for l in 0..30 {
@@ -136,8 +138,9 @@ fn layout(n: usize, kept: &[Gauge]) -> Vec<Gauge> {
     glue_gauges(&truck.model, &sites, &place(&c, &spec).unwrap())
 }
 
-/// Two gauges on top of every axle stub, near the wheel and near the spring: their difference is the shear force, which neither a moment
-/// nor a force along or across the wheel changes.
+/// Returns two gauges on top of every axle stub, one near the wheel and one near the spring.
+///
+/// Their difference is the shear force, which does not depend on a moment or on a horizontal force at the wheel.
 fn on_axles() -> Vec<Gauge> {
     let truck = analyst_truck();
     let mut out = Vec::new();
@@ -174,8 +177,8 @@ fn on_axles() -> Vec<Gauge> {
 #[test]
 fn table_6_3_vertical_loads_among_thirty_others() {
     let loads = all_loads();
-    // On the frame a moment about x at a hub acts exactly as a couple of two vertical forces: MX of 1.6 kN m over a track of 1.9 m is 4 to
-    // 6 % of a wheel load, and no gauge on the frame can tell. Gauges on the axles can.
+    // On the frame, a moment about x at a hub acts exactly as a couple of two vertical forces. MX of 1.6 kN m over a
+    // track of 1.9 m is 4 to 6 % of a wheel load. No gauge on the frame can separate them, but gauges on the axles can.
     let frame = layout(20, &[]);
     let s = sensitivity(&frame, &loads);
     let alone = draws(&s, &s, 63);
@@ -190,7 +193,7 @@ fn table_6_3_vertical_loads_among_thirty_others() {
         assert_eq!(gauges.len(), n);
         let s = sensitivity(&gauges, &loads);
         let with = draws(&s, &s, 63);
-        // Blind: the best gauges for the vertical loads alone, the others not in S.
+        // The best gauges for the vertical loads, with S that omits the other loads.
         let (blind_gauges, _) = find_best_layout(n);
         let full = sensitivity(&blind_gauges, &loads);
         let blind_s = sensitivity(&blind_gauges, &vertical_load_cases(analyst_truck()));

@@ -1,4 +1,4 @@
-//! Tables 6.9 and 6.10: S of the analyst's model on readings of another one.
+//! Tables 6.9 and 6.10: S of the analyst's model with readings of another model.
 
 use crate::gauges::*;
 use crate::world::*;
@@ -9,17 +9,17 @@ use strainbridge::placement::candidates::{Candidates, Choice, Scatter};
 use strainbridge::placement::{Criterion, Spec, place};
 use strainbridge::recovery::{ErrorModel, Readings, estimate};
 
-/// Seeded sets of gluing, gain and noise.
+/// Number of seeded sets of gluing error, gain and noise.
 const TRIALS: u64 = 60;
 
 struct Errors {
     mean: f64,
-    /// Mean over the trials of the largest of six.
+    /// Mean over the trials of the largest of six errors.
     max: f64,
     coverage: f64,
 }
 
-/// Loads recovered from the finer truck by gauges glued with scatter.
+/// Recovers loads from readings on the finer truck, with gluing errors.
 fn recover_from_finer_truck(gauges: &[Gauge], rel: f64) -> Errors {
     let truth = finer_truck().reactions();
     let s = sensitivity(gauges, &vertical_load_cases(analyst_truck()));
@@ -55,7 +55,9 @@ fn recover_from_finer_truck(gauges: &[Gauge], rel: f64) -> Errors {
     }
 }
 
-/// Forty places on the webs of the rails, high and low, and four in the middle of cross members, along the part, away from joints.
+/// Returns forty gauges on the webs of the rails, high and low, and four in the middle of cross members.
+///
+/// The gauges are along the part and away from joints.
 fn forty_four() -> Vec<Gauge> {
     let truck = analyst_truck();
     let mut out = Vec::new();
@@ -75,7 +77,7 @@ fn forty_four() -> Vec<Gauge> {
                 .remove(0),
         );
     };
-    // Between the stations of Table A.1: x in inches from the bumper.
+    // Between the stations of Table A.1. x is in inches from the bumper.
     let stations = [
         42.0, 50.0, 66.0, 80.0, 116.0, 148.0, 183.0, 226.0, 280.0, 330.0,
     ];
@@ -99,7 +101,7 @@ fn forty_four() -> Vec<Gauge> {
     out
 }
 
-/// The least condition number of ten rows that exchange from thirty random starts finds.
+/// Returns the smallest condition number of ten rows that an exchange search from thirty random starts finds.
 fn least_condition(s: &strainbridge::linalg::Matrix) -> f64 {
     let mut lot = Lot::new(10);
     let of = |rows: &[usize]| dense::condition(&s.select_rows(rows));
@@ -131,8 +133,10 @@ fn least_condition(s: &strainbridge::linalg::Matrix) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Mitchell's exchange as the thesis ran it (2.4.2): from a random layout add the row of largest variance, drop the one of least, while
-/// `det` grows; a row may stand in the layout more than once. The best of ten starts.
+/// Mitchell's exchange as in the thesis (2.4.2), the best of ten random starts.
+///
+/// It adds the row with the largest variance and removes the row with the smallest one, while `det` grows. A row may
+/// occur more than once.
 fn mitchell(s: &strainbridge::linalg::Matrix, n: usize) -> Vec<usize> {
     let mut lot = Lot::new(7);
     let scaled = s * (EXPECTED / MICRO);
@@ -211,7 +215,7 @@ fn the_thesis_algorithm_repeats_gauges_and_the_proved_layout_of_distinct_ones_do
     };
     let ours = place(&c, &Spec::new(10, 6)).unwrap();
     assert!(scaled(&distinct) <= ours.upper_bound + 1e-9);
-    // What a layout gives when each place can hold one gauge: its distinct gauges, and their sigma for 1 microstrain.
+    // Results of a layout with one gauge per place: its distinct gauges, and their sigma for 1 microstrain.
     let sigma = |rows: &[usize]| -> Vec<f64> {
         let a = s.select_rows(rows) / MICRO;
         let inverse = (a.transpose() * a).try_inverse().unwrap();
@@ -275,7 +279,7 @@ fn ten_gauges_for_the_condition_number_are_within_a_fifth_of_the_least_that_a_se
         got.condition
     );
     assert!(got.condition <= 1.2 * least);
-    // All candidates, and a search among an even share of them.
+    // All candidates, and a search among an evenly spaced subset of them.
     let (_, all) = candidates_of(analyst_truck(), &columns, Scatter::with_uniform_noise(1.0));
     let spec = Spec::new(10, 6);
     let by_d = place(&all, &spec).unwrap();
@@ -348,11 +352,13 @@ fn table_6_10_ten_of_forty_four_and_ten_of_all_on_readings_of_the_other_model() 
     assert!(e.coverage > 0.90, "{}", e.coverage);
 }
 
-/// Fifteen gauges like those of the thesis: bending along the rails at its printed stations, and along the flanges near them; the shell
-/// gauge and the bar's recovery point at the same place.
+/// Returns fifteen gauges similar to those of the thesis. Each is a gauge on a shell and a recovery point of a bar at
+/// the same place.
+///
+/// They measure bending along the rails at the printed stations, and along the flanges near them.
 pub fn build_thesis_gauges() -> Vec<(Gauge, (u32, usize, f64))> {
     let (shell, bars) = (analyst_truck(), beam());
-    // Table A.1 from the bumper: A2 + 5, gantry + 9.5, 412 + 40.5, in inches; others by eye of figure 3.2.
+    // Table A.1 from the bumper: A2 + 5, gantry + 9.5, 412 + 40.5, in inches. The others are estimated from figure 3.2.
     let places = [
         (40.0, -1.0, 1.0),
         (40.0, 1.0, 1.0),
@@ -389,7 +395,8 @@ pub fn build_thesis_gauges() -> Vec<(Gauge, (u32, usize, f64))> {
                 .unwrap()
                 .0
                 .remove(0);
-            // The bar whose span holds the station, and the flange tip or corner on that side: of its two points up or down, their mean.
+            // The bar whose span contains the station, and the mean of its two points (flange tip and corner) on that
+            // side.
             let bar = bars
                 .model
                 .beams
@@ -415,8 +422,9 @@ pub fn build_thesis_gauges() -> Vec<(Gauge, (u32, usize, f64))> {
         .collect()
 }
 
-/// Strain of a bar at a share of its length on its upper (0) or lower (1) flange, where the gauge sits: 40 mm in from the outer face, the
-/// corner there (C or D) and the tip (F or E) 85 mm further in.
+/// Returns the strain of a bar at a share of its length, at the gauge on its upper (0) or lower (1) flange.
+///
+/// The gauge is 40 mm inside the outer face. The corner there is C or D, and the tip, F or E, is 85 mm further inside.
 pub fn bar_strain(case: &strainbridge::fe::CaseResult, id: u32, low: usize, share: f64) -> f64 {
     let ix = beam().model.beam_ix(id).unwrap();
     let row = case.beams.elements.binary_search(&ix).unwrap();
@@ -476,7 +484,7 @@ fn table_6_9_shell_sensitivities_on_the_beam_truck_are_a_bias_of_the_model() {
         mean(&hot),
         mean(&shares)
     );
-    // The bias stands far out of 1 microstrain of noise: the residual says so.
+    // The bias is far larger than 1 microstrain of noise, so the residual test reports it.
     let run = estimate(
         &s,
         &Readings {
@@ -495,10 +503,10 @@ fn table_6_9_shell_sensitivities_on_the_beam_truck_are_a_bias_of_the_model() {
         run.chi2,
         run.dof
     );
-    // Bars and shells of one channel: flange strain in bending is the same but for shear lag and warping at the joints.
-    // Measured 2.3 %.
+    // Bars and shells of one channel have equal flange strain in bending, except for shear lag and warping at the
+    // joints. Measured 2.3 %.
     assert!(mean(&hot) < 4.0, "{hot:?}");
-    // Measured .8 % (the thesis: 32 %): fifteen gauges average the differences of the hot ones away.
+    // Measured .8 % (the thesis: 32 %). Fifteen gauges average the differences of those with large strain.
     assert!(mean(&e) < 1.5, "{e:?}");
     assert!(
         mean(&shares) < 5.0,

@@ -1,4 +1,4 @@
-//! Tables 6.1, 6.8, 6.9: the analyst's own model.
+//! Tables 6.1, 6.8, 6.9: readings from the analyst's model itself.
 
 use crate::gauges::*;
 use crate::world::*;
@@ -9,7 +9,7 @@ use strainbridge::study::{ErrorKind, PoolGauge, StudyError, StudySpec, TrueLoad,
 
 #[test]
 fn table_6_1_reactions_of_a_separately_supported_solution_come_back_to_1e_5() {
-    // Springs to ground under the hubs, three more dofs held: no inertia relief on this side.
+    // Springs to ground under the hubs and three more fixed dofs. This solution has no inertia relief.
     let rate = 4.0e4;
     let mut extra = format!("GRAV,7,,{GRAVITY},0.,0.,-1.\n");
     for (i, g) in WHEELS.iter().enumerate() {
@@ -49,7 +49,8 @@ fn the_wheels_of_the_loaded_truck_carry_its_weight_and_share_it_as_the_levers_sa
     let r = truck.reactions();
     let weight = truck.model.weight();
     assert!((r.iter().sum::<f64>() / (weight.mass * GRAVITY) - 1.0).abs() < 1e-9);
-    // The camelback turns about its pivot: middle and rear axle share as 25 to 23 inches (Table A.1), rods and leaf ends aside.
+    // The camelback turns about its pivot. Middle and rear axle share the load as 25 to 23 inches (Table A.1), except
+    // for rods and leaf ends.
     let (middle, rear) = (r[2] + r[3], r[4] + r[5]);
     assert!(
         (middle / rear / (25.0 / 23.0) - 1.0).abs() < 0.05,
@@ -110,7 +111,7 @@ fn tables_6_8_and_6_9_noise_in_proportion_at_ten_gauges() {
         );
         assert!(mean(&errors) < limit, "{errors:?}");
     }
-    // Intervals of readings with noise as stated cover as stated.
+    // With noise as stated, the intervals have the stated coverage.
     let row = study_layout(
         &pool(gauges),
         &[(0..10).collect()],

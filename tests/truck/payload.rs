@@ -1,4 +1,4 @@
-//! Section 6.5: size and place of the payload, readings from the other model.
+//! Section 6.5: size and place of the payload, with readings from the other model.
 
 use crate::gauges::*;
 use crate::world::*;
@@ -7,7 +7,7 @@ use strainbridge::linalg::Matrix;
 use strainbridge::model::Vec3;
 use strainbridge::payload::{PayloadModel, PayloadRun, Place, WeighSpec, weigh};
 
-/// Gauges for six wheels and the payload with its two moments, thirty of them.
+/// Returns thirty gauges for six wheels and the payload with its two moments.
 fn layout() -> Vec<Gauge> {
     let truck = analyst_truck();
     let mut loads = vertical_load_cases(truck);
@@ -27,7 +27,7 @@ fn layout() -> Vec<Gauge> {
     )
 }
 
-/// `(F, F dx, F dy)` of a truck: case, sign, direction.
+/// `(F, F dx, F dy)` of a truck: case and sign.
 const PARTS: [(usize, f64); 3] = [(0, -1.0), (2, 1.0), (1, -1.0)];
 
 fn floor(truck: &Truck) -> Matrix {
@@ -93,11 +93,11 @@ fn size_and_place_of_the_payload_from_wheel_forces_and_from_strain_of_the_other_
     let sigma_wheel = 60.0;
     let spec = WeighSpec {
         place: Place::Free,
-        // 1 % of gain, a degree, two millimetres and the mesh: about 3 % of a reading.
+        // 1 % of gain, one degree, two millimetres and the mesh give about 3 % of a reading.
         model_rel: 0.03,
         reaction_sigma: sigma_wheel,
         largest: 1e6,
-        // Between tarper gantry and the truck's rear (6.5): 3 m and 0.5 m either way.
+        // Between the tarper gantry and the rear of the truck (6.5): 3 m along and 0.5 m across, in both directions.
         region: Some([[-3000.0, 3000.0], [-500.0, 500.0]]),
     };
     let trials = 60;

@@ -1,4 +1,4 @@
-//! Runs the program in a folder of its own.
+//! Runs the program in a separate folder.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -12,7 +12,7 @@ pub fn scratch(name: &str) -> PathBuf {
     folder
 }
 
-/// Exit code, result.json, standard error.
+/// Returns exit code, result.json and standard error.
 pub fn run(arguments: &[&str], out: &Path) -> (i32, serde_json::Value, String) {
     let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
         .args(arguments)
@@ -28,7 +28,7 @@ pub fn run(arguments: &[&str], out: &Path) -> (i32, serde_json::Value, String) {
     )
 }
 
-/// `[model]` and the six wheels.
+/// Returns `[model]` and the six wheels.
 pub fn head() -> String {
     let mut text = String::from(
         "title = \"truck\"\nunits = \"mm-t-s\"\nreport_units = { force = \"kN\", moment = \"kN m\", length = \"m\", mass = \"kg\" }\n\

@@ -1,4 +1,4 @@
-//! The truck story through the program, and the commands that go on from it.
+//! The truck tutorial through the program, and the commands that continue from it.
 
 use crate::program::{codes, run, scratch};
 use std::path::Path;
@@ -7,7 +7,7 @@ fn number(v: &serde_json::Value) -> f64 {
     v.as_f64().unwrap_or(f64::NAN)
 }
 
-/// A job of the story with other sections behind it.
+/// Writes a job of the tutorial with further sections.
 fn job(folder: &Path, name: &str, from: &str, extra: &str) -> String {
     let text = std::fs::read_to_string(folder.join(from)).unwrap() + extra;
     let path = folder.join(name);
@@ -54,7 +54,7 @@ fn the_story_names_what_was_hidden_and_gets_the_loads_back() {
             && folder.join("7-respond").join("envelope.vtu").is_file()
     );
 
-    // Stress from the table that `recover` wrote is that of the runs recovered inside `respond`.
+    // Stress from the table that `recover` wrote equals stress from the runs that `respond` recovers.
     let inside: serde_json::Value = serde_json::from_str(
         &std::fs::read_to_string(folder.join("7-respond/result.json")).unwrap(),
     )
@@ -72,7 +72,7 @@ fn the_story_names_what_was_hidden_and_gets_the_loads_back() {
     );
     assert!((number(&a["max_von_mises"]) / number(&b["max_von_mises"]) - 1.0).abs() < 1e-9);
     assert!(codes(&table, "info").contains(&"load-errors-independent".to_owned()));
-    // Predicted against measured strain at the gauges: within the scatter of gauge factors and the model.
+    // Predicted and measured strain at the gauges agree within the scatter of gauge factors and the model.
     let gauges = table["gauges"].as_array().unwrap();
     assert_eq!(gauges.len(), 24);
     let rms = |key: &str| {
@@ -84,7 +84,8 @@ fn the_story_names_what_was_hidden_and_gets_the_loads_back() {
     };
     assert!(rms("residual_rms_microstrain") < 0.1 * rms("measured_rms_microstrain"));
 
-    // The study on the gauges of the story: noise in proportion scatters the loads in proportion; twice the same bytes.
+    // The study on the gauges of the tutorial: proportional noise causes proportional scatter of the loads. Two runs
+    // give equal bytes.
     let study = job(
         &folder,
         "study.toml",
@@ -139,7 +140,8 @@ fn a_payload_of_wheel_forces_alone_needs_no_gauges_and_a_flipped_sign_is_refused
         + "[runs]\nfile = \"runs.csv\"\nunits = { force = \"kN\" }\nnoise = { force = 0.1 }\n\
            [payload]\ngrid = 900101\nposition = \"free\"\nuse = [\"reactions\"]\nunloaded = \"Run 1\"\n";
     std::fs::write(folder.join("job.toml"), text).unwrap();
-    // Tables 3.2 and 6.4: measured wheel forces of Runs 1, 2 and 3; their sums give 32.255 and 54.414 kN (6.6); the last is turned round.
+    // Tables 3.2 and 6.4: measured wheel forces of Runs 1, 2 and 3. Their sums give 32.255 and 54.414 kN (6.6). The
+    // last run is reversed.
     std::fs::write(
         folder.join("runs.csv"),
         format!(
@@ -154,7 +156,7 @@ fn a_payload_of_wheel_forces_alone_needs_no_gauges_and_a_flipped_sign_is_refused
     );
     assert_eq!(code, 1, "{err}");
     let payload = result["payload"].as_array().unwrap();
-    // The printed Run 2 forces add up to 32.240; 15 N are lost in rounding.
+    // The printed forces of Run 2 add up to 32.240. The rounding is 15 N.
     for (run, kn) in [(0, 32.255), (1, 54.414)] {
         assert!(
             (number(&payload[run]["force"]) / kn - 1.0).abs() < 2e-3,
@@ -175,7 +177,7 @@ fn a_payload_of_wheel_forces_alone_needs_no_gauges_and_a_flipped_sign_is_refused
                 .contains("cannot be negative")
     );
     assert!(codes(&result, "error").contains(&"payload-negative".to_owned()));
-    // Place by the levers: sum of force times station over the payload.
+    // Place by the lever rule: sum of force times station, divided by the payload.
     let x = |i: usize| [55.0, 55.0, 291.0, 291.0, 339.0, 339.0][i] * 0.0254;
     let change = [
         32.053 - 24.530,

@@ -1,4 +1,4 @@
-//! Trucks solved once for all tests, and luck.
+//! Trucks that are solved once for all tests, and random numbers.
 
 use crate::deck::DeckText;
 use crate::parameters::Truck as Parameters;
@@ -15,29 +15,29 @@ pub const WHEELS: [u32; 6] = [900_001, 900_002, 900_003, 900_004, 900_005, 900_0
 pub const NAMES: [&str; 6] = ["LF.FZ", "RF.FZ", "LM.FZ", "RM.FZ", "LR.FZ", "RR.FZ"];
 pub const PAYLOAD: u32 = 900_101;
 pub const GRAVITY: f64 = 9806.65;
-/// Payload that the thesis found from wheel forces (6.5), t; it rides in both models of 6.7 to 6.9.
+/// Payload that the thesis found from wheel forces (6.5), t. Both models of 6.7 to 6.9 carry it.
 pub const PAYLOAD_TONNES: f64 = 5.40717;
 
-/// A truck with the strain of unit loads.
+/// Truck with the strain of unit loads.
 pub struct Truck {
     pub model: Model,
-    /// Unit forces up at the wheels; then at the payload FZ, MX, MY; then at each wheel FX FY MX MY MZ.
+    /// Unit forces up at the wheels, then FZ, MX, MY at the payload, then FX FY MX MY MZ at each wheel.
     pub standing: FloorSolution,
 }
 
 impl Truck {
-    /// Cases of the other loads of wheel w: FX FY MX MY MZ.
+    /// Returns the cases of the other loads of wheel w: FX FY MX MY MZ.
     pub fn others_of(&self, w: usize) -> &[CaseResult] {
         &self.standing.others[3 + 5 * w..8 + 5 * w]
     }
 
-    /// Reactions to the truck's own weight, N.
+    /// Returns the reactions to the weight of the truck, N.
     pub fn reactions(&self) -> Vec<f64> {
         self.standing.under_weight(&self.model, GRAVITY)
     }
 }
 
-/// The deck of the truck with this largest element edge; `tonnes` ride on the payload grid.
+/// Returns the deck of the truck with this largest element edge. The payload grid carries `tonnes`.
 pub fn deck_text(size: f64, frame: Frame, with_ballast: bool, tonnes: f64) -> String {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/models/truck.toml");
     let mut truck: Parameters = toml::from_str(&std::fs::read_to_string(file).unwrap()).unwrap();
@@ -106,19 +106,19 @@ fn solve(text: &str) -> Truck {
     Truck { model, standing }
 }
 
-/// The analyst's model: 45 mm shells.
+/// Returns the analyst's model with 45 mm shells.
 pub fn analyst_truck() -> &'static Truck {
     static TRUCK: OnceLock<Truck> = OnceLock::new();
     TRUCK.get_or_init(|| solve(&deck_text(45.0, Frame::Shell, true, PAYLOAD_TONNES)))
 }
 
-/// The other model: 22.5 mm shells.
+/// Returns the other model with 22.5 mm shells.
 pub fn finer_truck() -> &'static Truck {
     static TRUCK: OnceLock<Truck> = OnceLock::new();
     TRUCK.get_or_init(|| solve(&deck_text(22.5, Frame::Shell, true, PAYLOAD_TONNES)))
 }
 
-/// Rails and cross members as bars.
+/// Returns the model with rails and cross members as bars.
 pub fn beam() -> &'static Truck {
     static TRUCK: OnceLock<Truck> = OnceLock::new();
     TRUCK.get_or_init(|| solve(&deck_text(45.0, Frame::Beam, true, PAYLOAD_TONNES)))

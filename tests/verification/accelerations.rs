@@ -1,15 +1,16 @@
-//! ACCEL, ACCEL1 and RFORCE1: forces of mass in a field of acceleration, in closed form.
+//! Compares ACCEL, ACCEL1 and RFORCE1 with the closed form of the inertia forces in an acceleration field.
 
 use crate::small_decks::{assert_close, displacement_at, list_refused_cards, model, solve};
 
-/// Rounding of a solution of a few unknowns.
+/// Rounding error of a solution with a few unknowns.
 const ROUNDING: f64 = 1e-12;
 
-/// A rod of two elements along x, 2 and 3 long, of area .02, E 4e9 and density 500, held at its left end; lumped masses 25 and 15 kg.
+/// Rod along x, fixed at its left end, with lumped masses of 25 and 15 kg at the free grids. Two elements with lengths
+/// 2 and 3, area .02, E 4e9, density 500.
 const ROD: &str = "GRID,1,,1.,0.,0.\nGRID,2,,3.,0.,0.\nGRID,3,,6.,0.,0.\nCROD,1,7,1,2\nCROD,2,7,2,3\nPROD,7,3,.02\n\
      MAT1,3,4.+9,,.3,500.\nSPC1,1,123456,1\nSPC1,1,23456,2,3\n";
 
-/// Displacements along x of both free grids under forces there: k = E A / L.
+/// Returns the x displacements of both free grids under the forces `f2` and `f3` there, from k = E A / L.
 fn exact_displacements(f2: f64, f3: f64) -> [f64; 2] {
     let u2 = (f2 + f3) * 2.0 / 8.0e7;
     [u2, u2 + f3 * 3.0 / 8.0e7]
@@ -28,16 +29,16 @@ fn moves(case_control: &str, cards: &str, [f1, f2, f3]: [f64; 3]) {
 
 #[test]
 fn accel1_acts_on_the_mass_of_the_grids_it_names() {
-    // 25 kg and 15 kg at 6 m/s^2 along a direction of length 5 whose x is 3.
+    // 25 kg and 15 kg at 6 m/s^2. The direction has length 5 and x component 3.
     moves("", "ACCEL1,5,,2.,3.,4.,0.\n,2,3", [0.0, 150.0, 90.0]);
     moves("", "ACCEL1,5,,2.,3.,4.,0.\n,3", [0.0, 0.0, 90.0]);
-    // A range holds the grids that there are.
+    // A range with THRU selects only grids that exist.
     moves("", "ACCEL1,5,,2.,3.,4.,0.\n,2,THRU,900", [0.0, 150.0, 90.0]);
 }
 
 #[test]
 fn accel1_takes_its_direction_in_a_system_its_factor_from_load_and_mass_from_wtmass_and_conm2() {
-    // The system's first axis is basic y, its second basic -x.
+    // The first axis of the system is basic y, the second is basic -x.
     let turned = "CORD2R,9,,0.,0.,0.,0.,0.,1.\n,0.,1.,0.\n";
     moves(
         "",
@@ -68,18 +69,18 @@ fn accel1_takes_its_direction_in_a_system_its_factor_from_load_and_mass_from_wtm
 
 #[test]
 fn accel_varies_along_an_axis_and_stays_even_beyond_its_last_locations() {
-    // Without an axis it is the field of GRAV; grid 1 has 10 kg.
+    // Without an axis, ACCEL equals the field of GRAV. Grid 1 has 10 kg.
     moves("", "ACCEL,5,,6.,0.,0.", [60.0, 150.0, 90.0]);
-    // Factors at x = 1, 3, 6: 1, 1.5, 2.
+    // The factors at x = 1, 3 and 6 are 1, 1.5 and 2.
     moves(
         "",
         "ACCEL,5,,4.,0.,0.,X\n,1.,1.,5.,2.",
         [40.0, 150.0, 120.0],
     );
-    // The third axis of the system is basic x; locations count from its origin at x = 2.
+    // The third axis of the system is basic x. Locations are measured from its origin at x = 2.
     let turned = "CORD2R,9,,2.,0.,0.,3.,0.,0.\n,2.,1.,0.\n";
     let varied = format!("{turned}ACCEL,5,9,0.,0.,2.,Z\n,-1.,0.,3.,4.");
-    // 2 (x - 1) at x = 3 and 6, where the last factor holds from x = 5 on.
+    // The acceleration is 2 (x - 1) at x = 3 and 6. From x = 5 on, the last factor applies.
     moves("", &varied, [0.0, 100.0, 120.0]);
 }
 
@@ -92,7 +93,7 @@ fn accel_without_table_equals_grav() {
 
 #[test]
 fn rforce1_turns_the_structure_as_rforce_does() {
-    // 3 rev/s about z through grid 1: m w^2 r at r = 2 and 5.
+    // 3 rev/s about z through grid 1 give the force m w^2 r at r = 2 and 5.
     let w = 3.0 * std::f64::consts::TAU;
     let (f2, f3) = (25.0 * w * w * 2.0, 15.0 * w * w * 5.0);
     for card in ["RFORCE1", "RFORCE"] {
@@ -112,7 +113,8 @@ fn rotations_that_ask_for_more_are_refused_by_their_name() {
     assert_eq!(of("RFORCE,5,1,,3.,0.,0.,1.\n,,,8"), ["RFORCE with IDRF 5"]);
 }
 
-/// 10 kg that are 1 further out along x and 2 above grid 3, with products of inertia: force m w^2 r, moment h F + w^2 I31 about y.
+/// 10 kg at grid 3 with the offset 1 along x and 2 along z, and with products of inertia. The force is m w^2 r. The
+/// moment about y is h F + w^2 I31.
 const OFF_GRID: &str = "CONM2,70,3,,10.,1.,0.,2.\n,7.,.4,8.,.6,.3,9.\n";
 
 #[test]
@@ -142,7 +144,7 @@ fn method_2_is_refused_with_mass_at_an_offset_and_other_methods_are_faults() {
             of(&format!("{mass}RFORCE,5,1,,3.,0.,0.,1.,2")),
             [format!("RFORCE {why}")]
         );
-        // The default of RFORCE1.
+        // RFORCE1 takes the same method by default.
         assert_eq!(
             of(&format!("{mass}RFORCE1,5,1,,3.,0.,0.,1.")),
             [format!("RFORCE1 {why}")]

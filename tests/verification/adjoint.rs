@@ -1,4 +1,4 @@
-//! Sensitivity of strain to the stiffness of some shells, against solutions of the changed model.
+//! Compares the sensitivity of strain to the stiffness of some shells with solutions of the changed model.
 
 use crate::mesh::Bulk;
 use strainbridge::fe::shell_frame::ShellPlace;
@@ -6,7 +6,7 @@ use strainbridge::fe::strain_tensor::Surface;
 use strainbridge::fe::*;
 use strainbridge::model::{MaterialIx, MaterialKind, Model, ShellIx, ShellKind, ShellPropertyIx};
 
-/// A tray: floor and a side wall, a triangle more, a mass on an RBE3.
+/// Returns a tray: a floor, a side wall, one triangle, and a mass on an RBE3.
 pub fn tray() -> Bulk {
     let mut b = Bulk::default();
     b.card("MAT1,1,210000.,,.3,7.85-9");
@@ -31,7 +31,7 @@ pub fn tray() -> Bulk {
     b
 }
 
-/// The model with the moduli of some shells times a factor.
+/// Returns the model with the moduli of some shells multiplied by a factor.
 pub fn scale_moduli(model: &Model, shells: &[usize], factor: f64) -> Model {
     let mut out = model.clone();
     let mut material = out.materials[0];
@@ -109,7 +109,7 @@ fn the_adjoint_change_is_the_slope_of_solutions_with_some_shells_softer_free_and
             ShellPlace::Corner(2),
             [0.3, 0.7, 0.4],
         )],
-        // A half bridge: two arms; a triangle.
+        // A half bridge with two arms, then a triangle.
         vec![
             term(30, Surface::Top, ShellPlace::Centre, [0.0, 1.0, 0.0]),
             term(31, Surface::Bottom, ShellPlace::Centre, [0.0, -1.0, 0.0]),
@@ -150,7 +150,7 @@ fn the_adjoint_change_is_the_slope_of_solutions_with_some_shells_softer_free_and
                     worst = worst.max((slope - change[r * loads.len() + l]).abs());
                 }
             }
-            // Central differences err by the square of the step.
+            // The error of central differences is of second order in the step.
             assert!(
                 largest > 1e-9 && worst < 1e-5 * largest,
                 "{set:?} {support:?}: {worst:e} of {largest:e}"
@@ -162,7 +162,7 @@ fn the_adjoint_change_is_the_slope_of_solutions_with_some_shells_softer_free_and
 #[test]
 fn a_mesh_divided_in_part_carries_even_strain_exactly() {
     let mut b = Bulk::shell(210_000.0, 0.3, 2.0);
-    // Skewed quadrilaterals of a rectangle.
+    // A rectangle of skewed quadrilaterals.
     let ids = b.patch(6, 5, |u, v| {
         let (x, y) = (300.0 * u, 200.0 * v);
         let inside = u > 0.0 && u < 1.0 && v > 0.0 && v < 1.0;
@@ -176,7 +176,7 @@ fn a_mesh_divided_in_part_carries_even_strain_exactly() {
     b.hold("1", ids[0].iter().copied());
     b.hold("2", [ids[0][0]]);
     b.hold("3456", ids.iter().flatten().copied());
-    // 10 N/mm along the far edge: half a share at its ends.
+    // 10 N/mm along the far edge. The end grids take half a share.
     for (j, grid) in ids[6].iter().enumerate() {
         let share = if j == 0 || j == 5 { 0.5 } else { 1.0 };
         b.force(*grid, [10.0 * 40.0 * share, 0.0, 0.0]);
@@ -196,7 +196,7 @@ fn a_mesh_divided_in_part_carries_even_strain_exactly() {
         relief: Relief::None,
     };
     let (solution, _) = solve_cases(&fine.model, &[case], &SolveOptions::default()).unwrap();
-    // Plane stress: exx = N / (E t), eyy = -nu exx; 1e-9: rounding of the factor.
+    // Plane stress: exx = N / (E t), eyy = -nu exx. The limit 1e-9 is the rounding error of the factor.
     let exx = 10.0 / (210_000.0 * 2.0);
     for (i, centre) in solution.cases[0].shells.centre.iter().enumerate() {
         let trace = centre[0][0] + centre[0][1];

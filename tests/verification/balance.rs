@@ -1,12 +1,14 @@
-//! What holds a structure, and whether it balances what acts: dofs next to no stiffness, springs of negative stiffness, springs to ground,
-//! scalar points; against closed forms, the same structure modelled otherwise, and the balance of forces.
+//! Tests how a structure is supported and whether reactions balance the loads.
+//!
+//! The cases are dofs with almost no stiffness, springs of negative stiffness, springs to ground and scalar points. The
+//! references are closed forms, the same structure modelled in another way, and the balance of forces.
 
 use crate::mesh::{Bulk, assert_near};
 use strainbridge::fe::*;
 use strainbridge::finding::Severity;
 
 const E: f64 = 210_000.0;
-/// Second moment of the bar's section in both planes.
+/// Second moment of area of the section of the bar in both planes.
 const I: f64 = 9000.0;
 
 fn case(relief: Relief) -> LoadCase {
@@ -34,7 +36,7 @@ fn solve_without_relief(b: &Bulk) -> (Solution, SolveReport) {
     answer(b, case(Relief::None)).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Bars of 500 along x, grids 1 to n + 1.
+/// Returns `n` bars of length 500 along x with the grids 1 to n + 1.
 fn bar(n: u32) -> Bulk {
     let mut b = Bulk::default();
     b.card("MAT1,1,210000.,,.3,7.85-9\nPBAR,2,1,200.,9000.,9000.,18000.");
@@ -53,7 +55,7 @@ fn cantilever(n: u32) -> Bulk {
     b
 }
 
-/// Stiffness of the tip of a cantilever of 500 across it.
+/// Returns the lateral stiffness at the tip of a cantilever of length 500.
 fn tip_stiffness() -> f64 {
     3.0 * E * I / 500.0_f64.powi(3)
 }
@@ -62,11 +64,11 @@ fn codes(s: &Solution) -> Vec<(&str, Severity)> {
     s.findings.iter().map(|f| (f.code, f.severity)).collect()
 }
 
-/// Reactions and loads sum to zero.
+/// Fails if reactions and loads do not sum to zero.
 #[track_caller]
 fn assert_reactions_balance(report: &SolveReport) {
     let r = &report.reactions[0];
-    // Rounding of a few dozen unknowns.
+    // Rounding error of a few dozen unknowns.
     assert!(r.residual < 1e-9, "{r:?}");
     assert!(
         (0..3).all(|i| (r.total[i] + r.applied[i]).abs() < 1e-6),
@@ -77,7 +79,7 @@ fn assert_reactions_balance(report: &SolveReport) {
 #[test]
 fn a_load_that_autospc_takes_beside_a_far_stiffer_spring_is_an_error_and_without_autospc_the_answer_is_right()
  {
-    // The middle grid's bending stiffness, hundreds of N/mm, is under 1e-8 of the spring along x.
+    // The bending stiffness of the middle grid is hundreds of N/mm. That is less than 1e-8 of the spring along x.
     let deck = |param: &str| {
         let mut b = cantilever(2);
         b.card("GRID,4,,500.,50.,0.\nGRID,5,,500.,100.,0.\nCBAR,3,2,4,5,1.,0.,0.");
@@ -94,7 +96,7 @@ fn a_load_that_autospc_takes_beside_a_far_stiffer_spring_is_an_error_and_without
     );
     let (solution, report) = solve_without_relief(&deck("PARAM,AUTOSPC,NO"));
     let expected = 100.0 * 1000.0_f64.powi(3) / (3.0 * E * I);
-    // The strut's spring leaves five digits of the softest terms beside it.
+    // The stiff spring of the strut leaves only five digits of the softest terms.
     assert_near("tip", solution.cases[0].displacement[2][1], expected, 1e-4);
     assert!(
         codes(&solution).iter().all(|c| c.0 != "autospc-holds-load"),
@@ -104,7 +106,8 @@ fn a_load_that_autospc_takes_beside_a_far_stiffer_spring_is_an_error_and_without
     assert!(report.reactions[0].residual < 1e-4);
 }
 
-/// A plate of 2 x 2 elements of 10 without drilling stiffness, held along its first side, about an axis along x by `angle`.
+/// Returns a plate of 2 x 2 elements with side 10, without drilling stiffness, fixed along its first side. The plate is
+/// rotated by `angle` about an axis along x.
 fn plate(angle: f64) -> (Bulk, Vec<Vec<u32>>) {
     let mut b = Bulk::shell(E, 0.3, 1.0);
     b.card("PARAM,K6ROT,0.");
@@ -130,7 +133,7 @@ fn a_moment_about_the_normal_of_a_flat_shell_is_refused_in_any_displacement_fram
     let corner = ids[2][2];
     b.card(&format!("MOMENT,1,{corner},0,100.,0.,0.,1."));
     refused(&b, "basic");
-    // The same in a displacement frame turned about the normal.
+    // The same moment at a grid with a displacement frame that is turned about the normal.
     let turned = b.text.replace(
         &format!("GRID*   {corner:16}"),
         &format!("$ GRID*   {corner:16}"),
@@ -146,7 +149,7 @@ fn a_moment_about_the_normal_of_a_flat_shell_is_refused_in_any_displacement_fram
     cd.card(&format!("GRID,{corner},,20.,20.,0.,3"));
     cd.card("CORD2R,3,0,0.,0.,0.,0.,0.,1.\n,.8,.6,0.");
     refused(&cd, "CD");
-    // Through an RBE2: a moment, and a force beside the grid that has one.
+    // Loads that reach the corner through an RBE2: a moment, and a force that has an offset from the corner.
     for (x, load) in [
         ("20.,20.,30.", "MOMENT,1,400,0,100.,0.,0.,1."),
         ("20.,30.,0.", "FORCE,1,400,0,100.,1.,0.,0."),
@@ -160,7 +163,8 @@ fn a_moment_about_the_normal_of_a_flat_shell_is_refused_in_any_displacement_fram
 
 #[test]
 fn a_moment_along_a_shell_is_carried_however_the_shell_stands() {
-    // About y of the plate: in the basic frame it has parts along y and z, neither of which is the normal.
+    // A moment about y of the plate. In the basic frame it has components along y and z, and neither of them is the
+    // normal.
     let tip = |angle: f64| {
         let (mut b, ids) = plate(angle);
         let (c, s) = (angle.cos(), angle.sin());
@@ -170,7 +174,7 @@ fn a_moment_along_a_shell_is_carried_however_the_shell_stands() {
     };
     let flat = tip(0.0);
     assert!(flat.abs() > 1e-3);
-    // Nine figures of the direction.
+    // The direction is written with nine digits.
     assert_near("deflection", tip(0.7), flat, 1e-7);
 }
 
@@ -195,7 +199,7 @@ fn a_negative_spring_softens_as_its_closed_form_and_is_named_where_it_outweighs_
             "{k}: {error}"
         );
     }
-    // At a dof that nothing else holds.
+    // The spring acts on a dof that nothing else supports.
     let mut b = cantilever(1);
     b.card("GRID,3,,900.,0.,0.\nSPC1,1,23456,3\nCELAS2,9,-1000.,3,1");
     b.card("FORCE,1,2,0,100.,0.,1.,0.");
@@ -248,7 +252,8 @@ fn a_load_on_a_scalar_point_that_follows_a_grid_is_a_load_on_that_grid() {
             case.mpc = Some(1);
             answer(&b, case).unwrap_or_else(|e| panic!("{e}"))
         };
-        // u of the point is twice that of the grid: so is what its force does there.
+        // The displacement of the scalar point is twice that of the grid. A force of 100 at the point acts as 200 at
+        // the grid.
         let (direct, at_grid) = deck("FORCE,1,2,0,200.,0.,1.,0.");
         let (through, report) = deck("SLOAD,1,900,100.");
         for (a, b) in direct.cases[0]
@@ -294,7 +299,7 @@ fn springs_and_equations_that_hold_the_structure_to_ground_unseen_are_told() {
         let (solution, _) = answer(&b, case).unwrap_or_else(|e| panic!("{e}"));
         solution.findings
     };
-    // Forces along x at two ends 80 apart in z: their moment is on no support.
+    // The spring pulls along x at two ends that are 80 apart in z. No support reports the moment of these forces.
     let findings = told("CELAS2,9,1000.,2,1,3,1", None);
     let f = findings
         .iter()
@@ -302,7 +307,8 @@ fn springs_and_equations_that_hold_the_structure_to_ground_unseen_are_told() {
         .unwrap_or_else(|| panic!("{findings:?}"));
     assert_eq!(f.severity, Severity::Warning);
     assert!(f.message.contains("CELAS 9"), "{f:?}");
-    // The bar's end moves along as it turns: nothing balances the force that the equation takes.
+    // The equation couples the rotation of the bar's end to its displacement. Nothing balances the force of the
+    // equation.
     let findings = told("MPC,1,2,1,1.,2,5,1000.", Some(1));
     let f = findings
         .iter()
@@ -310,7 +316,7 @@ fn springs_and_equations_that_hold_the_structure_to_ground_unseen_are_told() {
         .unwrap_or_else(|| panic!("{findings:?}"));
     assert_eq!(f.severity, Severity::Warning);
     assert!(f.message.contains("MPC"), "{f:?}");
-    // Along the line between its ends a spring leaves nothing.
+    // A spring along the line between its ends leaves no moment.
     assert!(told("CELAS2,9,1000.,2,3,3,3", None).is_empty());
 }
 
@@ -328,7 +334,8 @@ fn supports_that_all_move_alike_strain_nothing_and_are_not_said_to_lose_a_load()
     );
 }
 
-/// Two bars end to end, every dof joined by a spring, or by two of twice its stiffness with a scalar point between them.
+/// Two bars end to end. A spring joins every dof, or two springs of twice its stiffness with a scalar point between
+/// them.
 #[test]
 fn springs_in_series_tie_a_free_structure_to_no_ground() {
     let joined = |between: &dyn Fn(usize) -> String| {
@@ -357,7 +364,7 @@ fn springs_in_series_tie_a_free_structure_to_no_ground() {
     let (a, b) = (&direct.cases[0].displacement, &series.cases[0].displacement);
     for (a, b) in a.iter().take(5).zip(b) {
         for (dof, (a, b)) in a.iter().zip(b).enumerate() {
-            // Rotations are of the order of displacements over the length.
+            // Rotations are of the order of the displacements divided by the length.
             let scale = if dof < 3 { 1.0 } else { 1e-3 };
             assert!((a - b).abs() < 1e-7 * scale, "{a} {b}");
         }

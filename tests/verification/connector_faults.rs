@@ -1,11 +1,11 @@
-//! Connectors that say something that makes no connector, and what is told of those that do.
+//! Tests connector cards that are faulty, and the messages about them.
 
 use crate::connectors::plates;
 use crate::mesh::{Bulk, assert_near};
 use strainbridge::fe::*;
 use strainbridge::model::{FaultWeight, ModelFault};
 
-/// Faults of weight error: card, field, sentence.
+/// Returns the faults of weight error: card, field, message.
 fn faults(b: &Bulk) -> Vec<(String, &'static str, String)> {
     let of = |f: ModelFault| (f.card.clone(), f.field, format!("{f}: {}", f.remedy()));
     let (_, faults) = b.read_model();
@@ -25,7 +25,7 @@ fn a_connector_from_a_patch_or_grid_to_itself_is_a_fault() {
             "CWELD,500,7,101,GRIDID,,,,,\n,12,17,18,13,,,,,\n,12,17,18,13",
             "one patch",
         ),
-        // The same corners from another one on, and three of the four.
+        // The same corners with another first corner, then three of the four corners.
         (
             "CWELD,500,7,101,GRIDID,,,,,\n,12,17,18,13,,,,,\n,17,18,13,12",
             "one patch",
@@ -176,7 +176,7 @@ fn an_spc_set_that_no_case_selects_does_not_choose_which_end_of_a_rigid_bush_fol
         let mut b = Bulk::default();
         b.card("MAT1,1,210000.,,.3\nPBAR,2,1,200.,9000.,9000.,18000.");
         b.card("GRID,1,,0.,0.,0.\nGRID,2,,500.,0.,0.\nGRID,3,,500.,80.,0.\nGRID,4,,600.,80.,0.");
-        // Grid 3 follows 4 by the rigid element: of the bush's ends, 2 is the one that may follow.
+        // Grid 3 depends on grid 4 through the rigid element. Only end 2 of the bush can become dependent.
         b.card("CBAR,1,2,1,2,0.,1.,0.\nRBE2,90,4,123456,3\nSPC1,1,123456,1");
         b.card("FORCE,1,4,0,100.,1.,0.,0.\nCBUSH,5,7,2,3,,,,0");
         b.card("PBUSH,7,K,RIGID,RIGID,RIGID,RIGID,RIGID,RIGID");
@@ -186,7 +186,7 @@ fn an_spc_set_that_no_case_selects_does_not_choose_which_end_of_a_rigid_bush_fol
         b.solve().displacement_at(4)
     };
     let plain = deck("$");
-    // Axial, and the moment of the force 80 above the bar.
+    // Axial force, and the moment of the force with an arm of 80 above the bar.
     let turn = 100.0 * 80.0 * 500.0 / (210_000.0 * 9000.0);
     assert_near("turn", plain[5], -turn, 1e-9);
     for card in ["SPC1,2,3,2", "MPC,2,2,3,1.,1,3,-1."] {
@@ -196,7 +196,7 @@ fn an_spc_set_that_no_case_selects_does_not_choose_which_end_of_a_rigid_bush_fol
 
 #[test]
 fn sheets_at_an_angle_are_told_where_their_corners_are_named_too() {
-    // An upper patch that leans by 45 degrees about y.
+    // The upper patch is inclined by 45 degrees about y.
     let mut b = plates(
         "CWELD,500,7,101,GRIDID,,,,,\n,12,17,18,13,,,,,\n,201,202,203,204",
         LOAD,

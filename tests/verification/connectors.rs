@@ -1,5 +1,7 @@
-//! CWELD and CFAST in every format that is carried: two plates that a connector alone joins, against the closed forms of a round
-//! cantilever and of springs; the tie against fields whose slopes are known.
+//! Tests CWELD and CFAST in every supported format.
+//!
+//! A connector alone joins two plates. The references are the closed forms of a round cantilever and of springs. The
+//! tie is compared with fields of known slope.
 
 use crate::mesh::{Bulk, Solved};
 use strainbridge::fe::*;
@@ -8,14 +10,16 @@ use strainbridge::model::FaultWeight;
 const E: f64 = 210_000.0;
 const NU: f64 = 0.3;
 const G: f64 = E / (2.0 + 2.0 * NU);
-/// Diameter of the weld, distance of the plates.
+/// Diameter D of the weld and distance GAP of the plates.
 const D: f64 = 6.0;
 const GAP: f64 = 10.0;
-/// Where the connector stands, off the middles of elements.
+/// Position of the connector, away from the middle of every element.
 const AT: [f64; 2] = [21.0, 17.5];
 
-/// Two plates 40 x 40, 2 thick, property 1 at z = 0 (elements 1 to 16) and 2 at z = GAP (17 to 32), 10 a side; the lower one is held.
-/// GS 101 between, GA 102 and GB 103 on the plates. Load set 1 acts at GB.
+/// Returns two plates 40 x 40, 2 thick, with elements of side 10. The lower one is fixed.
+///
+/// Property 1 is at z = 0 (elements 1 to 16), property 2 at z = GAP (elements 17 to 32). Grid GS 101 is between the
+/// plates, GA 102 and GB 103 are on the plates. Load set 1 acts at GB.
 pub fn plates(connector: &str, load: &str) -> Bulk {
     let mut b = Bulk::shell(E, NU, 2.0);
     b.card(&format!("PSHELL,2,1,2.,1,,1\nPWELD,7,1,{D:?}"));
@@ -62,9 +66,10 @@ fn solve_without_faults(b: &Bulk) -> Solved {
     b.solve()
 }
 
-/// The formats, all with GA and GB, which follow the patches.
+/// Returns the formats, all with GA and GB, which depend on the patches.
 fn formats() -> Vec<(&'static str, String)> {
-    // The connector is over element 10 (x 20 to 30, y 10 to 20), corners 12 17 18 13; the upper ones have 25 more.
+    // The connector is over element 10 (x 20 to 30, y 10 to 20) with the corners 12 17 18 13. The upper corner ids are
+    // larger by 25.
     let card = |rest: &str| format!("CWELD,500,7,101,{rest}");
     vec![
         (
@@ -84,7 +89,7 @@ fn a_weld_of_each_format_bends_stretches_and_twists_as_a_round_cantilever() {
     let l = GAP;
     let p = 100.0;
     let shear = p * l / (0.9 * G * area);
-    // Load at the free end, dof there, closed form.
+    // Load at the free end, dof of the displacement there, closed form.
     let cases = [
         ("FORCE,1,103,0,100.,0.,0.,1.", 2, p * l / (E * area)),
         (
@@ -105,7 +110,7 @@ fn a_weld_of_each_format_bends_stretches_and_twists_as_a_round_cantilever() {
         for (load, dof, expected) in &cases {
             let s = solve_without_faults(&plates(&card, load));
             let got = s.displacement_at(103)[*dof];
-            // Rounding: the plates are softer than the weld by three powers of ten.
+            // Rounding error: the plates are 1000 times softer than the weld.
             assert!(
                 (got - expected).abs() < 1e-7 * expected,
                 "{format}, {load}: {got:e} for {expected:e}"
@@ -129,7 +134,7 @@ fn a_weld_between_two_grids_or_from_a_patch_to_a_grid_is_the_same_cantilever() {
         "CWELD,500,7,,GRIDID,102,103,,,\n,12,17,18,13",
     ] {
         let mut b = plates(card, load);
-        // The upper plate hangs on nothing else.
+        // Nothing else supports the upper plate.
         b.card("SPC1,1,123456,26,THRU,50");
         let got = solve_without_faults(&b).displacement_at(103)[3];
         assert!(
@@ -148,7 +153,7 @@ fn a_spot_weld_and_a_short_one_count_with_their_effective_length() {
         b.card(property);
         solve_without_faults(&b).displacement_at(103)[2]
     };
-    // SPOT: half the sum of the plates, 2. LDMIN 3: 18. LDMAX 1: 6.
+    // SPOT gives half the sum of the thicknesses, 2. LDMIN 3 gives 18. LDMAX 1 gives 6.
     for (property, length) in [
         (format!("PWELD,8,1,{D:?},,,,,SPOT"), 2.0),
         (format!("PWELD,8,1,{D:?},,,,,,\n,3.,9."), 18.0),
@@ -166,7 +171,7 @@ fn a_spot_weld_and_a_short_one_count_with_their_effective_length() {
 fn a_fastener_gives_way_by_its_springs_at_the_middle_between_its_ends() {
     let property = "PFAST,9,6.,,,5000.,2000.,2000.,40000.,\n,80000.,80000.,.25";
     let p = 100.0;
-    // Across: the spring, and the turn of the arm of half the length that its own moment makes.
+    // Lateral displacement: the spring, and the rotation of the arm of half the length under the moment of the force.
     let across = p / 2000.0 + p * GAP * GAP / 4.0 / 80_000.0;
     let cases = [
         ("FORCE,1,103,0,100.,0.,0.,1.", 2, p / 5000.0),
@@ -190,7 +195,7 @@ fn a_fastener_gives_way_by_its_springs_at_the_middle_between_its_ends() {
             );
         }
     }
-    // Its mass is there, half on each plate: .25 in all, in the middle of its length.
+    // The mass is half on each plate: .25 in total, with its centre in the middle of the length.
     let mut b = plates("CFAST,500,9,PROP,1,2,101", "");
     b.card(property);
     let (with, without) = (b.model().weight(), plates("", "").model().weight());
@@ -205,10 +210,10 @@ fn a_fastener_gives_way_by_its_springs_at_the_middle_between_its_ends() {
 
 #[test]
 fn the_axes_of_a_fastener_are_those_of_mcid_where_mflag_says_so() {
-    // KT1 along basic x of system 5, 5000; the plates' normal is its third axis.
+    // KT1 = 5000 acts along basic x of system 5. The third axis of the system is the normal of the plates.
     let cards = "CORD2R,5,0,0.,0.,0.,0.,0.,1.,\n,0.,1.,0.\nPFAST,9,6.,5,1,5000.,2000.,1000.,90000.,\n,90000.,90000.";
     let bend = 100.0 * GAP * GAP / 4.0 / 90_000.0;
-    // x of system 5 is basic y.
+    // The x axis of system 5 is basic y.
     for (load, dof, expected) in [
         ("FORCE,1,103,0,100.,0.,1.,0.", 1, 100.0 / 5000.0 + bend),
         ("FORCE,1,103,0,100.,1.,0.,0.", 0, 100.0 / 2000.0 + bend),
@@ -222,7 +227,7 @@ fn the_axes_of_a_fastener_are_those_of_mcid_where_mflag_says_so() {
             "{load}: {got:e} for {expected:e}"
         );
     }
-    // How MCID turns it about its own axis (MFLAG 0) is refused where it matters.
+    // MFLAG 0 with an MCID rotated about the axis of the connector is refused if it changes the result.
     let mut b = plates("CFAST,500,9,PROP,1,2,101,102,103", "");
     b.card(&cards.replace("9,6.,5,1,", "9,6.,5,0,"));
     assert!(
@@ -232,8 +237,10 @@ fn the_axes_of_a_fastener_are_those_of_mcid_where_mflag_says_so() {
     );
 }
 
-/// u = 1 + 2x + 3y + .1xy and so on by component, enforced on the lower plate: at GA the translation is the field, the rotation half
-/// its curl, whether slopes or auxiliary points make it (the square about GA lies within one element).
+/// Fields such as u = 1 + 2x + 3y + .1xy are enforced on the lower plate, one for each component.
+///
+/// At GA the translation equals the field and the rotation equals half its curl. This holds for ties by slopes and for
+/// ties by auxiliary points, because the square about GA is within one element.
 #[test]
 fn a_piercing_grid_moves_and_turns_with_the_field_of_its_patch() {
     let field = |x: f64, y: f64| {
@@ -260,7 +267,7 @@ fn a_piercing_grid_moves_and_turns_with_the_field_of_its_patch() {
             }
         }
         b.card("FORCE,1,103,0,0.,0.,0.,1.");
-        // The lower plate is held already: SPC adds the values.
+        // SPC cards add their values, and the lower plate is fixed already.
         let s = solve_without_faults(&b);
         let (x, y) = (AT[0], AT[1]);
         let u = field(x, y);
@@ -280,7 +287,7 @@ fn a_piercing_grid_moves_and_turns_with_the_field_of_its_patch() {
         ];
         let got = s.displacement_at(102);
         for (k, (a, e)) in got.iter().zip(expected).enumerate() {
-            // Values are written with eight figures.
+            // Values are written with eight digits.
             assert!(
                 (a - e).abs() < 2e-7 * e.abs().max(1e-4),
                 "{format}, dof {}: {a:e} for {e:e}",
@@ -340,7 +347,8 @@ fn what_a_connector_does_in_silence_is_a_finding() {
             .collect()
     };
     let push = "FORCE,1,40,0,1.,0.,0.,-1.";
-    // Element 10 and its neighbours reach from 10 to 40 and from 0 to 30: a square of 53 about (21, 17.5) fits after two halvings.
+    // Element 10 and its neighbours cover x from 10 to 40 and y from 0 to 30. A square of 53 about (21, 17.5) fits
+    // after two halvings.
     let wide = plates(
         "CWELD,500,8,101,ELPAT,,,,,\n,10,26",
         &format!("PWELD,8,1,60.\n{push}"),
@@ -352,7 +360,7 @@ fn what_a_connector_does_in_silence_is_a_finding() {
     );
     let narrow = plates("CWELD,500,7,101,ELPAT,,,,,\n,10,26", push);
     assert!(codes(&narrow).is_empty());
-    // The upper plate at a slope of 1 in 2, 27 degrees.
+    // The slope of the upper plate is 1 in 2, which is 27 degrees.
     let mut tilted = plates("CWELD,500,7,101,PARTPAT,,,,,\n,1,2", push);
     let lines = tilted
         .text
@@ -387,7 +395,7 @@ fn faults_name_the_card_of_a_connector_and_its_point_counts_as_used() {
     );
     let (_, all) = plates("CWELD,500,7,101,ELPAT,102,103,,,\n,10,26", "").read_model();
     assert!(all.is_empty(), "{all:?}");
-    // A field is that of its own side.
+    // The message must give the field of the side that is wrong.
     for (card, field) in [
         ("CWELD,500,7,101,ELPAT,,,,,\n,10,99", "SHIDB"),
         ("CWELD,500,7,101,ELPAT,,,,,\n,99,10", "SHIDA"),
@@ -402,7 +410,8 @@ fn faults_name_the_card_of_a_connector_and_its_point_counts_as_used() {
 
 #[test]
 fn the_formats_agree_where_a_lap_joint_of_two_plates_is_pulled() {
-    // Patches of one element and of a circle of the weld's size are different idealisations: the stretch of the joint agrees roughly.
+    // A patch of one element and a circle of the weld's size are different idealisations. The stretch of the joint
+    // agrees only roughly.
     let stretch: Vec<f64> = formats()
         .into_iter()
         .map(|(_, card)| {
@@ -422,8 +431,10 @@ fn the_formats_agree_where_a_lap_joint_of_two_plates_is_pulled() {
     }
 }
 
-/// The deck that a manual would have a user write instead: auxiliary grids tied by RBE3 with the shape functions as weights, the ends by
-/// RBE3 over them, a round bar between.
+/// The equivalent deck written out by hand.
+///
+/// RBE3 elements with the shape functions as weights tie auxiliary grids, and further RBE3 elements tie the ends to
+/// those grids. A round bar is between the ends.
 #[test]
 fn a_weld_on_a_property_is_the_deck_that_spells_its_ties_out() {
     let load = "FORCE,1,50,0,100.,.3,-.5,1.\nMOMENT,1,46,0,70.,1.,.2,.4";
@@ -439,7 +450,7 @@ fn a_weld_on_a_property_is_the_deck_that_spells_its_ties_out() {
                 "GRID*   {id:16}{:16}{x:16.9}{y:16.9}\n*       {z:16.9}",
                 ""
             ));
-            // The element under it, and its bilinear functions.
+            // The element below the auxiliary grid and its bilinear shape functions.
             let (i, j) = ((x / 10.0).floor(), (y / 10.0).floor());
             let (r, s) = (x / 10.0 - i, y / 10.0 - j);
             let g = 25 * side + (5.0 * i + j) as u32 + 1;
@@ -454,7 +465,7 @@ fn a_weld_on_a_property_is_the_deck_that_spells_its_ties_out() {
                 .map(|(g, w)| format!("{w:.12},123,{g}"))
                 .collect();
             let all: Vec<&str> = fields.iter().flat_map(|f| f.split(',')).collect();
-            // Four fields stand before the first weight; eight a line.
+            // Four fields precede the first weight. A line has eight fields.
             let (first, rest) = all.split_at(4);
             let lines: Vec<String> = rest
                 .chunks(8)
@@ -485,14 +496,14 @@ fn a_weld_on_a_property_is_the_deck_that_spells_its_ties_out() {
         let (a, e) = (weld.displacement_at(id), spelt.displacement_at(id));
         let size = spelt.displacement_at(50)[2].abs();
         for k in 0..3 {
-            // Weights are written with twelve figures, places with nine.
+            // Weights are written with twelve digits, positions with nine.
             assert!((a[k] - e[k]).abs() < 1e-6 * size, "grid {id}: {a:?} {e:?}");
         }
     }
 }
 
 impl Bulk {
-    /// What stops a solution, in words.
+    /// Returns the messages of the faults that prevent a solution.
     pub fn faults(&self) -> Vec<String> {
         self.read_model()
             .1
@@ -524,7 +535,7 @@ fn decks_with_connectors_solve_from_cards_and_are_told_as_formulation() {
         "{:?}",
         solution.findings
     );
-    // What acts arrives at the support: the tie neither takes nor gives force or moment.
+    // The support takes exactly the applied load, so the tie adds neither force nor moment.
     let r = &report.reactions[0];
     for i in 0..6 {
         assert!(

@@ -1,10 +1,10 @@
-//! PARAM,COUPMASS: consistent mass of shells and beams against closed forms.
+//! Compares the consistent mass of shells and beams (PARAM,COUPMASS) with closed forms.
 
 use crate::mesh::{Bulk, assert_near, free_modes, mass_of};
 
 #[test]
 fn the_coupled_mass_of_one_plate_turns_as_the_plate_itself() {
-    // Exact for rigid motions: m (a^2 + b^2) / 12 about its centre, which four lumped corners exceed threefold.
+    // Rigid motions are exact: m (a^2 + b^2) / 12 about the centre. Four lumped corner masses give three times as much.
     let (a, b, t, rho) = (30.0, 20.0, 2.0, 7.85e-9);
     let mut bulk = Bulk::default();
     bulk.card("PARAM,COUPMASS,1");
@@ -38,7 +38,7 @@ fn triangles_and_offsets_keep_mass_and_centre() {
     assert_near("x", p.cg.x, 10.0, 1e-9);
     assert_near("y", p.cg.y, 20.0, 1e-9);
     assert_near("z", p.cg.z, 4.0, 1e-9);
-    // A triangle about an axis through its centroid, along a side: m h^2 / 18.
+    // A triangle about an axis through its centroid and parallel to a side: m h^2 / 18.
     assert_near("inertia", p.matrix[(3, 3)], m * 60.0 * 60.0 / 18.0, 1e-9);
 }
 
@@ -56,7 +56,7 @@ fn eight_beams_with_coupled_mass_have_the_first_frequencies_of_the_free_beam() {
         b.card(&format!("CBAR,{},2,{},{},0.,1.,0.", i + 1, g[i], g[i + 1]));
     }
     let modes = free_modes(&b.model(), None, 3).modes;
-    // Euler: (k L)^2 / L^2 sqrt(E I / (rho A)) / 2 pi with k L = 4.73004, 7.8532.
+    // Euler: f = (k L)^2 / L^2 sqrt(E I / (rho A)) / 2 pi with k L = 4.73004, 7.8532.
     let exact = |kl: f64, i: f64| {
         kl * kl / (2000.0_f64 * 2000.0) * (210_000.0 * i / (7.85e-9 * 200.0)).sqrt()
             / std::f64::consts::TAU
@@ -67,7 +67,7 @@ fn eight_beams_with_coupled_mass_have_the_first_frequencies_of_the_free_beam() {
         exact(7.8532, 4000.0),
     ];
     for (mode, expected) in modes.iter().zip(expected) {
-        // Consistent mass errs by (k L / n)^4 / 720, on the high side.
+        // A consistent mass gives frequencies that are too high by the share (k L / n)^4 / 720.
         assert_near("frequency", mode.frequency, expected, 2e-3);
         assert!(mode.frequency > 0.9999 * expected);
     }

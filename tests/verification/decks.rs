@@ -1,4 +1,4 @@
-//! Decks of `../shared`, read and turned into models.
+//! Reads decks of `../shared` into models.
 
 use nastran::bdf::{IncludeRequest, LoadedFile, Loader, read_deck};
 use strainbridge::model::Model;
@@ -22,7 +22,7 @@ impl Loader for Files {
     }
 }
 
-/// The model of a deck and its case control; faults of weight error fail the test.
+/// Returns the model of a deck and its case control. Faults of weight error fail the test.
 pub fn model_of(path: &std::path::Path) -> (Model, nastran::bdf::CaseControl) {
     let bytes = std::fs::read(path).unwrap();
     let deck = read_deck(&path.to_string_lossy(), bytes, &mut Files);
@@ -30,7 +30,9 @@ pub fn model_of(path: &std::path::Path) -> (Model, nastran::bdf::CaseControl) {
     (model, deck.case_control)
 }
 
-/// The model of a deck with what its other cards mean (a solver refuses those it does not carry), and its case control.
+/// Returns the model of a deck and its case control, and prints the faults.
+///
+/// The model contains the unsupported cards. A solver refuses them.
 pub fn faulty_model_of(path: &std::path::Path) -> (Model, nastran::bdf::CaseControl) {
     let bytes = std::fs::read(path).unwrap();
     let deck = read_deck(&path.to_string_lossy(), bytes, &mut Files);

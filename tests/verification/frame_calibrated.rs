@@ -1,6 +1,8 @@
-//! The ladder frame calibrated by known loads: the truth is a mesh three times as fine, its rows off besides by 5 % common to a gauge and 2 % more.
+//! Calibrates the ladder frame with known loads.
 //!
-//! Four hundred trials; `STRAINBRIDGE_TRIALS=2000` for as many as it takes to see a per cent of coverage.
+//! The true S comes from a mesh three times as fine. In addition, each gauge has a common error of 5 % and each entry
+//! an error of 2 %. The default is 400 trials. `STRAINBRIDGE_TRIALS=2000` gives enough trials to resolve one per cent
+//! of coverage.
 
 use crate::drawn::draw_normal;
 use crate::frame_refined::{AXLES, CELL, centre, meshes, of_place};
@@ -16,21 +18,23 @@ use strainbridge::sensitivity::{Load, Sensitivity};
 const GAUGES: usize = 12;
 const LOADS: usize = 6;
 const NOISE: f64 = 1e-6;
-/// Newtons at a wheel.
+/// Typical load of a wheel, N.
 const LOAD: f64 = 2e4;
-/// What the truth is off by, as stated: common to a gauge, entry by entry.
+/// Stated relative errors of the true S: common to all entries of a gauge, and of each entry.
 const COMMON: f64 = 0.05;
 const ENTRY: f64 = 0.02;
 
-/// S of twelve gauges along the x axis of their elements, on the coarse mesh and at the same places of the fine one: strain per newton.
-/// Gauges by pivoting: the hottest that the ones before don't explain, six of them and six again.
+/// Returns S of twelve gauges on the coarse mesh and at the same places on the fine mesh, in strain per newton.
+///
+/// The gauges measure along the x axis of their elements. Pivoting selects twice six gauges: each one has the largest
+/// strain that the gauges before it do not explain.
 fn frame() -> (Matrix, Matrix) {
     let [(coarse, a), (fine, b)] = meshes();
     let by_place: HashMap<_, usize> = (0..fine.shells.len())
         .map(|i| (of_place(fine, i), i))
         .collect();
-    // Farther than 200 mm from the patch of each load and from the grid of each point mass, where inertia acts: what a mesh of 40 mm makes of
-    // strain beside a force at one grid has no limit.
+    // The gauge must be more than 200 mm away from the patch of each load and from the grid of each point mass. Inertia
+    // acts at these grids. On a mesh of 40 mm, the strain close to a force at one grid does not converge.
     let is_far = |i: &usize| {
         let c = centre(coarse, &coarse.shells[*i].grids);
         let patches = AXLES.into_iter().all(|axle| {
@@ -71,8 +75,10 @@ fn frame() -> (Matrix, Matrix) {
     (rows(a, &|i| i), rows(b, &same))
 }
 
-/// Errors of the loads of one further run: by the model alone, by the runs alone where they determine S, by both; sigma of the last and
-/// how many of its intervals hold.
+/// Load errors of one further run.
+///
+/// They come from the model alone, from the runs alone if these determine S, and from both. Also sigma of the last
+/// estimate, and the number of its intervals that contain the true load.
 struct Trial {
     model: Vec<f64>,
     runs: Option<Vec<f64>>,
@@ -191,15 +197,16 @@ fn known_loads_and_the_coarse_model_calibrate_together_better_than_either_and_in
             "frame, {m} known runs: error {both:.0} N, stated {sigma:.0}; model alone {alone:.0}, runs alone {runs:.0}; {:.1} % held",
             100.0 * held
         );
-        // No runs alone where they don't determine S: `min` passes over what is no number.
+        // If the runs alone do not determine S, `runs` is NaN and `min` ignores it.
         assert!(both <= 1.02 * alone.min(runs), "{m}: {both} {alone} {runs}");
         assert!(both < before, "{m} runs tell no more than fewer: {both}");
         before = both;
-        // Asked is 95 +- 2 % of 2,000 trials, which hold 93.6, 94.4 and 94.8 %; a standard error of 400 is half a per cent.
+        // The requirement is 95 +- 2 % with 2000 trials, which give 93.6, 94.4 and 94.8 %. With 400 trials the standard
+        // error is half a per cent.
         let apart = if asked < 2000 { 0.03 } else { 0.02 };
         assert!((held - 0.95).abs() <= apart, "{m}: {held}");
-        // Errors fall as the posterior says: a mean square of 400 trials has a standard error of 3.5 % of its root where loads of a trial
-        // go together; three of them.
+        // The root mean square error must equal sigma of the posterior. With 400 trials its standard error is 3.5 % if
+        // the loads of one trial are fully correlated. The limit is three standard errors.
         let apart = 3.0 / (2.0 * asked as f64).sqrt();
         assert!((both / sigma - 1.0).abs() < apart, "{m}: {both} {sigma}");
     }

@@ -1,7 +1,8 @@
 //! The ladder frame of `../shared/benchmarks/frames` (geometry of its docstring, flat, box rails) at two mesh sizes.
 //!
-//! With open C rails the webs bend locally where cross members meet them, which 40 mm elements do not show: medians are 12 % there,
-//! while MYSTRAN agrees with us to 1 % on the same mesh. Closed rails strain as beams do.
+//! The webs of open C rails bend locally at the cross members, and 40 mm elements do not show it. The median difference
+//! there is 12 %, although MYSTRAN and the built-in solver agree within 1 % on the same mesh. Closed rails deform as
+//! beams.
 
 use crate::mesh::Bulk;
 use std::collections::HashMap;
@@ -13,12 +14,12 @@ use strainbridge::model::{GridIx, Model, Vec3};
 pub const CELL: f64 = 40.0;
 pub const AXLES: [i32; 3] = [24, 132, 166];
 
-/// Cells and grids of the frame on a lattice of CELL / k.
+/// Cells and grids of the frame on a lattice with the spacing CELL / k.
 struct Frame {
     bulk: Bulk,
     k: i32,
     grids: HashMap<[i32; 3], u32>,
-    /// Quadrilaterals so far.
+    /// Number of quadrilaterals added until now.
     quads: u32,
 }
 
@@ -34,7 +35,7 @@ impl Frame {
         g
     }
 
-    /// A patch of `na` x `nb` cells of k = 1 from `origin` along `a` and `b`.
+    /// Adds a patch of `na` x `nb` cells of k = 1 from `origin` along `a` and `b`.
     fn patch(
         &mut self,
         origin: [i32; 3],
@@ -106,7 +107,7 @@ impl Frame {
         f
     }
 
-    /// A wheel's grid 200 mm below and 60 mm outboard, on an RBE3 over a patch of the web 240 x 120 mm.
+    /// Adds the grid of a wheel 200 mm below and 60 mm outboard, on an RBE3 over 240 x 120 mm of the web.
     fn wheel(&mut self, axle: i32, right: bool) -> u32 {
         let (k, y) = (self.k, if right { 20 } else { 0 });
         let outboard = if right { 60.0 } else { -60.0 };
@@ -132,7 +133,7 @@ impl Frame {
     }
 }
 
-/// Model, and the strain at element centres under a vertical force at each wheel.
+/// Returns the model, and the strain at the element centres under a vertical force at each wheel.
 fn solve_wheel_loads(k: i32) -> (Model, Solution) {
     let mut frame = Frame::new(k);
     let wheels: Vec<u32> = AXLES
@@ -158,13 +159,15 @@ fn solve_wheel_loads(k: i32) -> (Model, Solution) {
     (model, solution)
 }
 
-/// Meshes of 40 and 13.3 mm, solved once for all tests that ask.
+/// Returns the meshes of 40 and 13.3 mm, which are solved once for all tests.
 pub fn meshes() -> &'static [(Model, Solution); 2] {
     static MESHES: OnceLock<[(Model, Solution); 2]> = OnceLock::new();
     MESHES.get_or_init(|| [solve_wheel_loads(1), solve_wheel_loads(3)])
 }
 
-/// What an element of a coarse mesh and the middle one of the nine in its place have in common: centre and plane.
+/// Returns the centre and plane of an element, as a key.
+///
+/// An element of the coarse mesh and the middle one of the nine fine elements in its place have the same key.
 pub fn of_place(model: &Model, i: usize) -> ([i64; 3], [u8; 3]) {
     let s = &model.shells[i];
     let c = centre(model, &s.grids);
@@ -206,7 +209,7 @@ fn strain_of_a_40_mm_mesh_is_within_2_percent_of_that_of_13_mm_where_it_is_hot()
         let mut hot: Vec<(f64, f64)> = Vec::new();
         for (i, s) in coarse.shells.iter().enumerate() {
             let c = centre(coarse, &s.grids);
-            // Farther than 200 mm from the patch of the load.
+            // The element must be more than 200 mm away from the patch of the load.
             let gap = Vec3::new(
                 ((c.x - x).abs() - 120.0).max(0.0),
                 (c.y - y).abs(),

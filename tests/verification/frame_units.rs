@@ -1,4 +1,5 @@
-//! A truck ladder frame, unit loads with inertia relief, against MYSTRAN (`../shared/nastran/mystran_frame_units`).
+//! Compares unit loads with inertia relief on a truck ladder frame with MYSTRAN
+//! (`../shared/nastran/mystran_frame_units`).
 
 use crate::decks::{find_shared_path, model_of};
 use nastran::results::ResultsFile;
@@ -6,7 +7,7 @@ use strainbridge::fe::from_results::{ReadOptions, solution_from_file};
 use strainbridge::fe::*;
 use strainbridge::model::{Model, RigidKind, Vec3};
 
-/// Grids that the load of a grid spreads over.
+/// Returns the positions of a loaded grid and of the grids over which an RBE3 distributes its load.
 fn footprint(model: &Model, loaded: strainbridge::model::GridIx) -> Vec<Vec3> {
     let mut x = vec![model.grids[loaded.us()].x];
     for r in &model.rigids {

@@ -1,16 +1,16 @@
-//! MATT1: materials at the temperature of their elements, in closed form.
+//! Compares materials at the temperature of their elements (MATT1) with closed forms.
 
 use crate::small_decks::{assert_close, displacement_at, list_refused_cards, model, solve};
 
 const ROUNDING: f64 = 1e-12;
 
-/// A bar of two rods, 2 and 1 long, area .01, along x, pulled by 600; E of the card 1e10.
+/// Bar of two rods along x, 2 and 1 long, area .01, under a force of 600. E on the card is 1e10.
 const ROD: &str = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,3.,0.,0.\nCROD,1,7,1,2\nCROD,2,7,2,3\nPROD,7,5,.01\n\
      FORCE,1,3,,600.,1.,0.,0.\nSPC1,1,123456,1\nSPC1,1,23456,2,3\n";
 const STEEL: &str = "MAT1,5,1.+10,,.3,800.,1.-5,20.\nMATT1,5,9\n";
 const TABLE: &str = "TABLEM1,9\n,0.,1.+10,100.,3.+10,200.,2.+10,ENDT\n";
 
-/// Elongation of both rods where they have these moduli.
+/// Returns the elongation of both rods with these moduli.
 fn rod_elongation(e: [f64; 2]) -> f64 {
     600.0 * (2.0 / e[0] + 1.0 / e[1]) / 0.01
 }
@@ -23,7 +23,7 @@ fn tip(case_control: &str, cards: &str) -> f64 {
 
 #[test]
 fn every_element_has_the_modulus_at_the_mean_temperature_of_its_grids() {
-    // Means 50 and 125: 2e10 and 2.75e10.
+    // The mean temperatures 50 and 125 give 2e10 and 2.75e10.
     let field = "TEMP,3,1,0.,2,100.,3,150.\n";
     let cards = format!("{STEEL}{TABLE}{field}");
     let expected = rod_elongation([2.0e10, 2.75e10]);
@@ -34,7 +34,7 @@ fn every_element_has_the_modulus_at_the_mean_temperature_of_its_grids() {
     ] {
         assert_close(word, tip(word, &cards), expected, ROUNDING);
     }
-    // One temperature everywhere changes the material of all.
+    // A uniform temperature changes the material of all elements.
     let even = format!("{STEEL}{TABLE}TEMPD,3,50.\n");
     assert_close(
         "even",
@@ -42,7 +42,7 @@ fn every_element_has_the_modulus_at_the_mean_temperature_of_its_grids() {
         rod_elongation([2.0e10; 2]),
         ROUNDING,
     );
-    // What the element states goes before its grids.
+    // A temperature stated for the element has priority over the temperatures of its grids.
     let own = format!("{STEEL}{TABLE}TEMPD,3,50.\nTEMPRB,3,2,100.,150.\n");
     let expected = rod_elongation([2.0e10, 2.75e10]);
     assert_close("own", tip("TEMP(MATERIAL) = 3", &own), expected, ROUNDING);
@@ -57,14 +57,14 @@ fn without_temperatures_of_materials_the_values_of_mat1_hold() {
         rod_elongation([1.0e10; 2]),
         ROUNDING,
     );
-    // TEMPERATURE(LOAD) heats: 30 degrees above TREF.
+    // TEMPERATURE(LOAD) heats by 30 degrees above TREF.
     let hot = rod_elongation([1.0e10; 2]) + 1.0e-5 * 30.0 * 3.0;
     assert_close("load", tip("TEMP(LOAD) = 3", &cards), hot, ROUNDING);
 }
 
 #[test]
 fn both_changes_the_material_and_heats() {
-    // Expansion at 50 degrees: 2e-5 by its own table.
+    // The expansion at 50 degrees is 2e-5, from its table.
     let cards = "MAT1,5,1.+10,,.3,800.,1.-5,20.\nMATT1,5,9,,,,10\nTABLEM1,10\n,0.,1.-5,100.,3.-5,ENDT\nTEMPD,3,50.\n";
     let expected = rod_elongation([2.0e10; 2]) + 2.0e-5 * 30.0 * 3.0;
     for word in ["TEMP(BOTH) = 3", "TEMPERATURE = 3"] {
@@ -80,7 +80,7 @@ fn both_changes_the_material_and_heats() {
 #[test]
 fn the_four_tables_give_what_their_formulas_say() {
     for (table, t, e) in [
-        // Linear beyond the ends, the mean at a jump, descending values.
+        // Linear extrapolation beyond the ends, the mean value at a jump, and a descending table.
         ("TABLEM1,9\n,0.,1.+10,100.,3.+10,ENDT\n", -20.0, 0.6e10),
         ("TABLEM1,9\n,0.,1.+10,100.,3.+10,ENDT\n", 150.0, 4.0e10),
         (
@@ -93,7 +93,7 @@ fn the_four_tables_give_what_their_formulas_say() {
             50.0,
             2.0e10,
         ),
-        // z y(x - x1), z y((x - x1) / x2), z sum a_i s^i; z is 1e10.
+        // The formulas are z y(x - x1), z y((x - x1) / x2) and z sum a_i s^i, with z = 1e10.
         ("TABLEM2,9,20.\n,0.,1.,10.,3.,ENDT\n", 25.0, 2.0e10),
         ("TABLEM3,9,20.,2.\n,0.,1.,10.,3.,ENDT\n", 30.0, 2.0e10),
         ("TABLEM4,9,0.,10.,0.,50.\n,1.,2.,3.,ENDT\n", 20.0, 17.0e10),
@@ -109,7 +109,7 @@ fn the_four_tables_give_what_their_formulas_say() {
     }
 }
 
-/// G follows E where MAT1 leaves it blank; density counts in the weight.
+/// G follows E if MAT1 leaves it blank. The hot density enters the weight.
 #[test]
 fn shear_modulus_follows_and_density_weighs() {
     let bar = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCBAR,1,7,1,2,0.,0.,1.\nPBAR,7,5,.01,1.-5,1.-5,2.-5\nMOMENT,1,2,,10.,1.,0.,0.\n\
@@ -118,7 +118,7 @@ fn shear_modulus_follows_and_density_weighs() {
         "SPC = 1\nLOAD = 1\nTEMP(MATERIAL) = 3",
         &format!("{bar}{TABLE}"),
     );
-    // Twist M L / (G J), G = 2e10 / 2.5.
+    // The twist is M L / (G J) with G = 2e10 / 2.5.
     assert_close(
         "twist",
         displacement_at(&solved, 2)[3],
@@ -128,7 +128,7 @@ fn shear_modulus_follows_and_density_weighs() {
     assert_close("mass", solved.0.weight().mass, 850.0 * 0.02, ROUNDING);
 }
 
-/// Plates, solids and panels of one property at several temperatures.
+/// Plates, solids and panels with one property at several temperatures.
 #[test]
 fn shells_and_solids_of_one_property_differ_by_their_temperature() {
     let plates = "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,2.,0.,0.\nGRID,6,,2.,1.,0.\n\
@@ -139,7 +139,7 @@ fn shells_and_solids_of_one_property_differ_by_their_temperature() {
         "SPC = 1\nLOAD = 1\nTEMP(MATERIAL) = 3",
         &format!("{plates}{TABLE}"),
     );
-    // 600 on a section of .01 over 1: 2e10 on the left, 3e10 on the right.
+    // A force of 600 on a section of .01 and a length of 1. E is 2e10 on the left and 3e10 on the right.
     let left = 600.0 / 0.01 / 2.0e10;
     assert_close("left", displacement_at(&solved, 2)[0], left, 1e-11);
     assert_close(
@@ -148,7 +148,7 @@ fn shells_and_solids_of_one_property_differ_by_their_temperature() {
         left + 600.0 / 0.01 / 3.0e10,
         1e-11,
     );
-    // Both properties keep their id.
+    // All copies of the property keep its id.
     let ids: Vec<u32> = solved.0.shell_properties.iter().map(|p| p.id).collect();
     assert_eq!(ids, [7, 7, 7]);
 }
@@ -171,7 +171,7 @@ fn what_no_rule_covers_is_refused_or_a_fault() {
             .1
             .len()
     };
-    // No table, no set, a grid without temperature, E below 0, no MAT1.
+    // No table, no temperature set, a grid without temperature, E below 0, no MAT1.
     assert_eq!(faults(&format!("{STEEL}TEMPD,3,50.")), 1);
     assert_eq!(faults(&format!("{STEEL}{TABLE}TEMPD,4,50.")), 1);
     assert_eq!(faults(&format!("{STEEL}{TABLE}TEMP,3,1,50.")), 1);
@@ -179,7 +179,8 @@ fn what_no_rule_covers_is_refused_or_a_fault() {
     assert_eq!(faults(&format!("{STEEL}{TABLE}TEMPD,3,5.\nMATT1,6,9")), 1);
 }
 
-/// RIGID = LAGRAN lets rigid elements grow with temperature, which the built-in solver does not; the default leaves them as they are.
+/// RIGID = LAGRAN requests rigid elements that expand, which the built-in solver does not support. By default they do
+/// not expand.
 #[test]
 fn rigid_elements_that_would_expand_are_refused() {
     let rigid =

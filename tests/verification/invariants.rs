@@ -1,10 +1,11 @@
-//! What must hold whatever the structure: balance, independence of supports and of the frame, rigid motions.
+//! Invariants of every structure: balance, independence of supports and of the frame, rigid motions.
 
 use crate::mesh::{Bulk, assert_near, free_modes};
 use strainbridge::fe::*;
 use strainbridge::model::Model;
 
-/// A curved, folded strip of quadrilaterals and triangles with a mass on an RBE3 and a bar across; turned by `turn` about an oblique axis.
+/// Returns a curved, folded strip of quadrilaterals and triangles, with a mass on an RBE3 and a bar across. The strip
+/// is rotated by `turn` about an oblique axis.
 fn folded_strip(turn: f64) -> (Bulk, impl Fn([f64; 3]) -> [f64; 3]) {
     let axis = nalgebra::Unit::new_normalize(nalgebra::Vector3::new(1.0, -2.0, 0.5));
     let r = nalgebra::Rotation3::from_axis_angle(&axis, turn);
@@ -160,8 +161,10 @@ fn gravity_alone_strains_a_free_structure_nowhere_and_a_finding_says_so() {
     }
 }
 
-/// K R = 0 but at the supports, to 1e-10 of the largest entry times the size of the motion, for a surface curved in both directions
-/// with an offset, split quadrilaterals and bars off its grids.
+/// K R = 0 except at the supports, within 1e-10 of the largest entry times the size of the motion.
+///
+/// The surface is curved in both directions and has an offset, split quadrilaterals, and bars that are not on its
+/// grids.
 #[test]
 fn no_rigid_motion_of_a_curved_model_is_resisted() {
     let mut b = Bulk::default();

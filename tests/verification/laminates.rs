@@ -1,4 +1,5 @@
-//! Laminates against classical lamination theory, written out here a second time by sums over thin slices.
+//! Compares laminates with classical lamination theory. The test computes the theory separately, as sums over thin
+//! slices.
 
 use crate::mesh::{Bulk, assert_near, mass_of};
 use nalgebra::{Matrix3, Matrix6, Vector6};
@@ -10,7 +11,7 @@ const E2: f64 = 10_000.0;
 const NU12: f64 = 0.3;
 const G12: f64 = 5_000.0;
 
-/// Reduced stiffness in axes turned by `degrees` from the fibres.
+/// Returns the reduced stiffness in axes that are turned by `degrees` from the fibres.
 fn reduced_stiffness_at(degrees: f64) -> Matrix3<f64> {
     let d = 1.0 - NU12 * NU12 * E2 / E1;
     let q = Matrix3::new(
@@ -39,7 +40,7 @@ fn reduced_stiffness_at(degrees: f64) -> Matrix3<f64> {
     t.transpose() * q * t
 }
 
-/// A, B, D by slices.
+/// Returns A, B and D, summed over slices.
 fn abd(plies: &[(f64, f64)]) -> Matrix6<f64> {
     let total: f64 = plies.iter().map(|p| p.1).sum();
     let mut m = Matrix6::zeros();
@@ -60,7 +61,7 @@ fn abd(plies: &[(f64, f64)]) -> Matrix6<f64> {
     m
 }
 
-/// A distorted strip of the laminate with material angle `theta`, pulled by `n` per width along x.
+/// Returns a distorted strip of the laminate with the material angle `theta`, under a force `n` per width along x.
 fn strip(plies: &[(f64, f64)], theta: f64, n: f64) -> (Bulk, Vec<Vec<u32>>) {
     let mut b = Bulk::default();
     b.card(&format!(
@@ -75,7 +76,7 @@ fn strip(plies: &[(f64, f64)], theta: f64, n: f64) -> (Bulk, Vec<Vec<u32>>) {
         .map(|c| format!(",{}", c.join(",")))
         .collect();
     b.card(&format!("PCOMP,1\n{}", lines.join("\n")));
-    // Straight edges at both ends, so that the load is uniform along them.
+    // Both ends are straight, so that the load is uniform along them.
     let ids = b.patch(6, 4, |u, v| {
         let inner = u * (1.0 - u);
         [60.0 * u + 10.0 * inner * (v - 0.4), 20.0 * v, 0.0]
@@ -101,11 +102,12 @@ fn strip(plies: &[(f64, f64)], theta: f64, n: f64) -> (Bulk, Vec<Vec<u32>>) {
     (b, ids)
 }
 
-/// Strain at both surfaces of every element along basic x and y, from rows in the bisector frame.
+/// Compares the strain at both surfaces of every element along basic x and y. The rows are in the bisector frame.
 fn check(plies: &[(f64, f64)], theta: f64) {
     let n = 25.0;
     let (b, _) = strip(plies, 0.0, n);
-    // THETA counts from side 1-2, whose direction changes along the distorted strip: as a coordinate system instead.
+    // THETA is measured from side 1-2, whose direction varies in the distorted strip. A coordinate system replaces it
+    // here.
     let mut b = b;
     let (s, c) = theta.to_radians().sin_cos();
     b.card(&format!(
@@ -140,7 +142,7 @@ fn check(plies: &[(f64, f64)], theta: f64) {
             let size = exact.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
             let invariants = |e: &[f64]| [e[0] + e[1], ((e[0] - e[1]) / 2.0).hypot(e[2] / 2.0)];
             for (a, b) in invariants(got).iter().zip(invariants(&exact)) {
-                // The slices of the closed form err by 1e-7.
+                // The slices of the closed form have an error of 1e-7.
                 assert!(
                     (a - b).abs() < 1e-5 * size,
                     "{ix:?} z {z}: {got:?} for {exact:?}"
@@ -153,10 +155,10 @@ fn check(plies: &[(f64, f64)], theta: f64) {
 #[test]
 fn a_laminate_under_tension_strains_and_curves_as_lamination_theory_says() {
     check(&[(0.0, 0.5), (90.0, 0.5), (90.0, 0.5), (0.0, 0.5)], 0.0);
-    // Unsymmetric: tension bends it.
+    // An unsymmetric laminate bends under tension.
     check(&[(0.0, 0.7), (90.0, 0.5)], 0.0);
     check(&[(0.0, 0.7), (90.0, 0.5), (45.0, 0.4)], 0.0);
-    // Unbalanced: tension twists it.
+    // An unbalanced laminate twists under tension.
     check(&[(30.0, 0.5), (-20.0, 0.8)], 15.0);
 }
 
@@ -168,7 +170,7 @@ fn plies_strain_in_their_own_axes() {
     let state = abd(&plies).try_inverse().unwrap() * Vector6::new(25.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     let (e, (sin, cos)) = (state, 30_f64.to_radians().sin_cos());
     let along = cos * cos * e[0] + sin * sin * e[1] + cos * sin * e[2];
-    // Element 1 sits in the distorted corner; its side 1-2 lies along x there.
+    // Element 1 is in the distorted corner. Its side 1-2 is along x there.
     let plies = ply_strains(&s.model, ShellIx(0), &s.case.shells.centre[0]);
     assert_eq!(plies.len(), 2);
     assert_near("fibre strain", plies[0][0], along, 1e-4);
@@ -191,11 +193,11 @@ fn plies_of_one_material_make_its_plate_and_a_sandwich_shears_by_its_core() {
     };
     let (plate, mass) = cantilever("PSHELL,1,1,6.0,1,,1");
     let (layers, layered_mass) = cantilever("PCOMP,1\n,1,1.0,,,1,2.0\n,1,3.0");
-    // TS/T of the plate is 0.833333, of the layers 5/6.
+    // TS/T is 0.833333 in the plate and 5/6 in the layers.
     assert_near("plate of layers", layers, plate, 1e-6);
     assert_near("its mass", layered_mass, mass, 1e-12);
     let (soft, _) = cantilever("PCOMP,1\n,1,1.0,,,2,18.0\n,1,1.0");
-    // Thin faces at distance 19: D = E t d^2 / 2 per width, shear stiffness G d^2 / c.
+    // Thin faces at the distance 19: D = E t d^2 / 2 per width, shear stiffness G d^2 / c.
     let (d, l) = (19.0_f64, 200.0_f64);
     let bending = 10.0 / 20.0 * l.powi(3) / (3.0 * 70_000.0 * d * d / 2.0);
     let shear = 10.0 / 20.0 * l / (50.0 * d * d / 18.0);

@@ -8,7 +8,7 @@ const E: f64 = 210_000.0;
 const I1: f64 = 9000.0;
 const L: f64 = 500.0;
 
-/// One bar along x from a wall; plane 1 is x-y. Recovery point C at y = 5.
+/// Returns one bar along x, fixed at a wall. Plane 1 is x-y. Recovery point C is at y = 5.
 fn cantilever(beam: bool, pins: &str, load: &str) -> Bulk {
     let mut b = Bulk::default();
     b.card("MAT1,1,210000.,,.3,7.85-9");
@@ -47,7 +47,7 @@ fn distributed_loads_bend_a_cantilever_as_the_closed_forms_say() {
                 q * L.powi(3) / (6.0 * E * I1),
                 1e-9,
             );
-            // The wall holds the moment q L^2 / 2, which presses the side of positive y together; the tip is free.
+            // The moment at the wall is q L^2 / 2, which compresses the side of positive y. The tip is free.
             let stations = &s.case.beams.stations[0];
             assert_near(
                 "root",
@@ -58,7 +58,7 @@ fn distributed_loads_bend_a_cantilever_as_the_closed_forms_say() {
             let last = stations[stations.len() - 1].1[0];
             assert!(last.abs() < 1e-12, "{last:e}");
         }
-        // Triangular, from nothing at the wall to q at the tip: 11 q L^4 / 120 E I.
+        // Triangular load from zero at the wall to q at the tip: 11 q L^4 / 120 E I.
         let s = cantilever(beam, "", "PLOAD1,1,1,FY,FR,0.,0.,1.,2.").solve();
         assert_near(
             "triangle",
@@ -66,7 +66,8 @@ fn distributed_loads_bend_a_cantilever_as_the_closed_forms_say() {
             11.0 * q * L.powi(4) / (120.0 * E * I1),
             1e-9,
         );
-        // A force in the middle: 5 P L^3 / 48 E I; a moment there: 3 M L^2 / 8 E I; along: P L / 2 E A.
+        // Force in the middle: 5 P L^3 / 48 E I. Moment in the middle: 3 M L^2 / 8 E I. Axial force in the middle: P L
+        // / 2 E A.
         let s = cantilever(beam, "", "PLOAD1,1,1,FY,FR,.5,30.").solve();
         assert_near(
             "middle",
@@ -93,7 +94,7 @@ fn distributed_loads_bend_a_cantilever_as_the_closed_forms_say() {
 
 #[test]
 fn a_propped_beam_with_a_pin_at_the_wall_hangs_between_its_ends() {
-    // Held in y at the far end, pinned about z at the wall: the far end turns back by q L^3 / 24 E I.
+    // Supported in y at the far end and pinned about z at the wall, the far end rotates back by q L^3 / 24 E I.
     let mut b = cantilever(false, ",\n,6", "PLOAD1,1,1,FY,FR,0.,2.,1.,2.");
     b.hold("2", [2]);
     let s = b.solve();
@@ -114,7 +115,7 @@ fn spcd_moves_what_spc_holds_and_only_that() {
     b.hold("2", [2]);
     let s = b.solve();
     assert_near("enforced", s.displacement_at(2)[1], 3.0, 1e-12);
-    // A tip displacement alone: slope 3 w / 2 L.
+    // An enforced tip displacement w alone gives the slope 3 w / 2 L.
     assert_near(
         "slope",
         s.displacement_at(2)[5],
@@ -184,7 +185,7 @@ fn scalar_springs_in_a_row_give_way_one_after_the_other() {
     );
 }
 
-/// Strain at C along the bar of `cantilever` by its bending moment, in terms of E, I and y = 5.
+/// Returns the strain at C of the bar of `cantilever` under the bending moment `m`, from E, I and y = 5.
 fn by_moment(m: f64) -> f64 {
     -m * 5.0 / (E * I1)
 }
@@ -195,11 +196,11 @@ fn strain_at_a_station_follows_the_moment_there() {
     let step = |x: f64| if x < 200.0 { 1.0 } else { 0.0 };
     let cases: [(&str, Moment<'_>); 6] = [
         ("PLOAD1,1,1,FY,FR,0.,2.,1.,2.", &|x| (L - x).powi(2)),
-        // From nothing at the wall to 2 per length at the tip.
+        // Load from zero at the wall to 2 per length at the tip.
         ("PLOAD1,1,1,FY,FR,0.,0.,1.,2.", &|x| {
             2.0 / L * (L.powi(3) / 3.0 - x * L * L / 2.0 + x.powi(3) / 6.0)
         }),
-        // Over the first 200 alone.
+        // Load over the first 200 only.
         ("PLOAD1,1,1,FY,LE,0.,2.,200.,2.", &|x| {
             (200.0 - x).max(0.0).powi(2)
         }),
@@ -230,7 +231,7 @@ fn strain_at_a_station_follows_the_moment_there() {
     }
 }
 
-/// A beam whose area and second moment double from A to B; stations between the ends are those of the straight line between both.
+/// The area and the second moment of a beam double from A to B. Sections between the ends are interpolated linearly.
 #[test]
 fn strain_at_a_station_of_a_tapered_beam_is_that_of_the_section_there() {
     let solved = |load: &str| {
@@ -276,7 +277,7 @@ fn strain_at_a_station_of_a_tapered_beam_is_that_of_the_section_there() {
 /// Mass per length of the cantilever.
 const MU: f64 = 7.85e-9 * 200.0;
 
-/// Strain at C and of the neutral axis of element 1 at some stations, by the moment and the axial force there.
+/// Compares strain at C and at the neutral axis of element 1 at some stations with the moment and axial force there.
 fn follows(
     what: &str,
     s: &(Model, CaseResult),
@@ -328,13 +329,13 @@ fn coupled_mass_acts_along_a_bar() {
         let pull = |x: f64| MU * w * w * (L * L - x * x) / 2.0;
         follows("spin", &s, |_| 0.0, pull);
     }
-    // Held at both ends the bar carries its weight by w L^2 / 12 at the ends and w L^2 / 24 in the middle.
+    // Fixed at both ends, the bar carries its weight by the moment w L^2 / 12 at the ends and w L^2 / 24 in the middle.
     let mut b = cantilever(false, "", "PARAM,COUPMASS,1\nGRAV,1,,1.,0.,1.,0.");
     b.hold("123456", [2]);
     let s = b.solve();
     let fixed = |x: f64| MU * (L * L / 12.0 - x * (L - x) / 2.0);
     follows("fixed", &(s.model, s.case), fixed, |_| 0.0);
-    // With a pin at the wall: the bending moment of a propped cantilever.
+    // With a pin at the wall, the moment is that of a propped cantilever.
     let mut b = cantilever(false, ",\n,6", "PARAM,COUPMASS,1\nGRAV,1,,1.,0.,1.,0.");
     b.hold("123456", [2]);
     let s = b.solve();
@@ -344,7 +345,7 @@ fn coupled_mass_acts_along_a_bar() {
 
 #[test]
 fn inertia_relief_acts_along_a_bar_of_coupled_mass() {
-    // Pushed across at one end, a free bar is bent by F x (1 - x / L)^2; pulled there, it carries F (1 - x / L).
+    // A lateral force at one end bends a free bar by F x (1 - x / L)^2. An axial force there gives F (1 - x / L).
     for (force, bent, pulled) in [("0.,1.,0.", 30.0, 0.0), ("-1.,0.,0.", 0.0, 30.0)] {
         let mut b = cantilever(
             false,

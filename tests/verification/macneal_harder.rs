@@ -1,9 +1,12 @@
-//! The standard set of R. H. MacNeal and R. L. Harder, Finite Elements in Analysis and Design 1 (1985) 3, and companions;
-//! references and tolerances of `../shared/benchmarks/macneal_harder.md`.
+//! The standard set of R. H. MacNeal and R. L. Harder, Finite Elements in Analysis and Design 1 (1985) 3, and similar
+//! tests.
+//!
+//! References and tolerances are those of `../shared/benchmarks/macneal_harder.md`.
 
 use crate::mesh::{Bulk, assert_near, record};
 
-/// The five-element patch: grids 1 to 8, inner ones 5 to 8, quadrilaterals or each split into triangles.
+/// Returns the patch of five quadrilaterals, or of the same quadrilaterals split into triangles. Its grids are 1 to 8,
+/// of which 5 to 8 are inner grids.
 fn patch(split: bool) -> (Bulk, Vec<(u32, f64, f64)>) {
     let mut b = Bulk::shell(1e6, 0.25, 0.001);
     let xy = [
@@ -57,7 +60,7 @@ fn membrane_patch_test_is_exact() {
         let s = b.solve();
         for centre in &s.case.shells.centre {
             for surface in centre {
-                // Shear is turned into the element frame, so compare invariants.
+                // The shear strain refers to the element frame, so the test compares invariants.
                 let [ex, ey, g] = *surface;
                 assert!(((ex + ey) / 2e-3 - 1.0).abs() < 1e-8, "{surface:?}");
                 let radius = ((ex - ey) / 2.0).hypot(g / 2.0);
@@ -93,7 +96,8 @@ fn bending_patch_test_is_exact() {
     }
 }
 
-/// Slender cantilever 6 x 0.2 x 0.1, 6 x 1; `slant` moves the upper (+) and lower (-) grids of interior edge i along the beam.
+/// Returns the slender cantilever 6 x 0.2 x 0.1 with 6 x 1 elements. `slant` moves the upper (+) and lower (-) grids of
+/// interior edge i along the beam.
 fn cantilever(slant: impl Fn(usize) -> f64) -> (Bulk, [u32; 2]) {
     let mut b = Bulk::shell(1e7, 0.3, 0.1);
     let ids = b.patch(6, 1, |u, v| {
@@ -133,7 +137,7 @@ fn straight_cantilever_rectangular_mesh() {
 #[test]
 fn straight_cantilever_distorted_meshes_bend_out_of_plane() {
     let trapezoid = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
-    // In its plane a four-node element with corners off the square locks: known, and the same in every such code.
+    // A four-node element that is not rectangular locks in its plane. This is known from every such element.
     record(
         "trapezoidal in-plane",
         tip(trapezoid, [0.0, 1.0, 0.0]),
@@ -155,7 +159,7 @@ fn curved_beam_deflection(n: usize, m: usize, direction: [f64; 3]) -> f64 {
         [r * a.cos(), r * a.sin(), 0.0]
     });
     b.hold("123456", (0..=m).map(|i| ids[i][0]));
-    // Consistent share of a uniform edge load.
+    // The consistent share of a uniform edge load.
     for i in 0..=m {
         let share = if i == 0 || i == m { 0.5 } else { 1.0 } / m as f64;
         b.force(ids[i][n], direction.map(|c| c * share));
@@ -184,9 +188,11 @@ fn curved_cantilever() {
             0.5022,
         );
     }
-    // Of the two grids at the tip the inner one moves less, the outer one more (.929 and .955 at 6 x 1): the work of a load shared
-    // by them goes with their mean.
-    // At the tip the beam points along -x: a load along +-x is along the beam, one along y is tangential; vertical (MH) is radial.
+    // At the tip the inner grid moves less and the outer grid more (.929 and .955 at 6 x 1). The work of a load on both
+    // grids is proportional to their mean displacement.
+    //
+    // The beam points along -x at the tip. A load along x is axial, a load along y is tangential, and vertical (MH) is
+    // radial.
     assert_near(
         "in-plane, 48 x 2",
         curved_beam_deflection(48, 2, [0.0, 1.0, 0.0]),
@@ -208,7 +214,7 @@ fn twisted_beam_deflection(t: f64, load: f64, width: bool) -> f64 {
         [12.0 * u, y * a.cos(), y * a.sin()]
     });
     b.hold("123456", ids[0].clone());
-    // The tip's width lies along z.
+    // The width of the tip is along z.
     let direction = if width {
         [0.0, 0.0, load]
     } else {
@@ -249,11 +255,11 @@ fn twisted_cantilever_of_warped_elements() {
     );
 }
 
-/// Quarter of a plate 2 x `length`, `n` elements a half side: deflection of the centre.
+/// Returns the deflection at the centre of a plate 2 x `length`. The mesh is a quarter with `n` elements per half side.
 fn plate(length: f64, n: usize, clamped: bool, point: bool) -> f64 {
     let mut b = Bulk::shell(1.7472e7, 0.3, 1e-4);
     let ids = b.patch(n, n, |u, v| [u, v * length / 2.0, 0.0]);
-    // Symmetry at x = 0 and y = 0, edges at x = 1 and y = length / 2.
+    // Symmetry at x = 0 and y = 0. Supported edges at x = 1 and y = length / 2.
     b.hold("15", (0..=n).map(|j| ids[0][j]));
     b.hold("24", (0..=n).map(|i| ids[i][0]));
     b.hold("126", ids.iter().flatten().copied());
@@ -306,11 +312,11 @@ fn scordelis_lo(n: usize) -> f64 {
         let a = (40.0 * v).to_radians();
         [25.0 * u, 25.0 * a.sin(), 25.0 * a.cos()]
     });
-    // u = 0: mid span (symmetry); u = 1: diaphragm; v = 0: crown (symmetry); v = 1: free edge.
+    // u = 0 is mid span (symmetry), u = 1 the diaphragm, v = 0 the crown (symmetry), v = 1 the free edge.
     b.hold("156", ids[0].clone());
     b.hold("23", ids[n].clone());
     b.hold("246", ids.iter().map(|row| row[0]));
-    // 90 per unit surface, straight down.
+    // A load of 90 per unit surface, vertically down.
     b.text += &format!("PLOAD4,1,1,90.0,,,,THRU,{}\n,0,0.0,0.0,-1.0\n", n * n);
     -b.solve().displacement_at(ids[0][n])[2]
 }
@@ -387,13 +393,13 @@ fn raasch(n: usize, m: usize) -> f64 {
     let mut b = Bulk::shell(3300.0, 0.35, 2.0);
     let (first, second) = (14.0 * 60.0_f64.to_radians(), 46.0 * 150.0_f64.to_radians());
     let ids = b.patch(n, m, |u, v| {
-        // Arc length along the hook; the corner of the two arcs falls near a grid line.
+        // Arc length along the hook. The joint of both arcs is close to a grid line.
         let s = u * (first + second);
         let (x, z) = if s <= first {
             let a = s / 14.0;
             (14.0 * a.sin(), 14.0 * (1.0 - a.cos()))
         } else {
-            // Centre of the second arc on the far side of the joint.
+            // The centre of the second arc is on the other side of the joint.
             let (a, b) = (60.0_f64.to_radians(), (s - first) / 46.0);
             let (cx, cz) = (
                 14.0 * a.sin() + 46.0 * a.sin(),
@@ -427,7 +433,8 @@ fn raasch_hook_converges_with_shared_normals() {
 
 #[test]
 fn an_in_plane_cantilever_converges_with_the_square_of_the_mesh_size() {
-    // Depth 0.5, length 2, end shear: against a fine mesh of the same elements (closed form needs parabolic end shear).
+    // Depth 0.5, length 2, end shear. The reference is a fine mesh of the same elements, as the closed form needs
+    // parabolic end shear.
     let tip = |n: usize| {
         let mut b = Bulk::shell(1e4, 0.3, 0.1);
         let ids = b.patch(4 * n, n, |u, v| {

@@ -1,4 +1,4 @@
-//! The built-in solver against closed forms, published benchmarks and other solvers' results.
+//! Compares the built-in solver with closed forms, published benchmarks and results of other solvers.
 
 #![allow(clippy::print_stderr, reason = "numbers for the tables in docs")]
 

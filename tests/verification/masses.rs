@@ -1,15 +1,16 @@
-//! Every kind of mass: the weight of `check` equals the mass of the solver. Scalar masses in closed form.
+//! Every kind of mass: the weight from `check` equals the mass in the solver. Scalar masses are compared with closed
+//! forms.
 
 use crate::small_decks::{assert_close, displacement_at, list_refused_cards, model, solve};
 use strainbridge::fe::*;
 use strainbridge::model::Vec3;
 
-/// A plate of 2 x 1 x .01 and a bar of length 2 along its side; density 1000.
+/// Plate of 2 x 1 x .01 and a bar of length 2 along its side. The density is 1000.
 const PLATE: &str = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,2.,1.,0.\nGRID,4,,0.,1.,0.\nMAT1,1,2.+11,,.3,1000.\n\
      CQUAD4,1,1,1,2,3,4\nPSHELL,1,1,.01,1,,1\nCBAR,2,2,1,2,0.,0.,1.\nPBAR,2,1,.01,1.-5,1.-5,1.-5\nSPC1,1,123456,1\n\
      FORCE,1,3,,1.,1.,0.,0.\n";
 
-/// Kinds of mass, with what each adds to 20 kg of the plate and 20 kg of the bar. Case control, cards, mass.
+/// Kinds of mass: case control, cards, and the mass that the cards add to 20 kg of the plate and 20 kg of the bar.
 const KINDS: [(&str, &str, f64); 22] = [
     ("", "", 0.0),
     ("", "CONM2,50,3,,5.,.1,.2,.3\n,1.,,2.,,,3.", 5.0),
@@ -57,7 +58,7 @@ const KINDS: [(&str, &str, f64); 22] = [
         "CMASS1,50,8,3,1\nCMASS1,51,8,3,2\nCMASS1,52,8,3,3\nPMASS,7,1.,8,3.",
         3.0,
     ),
-    // A rotation and two ends with the same motion add no mass; nor does a scalar point.
+    // A mass on a rotation, between two ends with the same motion, or at a scalar point adds no weight.
     (
         "",
         "CMASS2,50,3.,3,5\nCMASS2,51,7.,3,1,4,1\nSPOINT,90\nCMASS4,52,9.,90\nCMASS3,53,8,91\nPMASS,8,4.",
@@ -112,37 +113,37 @@ fn the_weight_of_every_kind_of_mass_is_that_of_the_mass_matrix() {
     }
 }
 
-/// Materials and properties of [`SHAPES`]: density 7.
+/// Materials and properties of [`SHAPES`]. The density is 7.
 const DENSE: &str = "MAT1,1,2.+11,,.3,7.\nPSHELL,1,1,.1,1\nPSOLID,2,1\n";
 
-/// Elements that are no parallelograms or parallelepipeds: cards, mass, centre of gravity along x, y, z.
+/// Elements that are neither parallelograms nor parallelepipeds: cards, mass, centre of gravity along x, y, z.
 const SHAPES: [(&str, f64, [f64; 3]); 5] = [
-    // A right trapezoid with parallel sides 4 and 1, height 3.
+    // A right trapezoid with the parallel sides 4 and 1 and the height 3.
     (
         "GRID,1,,0.,0.,0.\nGRID,2,,4.,0.,0.\nGRID,3,,1.,3.,0.\nGRID,4,,0.,3.,0.\nCQUAD4,1,1,1,2,3,4",
         0.7 * 7.5,
         [1.4, 1.2, 0.0],
     ),
-    // A square of side 2, its thickness from .1 at x = 0 to .3 at x = 2.
+    // A square of side 2. The thickness is .1 at x = 0 and .3 at x = 2.
     (
         "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,2.,2.,0.\nGRID,4,,0.,2.,0.\nCQUAD4,1,1,1,2,3,4\n,,,.1,.3,.3,.1",
         7.0 * 0.8,
         [7.0 / 6.0, 1.0, 0.0],
     ),
-    // A triangle of sides 3, its thickness .1 at two corners and .4 at the one on x.
+    // A triangle with legs of 3. The thickness is .1 at two corners and .4 at the corner on x.
     (
         "GRID,1,,0.,0.,0.\nGRID,2,,3.,0.,0.\nGRID,3,,0.,3.,0.\nCTRIA3,1,1,1,2,3\n,,,.1,.4,.1",
         7.0 * 0.9,
         [1.25, 0.875, 0.0],
     ),
-    // A frustum of height 3 with square ends of side 2 and 1.
+    // A frustum of height 3 with square ends of sides 2 and 1.
     (
         "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,2.,2.,0.\nGRID,4,,0.,2.,0.\nGRID,5,,.5,.5,3.\nGRID,6,,1.5,.5,3.\n\
          GRID,7,,1.5,1.5,3.\nGRID,8,,.5,1.5,3.\nCHEXA,1,2,1,2,3,4,5,6\n,7,8",
         49.0,
         [1.0, 1.0, 33.0 / 28.0],
     ),
-    // A frustum of height 3 with triangular ends, legs 2 and 1.
+    // A frustum of height 3 with triangular ends of legs 2 and 1.
     (
         "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,0.,2.,0.\nGRID,4,,0.,0.,3.\nGRID,5,,1.,0.,3.\nGRID,6,,0.,1.,3.\n\
          CPENTA,1,2,1,2,3,4,5,6",
@@ -165,7 +166,8 @@ fn tapered_elements_have_the_mass_and_the_centre_of_the_body() {
     }
 }
 
-/// Elements of every shape, warped and offset: the solver's R' M R about its centre of gravity is that of the model.
+/// Elements of every shape, warped and offset: R' M R about the centre of gravity agrees between the solver and the
+/// model.
 #[test]
 fn the_rigid_mass_of_warped_and_curved_elements_is_that_of_the_mass_matrix() {
     const WARPED: &str = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,.4\nGRID,3,,2.2,1.,0.\nGRID,4,,0.,1.3,.3\nGRID,5,,.1,0.,1.\nGRID,6,,2.,.2,1.4\n\
@@ -183,10 +185,11 @@ fn the_rigid_mass_of_warped_and_curved_elements_is_that_of_the_mass_matrix() {
     }
 }
 
-/// A mass that acts in one direction alone counts with it, as in the mass axis system of the grid point weight generator.
+/// A mass in one direction adds to the weight in that direction only, as in the mass axis system of the grid point
+/// weight generator.
 #[test]
 fn a_mass_in_one_direction_weighs_in_that_direction() {
-    // The displacement frame of grid 3 is turned by 30 degrees about z.
+    // The displacement frame of grid 30 is turned by 30 degrees about z.
     let turned = "CORD2R,9,,0.,0.,0.,0.,0.,1.\n,1.,.57735026918962584,0.\nGRID,30,,2.,1.,0.,9\nRBE2,60,3,123456,30\n";
     let (model, solved) = solve(
         "SPC = 1\nLOAD = 1",
@@ -196,7 +199,7 @@ fn a_mass_in_one_direction_weighs_in_that_direction() {
     assert_close("solver", solved.report.mass.unwrap().mass, 43.0, 1e-12);
 }
 
-/// A rod as a spring of 1e6, its free end with 8 kg along x.
+/// A rod as a spring of stiffness 1e6.
 const OSCILLATOR: &str = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCROD,1,7,1,2\nPROD,7,3,.001\nMAT1,3,2.+9,,.3\nSPC1,1,123456,1\nSPC1,1,23456,2\n";
 
 #[track_caller]
@@ -228,23 +231,24 @@ fn scalar_masses_vibrate_on_springs_in_small_large_and_free_field() {
         assert_eq!(found.len(), 1, "{cards}");
         assert_close(cards, found[0], hertz(1.0e6 / 8.0), 1e-9);
     }
-    // Lower order of magnitude by WTMASS.
+    // WTMASS reduces the mass by two orders of magnitude.
     let light = frequencies("PARAM,WTMASS,.01\nCMASS2,50,8.,2,1", 1);
     assert_close("WTMASS", light[0], hertz(1.0e6 / 0.08), 1e-9);
 }
 
-/// Two masses in a row, one of them that of a scalar point: k1 = 1e6, k2 = 2e6, m1 = 8, m2 = 4.
+/// Two masses in a row, one of them on a scalar point: k1 = 1e6, k2 = 2e6, m1 = 8, m2 = 4.
 #[test]
 fn a_scalar_point_with_mass_vibrates_with_the_grid() {
     let found = frequencies(
         "CMASS2,50,8.,2,1\nCELAS2,60,2.+6,2,1,90\nCMASS4,51,4.,90\nSPOINT,90",
         2,
     );
-    // (3e6 - 8 w) (2e6 - 4 w) = 4e12 for w the square of the frequency: 32 w^2 - 2.8e7 w + 2e12 = 0.
+    // With w the square of the frequency: (3e6 - 8 w) (2e6 - 4 w) = 4e12, or 32 w^2 - 2.8e7 w + 2e12 = 0.
     let root = (2.8e7_f64.powi(2) - 4.0 * 32.0 * 2.0e12).sqrt();
     assert_close("first", found[0], hertz((2.8e7 - root) / 64.0), 1e-9);
     assert_close("second", found[1], hertz((2.8e7 + root) / 64.0), 1e-9);
-    // A mass between both: its kinetic energy is 5 (u1 - u2)^2 / 2. Symmetric masses 8 and 8, springs 1e6 to ground on both sides.
+    // A mass between both points with the kinetic energy 5 (u1 - u2)^2 / 2. Both points have a mass of 8 and a spring
+    // of 1e6 to ground.
     let both =
         "CMASS2,50,8.,2,1\nCMASS4,51,8.,90\nCELAS2,60,1.+6,90,,,\nCMASS2,52,5.,2,1,90\nSPOINT,90";
     let found = frequencies(both, 2);
@@ -297,7 +301,7 @@ fn gravity_pulls_scalar_masses_of_grids_and_leaves_those_of_scalar_points() {
     );
 }
 
-/// A free rod with unlike masses at its ends: pulled by 60 at the second, it is in tension by 60 m1 / (m1 + m2).
+/// A free rod with different masses at its ends. A force of 60 at the second end gives the tension 60 m1 / (m1 + m2).
 #[test]
 fn inertia_of_scalar_masses_balances_a_free_structure() {
     let free = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCROD,1,7,1,2\nPROD,7,3,.001\nMAT1,3,2.+9,,.3\nSPC1,1,23456,1,2\n\
@@ -339,13 +343,13 @@ fn non_structural_mass_of_areas_and_lengths_together_is_refused_as_a_total() {
     assert_eq!(faults.len(), 1);
 }
 
-/// A bar and a half of one property: the element that NSM names weighs more, the other does not, and GRAV pulls it.
+/// Two bars with one property. NSM adds mass to the second one only, and GRAV acts on it.
 #[test]
 fn non_structural_mass_of_one_element_acts_in_its_loads() {
     let rods = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,3.,0.,0.\nCBAR,1,7,1,2,0.,0.,1.\nCBAR,2,7,2,3,0.,0.,1.\nPBAR,7,5,.01\n\
         MAT1,5,1.+10,,.3,100.\nSPC1,1,123456,1\nSPC1,1,23456,2,3\nGRAV,1,,10.,1.,0.,0.\nNSM1,8,ELEMENT,4.,2\n";
     let solved = solve("SPC = 1\nLOAD = 1\nNSM = 8", rods);
-    // 1 per length on both, 4 more on the second: 2.5 kg at the tip, 3.5 kg at the middle.
+    // 1 per length on both bars and 4 more on the second one: 2.5 kg at the tip, 3.5 kg at the middle.
     let middle = 60.0 * 2.0 / 1.0e8;
     assert_close("middle", displacement_at(&solved, 2)[0], middle, 1e-12);
     assert_close(
@@ -356,7 +360,7 @@ fn non_structural_mass_of_one_element_acts_in_its_loads() {
     );
 }
 
-/// Two plates that meet at ten degrees share their mean normal, which SNORM may state itself, with either sign.
+/// Two plates that meet at ten degrees have a common mean normal. SNORM may state this normal with either sign.
 #[test]
 fn the_mean_normal_stated_by_snorm_changes_nothing() {
     let (s, c) = 10.0_f64.to_radians().sin_cos();
@@ -381,7 +385,7 @@ fn the_mean_normal_stated_by_snorm_changes_nothing() {
             );
         }
     }
-    // A normal of one of the plates is another one.
+    // The normal of one plate differs from the mean normal.
     let other = tip("SNORM,2,0,0.,0.,1.\nSNORM,3,0,0.,0.,1.\n");
     assert!((other[2] / plain[2] - 1.0).abs() > 1e-6);
     let of = |cards: &str| list_refused_cards("SPC = 1\nLOAD = 1", &format!("{fold}{cards}"));

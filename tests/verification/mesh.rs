@@ -1,4 +1,4 @@
-//! Decks written by a test, read by the reader, solved by the solver.
+//! Decks that a test writes, and that the reader and the solver of the project process.
 
 use nastran::bdf::{IncludeRequest, LoadedFile, Loader, read_deck};
 use std::fmt::Write;
@@ -13,19 +13,19 @@ impl Loader for NoFiles {
     }
 }
 
-/// Mass, centre of gravity and mass matrix as the solver reports them, with no load case to solve.
+/// Returns mass, centre of gravity and mass matrix as the solver reports them, without a load case.
 pub fn mass_of(model: &Model) -> MassProperties {
     let solved = solve_displacements(model, &[], &SolveOptions::default());
     let report = solved.unwrap_or_else(|e| panic!("{e}")).report;
     report.mass.unwrap()
 }
 
-/// The lowest elastic modes of a free structure.
+/// Returns the lowest elastic modes of a free structure.
 pub fn free_modes(model: &Model, mpc: Option<u32>, count: usize) -> ModalSolution {
     solve_modes(model, None, mpc, count, &SolveOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Bulk data, card by card, free format.
+/// Bulk data in free format, added card by card.
 #[derive(Default)]
 pub struct Bulk {
     pub text: String,
@@ -34,7 +34,7 @@ pub struct Bulk {
 }
 
 impl Bulk {
-    /// A shell property 1 of thickness `t` on material 1.
+    /// Starts a deck with shell property 1 of thickness `t` on material 1.
     pub fn shell(e: f64, nu: f64, t: f64) -> Self {
         let mut b = Self::default();
         b.card(&format!("MAT1,1,{e:?},,{nu:?}"));
@@ -46,7 +46,7 @@ impl Bulk {
         let _ = writeln!(self.text, "{card}");
     }
 
-    /// A grid; returns its id. Large field, sixteen figures.
+    /// Adds a grid in large field format, with sixteen characters per field, and returns its id.
     pub fn grid(&mut self, x: [f64; 3]) -> u32 {
         self.grids += 1;
         let f = |v: f64| {
@@ -65,7 +65,7 @@ impl Bulk {
         id
     }
 
-    /// A lattice of (n + 1) x (m + 1) grids and n x m quadrilaterals; ids by [i][j].
+    /// Adds a lattice of (n + 1) x (m + 1) grids and n x m quadrilaterals, and returns the grid ids by [i][j].
     pub fn patch(
         &mut self,
         n: usize,
@@ -120,7 +120,7 @@ impl Bulk {
         self.read_model().0
     }
 
-    /// The model and what is wrong with it.
+    /// Returns the model and its faults.
     pub fn read_model(&self) -> (Model, Vec<ModelFault>) {
         let deck = read_deck(
             "test.bdf",
@@ -131,17 +131,17 @@ impl Bulk {
         Model::from_cards(&deck.cards)
     }
 
-    /// Displacements under load set 1 with SPC set 1.
+    /// Solves for load set 1 with SPC set 1.
     pub fn solve(&self) -> Solved {
         self.solve_loads(vec![UnitLoad::Set(1)])
     }
 
-    /// Displacements under temperature set 9 with SPC set 1.
+    /// Solves for temperature set 9 with SPC set 1.
     pub fn solve_hot(&self) -> Solved {
         self.solve_hot_with(&SolveOptions::default())
     }
 
-    /// The same with settings.
+    /// Solves for temperature set 9 with SPC set 1 and the given options.
     pub fn solve_hot_with(&self, options: &SolveOptions) -> Solved {
         let hot = UnitLoad::Temperature {
             set: 9,
@@ -150,7 +150,7 @@ impl Bulk {
         self.solve_with(vec![hot], options)
     }
 
-    /// Displacements under several loads with SPC set 1.
+    /// Solves for the sum of several loads with SPC set 1.
     pub fn solve_loads(&self, loads: Vec<UnitLoad>) -> Solved {
         self.solve_with(loads, &SolveOptions::default())
     }
@@ -181,18 +181,19 @@ pub struct Solved {
 }
 
 impl Solved {
-    /// Displacement of a grid.
+    /// Returns the displacement of a grid.
     pub fn displacement_at(&self, grid: u32) -> [f64; 6] {
         self.case.displacement[self.model.grid_ix(grid).unwrap().us()]
     }
 }
 
-/// Prints `got / reference` for the table in the README (`cargo test --test verification -- --nocapture`), where there is no limit.
+/// Prints `got / reference` for the table in the README (`cargo test --test verification -- --nocapture`), without a
+/// limit.
 pub fn record(what: &str, got: f64, reference: f64) {
     assert_near(what, got, reference, f64::INFINITY);
 }
 
-/// Fails with both numbers when `got / reference` is farther from one than `tolerance`.
+/// Fails and prints both numbers if `got / reference` differs from one by more than `tolerance`.
 #[track_caller]
 pub fn assert_near(what: &str, got: f64, reference: f64, tolerance: f64) {
     let ratio = got / reference;

@@ -1,4 +1,4 @@
-//! Modes against closed forms of beams and plates.
+//! Compares modes with closed forms of beams and plates.
 
 use crate::mesh::Bulk;
 use strainbridge::fe::*;
@@ -18,7 +18,9 @@ fn assert_within(what: &str, got: f64, expected: f64, share: f64) {
     );
 }
 
-/// A slender bar: shear (a share (h / l)^2 of a few parts in ten thousand) leaves Euler's frequencies as they are.
+/// Returns a slender bar and its length.
+///
+/// Shear changes Euler's frequencies by the share (h / l)^2, a few parts in ten thousand.
 fn cantilever(n: u32) -> (Bulk, f64) {
     let length = 2000.0;
     let mut b = Bulk::default();
@@ -50,7 +52,7 @@ fn a_cantilever_vibrates_as_euler_says_and_its_modal_masses_are_those_of_the_cla
         exact(7.854_757, 9000.0),
     ];
     for (mode, expected) in solved.modes.iter().zip(expected) {
-        // 80 elements with lumped mass: an error of the order of (pi / 80)^2 at the third bending mode.
+        // With 80 elements and lumped mass the error is of the order of (pi / 80)^2 at the third bending mode.
         assert_within("frequency", mode.frequency, expected, 2e-3);
         assert!(mode.frequency_error < 1e-8, "{}", mode.frequency_error);
         assert!((mode.generalised_mass - 1.0).abs() < 1e-9);
@@ -59,7 +61,7 @@ fn a_cantilever_vibrates_as_euler_says_and_its_modal_masses_are_those_of_the_cla
     let mass = solved.mass.unwrap().mass;
     for (mode, share) in [(0, 0.613), (2, 0.188), (4, 0.0647)] {
         let got = solved.modes[mode].effective_mass[2] / mass;
-        // Half a grid's mass lies on the clamp: one part in 160.
+        // Half of the mass of one grid is at the clamp, one part in 160.
         assert!((got - share).abs() < 0.008, "mode {mode}: {got}");
         assert!(solved.modes[mode].effective_mass[1] / mass < 1e-9);
     }
@@ -69,7 +71,7 @@ fn a_cantilever_vibrates_as_euler_says_and_its_modal_masses_are_those_of_the_cla
 fn a_mode_strains_as_its_shape_bends() {
     let (b, l) = cantilever(80);
     let mut model = b.model();
-    // Recovery point C 5 above the axis along z.
+    // Recovery point C is 5 above the axis, along z.
     for p in &mut model.beam_properties {
         p.sections
             .iter_mut()
@@ -77,7 +79,7 @@ fn a_mode_strains_as_its_shape_bends() {
     }
     let solved = solve_modes(&model, Some(1), None, 1, &SolveOptions::default()).unwrap();
     let tip = solved.modes[0].shape[80][2];
-    // w'' at the clamp is 2 beta^2 w(l) / 2 for the clamped-free beam: |w''(0)| = beta^2 |w(l)|; strain is z w''.
+    // For the clamped-free beam |w''(0)| = beta^2 |w(l)| at the clamp. The strain is z w''.
     let beta = 1.875_104 / l;
     let strain = solved.strain.cases[0].beams.stations[0][0].1[0];
     assert_within("strain", strain.abs(), 5.0 * beta * beta * tip.abs(), 5e-3);
@@ -93,7 +95,8 @@ fn a_simply_supported_plate_vibrates_as_navier_says() {
     let edge = |i: usize, j: usize| i == 0 || j == 0 || i == n || j == n;
     for (i, row) in ids.iter().enumerate() {
         for (j, g) in row.iter().enumerate() {
-            // In-plane motion and turning about the normal left out; simply supported edges, turning about their normal held too.
+            // In-plane motion and rotation about the normal are fixed everywhere. The edges are simply supported and do
+            // not rotate about their normal.
             let dofs = match (edge(i, j), i == 0 || i == n, j == 0 || j == n) {
                 (false, ..) => "126",
                 (_, true, true) => "123456",
@@ -112,7 +115,7 @@ fn a_simply_supported_plate_vibrates_as_navier_says() {
         .collect();
     exact.sort_by(f64::total_cmp);
     for (mode, expected) in solved.modes.iter().zip(exact) {
-        // 13 elements a half wave at the third mode along a side.
+        // The third mode has 13 elements per half wave along a side.
         assert_within("frequency", mode.frequency, expected, 0.01);
     }
 }
@@ -128,8 +131,9 @@ fn a_free_square_plate_has_six_rigid_motions_no_effective_mass_and_the_published
     assert_eq!(solved.rigid_motions, 6);
     let d = E * f64::powi(t, 3) / (12.0 * (1.0 - 0.09));
     let unit = (d / (RHO * t)).sqrt() / (a * a) / std::f64::consts::TAU;
-    // Free square plate, nu = .3, omega a^2 sqrt(rho t / D): Leissa, J. Sound Vib. 31 (1973) 257 gives 13.489, 19.789, 24.432, 35.024 as
-    // upper bounds; converged: Bardell, J. Sound Vib. 151 (1991) 263. The fourth and fifth are equal.
+    // Free square plate with nu = .3, omega a^2 sqrt(rho t / D). Leissa, J. Sound Vib. 31 (1973) 257, gives the upper
+    // bounds 13.489, 19.789, 24.432, 35.024. Bardell, J. Sound Vib. 151 (1991) 263, gives converged values. The fourth
+    // and fifth are equal.
     for (mode, lambda) in solved
         .modes
         .iter()

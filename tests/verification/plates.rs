@@ -1,4 +1,4 @@
-//! Shells of real decks: strain and displacement of MSC and NX runs.
+//! Compares shells of real decks with strain and displacement of MSC and NX runs.
 
 use crate::decks::{find_shared_path, model_of};
 use crate::mesh::Bulk;
@@ -7,7 +7,7 @@ use strainbridge::fe::from_results::{ReadOptions, solution_from_file};
 use strainbridge::fe::*;
 use strainbridge::model::Model;
 
-/// Largest principal strain, by magnitude, of each element and surface of two fields on the same elements: reference, ours.
+/// Returns the principal strain with the largest magnitude for each element and surface: reference, built-in solver.
 fn peaks(model: &Model, reference: &CaseResult, ours: &CaseResult, ids: &[u32]) -> Vec<(f64, f64)> {
     let largest = |[x, y, g]: [f64; 3]| ((x + y) / 2.0).abs() + ((x - y) / 2.0).hypot(g / 2.0);
     let mut out = Vec::new();
@@ -29,7 +29,7 @@ fn peaks(model: &Model, reference: &CaseResult, ours: &CaseResult, ids: &[u32]) 
     out
 }
 
-/// Median of the relative differences of the first `n`.
+/// Returns the median of the relative differences of the first `n` peaks.
 fn median_difference(peaks: &[(f64, f64)], n: usize) -> f64 {
     let mut d: Vec<f64> = peaks[..n]
         .iter()
@@ -69,8 +69,8 @@ fn the_hottest_strain_of_a_plate_agrees_with_msc() {
     assert!(hot < 0.05 && all < 0.05, "{hot} {all}");
 }
 
-/// Six shells of a model of all kinds of elements, cut out: the displacements of one side are enforced, and on the other act the
-/// forces that the rest of the model put on them.
+/// Six shells cut out of a model with all kinds of elements. The displacements of one side are enforced, and the forces
+/// from the rest of the model act on the other side.
 #[test]
 fn shells_cut_out_of_an_nx_model_move_and_strain_as_they_did_there() {
     let (Some(deck), Some(op2)) = (
@@ -118,7 +118,7 @@ fn shells_cut_out_of_an_nx_model_move_and_strain_as_they_did_there() {
         let mut f = [0.0; 6];
         for (i, row) in rows.ids.iter().enumerate() {
             if row.entity == id && SHELLS.contains(&row.at) {
-                // What the shells do to the grid; the rest of the model does the opposite.
+                // The force of the shells on the grid. The rest of the model exerts the opposite force.
                 f.iter_mut().zip(rows.row(i)).for_each(|(f, v)| *f -= v);
             }
         }
@@ -151,7 +151,7 @@ fn shells_cut_out_of_an_nx_model_move_and_strain_as_they_did_there() {
         }
     }
     let ids: Vec<u32> = SHELLS.collect();
-    // Elements have other indices in the two models: theirs are looked up by id.
+    // Element indices differ between the two models, so the reference elements are found by id.
     let mut renamed = reference.clone();
     let kept: Vec<usize> = reference
         .shells

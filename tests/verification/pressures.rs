@@ -1,9 +1,11 @@
-//! PLOAD4 with directions: tractions in rectangular, cylindrical and spherical systems against the integrals of their fields.
+//! PLOAD4 with directions: tractions in rectangular, cylindrical and spherical systems, compared with the integrals of
+//! their fields.
 
 use crate::mesh::Bulk;
 use strainbridge::fe::*;
 
-/// A ring in the plane z = 0 between radii 20 and 50, held inside; the total of its reactions about the origin.
+/// Returns the total reaction about the origin of a ring in the plane z = 0 between the radii 20 and 50. The ring is
+/// fixed at its inner edge.
 fn reactions(traction: &str) -> [f64; 6] {
     let mut b = Bulk::shell(210_000.0, 0.3, 2.0);
     let n = 72;
@@ -52,18 +54,18 @@ fn tractions_of_turned_systems_have_the_totals_of_their_integrals() {
     let area = pi * (50.0_f64.powi(2) - 20.0_f64.powi(2));
     let moment = 2.0 * pi / 3.0 * (50.0_f64.powi(3) - 20.0_f64.powi(3));
     let p = 0.5;
-    // The chords of 72 sides leave .13 % of the area out, .25 % of the moment.
+    // The chords of 72 sides omit .13 % of the area and .25 % of the moment.
     let near = |what: &str, got: f64, expected: f64| {
         assert!(
             (got - expected).abs() < 3e-3 * p * moment.min(50.0 * area) / 50.0,
             "{what}: {got} for {expected}"
         );
     };
-    // Along x in the basic system, any length of N.
+    // Traction along x in the basic system. The length of N does not matter.
     let f = reactions("0,3.,0.,0.");
     near("x", f[0], p * area);
     near("no z", f[2], 0.0);
-    // Around: a torque and no force. Outward: nothing in all.
+    // A circumferential traction gives a torque and no force. A radial traction has no resultant.
     let f = reactions("5,0.,2.,0.");
     assert!(
         (f[5] / (p * moment) - 1.0).abs() < 4e-3,
@@ -74,10 +76,10 @@ fn tractions_of_turned_systems_have_the_totals_of_their_integrals() {
     near("no force", f[0].hypot(f[1]), 0.0);
     let f = reactions("5,1.,0.,0.");
     assert!(f.iter().all(|v| v.abs() < 1e-6 * p * area), "{f:?}");
-    // Spherical: in the plane of the equator theta points down.
+    // Spherical system: theta points down in the plane of the equator.
     let f = reactions("6,0.,1.,0.");
     near("-z", f[2], -p * area);
-    // Half around, half along the axis: unit vectors by place.
+    // Half circumferential and half axial. The unit vectors depend on the position.
     let f = reactions("5,0.,1.,1.");
     near("z", f[2], p * area / 2.0_f64.sqrt());
     assert!(

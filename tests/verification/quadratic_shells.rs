@@ -3,7 +3,8 @@
 use crate::mesh::{Bulk, assert_near, mass_of, record};
 use strainbridge::fe::supported_stiffness;
 
-/// Elements of a warped or flat surface with all mid-side grids but those that `left_out` says; ids by parameter point.
+/// Elements of a warped or flat surface with all mid-side grids except the ones that `left_out` selects, with ids by
+/// parameter point.
 struct Surface {
     bulk: Bulk,
     grids: Vec<(u32, [f64; 2])>,
@@ -71,7 +72,7 @@ fn surface(
     Surface { bulk, grids }
 }
 
-/// A flat sheet with straight sides and inner grids moved.
+/// Returns a point of a flat sheet with straight sides and moved inner grids.
 fn distort_sheet(u: f64, v: f64) -> [f64; 3] {
     let bump = |t: f64| if t < 0.5 { t } else { 1.0 - t };
     let d = 0.3 * bump(u) * bump(v);
@@ -82,7 +83,7 @@ fn distort_sheet(u: f64, v: f64) -> [f64; 3] {
 fn constant_strain_and_curvature_pass_through_shells_with_mid_side_grids() {
     for triangles in [false, true] {
         for missing in [false, true] {
-            // Mid-side grids of inner sides left out by both neighbours.
+            // Both neighbours of an inner side omit its mid-side grid.
             let left_out = |x: usize, y: usize| missing && x == 2 && y == 1;
             let mut s = surface(
                 Bulk::shell(1e6, 0.25, 0.001),
@@ -112,7 +113,7 @@ fn constant_strain_and_curvature_pass_through_shells_with_mid_side_grids() {
                 );
             }
         }
-        // Bending: w and its slopes on the boundary.
+        // Bending: w and its slopes are enforced on the boundary.
         let mut s = surface(
             Bulk::shell(1e6, 0.25, 0.001),
             [2, 2],
@@ -139,7 +140,7 @@ fn constant_strain_and_curvature_pass_through_shells_with_mid_side_grids() {
         for surface in solved.case.shells.centre.iter().flatten() {
             let [ex, ey, g] = *surface;
             let (mean, radius) = ((ex + ey) / 2.0, ((ex - ey) / 2.0).hypot(g / 2.0));
-            // Curvatures 1e-3, 1e-3, 1e-3 (twice the twist) at half the thickness.
+            // The curvatures are 1e-3, 1e-3 and 1e-3 (twice the twist), at half the thickness.
             assert!(
                 (mean.abs() - 5e-7).abs() < 1e-8 * 5e-7 + 1e-15,
                 "{surface:?} {triangles}"
@@ -206,7 +207,7 @@ fn no_rigid_motion_of_a_curved_quadratic_shell_is_resisted() {
 
 #[test]
 fn the_scordelis_lo_roof_stands_on_few_curved_elements() {
-    // Quarter of the roof of MacNeal and Harder: fine-mesh value 0.3006 to 0.3024.
+    // A quarter of the roof of MacNeal and Harder. Fine meshes give 0.3006 to 0.3024.
     for (triangles, n, tolerance) in [
         (false, 4, 0.03),
         (false, 8, 0.02),
@@ -274,7 +275,7 @@ fn mass_of_a_curved_shell_is_that_of_its_surface() {
             [100.0 * a.sin(), 50.0 * v, 100.0 * a.cos()]
         },
     );
-    // Parabolas through three points of an arc of 0.375 rad: shorter by 1e-5.
+    // Parabolas through three points of an arc of 0.375 rad are shorter by 1e-5.
     assert_near(
         "mass",
         mass_of(&s.bulk.model()).mass,
@@ -285,7 +286,7 @@ fn mass_of_a_curved_shell_is_that_of_its_surface() {
 
 #[test]
 fn shells_with_a_rotation_about_their_normal_carry_a_moment_there() {
-    // A cantilever strip in its plane under an end moment about the normal, applied as moments at the end grids.
+    // A cantilever strip in its plane under an end moment about the normal. Moments at the end grids apply it.
     let tip = |card: &str| {
         let mut b = Bulk::shell(210_000.0, 0.3, 2.0);
         let ids = b.patch(10, 1, |u, v| [100.0 * u, 10.0 * v, 0.0]);
@@ -298,7 +299,8 @@ fn shells_with_a_rotation_about_their_normal_carry_a_moment_there() {
         s.displacement_at(ids[10][0])[1]
     };
     let exact = 1000.0 * 100.0 * 100.0 / (2.0 * 210_000.0 * 2.0 * 1000.0 / 12.0);
-    // One element across cannot contract as the strip does: a plate in cylindrical bending, 1 - nu^2 of the beam's deflection.
+    // One element across the width cannot contract as the strip does. The plate bends cylindrically, with 1 - nu^2 of
+    // the deflection of a beam.
     let across = exact * (1.0 - 0.3 * 0.3);
     assert_near(
         "CQUADR under a drilling moment",

@@ -1,4 +1,4 @@
-//! Decks of `../shared/nastran` solved by other solvers.
+//! Decks of `../shared/nastran` with results of other solvers.
 
 use crate::decks::{find_shared_path, model_of};
 use crate::mesh::mass_of;
@@ -23,7 +23,7 @@ fn deck_cases(deck: &str) -> Option<(strainbridge::model::Model, Vec<LoadCase>)>
     Some((model, cases))
 }
 
-/// Grid point weight of the solver against our rigid mass about the origin.
+/// The grid point weight of the other solver against the rigid mass of the model about the origin.
 #[test]
 fn mass_agrees_with_the_grid_point_weight_generator() {
     for (folder, deck) in [
@@ -45,7 +45,7 @@ fn mass_agrees_with_the_grid_point_weight_generator() {
             .next()
             .unwrap()["MO"]
             .clone();
-        // Weight: mass over WTMASS; moved from the centre of gravity to the origin.
+        // The weight is mass over WTMASS, moved from the centre of gravity to the origin.
         let c = p.cg.cross_matrix();
         let mut shift = nalgebra::Matrix6::<f64>::identity();
         // u_cg = u + theta x cg
@@ -112,7 +112,7 @@ fn displacement_rows(table: &Value) -> Vec<(u32, Vec<f64>)> {
         .map(|r| {
             let r = list(r);
             let n = r.len();
-            // A table row: time, row, grid, grid type, six values; a printed one: grid, six values.
+            // A row of a table has time, row, grid, grid type and six values. A printed row has grid and six values.
             let grid = if n > 7 { 2 } else { 0 };
             (
                 r[grid].as_u64().unwrap() as u32,
@@ -130,7 +130,7 @@ fn a_free_ring_under_a_force_and_rotation_moves_as_nastran_95_printed() {
     let Some((model, mut cases)) = deck_cases("nastran/n95_inertia_relief_ring/d02011a.dat") else {
         return;
     };
-    // Rigid format 2 is inertia relief by itself.
+    // Rigid format 2 always includes inertia relief.
     cases
         .iter_mut()
         .for_each(|c| c.relief = Relief::Suport(None));
@@ -170,6 +170,7 @@ fn a_plate_in_tension_and_shear_agrees_with_msc() {
         .iter()
         .find(|r| r["result"] == "displacements")
         .unwrap();
-    // Translations: the rotation about the normal is a quantity of each program's own drilling stiffness.
+    // Only translations. The rotation about the normal depends on the drilling stiffness, which differs between
+    // programs.
     compare_rows(&model, &solution.cases[0], table, 3, 0.02);
 }

@@ -1,11 +1,15 @@
-//! What is reached against MSC and NX on the decks of `real_decks`: name of the row, limit of the median, limit of 95 %. Each stands a
-//! little above what was measured, so that a change that costs accuracy shows.
+//! Limits of the differences from MSC and NX on the decks of `real_decks`: name of the row, limit of the median, limit
+//! of the 95 % quantile.
+//!
+//! Each limit is slightly above the measured value, so that a loss of accuracy fails the test.
 
-/// Name, median, 95 %.
+/// Name, median, 95 % quantile.
 pub type Limits = &'static [(&'static str, f64, f64)];
 
-/// Wing box of laminates. Strain of its elements is that of shear panels' neighbours: each element's own formula, on MSC's displacements,
-/// is what the median tests.
+/// Wing box of laminates.
+///
+/// Its elements are next to shear panels, which changes their strain. The median therefore tests the formula of each
+/// element on the displacements of MSC.
 pub const WING_BOX: Limits = &[
     ("displacement", 1e-3, 0.01),
     ("CBAR strain from their displacements", 1e-12, 1e-12),
@@ -16,8 +20,10 @@ pub const WING_BOX: Limits = &[
     ("CTRIA3 strain from their displacements", 6e-3, 0.05),
 ];
 
-/// A column of one element a wall: the formulation of wedge and tetrahedron shows at its full size, strain on NX's displacements at
-/// rounding.
+/// Column with one element per wall.
+///
+/// The formulations of wedge and tetrahedron differ by their full amount. Strain on the displacements of NX agrees
+/// within rounding.
 pub const SHELL_BAR: Limits = &[
     ("displacement", 3e-3, 0.015),
     ("CBAR strain", 3e-4, 3e-4),
@@ -55,14 +61,14 @@ pub const NEARLY_EVERY: Limits = &[
     ("ply strain", 0.05, 0.45),
 ];
 
-/// A plate partly of plies.
+/// Plate that partly consists of plies.
 pub const PLIES: Limits = &[
     ("displacement", 2.5e-3, 5e-3),
     ("CQUAD4 strain", 6e-3, 0.025),
     ("CQUAD4 strain from their displacements", 2e-3, 6e-3),
 ];
 
-/// Single elements, each by itself.
+/// Single elements, one per model.
 pub const SINGLE: Limits = &[
     ("CHEXA strain", 1e-7, 1e-7),
     ("CHEXA stress", 1e-9, 1e-9),
@@ -74,7 +80,7 @@ pub const SINGLE: Limits = &[
     ("CTRIA6 strain", 0.17, 0.17),
 ];
 
-/// A brick beam with rigid ends.
+/// Beam of bricks with rigid ends.
 pub const RIGID_ENDS: Limits = &[
     ("displacement", 1e-5, 3e-4),
     ("CBAR strain", 1e-4, 1e-4),
@@ -82,6 +88,8 @@ pub const RIGID_ENDS: Limits = &[
     ("CHEXA stress", 5e-4, 1.5e-3),
 ];
 
-/// A brick beam on a bush. Bricks of E h = 3.6e9 N/m turn half a metre round a spring of 0.15 N m: a ratio of 6e9, of which the rounding of double
-/// precision (1.1e-16) makes 7e-7 of their motion.
+/// Beam of bricks on a bush.
+///
+/// The bricks have E h = 3.6e9 N/m and rotate with an arm of half a metre about a spring of 0.15 N m. The ratio is 6e9.
+/// The rounding of double precision (1.1e-16) therefore changes the motion by 7e-7.
 pub const BUSH: Limits = &[("displacement", 1e-6, 3e-6), ("CHEXA stress", 4e-3, 0.01)];

@@ -1,5 +1,7 @@
-//! Static decks of `../shared/nastran` with results of MSC and NX: displacement and strain of every element type, as the table of the
-//! README (`cargo test --test verification real_decks -- --nocapture`).
+//! Static decks of `../shared/nastran` with results of MSC and NX.
+//!
+//! The tests compare displacement and strain of every element type and print the table of the README (`cargo test
+//! --test verification real_decks -- --nocapture`).
 
 use crate::decks::{faulty_model_of, find_shared_path};
 use crate::real_deck_limits::{self as limits, Limits};
@@ -9,7 +11,7 @@ use strainbridge::fe::from_results::{ReadOptions, solution_from_results};
 use strainbridge::fe::*;
 use strainbridge::model::{GridIx, Load, MaterialKind, Model, RodCard, Vec3};
 
-/// Differences by element type and quantity, as shares of what the reference states.
+/// Relative differences from the reference, by element type and quantity.
 type Table = BTreeMap<String, Vec<f64>>;
 
 fn quantile(list: &[f64], share: f64) -> f64 {
@@ -18,7 +20,7 @@ fn quantile(list: &[f64], share: f64) -> f64 {
     sorted[((sorted.len() - 1) as f64 * share).round() as usize]
 }
 
-/// Rows of several numbers: the distance of each over its size, where its size is at least a tenth of the largest.
+/// Adds the relative distance of each pair of vectors whose size is at least a tenth of the largest.
 fn compare(table: &mut Table, name: &str, pairs: &[(Vec<f64>, Vec<f64>)]) {
     let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let largest = pairs.iter().map(|p| norm(&p.1)).fold(0.0, f64::max);
@@ -40,7 +42,7 @@ struct Solved {
     table: Table,
 }
 
-/// The model and cases of a deck, or of the geometry blocks where there is none.
+/// Returns the model and cases of a deck, or of the geometry blocks if there is no deck.
 fn prepare_model(deck: Option<&str>, file: &ResultsFile) -> Option<(Model, Vec<LoadCase>)> {
     if let Some(deck) = deck {
         let (model, control) = faulty_model_of(&find_shared_path(deck)?);
@@ -56,7 +58,7 @@ fn prepare_model(deck: Option<&str>, file: &ResultsFile) -> Option<(Model, Vec<L
     }
     let (cards, _) = file.cards()?;
     let (model, _) = Model::from_cards(&cards);
-    // No case control in the geometry blocks: the last sets are the sums of the others.
+    // The geometry blocks have no case control. The last sets are the sums of the others.
     let case = LoadCase {
         subcase: 1,
         label: String::new(),
@@ -73,7 +75,7 @@ fn prepare_model(deck: Option<&str>, file: &ResultsFile) -> Option<(Model, Vec<L
     Some((model, vec![case]))
 }
 
-/// Strain of a solid or rod from a row of stress, where the material is isotropic.
+/// Returns E and nu of the material of a solid or rod, or `None` if the material is not isotropic.
 fn isotropic_constants(
     model: &Model,
     material: Option<strainbridge::model::MaterialIx>,
@@ -176,7 +178,8 @@ impl Solved {
         self.table = table;
     }
 
-    /// Strain that our elements recover from the displacements of the file: each element's own formula, whatever the rest does.
+    /// Compares strain that the elements of this project recover from the displacements of the file. This tests the
+    /// formula of each element independently of the rest of the model.
     fn compare_recovered_strain(&mut self, cases: &[LoadCase], reference: &Solution) {
         let mut theirs = reference.clone();
         theirs.cases.retain(|c| !c.displacement.is_empty());
@@ -251,7 +254,7 @@ impl Solved {
             largest = largest.max(theirs.norm());
             off.push((id.entity, (ours - theirs).norm()));
         }
-        // Of the largest displacement: rotations about normals are each program's own.
+        // The differences are shares of the largest displacement. Rotations about normals are specific to each program.
         let worst = off.iter().max_by(|a, b| a.1.total_cmp(&b.1));
         eprintln!("  largest displacement {largest:.4e}, worst grid {worst:?}");
         let shares = off.into_iter().map(|o| o.1 / largest);
@@ -360,7 +363,7 @@ impl Solved {
         compare(table, "ply strain", &pairs);
     }
 
-    /// Fails with every row that is beyond its limit.
+    /// Fails with every row that exceeds its limit.
     #[track_caller]
     fn reaches(&self, limits: Limits) {
         let beyond: Vec<String> = limits
@@ -412,7 +415,7 @@ fn nearly_every_element_type_agrees_with_nx() {
         Some("nastran/nx_static_elements/static_elements.bdf"),
         "nastran/nx_static_elements/static_elements.op2",
         |model, _| {
-            // The run's printed loads are those of an earlier deck: the force at grid 13 and PLOAD4, none of the others.
+            // The printed loads of the run come from an earlier deck: only the force at grid 13 and PLOAD4.
             for set in &mut model.load_sets {
                 set.loads.retain(|(_, load)| match load {
                     Load::Force(_, f) => f.z == 10_000.0,

@@ -1,4 +1,4 @@
-//! HAT1 and DBOX of PBARL against closed forms of their parts.
+//! Compares HAT1 and DBOX of PBARL with closed forms of their parts.
 
 use crate::mesh::Bulk;
 use strainbridge::model::Section;
@@ -22,7 +22,7 @@ fn assert_close(what: &str, got: f64, expected: f64, tolerance: f64) {
     );
 }
 
-/// Bredt: 4 A^2 over the sum of l / t of the midline.
+/// Returns the torsion constant of Bredt: 4 A^2 over the sum of l / t along the midline.
 fn bredt(area: f64, walls: &[(f64, f64)]) -> f64 {
     4.0 * area * area / walls.iter().map(|(l, t)| l / t).sum::<f64>()
 }
@@ -31,10 +31,10 @@ fn bredt(area: f64, walls: &[(f64, f64)]) -> f64 {
 fn a_hat_on_a_plate_has_the_area_inertia_and_torsion_of_its_parts() {
     let [w, h, crown, t, plate] = [120.0, 60.0, 70.0, 2.0, 3.0];
     let s = section("HAT1", &[w, h, crown, t, plate]);
-    // The manual's area formula.
+    // The area formula of the manual.
     let area = w * plate + crown * t + (w - crown) * t + 2.0 * (h - plate - t) * t;
     assert_close("area", s.area, area, 1e-12);
-    // Rectangles by Steiner: (width, height, y of the middle).
+    // Rectangles by the parallel axis theorem: (width, height, y of the middle).
     let parts = [
         (w, plate, plate / 2.0),
         (w - crown, t, plate + t / 2.0),
@@ -61,7 +61,8 @@ fn a_hat_on_a_plate_has_the_area_inertia_and_torsion_of_its_parts() {
         cell + (w - crown) * (t + plate).powi(3) / 3.0,
         1e-9,
     );
-    // Symmetric about y: neutral axis and shear centre on it; the shear centre lies within the cell's height.
+    // The section is symmetric about y. Neutral axis and shear centre are on the axis, and the shear centre is within
+    // the height of the cell.
     assert!(s.neutral[1].abs() < 1e-12 * w);
     let bottom = s.recovery[1][0];
     assert!(-bottom > 0.0 && -bottom < h, "{:?}", s.recovery);
@@ -69,7 +70,7 @@ fn a_hat_on_a_plate_has_the_area_inertia_and_torsion_of_its_parts() {
 
 #[test]
 fn a_double_box_has_the_area_inertia_and_torsion_of_its_cells() {
-    // Symmetric: the middle wall carries no shear flow in torsion, and all centres coincide.
+    // Symmetric section: the middle wall carries no shear flow in torsion, and all centres coincide.
     let (w, h) = (200.0, 80.0);
     let s = section("DBOX", &[w, h, 100.0, 4.0, 3.0, 4.0, 5.0, 5.0, 5.0, 5.0]);
     let (wm, hm) = (w - 4.0, h - 5.0);
@@ -87,10 +88,10 @@ fn a_double_box_has_the_area_inertia_and_torsion_of_its_cells() {
     let lying = 2.0 * ((w - 11.0) * 5.0_f64.powi(3) / 12.0 + (w - 11.0) * 5.0 * (hm / 2.0).powi(2));
     assert_close("I1", s.i1, 11.0 * h.powi(3) / 12.0 + lying, 1e-12);
     assert_close("area", s.area, 11.0 * h + 2.0 * (w - 11.0) * 5.0, 1e-12);
-    // Not symmetric: the flows q1, q2 of two cells from equal twist, by Cramer's rule.
+    // Unsymmetric section: the flows q1 and q2 of two cells with equal twist, by Cramer's rule.
     let [left, web, right, tl, bl, tr, br] = [4.0, 2.0, 6.0, 5.0, 5.0, 3.0, 3.0];
     let s = section("DBOX", &[w, h, 80.0, left, web, right, tl, bl, tr, br]);
-    // Midlines: flanges of each cell differ in level by a millimetre, halved at the middle wall.
+    // Midlines: the flanges of each cell differ in level by a millimetre, and half of it counts at the middle wall.
     let (b1, b2) = (80.0 - left / 2.0, w - right / 2.0 - 80.0);
     let (h1, h2) = (h - (tl + bl) / 2.0, h - (tr + br) / 2.0);
     let hw = (h1 + h2) / 2.0;
@@ -106,7 +107,7 @@ fn a_double_box_has_the_area_inertia_and_torsion_of_its_cells() {
         (2.0 * a2 * d11 - 2.0 * a1 * d12) / det,
     );
     assert_close("J of two cells", s.j, 2.0 * (a1 * q1 + a2 * q2), 1e-9);
-    // Blank DIM5 to DIM8 are DIM4, DIM9 and DIM10 DIM6.
+    // Blank DIM5 to DIM8 take DIM4. Blank DIM9 and DIM10 take DIM6.
     for (right, dims) in [(6.0, "4.,,6."), (4.0, "4.")] {
         let short = section(
             "DBOX",
@@ -126,18 +127,21 @@ fn a_double_box_has_the_area_inertia_and_torsion_of_its_cells() {
     }
 }
 
-/// Shear flow of one cell with unlike sides: that of the box cut open in the middle of its left wall, and the one around that closes the cut
-/// without a twist; the shear centre is where the moment of both is nothing.
+/// Shear flow of one cell with different side walls.
+///
+/// It is the sum of two flows. The first one is the flow of the box cut open in the middle of its left wall. The second
+/// one circulates and closes the cut without a twist. The moment of both is zero about the shear centre.
 #[test]
 fn a_box_of_unlike_sides_has_the_shear_centre_of_its_shear_flow() {
     let [w, h, t1, t2, tf] = [201.0, 75.0, 4.0, 8.0, 5.0];
-    // The middle wall has no thickness: one cell.
+    // The middle wall has practically no thickness, so there is one cell.
     let s = section("DBOX", &[w, h + tf, 100.0, t1, 1e-9, t2, tf, tf, tf, tf]);
-    // Midlines: flanges b long, walls h high. First moments of area run from the cut down, along the bottom, up and back.
+    // Midlines: flanges of length b, walls of height h. First moments of area start at the cut and run down, along the
+    // bottom, up and back.
     let b = w - (t1 + t2) / 2.0;
     let i = h.powi(3) * (t1 + t2) / 12.0 + b * tf * h * h / 2.0;
     let corner = t1 * h * h / 8.0;
-    // Their integral around the cell over the thickness, and the even flow that takes it away.
+    // The integral around the cell over the thickness, and the constant flow that cancels it.
     let around = h.powi(3) / 24.0
         + 2.0 * (corner * b + tf * h * b * b / 4.0) / tf
         + ((corner + tf * h * b / 2.0) * h + t2 * h.powi(3) / 12.0) / t2;
@@ -149,8 +153,9 @@ fn a_box_of_unlike_sides_has_the_shear_centre_of_its_shear_flow() {
     assert_close("shear centre", -s.recovery[2][1] - t1 / 2.0, centre, 1e-6);
 }
 
-/// Pure bending of a CBAR strains the points of every section by `M y / I` about its centroid: bending of one sign on both sides of a
-/// section is impossible. The centroid of the points' section is taken from the CBEAM of the same section, which measures it.
+/// Pure bending of a CBAR strains the points of every section by `M y / I` about the centroid of the section.
+///
+/// The strain must therefore change its sign across the section. The CBEAM with the same section gives the centroid.
 #[test]
 fn points_of_a_pbarl_count_from_the_centroid() {
     let types: [(&str, &[f64]); 10] = [
@@ -194,7 +199,7 @@ fn points_of_a_pbarl_count_from_the_centroid() {
             );
         }
     }
-    // A T of flange 80 x 8 and web 92 x 6 under 1e5: its centroid is 27.15 below the top of the flange.
+    // A T with flange 80 x 8 and web 92 x 6 under 1e5. The centroid is 27.15 below the top of the flange.
     let (flange, web) = (80.0 * 8.0, 92.0 * 6.0);
     let from_top = (flange * 4.0 + web * 54.0) / (flange + web);
     let i = 80.0 * 512.0 / 12.0

@@ -1,10 +1,10 @@
-//! Decks of a few lines, solved by their case control.
+//! Decks of a few lines, solved as their case control requests.
 
 use nastran::bdf::{Deck, MemoryLoader, read_deck};
 use strainbridge::fe::*;
 use strainbridge::model::{FaultWeight, Model, ModelFault};
 
-/// A deck of this case control and bulk data.
+/// Returns a deck with this case control and bulk data.
 pub fn deck(case_control: &str, bulk: &str) -> Deck {
     let text = format!("SOL 101\nCEND\n{case_control}\nBEGIN BULK\n{bulk}\nENDDATA\n");
     let deck = read_deck("test.bdf", text.into_bytes(), &mut MemoryLoader::default());
@@ -12,7 +12,7 @@ pub fn deck(case_control: &str, bulk: &str) -> Deck {
     deck
 }
 
-/// Returns the model of a deck, and the faults that stop a solution.
+/// Returns the model of a deck, and the faults that prevent a solution.
 pub fn model(case_control: &str, bulk: &str) -> (Model, Vec<ModelFault>) {
     let (model, mut faults) = Model::from_deck(&deck(case_control, bulk));
     faults.retain(|f| f.weight() == FaultWeight::Error);
@@ -34,12 +34,12 @@ pub fn try_solve(case_control: &str, bulk: &str) -> Result<(Model, DisplacementS
     Ok((model, solved))
 }
 
-/// Solves the first subcase of a deck.
+/// Solves the first subcase of a deck. An error fails the test.
 pub fn solve(case_control: &str, bulk: &str) -> (Model, DisplacementSolution) {
     try_solve(case_control, bulk).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Displacement of a grid.
+/// Returns the displacement of a grid.
 pub fn displacement_at((model, solved): &(Model, DisplacementSolution), grid: u32) -> [f64; 6] {
     solved.displacements[0][model.grid_ix(grid).unwrap().us()]
 }
@@ -53,7 +53,7 @@ pub fn list_refused_cards(case_control: &str, bulk: &str) -> Vec<String> {
     }
 }
 
-/// Fails where `got` is farther from `expected` than a share of it.
+/// Fails if `got` differs from `expected` by more than the given share of it.
 #[track_caller]
 pub fn assert_close(what: &str, got: f64, expected: f64, share: f64) {
     let limit = share * expected.abs().max(f64::MIN_POSITIVE);

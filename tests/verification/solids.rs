@@ -1,4 +1,4 @@
-//! Solids: patch tests, MacNeal and Harder's beam and thick cylinder, mass, free strain.
+//! Solids: patch tests, beam and thick cylinder of MacNeal and Harder, mass, free thermal strain.
 
 use crate::mesh::{Bulk, Solved, assert_near, mass_of, record};
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ const ALL: [(Kind, bool); 6] = [
     (Kind::Tetra, true),
 ];
 
-/// A lattice of solids over a brick.
+/// Lattice of solids in a brick.
 struct Block {
     bulk: Bulk,
     x: BTreeMap<u32, [f64; 3]>,
@@ -123,7 +123,7 @@ impl Block {
                 [0, 1, 2, 4, 5, 6].map(|i| hexa[i]).to_vec(),
                 [0, 2, 3, 4, 6, 7].map(|i| hexa[i]).to_vec(),
             ],
-            // Six along the diagonal 0 to 6: neighbours share the diagonals of faces.
+            // Six tetrahedra along the diagonal 0 to 6. Neighbours share the diagonals of their faces.
             Kind::Tetra => [[1, 2], [2, 3], [3, 7], [7, 4], [4, 5], [5, 1]]
                 .map(|[a, b]| vec![hexa[0], hexa[a], hexa[b], hexa[6]])
                 .to_vec(),
@@ -174,7 +174,7 @@ fn material(e: f64, nu: f64) -> Bulk {
     b
 }
 
-/// A cube with every grid moved, the inner one and those of the edges included.
+/// Returns a point of a cube in which every inner grid and every grid on an edge is moved.
 fn distort_cube([x, y, z]: [f64; 3]) -> [f64; 3] {
     let inside = |v: f64| if v > 0.1 && v < 0.9 { 1.0 } else { 0.0 };
     let d = 0.13;
@@ -204,7 +204,7 @@ fn constant_strain_passes_through_distorted_solids() {
                 }
             }
         }
-        // The load set is there but empty of effect.
+        // The load set exists, but its force of zero has no effect.
         b.bulk.card("FORCE,1,1,0,1.0,0.0,0.0,1.0");
         let solved = b.bulk.solve();
         for (id, x) in &b.x {
@@ -226,7 +226,7 @@ fn constant_strain_passes_through_distorted_solids() {
     }
 }
 
-/// MacNeal and Harder's straight cantilever, six elements long.
+/// Returns the tip deflection of the straight cantilever of MacNeal and Harder.
 fn cantilever(kind: (Kind, bool), n: [usize; 3], load: [f64; 3]) -> f64 {
     let (l, w, t) = (6.0, 0.2, 0.1);
     let mut b = Block::new(material(1e7, 0.3), n, kind, |[x, y, z]| {
@@ -259,7 +259,8 @@ fn a_slender_cantilever_of_bricks_and_quadratic_solids_bends_as_macneal_and_hard
     ];
     for (name, load, reference) in cases {
         for (kind, tolerance) in [
-            // The limits of four-node shells in the same table; tetrahedra and wedges take the coarse mesh harder (recorded).
+            // Limits of four-node shells in the same table. Tetrahedra and wedges are less accurate on the coarse mesh
+            // and are only recorded.
             ((Kind::Hexa, false), 0.03),
             ((Kind::Hexa, true), 0.05),
             ((Kind::Penta, true), 0.06),
@@ -280,7 +281,7 @@ fn a_slender_cantilever_of_bricks_and_quadratic_solids_bends_as_macneal_and_hard
             let got = cantilever(kind, [6, 1, 1], load);
             record(&format!("cantilever {kind:?} {name}"), got, reference);
         }
-        // Refined, quadratic tetrahedra arrive as well.
+        // With a finer mesh, quadratic tetrahedra converge too.
         let got = cantilever((Kind::Tetra, true), [30, 1, 1], load);
         assert_near(
             &format!("cantilever 30 long, ten-node tetrahedra, {name}"),
@@ -291,7 +292,7 @@ fn a_slender_cantilever_of_bricks_and_quadratic_solids_bends_as_macneal_and_hard
     }
 }
 
-/// MacNeal and Harder's thick-walled cylinder under inner pressure, plane strain.
+/// Returns the displacement of the thick-walled cylinder of MacNeal and Harder under inner pressure in plane strain.
 fn cylinder(kind: (Kind, bool), nu: f64) -> f64 {
     let radii = [3.0, 3.5, 4.2, 5.2, 6.75, 9.0];
     let mut bulk = material(1000.0, nu);
@@ -301,7 +302,7 @@ fn cylinder(kind: (Kind, bool), nu: f64) -> f64 {
         let a = 10_f64.to_radians() * y;
         [r * a.cos(), r * a.sin(), z]
     });
-    // On the true arcs, mid-side grids too; displacements along the radius.
+    // All grids are on the true arcs, including mid-side grids. Displacements are along the radius.
     let text = b.bulk.text.clone();
     let mut moved = String::new();
     let mut lines = text.lines();
@@ -334,7 +335,8 @@ fn cylinder(kind: (Kind, bool), nu: f64) -> f64 {
     b.bulk.text = moved;
     let all: Vec<u32> = b.x.keys().copied().collect();
     b.bulk.hold("23", all);
-    // Unit pressure on the inner face: 3 * 10 degrees of arc, height 1; on a quadratic face (serendipity) corners take -1/12 of it.
+    // Unit pressure on the inner face: radius 3, 10 degrees of arc, height 1. On a quadratic (serendipity) face, the
+    // corners take -1/12 of it.
     let force = 3.0 * 10_f64.to_radians();
     let inner: Vec<(u32, [f64; 3])> =
         b.x.iter()
@@ -360,16 +362,16 @@ fn cylinder(kind: (Kind, bool), nu: f64) -> f64 {
 
 #[test]
 fn a_thick_cylinder_nearly_incompressible_does_not_lock() {
-    // Closed form, plane strain: u = (1 + nu) p a^2 / (E (b^2 - a^2)) ((1 - 2 nu) a + b^2 / a).
+    // Closed form for plane strain: u = (1 + nu) p a^2 / (E (b^2 - a^2)) ((1 - 2 nu) a + b^2 / a).
     for (nu, reference) in [(0.49, 5.0399e-3), (0.499, 5.0602e-3), (0.4999, 5.0623e-3)] {
         for quadratic in [false, true] {
             let got = cylinder((Kind::Hexa, quadratic), nu);
             let what = format!("thick cylinder, nu {nu}, quadratic {quadratic}");
             if quadratic && nu > 0.4995 {
-                // The fully integrated twenty-node brick locks here, in the published table too (0.879).
+                // The fully integrated twenty-node brick locks here, as in the published table (0.879).
                 record(&what, got, reference);
             } else {
-                // Five elements along the radius: the published figures of such elements lie from 0.96 to 1.0.
+                // With five elements along the radius, published values of such elements are between 0.96 and 1.0.
                 assert_near(&what, got, reference, 0.05);
             }
         }
@@ -383,10 +385,10 @@ fn mass_and_centre_of_gravity_are_those_of_the_body() {
             distort_cube(x).map(|v| v + 3.0)
         });
         let p = mass_of(&b.bulk.model());
-        // Density 2, volume 1: the boundary of the kicked cube stays flat.
+        // Density 2, volume 1. The boundary of the distorted cube stays flat.
         assert_near(&format!("mass {kind:?}"), p.mass, 2.0, 1e-9);
         for c in p.cg.iter() {
-            // Lumped masses of linear solids put the centre where the shape functions do: exact.
+            // Lumped masses of linear solids follow the shape functions, so the centre of gravity is exact.
             assert!((c - 3.5).abs() < 1e-9, "{kind:?}: {:?}", p.cg);
         }
     }
@@ -394,7 +396,7 @@ fn mass_and_centre_of_gravity_are_those_of_the_body() {
 
 #[test]
 fn the_axis_of_a_material_coordinate_system_is_followed() {
-    // A MAT9 a hundred times stiffer along its first axis, which lies along basic y: a bar pulled along y.
+    // A bar under tension along y. Its MAT9 is a hundred times stiffer along its first axis, which is along basic y.
     let mut bulk = Bulk::default();
     let mut g = [[0.0; 6]; 6];
     for (i, row) in g.iter_mut().enumerate() {
@@ -432,6 +434,6 @@ fn the_axis_of_a_material_coordinate_system_is_followed() {
         10.0 * 4.0 / 1e5,
         1e-9,
     );
-    // Strain is given in the material frame: the first component lies along basic y.
+    // Strain is in the material frame, so its first component is along basic y.
     assert_near("strain along it", s.case.solids.centre[0][0], 1e-4, 1e-9);
 }

@@ -1,8 +1,8 @@
-//! Chains of scalar springs: displacements in closed form, and no `loads-unbalanced`.
+//! Chains of scalar springs: displacements in closed form, and no finding `loads-unbalanced`.
 
 use crate::small_decks::{assert_close, displacement_at, solve};
 
-/// Springs of 100 between the points of a chain that begins at ground; loads there by point.
+/// Tests a chain of springs of stiffness 100 that begins at ground, with loads at its points.
 fn chain(points: &str, first: &str) {
     let springs = format!(
         "{points}CELAS2,1,100.,{first}\nCELAS2,2,100.,2,COMP2,3,COMP3\nCELAS2,3,100.,3,COMP3,4,COMP4\n\
@@ -19,7 +19,7 @@ fn chain(points: &str, first: &str) {
         text.replace(&format!("COMP{id}"), of(id))
     });
     let solved = solve("SPC = 1\nLOAD = 1", &springs);
-    // 6 in the first spring, 5 in the second, 3 in the third.
+    // The forces are 6 in the first spring, 5 in the second and 3 in the third.
     for (id, expected) in [(2, 0.06), (3, 0.11), (4, 0.14)] {
         assert_close(points, displacement_at(&solved, id)[0], expected, 1e-12);
     }
@@ -34,7 +34,7 @@ fn a_chain_of_springs_balances_wherever_its_points_are_scalar() {
             .map(|id| format!("GRID,{id},,{id}.,0.,0.,,23456\n"))
             .collect()
     };
-    // Held at a grid, at a scalar point, by a spring to ground.
+    // Supported at a grid, at a scalar point, and by a spring to ground.
     chain(&format!("{}SPOINT,2\nSPOINT,3,4\n", grid(&[1])), "1,1,2");
     chain(&format!("{}SPOINT,2,THRU,4\n", grid(&[1])), "2,0");
     chain(&format!("{}SPOINT,3\n", grid(&[1, 2, 4])), "1,1,2,1");

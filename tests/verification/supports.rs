@@ -1,5 +1,5 @@
-//! Structures on supports: closed forms of cantilevers, reactions against what acts, and what is said of supports and loads that make
-//! no sense.
+//! Structures on supports: closed forms of cantilevers, reactions and loads, and messages about supports and loads that
+//! are not possible.
 
 use crate::mesh::Bulk;
 use strainbridge::fe::*;
@@ -7,13 +7,13 @@ use strainbridge::finding::{Finding, Severity};
 
 const E: f64 = 210_000.0;
 const LENGTH: f64 = 1000.0;
-/// Second moments of the bar's section: bending in x-y (element plane 1), in x-z (plane 2).
+/// Second moments of area of the bar: I1 in x-y (element plane 1), I2 in x-z (plane 2).
 const I1: f64 = 9000.0;
 const I2: f64 = 4000.0;
 const AREA: f64 = 200.0;
 const RHO: f64 = 7.85e-9;
 
-/// A straight bar of `n` elements along x, end A at the origin.
+/// Returns a straight bar of `n` elements along x. End A is at the origin.
 fn bar(n: u32) -> Bulk {
     let mut b = Bulk::default();
     b.card(&format!("MAT1,1,{E:?},,.3,7.85-9"));
@@ -50,7 +50,7 @@ fn find_finding<'a>(findings: &'a [Finding], code: &str) -> &'a Finding {
         .unwrap_or_else(|| panic!("no `{code}` among {findings:?}"))
 }
 
-/// Relative to the larger: rounding of a few dozen unknowns.
+/// Relative rounding error of a few dozen unknowns.
 const ROUNDING: f64 = 1e-9;
 
 fn assert_equal_to_rounding(what: &str, got: f64, expected: f64) {
@@ -89,7 +89,8 @@ fn a_cantilever_bends_by_pl3_over_3ei_and_its_support_reacts_with_p_and_pl() {
 
 #[test]
 fn reactions_reach_supports_through_rigid_elements_and_turned_frames() {
-    // The same cantilever, its root tied to a support grid 50 below it; that grid's displacement frame is turned about x.
+    // The same cantilever. An RBE2 ties its root to a support grid 50 below it, whose displacement frame is turned
+    // about x.
     let mut b = bar(10);
     b.card("CORD2R,5,,0.,0.,0.,0.,1.,1.\n,1.,0.,0.");
     b.card("GRID,50,,0.,0.,-50.,5");
@@ -104,7 +105,7 @@ fn reactions_reach_supports_through_rigid_elements_and_turned_frames() {
     );
     let reaction = &report.reactions[0].grids;
     assert_eq!((reaction.len(), reaction[0].grid), (1, 50));
-    // About grid 50: the force 7 along x acts 50 above it.
+    // Moments are about grid 50. The force 7 along x acts 50 above it.
     let expected = [-7.0, 0.0, -100.0, 0.0, 100.0 * LENGTH - 7.0 * 50.0, 0.0];
     for (got, expected) in reaction[0].force.iter().zip(expected) {
         assert!((got - expected).abs() < 1e-5, "{reaction:?}");
@@ -178,7 +179,7 @@ fn numbers_that_overflow_are_refused() {
         matches!(error, FeError::Overflow { what: "loads", .. }),
         "{error}"
     );
-    // A modulus of 1e-300: displacements beyond what a result file holds.
+    // A modulus of 1e-300 gives displacements that a result file cannot contain.
     let mut b = Bulk::default();
     b.card("MAT1,1,1.-300,,.3,7.85-9");
     b.card("PSHELL,1,1,2.,1,,1");
@@ -221,7 +222,7 @@ fn nothing_that_acts_and_gravity_without_mass_are_said() {
 #[test]
 fn a_support_that_leaves_a_motion_free_is_a_mechanism_without_relief_and_balanced_with_it() {
     let mut b = bar(4);
-    // Held along y and z and against turning, free along x.
+    // The bar is fixed along y and z and in rotation, and free along x.
     b.hold("23456", [1]);
     b.force(5, [50.0, 0.0, 0.0]);
     let model = b.model();
@@ -233,10 +234,11 @@ fn a_support_that_leaves_a_motion_free_is_a_mechanism_without_relief_and_balance
     assert_eq!(dofs[0].dof, 1);
     let (solution, _) =
         solve_cases(&model, &[case(Relief::Automatic)], &SolveOptions::default()).unwrap();
-    // The force is carried by inertia: left of the middle lie 3/8 of the lumped mass, which the second element pulls along.
+    // Inertia balances the force. 3/8 of the lumped mass are left of the middle, and the second element accelerates
+    // them.
     let axial = &solution.cases[0].beams.axial;
     assert_equal_to_rounding("middle", axial[1][1], 50.0 * 3.0 / 8.0 / (E * AREA));
-    // Without any mass a structure that its supports hold needs no relief to be solved.
+    // Without any mass, a supported structure is solved without inertia relief.
     let mut b = Bulk::default();
     b.card("MAT1,1,210000.,,.3");
     b.card("PBAR,2,1,200.,9000.,4000.,8000.");
@@ -324,7 +326,7 @@ fn work_that_is_to_stop_gives_no_solution() {
     ));
 }
 
-/// Tip force P across a cantilever of length L: u = P L^3 / (3 E I); a property of bending alone states no area.
+/// Tip force P on a cantilever of length L: u = P L^3 / (3 E I). The property states bending stiffness and no area.
 #[test]
 fn a_bar_without_area_bends_as_a_cantilever() {
     for (property, plane, inertia) in [
@@ -368,7 +370,7 @@ fn a_rod_without_any_stiffness_is_a_fault_and_one_with_torsion_alone_twists() {
         let wrong = format!("{name}: a rod whose A and J are both 0 is not supported");
         assert!(found.iter().any(|f| f.to_string() == wrong), "{found:?}");
     }
-    // GJ / L alone: the bar holds all but its twist, which the rod resists.
+    // The bar fixes everything except its twist, which the rod resists with GJ / L alone.
     let torsion = 500.0;
     let mut b = Bulk::default();
     b.card(&format!("MAT1,1,{E:?},,.3"));
@@ -385,7 +387,7 @@ fn a_rod_without_any_stiffness_is_a_fault_and_one_with_torsion_alone_twists() {
 
 #[test]
 fn a_dof_that_is_held_and_dependent_is_found_before_a_solution() {
-    // Bar from grid 1 to 2; grid 3 is joined to grid 2 by one dependent dof.
+    // The bar is from grid 1 to grid 2. One dependent dof joins grid 3 to grid 2.
     let deck = |joint: &str, support: &str| {
         let mut b = bar(1);
         b.grid([LENGTH, 1.0, 0.0]);
@@ -411,7 +413,7 @@ fn a_dof_that_is_held_and_dependent_is_found_before_a_solution() {
     }
 }
 
-/// A bar of two units of length on bushes or springs to ground, without any SPC set; `rho` of its material.
+/// Returns a bar of length 2 on bushes or springs to ground, without an SPC set. `rho` is the density of its material.
 fn bar_on(springs: &str, rho: &str) -> Bulk {
     let mut b = Bulk::default();
     b.card(&format!("MAT1,1,1.+10,,.3,{rho}"));
@@ -423,7 +425,7 @@ fn bar_on(springs: &str, rho: &str) -> Bulk {
     b
 }
 
-/// A stiffness far below or above that of the bar counts the same; neither mass nor an SPC set is needed.
+/// A stiffness far below or above that of the bar is a valid support. Neither mass nor an SPC set is needed.
 #[test]
 fn a_structure_on_springs_to_ground_is_held_by_them() {
     for k in [1e3, 1e6, 1e12] {
@@ -475,14 +477,15 @@ fn a_structure_on_springs_to_ground_is_held_by_them() {
     }
 }
 
-/// Statically determinate springs, one more at each step: each takes one motion out of those that nothing resists.
+/// Statically determinate springs, one more at each step. Each one removes one motion from the motions that nothing
+/// resists.
 #[test]
 fn each_spring_to_ground_takes_one_rigid_motion() {
     let at = [(1, 3), (2, 3), (3, 3), (1, 1), (1, 2), (2, 2)];
     for n in 0..=6 {
         let mut b = Bulk::default();
         b.card("MAT1,1,210000.,,.3,7.85-9\nPBAR,2,1,200.,9000.,4000.,8000.");
-        // Far from the origin, on springs far softer than the bars.
+        // The structure is far from the origin, on springs far softer than the bars.
         for x in [[0.0, 0.0], [1000.0, 0.0], [0.0, 1000.0]] {
             b.grid([1e5 + x[0], x[1] - 1e5, 0.0]);
         }
@@ -501,7 +504,7 @@ fn each_spring_to_ground_takes_one_rigid_motion() {
     }
 }
 
-/// Three springs along z of a frame that is free along x and y and about z.
+/// Returns a frame on three springs along z. It is free along x and y and about z.
 fn on_vertical_springs(k: f64) -> Bulk {
     let mut b = Bulk::default();
     b.card("MAT1,1,210000.,,.3,7.85-9\nPBAR,2,1,200.,9000.,4000.,8000.");
@@ -538,7 +541,7 @@ fn springs_carry_what_they_resist_and_inertia_balances_the_rest() {
     let mass = report.mass.as_ref().unwrap().mass;
     assert_equal_to_rounding("along x", balance.acceleration[0], 20.0 / mass);
     assert!(balance.inertia[2].abs() < 1e-9, "{balance:?}");
-    // The written deck of such a job holds the free motions by SUPORT.
+    // The deck that is written for such a job supports the free motions by SUPORT.
     let dofs = determinate_dofs(&model);
     assert!(
         dofs.len() == 3 && dofs.iter().all(|(_, dof)| [1, 2].contains(dof)),
@@ -572,7 +575,8 @@ fn stated_relief_of_a_structure_on_springs_is_limited_with_a_warning() {
     assert!(relief_finding(&b.model(), deck, SupportChoice::Deck).is_some());
 }
 
-/// Springs in series through scalar points are springs to ground; a spring between grids, or an idle spring, is not a spring to ground.
+/// Springs in series through scalar points are springs to ground. A spring between grids, or an idle spring, is not a
+/// spring to ground.
 #[test]
 fn chains_of_scalar_points_reach_ground_and_springs_within_the_structure_do_not() {
     let by = |cards: &str| {

@@ -1,4 +1,5 @@
-//! Temperature: free bodies grow without mechanical strain, held ones carry it, layered ones bend. Set 9 is the temperature.
+//! Temperature: free bodies expand without mechanical strain, fixed bodies are strained, and layered bodies bend. Set 9
+//! is the temperature.
 
 use crate::mesh::{Bulk, Solved, assert_near};
 use strainbridge::fe::{HeatedStrain, SolveOptions};
@@ -11,7 +12,7 @@ fn steel() -> Bulk {
     b
 }
 
-/// A warped patch of quadrilaterals and triangles of thickness 4.
+/// Adds a warped patch of quadrilaterals and triangles of thickness 4.
 fn sheet(b: &mut Bulk) -> Vec<Vec<u32>> {
     b.card("PSHELL,1,1,4.0,1,,1");
     let ids = b.patch(3, 3, |u, v| {
@@ -45,7 +46,7 @@ fn a_free_sheet_grows_and_strains_nothing_mechanically() {
     b.card("TEMPD,9,120.");
     b.hold("123456", [ids[0][0]]);
     let s = b.solve_hot();
-    // A hundred degrees above TREF.
+    // 100 degrees above TREF.
     for row in &ids {
         for g in row {
             let x = s.model.grids[s.model.grid_ix(*g).unwrap().us()].x;
@@ -95,7 +96,7 @@ fn a_held_sheet_carries_the_whole_thermal_strain() {
     b.card("TEMPD,9,120.");
     b.hold("123456", ids.iter().flatten().copied());
     b.hold("123456", [17]);
-    // One free grid keeps the system from being empty: it hangs on a spring of its own.
+    // One free grid on a spring keeps the system of equations from being empty.
     let free = b.grid([500.0, 0.0, 0.0]);
     b.card(&format!("CELAS2,900,1.0,{free},1"));
     b.hold("23456", [free]);
@@ -115,7 +116,7 @@ fn a_gradient_through_the_thickness_bends_a_free_sheet_to_a_bowl() {
     b.hold("123456", [ids[0][0]]);
     let s = b.solve_hot();
     assert!(largest_strain(&s) < 1e-10, "{:e}", largest_strain(&s));
-    // The top is warmer and longer: the sheet bends down from the held corner, w = -alpha T' (x^2 + y^2) / 2.
+    // The top is warmer and longer. The sheet bends down from the fixed corner: w = -alpha T' (x^2 + y^2) / 2.
     let far = ids[3][3];
     let x = s.model.grids[s.model.grid_ix(far).unwrap().us()].x;
     assert_near(
@@ -128,8 +129,8 @@ fn a_gradient_through_the_thickness_bends_a_free_sheet_to_a_bowl() {
 
 #[test]
 fn a_bimetal_strip_bends_as_timoshenko_says() {
-    // Timoshenko 1925: kappa = 6 (a2 - a1) dT (1 + m)^2 / (h (3 (1 + m)^2 + (1 + m n)(m^2 + 1 / (m n)))), m = t1 / t2, n = E1 / E2;
-    // the same for a plate whose layers have one Poisson ratio.
+    // Timoshenko 1925: kappa = 6 (a2 - a1) dT (1 + m)^2 / (h (3 (1 + m)^2 + (1 + m n)(m^2 + 1 / (m n)))), m = t1 / t2,
+    // n = E1 / E2. The formula is also valid for a plate whose layers have equal Poisson ratios.
     let (e1, e2, a1, a2, t1, t2, dt) = (210_000.0, 70_000.0, 1.2e-5, 2.3e-5, 2.0, 3.0, 50.0);
     let mut b = Bulk::default();
     b.card(&format!("MAT1,1,{e1:?},,.3,,{a1:?},0."));
@@ -142,7 +143,7 @@ fn a_bimetal_strip_bends_as_timoshenko_says() {
     let (m, n, h): (f64, f64, f64) = (t1 / t2, e1 / e2, t1 + t2);
     let kappa = 6.0 * (a2 - a1) * dt * (1.0 + m).powi(2)
         / (h * (3.0 * (1.0 + m).powi(2) + (1.0 + m * n) * (m * m + 1.0 / (m * n))));
-    // The second layer, on top, grows more: the strip bends down.
+    // The second layer is on top and expands more, so the strip bends down.
     assert_near(
         "bimetal",
         s.displacement_at(ids[6][0])[2],
@@ -178,7 +179,7 @@ fn bars_and_rods_grow_freely_push_when_held_and_bend_under_a_gradient() {
     b.card("TEMPD,9,120.");
     let s = b.solve_hot();
     assert_near("bar", s.displacement_at(3)[0], 100.0 * ALPHA * 250.0, 1e-10);
-    // The rod pushes its free end away; held sideways at grid 4 in x alone.
+    // The rod moves its free end away. At grid 4, only x is fixed.
     assert_near("rod", s.displacement_at(4)[1], 100.0 * ALPHA * 80.0, 1e-10);
     for (_, strain) in s.case.beams.stations.iter().flatten() {
         assert!(strain.iter().all(|e| e.abs() < 1e-13), "{strain:?}");
@@ -187,13 +188,13 @@ fn bars_and_rods_grow_freely_push_when_held_and_bend_under_a_gradient() {
     b.card("TEMPD,9,120.");
     let s = b.solve_hot();
     for (_, strain) in s.case.beams.stations.iter().flatten() {
-        // The rod is free at its end and disturbs nothing.
+        // The rod is free at its end and has no effect on the others.
         assert!(
             strain.iter().all(|e| (e + 100.0 * ALPHA).abs() < 1e-12),
             "{strain:?}"
         );
     }
-    // Warmer along element y (here basic y): the cantilever bends away from the warm side.
+    // The temperature rises along element y, here basic y. The cantilever bends away from the warm side.
     let mut b = build(false);
     b.card("TEMPD,9,20.");
     b.card("TEMPRB,9,1,20.,20.,3.,3.,0.,0.,\n,\n,2");
@@ -209,7 +210,7 @@ fn bars_and_rods_grow_freely_push_when_held_and_bend_under_a_gradient() {
 
 #[test]
 fn solids_under_a_linear_temperature_field_are_free_of_mechanical_strain() {
-    // Stress-free by theory: a temperature linear in the coordinates of a free body strains it compatibly.
+    // A temperature field that is linear in the coordinates strains a free body compatibly, without stress.
     let mut b = steel();
     b.card("PSOLID,1,1");
     let id = |b: &mut Bulk, x: [f64; 3]| {
@@ -217,7 +218,7 @@ fn solids_under_a_linear_temperature_field_are_free_of_mechanical_strain() {
         b.card(&format!("TEMP,9,{g},{:?}", 20.0 + 2.0 * x[0] + 7.0 * x[2]));
         g
     };
-    // A row of two rectangular bricks and a ten-node tetrahedron beside.
+    // A row of two rectangular bricks, with a ten-node tetrahedron next to them.
     let mut layer = Vec::new();
     for x in [0.0, 10.0, 20.0] {
         for (y, z) in [(0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0)] {
@@ -243,7 +244,7 @@ fn solids_under_a_linear_temperature_field_are_free_of_mechanical_strain() {
             assert!(e.abs() < 1e-12, "{centre:?}");
         }
     }
-    // Along the bottom edge of the row, in x: integral of alpha dT.
+    // Length along the bottom edge of the row, in x: the integral of alpha dT.
     assert_near(
         "length",
         s.displacement_at(layer[8])[0],

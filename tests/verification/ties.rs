@@ -1,4 +1,4 @@
-//! RSPLINE, CGAP, RIGID on PBUSH, bushes without CID, moments on RBE3, equations that chain: against closed forms.
+//! Compares RSPLINE, CGAP, RIGID on PBUSH, bushes without CID, moments on RBE3 and chained equations with closed forms.
 
 use crate::mesh::Bulk;
 use strainbridge::fe::*;
@@ -27,7 +27,7 @@ fn assert_close(what: &str, got: f64, expected: f64, tolerance: f64) {
     );
 }
 
-/// Grids 1 to n along a line; a soft bar between its ends so that there is something to solve.
+/// Returns grids 1 to n along a line. A soft bar connects the ends, so that the model has something to solve.
 fn line(points: &[[f64; 3]]) -> Bulk {
     let mut b = Bulk::default();
     b.card("MAT1,1,210000.,,.3\nPBAR,2,1,1.,1.,1.,1.");
@@ -53,7 +53,7 @@ fn a_straight_spline_is_a_cubic_between_its_ends_and_a_straight_line_in_twist_an
     b.card("CBAR,1,2,1,3,0.,1.,0.\nFORCE,1,3,0,0.,0.,0.,1.");
     assert!(b.faults().is_empty(), "{:?}", b.faults());
     let u = b.solve().displacement_at(2);
-    // Hermite at a quarter of L = 100.
+    // Hermite functions at a quarter of L = 100.
     let (s, l) = (0.25_f64, 100.0);
     let h = [
         1.0 - 3.0 * s * s + 2.0 * s.powi(3),
@@ -88,7 +88,8 @@ fn a_straight_spline_is_a_cubic_between_its_ends_and_a_straight_line_in_twist_an
 
 #[test]
 fn a_bent_spline_moves_as_bars_of_the_tube_that_it_stands_for() {
-    // A quarter circle of radius 50 in six chords, frames turned; the tube: D/L .2, I = 1, J = 2 (1 + nu) I / 2 .. so that GJ = EI.
+    // A quarter circle of radius 50 in six chords, with turned frames. The tube has D/L = .2 and I = 1, and its J gives
+    // GJ = EI.
     let points: Vec<[f64; 3]> = (0..=6)
         .map(|k| {
             let a = std::f64::consts::FRAC_PI_2 * f64::from(k) / 6.0;
@@ -118,7 +119,7 @@ fn a_bent_spline_moves_as_bars_of_the_tube_that_it_stands_for() {
         b.card("FORCE,1,7,0,0.,0.,0.,1.");
     };
     let mut bars = line(&points);
-    // G of nu .3 is E / 2.6: J = 2.6 I; A = 8 I / d^2; no shear (K1 = K2 = 0).
+    // For nu = .3, G is E / 2.6, so J = 2.6 I. A = 8 I / d^2. There is no shear flexibility (K1 = K2 = 0).
     bars.card(&format!("PBAR,3,1,{:?},1.,1.,2.6", 8.0 / (d * d)));
     for k in 1..=6 {
         bars.card(&format!("CBAR,{k},3,{k},{},0.,0.,1.", k + 1));
@@ -140,7 +141,7 @@ fn a_bent_spline_moves_as_bars_of_the_tube_that_it_stands_for() {
             );
         }
     }
-    // What a card can't mean is refused.
+    // A card without a valid meaning is refused.
     for (card, said) in [
         ("RSPLINE,9,.2,1,2,123456", "independent"),
         ("RSPLINE,9,.2,1,2,123,3,123", "independent"),
@@ -177,7 +178,7 @@ fn a_gap_carries_ka_and_kt_while_closed_and_kb_alone_while_open_and_says_so() {
     ] {
         let b = with(property, load);
         let got = b.solve().displacement_at(2)[dof].abs();
-        // The grid's rotations are free, as a solid's are: the stiffness across acts on translations.
+        // The rotations of the grid are free, as on a solid. The lateral stiffness acts on translations.
         assert_close(property, got, 100.0 / (k + 1.0), 1e-9);
         let told = findings(&b);
         let gap = told
@@ -209,7 +210,8 @@ fn a_gap_carries_ka_and_kt_while_closed_and_kb_alone_while_open_and_says_so() {
 
 #[test]
 fn rigid_components_of_a_bush_hand_on_motion_and_the_others_give_way() {
-    // A cantilever of 500; from its tip a bush to a grid 40 away along y: all rigid it is an arm; K6 a spring.
+    // A cantilever of 500. A bush connects its tip to a grid 40 away along y. It is an arm if all terms are rigid, and
+    // K6 is a spring.
     let (l, i, a) = (500.0, 9000.0, 40.0);
     for (property, hinge) in [
         ("PBUSH,7,K,RIGID,RIGID,RIGID,RIGID,RIGID,RIGID", 0.0),
@@ -221,7 +223,8 @@ fn rigid_components_of_a_bush_hand_on_motion_and_the_others_give_way() {
             let (root, tip) = (b.grid([0.0; 3]), b.grid([l, 0.0, 0.0]));
             let arm = b.grid([l, a, 0.0]);
             b.card(&format!("CBAR,1,2,{root},{tip},0.,1.,0."));
-            // Axes from the line and the vector: x along y, z down; from system 3: z as basic z, turned 30 degrees about it.
+            // Axes from the line and the vector: x along y, z down. In system 3, z is basic z, and the system is turned
+            // by 30 degrees about it.
             b.card("CORD2R,3,0,0.,0.,0.,0.,0.,1.,\n,.866025403784,.5,0.");
             b.card(&format!("CBUSH,5,7,{tip},{arm},1.,0.,0.,{cid}"));
             b.card(property);
@@ -232,7 +235,7 @@ fn rigid_components_of_a_bush_hand_on_motion_and_the_others_give_way() {
             // The force at the arm bends the bar by the moment -P a about z and stretches it.
             let m = -100.0 * a;
             let turn = m * l / (E * i);
-            // Across the middle of the bush: the hinge feels the force over half the arm.
+            // The hinge is in the middle of the bush, so the force has half the arm about it.
             let hinge_turn = hinge * m / 2.0;
             let expected = 100.0 * l / (E * 200.0) - turn * a - hinge_turn * a / 2.0;
             assert_close("arm, x", s.displacement_at(arm)[0], expected, 1e-9);
@@ -254,7 +257,7 @@ fn rigid_components_of_a_bush_hand_on_motion_and_the_others_give_way() {
 
 #[test]
 fn a_rigid_bush_follows_whichever_end_is_free_to() {
-    // The arm of the test above with its end moved by an RBE2: the bush makes the other end follow.
+    // The arm of the test above, but an RBE2 moves its end. The bush makes its other end dependent.
     let (l, i, a) = (500.0, 9000.0, 40.0);
     let mut b = Bulk::default();
     b.card("MAT1,1,210000.,,.3\nPBAR,2,1,200.,9000.,9000.,18000.");
@@ -276,7 +279,8 @@ fn a_rigid_bush_follows_whichever_end_is_free_to() {
 
 #[test]
 fn which_dofs_a_rigid_bush_makes_dependent_does_not_hang_on_the_unit_of_length() {
-    // Translations alone are rigid, the rotations of the arm's end are held: the force acts in the middle of the arm.
+    // Only translations are rigid, and the rotations of the arm's end are fixed. The force acts in the middle of the
+    // arm.
     for unit in [1.0_f64, 1e-3] {
         let (l, i, a) = (500.0 * unit, 9000.0 * unit.powi(4), 40.0 * unit);
         let (area, e) = (200.0 * unit * unit, E / (unit * unit));
@@ -304,7 +308,7 @@ fn a_rigid_bush_to_ground_is_a_support_with_a_reaction() {
         let mut b = Bulk::default();
         b.card("MAT1,1,210000.,,.3\nPBAR,2,1,200.,9000.,9000.,18000.");
         let (root, tip) = (b.grid([0.0; 3]), b.grid([500.0, 0.0, 0.0]));
-        // The bar hangs on an RBE2 from the bush's grid: its force comes through that to the ground.
+        // An RBE2 joins the bar to the grid of the bush. The force of the bar reaches the ground through it.
         let ground = b.grid([0.0, 30.0, 0.0]);
         b.card(&format!("CBAR,1,2,{root},{tip},0.,1.,0."));
         b.card(&format!("RBE2,90,{ground},123456,{root}"));
@@ -339,7 +343,7 @@ fn a_rigid_bush_to_ground_is_a_support_with_a_reaction() {
         assert_close("z", r.total[2], -300.0, 1e-9);
         assert!(!told(&b));
     }
-    // One direction alone, askew: no single dof holds it, and that is said.
+    // One oblique direction is rigid. No single dof fixes it, and a finding reports that.
     assert!(told(&with("3", "RIGID,1.+6,1.+6,1.+8,1.+8,1.+8")));
     assert!(!told(&with("0", "RIGID,1.+6,1.+6,1.+8,1.+8,1.+8")));
 }
@@ -360,7 +364,7 @@ fn a_bush_without_axes_takes_the_basic_frame_and_says_so_where_it_matters() {
         assert!(b.faults().is_empty(), "{:?}", b.faults());
         (b.solve().displacement_at(1), findings(&b))
     };
-    // A vector without a line to go with is not thrown away in silence.
+    // A vector without a line between the ends must not be ignored silently.
     for (property, faulty) in [("50.,30.,10.", true), ("10.,10.,10.", false)] {
         let mut b = Bulk::default();
         b.grid([3.0, 4.0, 5.0]);
@@ -389,7 +393,8 @@ fn a_bush_without_axes_takes_the_basic_frame_and_says_so_where_it_matters() {
 
 #[test]
 fn a_moment_on_an_rbe3_is_shared_out_by_lever_arms() {
-    // Reference in the middle of four grids of a rectangle 2a x 2b: about z force i is M r_i / sum r^2, across r_i.
+    // The reference grid is in the middle of four grids of a rectangle 2a x 2b. A moment M about z gives the force M
+    // r_i / sum r^2 at grid i, perpendicular to r_i.
     let (a, b_) = (30.0, 20.0);
     let corners = [[a, b_], [-a, b_], [-a, -b_], [a, -b_]];
     let mut b = Bulk::default();
@@ -422,7 +427,7 @@ fn a_moment_on_an_rbe3_is_shared_out_by_lever_arms() {
             1e-9,
         );
     }
-    // About x: forces along z by y / sum y^2.
+    // A moment about x gives forces along z, proportional to y / sum y^2.
     let text = b.text.replace("0.,0.,1.\n", "1.,0.,0.\n");
     assert_ne!(text, b.text);
     b.text = text;
@@ -439,7 +444,7 @@ fn a_moment_on_an_rbe3_is_shared_out_by_lever_arms() {
 
 #[test]
 fn equations_that_chain_carry_forces_and_motion_through_all_of_them() {
-    // u4 = 2 u3, u3 = 3 u2, u2 = u1 / 2 (out of order): a force F at 4 is 3 F at 1.
+    // u4 = 2 u3, u3 = 3 u2, u2 = u1 / 2 (out of order). A force F at grid 4 is 3 F at grid 1.
     let mut b = Bulk::default();
     for _ in 0..4 {
         b.grid([0.0; 3]);

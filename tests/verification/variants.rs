@@ -1,11 +1,11 @@
-//! Variants of a model on its factor, against solutions with a factor of their own.
+//! Compares variants that are solved with the factor of the base model with solutions that use separate factors.
 
 use crate::adjoint::{scale_moduli, tray};
 use strainbridge::fe::shell_frame::ShellPlace;
 use strainbridge::fe::*;
 use strainbridge::model::{Model, ShellKind, Vec3};
 
-/// The tray with a bush between a bracket and the wall.
+/// Returns the tray with a bush between a bracket and the wall.
 fn model() -> Model {
     let mut b = tray();
     let ends = [[20.0, 10.0, 40.0], [20.0, 10.0, 40.0]].map(|x| b.grid(x));
@@ -18,7 +18,7 @@ fn model() -> Model {
     b.model()
 }
 
-/// Thicker and heavier: its inertia balances loads otherwise.
+/// Returns the model with thicker shells. They are also heavier, which changes the inertia forces.
 fn thicken_shells(model: &Model, factor: f64) -> Model {
     let mut out = model.clone();
     for p in &mut out.shell_properties {
@@ -77,7 +77,7 @@ fn variants_on_the_factor_of_their_base_are_those_with_factors_of_their_own() {
         scale_moduli(&model, &[9, 10, 11, 17], 0.5),
         bush(&model, 2.0),
         bush(&model, 0.01),
-        // Of no use to the factor of the base: a cut through and a moved grid.
+        // The factor of the base does not help for a cut through the structure or for a moved grid.
         scale_moduli(&model, &[0, 1, 2, 3, 4, 5], 1e-5),
         move_grid(&model),
         model.clone(),
@@ -112,7 +112,8 @@ fn variants_on_the_factor_of_their_base_are_those_with_factors_of_their_own() {
                 i + 1 == variants.len() || change > 1e-4 * size,
                 "{i}: {change} of {size}"
             );
-            // 1e-8 in energy; a single strain may take a little more. Rounding of two factors: 1e-10 of the strain.
+            // The limit is 1e-8 in energy, and a single strain may have a larger error. The rounding error of two
+            // factors is 1e-10 of the strain.
             assert!(
                 off < 1e-6 * change + 1e-9 * size,
                 "{i}: {off}, change {change}, size {size}"
@@ -121,7 +122,7 @@ fn variants_on_the_factor_of_their_base_are_those_with_factors_of_their_own() {
     }
 }
 
-/// Readings at the centre and at a corner of shells, on both surfaces.
+/// Returns readings at the centre and at a corner of shells, on both surfaces.
 fn readings() -> Vec<Vec<StrainTerm>> {
     let term = |shell: u32, surface, place, coefficient| StrainTerm {
         shell: strainbridge::model::ShellIx(shell),
@@ -140,7 +141,7 @@ fn readings() -> Vec<Vec<StrainTerm>> {
     ]
 }
 
-/// The readings of a solution, by reading and load.
+/// Returns the readings of a solution, by reading and load.
 fn read_all(solution: &Solution) -> Vec<f64> {
     let of = |t: &StrainTerm, c: &CaseResult| -> f64 {
         let at = c.shells.elements.iter().position(|s| *s == t.shell);
@@ -201,14 +202,15 @@ fn changes_of_readings_are_exact_for_bushes_and_first_order_for_shells() {
                 off.fold(0.0, f64::max) / largest
             })
             .collect();
-        // Rounding alone for bushes.
+        // Bushes have rounding errors only.
         assert!(errors[0] < 1e-8 && errors[1] < 1e-8, "{errors:?}");
-        // Bending goes with the cube of the thickness: the relative error of a first order is a few times the step, and falls with it.
+        // The bending stiffness is proportional to the cube of the thickness. The relative error of first order is a
+        // few times the step, and it is proportional to the step.
         assert!(errors[2] < 5.0 * steps[0], "{errors:?}");
         let ratio = errors[2] / errors[3];
         assert!((ratio - 2.0).abs() < 0.1, "{errors:?}");
     }
-    // A moved grid is no change of stiffness alone.
+    // A moved grid is not a mere change of stiffness.
     let none = [move_grid(&model)].into_iter();
     let support = Support::without_spc(&model);
     let options = SolveOptions::default();

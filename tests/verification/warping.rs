@@ -1,4 +1,4 @@
-//! CBEAM with warping points: Vlasov's closed forms of restrained torsion, and an I-beam of shells.
+//! Compares CBEAM with warping points with Vlasov's closed forms of restrained torsion and with an I-beam of shells.
 
 use crate::mesh::{Bulk, assert_near};
 use strainbridge::fe::*;
@@ -6,7 +6,8 @@ use strainbridge::fe::*;
 const E: f64 = 210_000.0;
 const NU: f64 = 0.3;
 
-/// `n` beams along x of J and CW, warping points 1001.., end A held, warping there too where `fixed`.
+/// Returns `n` beams along x with J and CW and with the warping points 1001 and up. End A is fixed, and its warping too
+/// if `fixed` is set.
 fn bar(n: u32, length: f64, (j, cw): (f64, f64)) -> Bulk {
     let mut b = Bulk::default();
     b.card(&format!("MAT1,1,{E:?},,{NU:?}"));
@@ -54,7 +55,7 @@ fn torsion_with_warping_held_at_one_end_or_both_is_that_of_vlasov() {
                 one_end,
                 1e-7,
             );
-            // The rate of twist at the free end, which its warping point holds.
+            // The rate of twist at the free end is the value of its warping point.
             let rate = torque / (g * j) * (1.0 - 1.0 / psi.cosh());
             assert_near(
                 "rate of twist",
@@ -70,7 +71,7 @@ fn torsion_with_warping_held_at_one_end_or_both_is_that_of_vlasov() {
                 1e-6,
             );
         }
-        // Free to warp: Saint-Venant.
+        // With free warping, the twist is that of Saint-Venant.
         let b = bar(2, length, (j, cw));
         assert_near(
             "free",
@@ -103,8 +104,9 @@ fn without_warping_points_or_constant_a_beam_twists_as_saint_venant_has_it() {
     );
 }
 
-/// An I-beam 200 high and 100 wide between midlines, 6 thick, held at the root: shells against one warping CBEAM with the section
-/// constants of thin walls, J = sum b t^3 / 3 and CW = h^2 b^3 t / 24.
+/// An I-beam of shells compared with one CBEAM with warping. Height and width are 200 and 100 between midlines, the
+/// thickness is 6, and the root is fixed. The section constants are those of thin walls, J = sum b t^3 / 3 and CW = h^2
+/// b^3 t / 24.
 #[test]
 fn an_i_beam_of_shells_twists_as_the_warping_beam() {
     let (h, w, t, length) = (200.0, 100.0, 6.0, 1500.0);
@@ -145,7 +147,7 @@ fn an_i_beam_of_shells_twists_as_the_warping_beam() {
         .copied()
         .collect();
     b.hold("123456", root);
-    // A torque of 1e6 as a couple of the flanges.
+    // A torque of 1e6 as a couple on the flanges.
     let p = 1e6 / h;
     let (low, high) = (bottom[along][middle], top[along][middle]);
     b.force(high, [0.0, -p, 0.0]);
@@ -157,9 +159,9 @@ fn an_i_beam_of_shells_twists_as_the_warping_beam() {
     let mut beam = bar(1, length, (j, cw));
     beam.card("SPC1,1,1,1001");
     let twist = beam.solve().displacement_at(2)[3];
-    // Thin-wall theory leaves out shear strain of the flanges and warping across the walls.
+    // Thin-wall theory neglects shear strain of the flanges and warping across the thickness of the walls.
     assert_near("I-beam of shells over warping beam", shells, twist, 0.03);
-    // Without warping it would twist more than twice as much.
+    // Without restrained warping the twist would be more than twice as large.
     let g = E / (2.0 + 2.0 * NU);
     assert!(1e6 * length / (g * j) > 2.0 * twist);
 }
@@ -176,13 +178,13 @@ fn the_warping_constants_of_open_sections_are_those_of_the_books() {
         assert!(b.faults().is_empty(), "{:?}", b.faults());
         b.model().beam_properties[0].warping[0]
     };
-    // I, equal flanges: h^2 b^3 t / 24 with midline sizes.
+    // I with equal flanges: h^2 b^3 t / 24 with midline sizes.
     let (h, b, t, tw) = (194.0_f64, 100.0_f64, 6.0, 4.0);
     let i = h * h * b.powi(3) * t / 24.0;
     assert_near("I", of("I", &[200.0, b, b, tw, t, t]), i, 1e-9);
     assert_near("I1", of("I1", &[b - tw, tw, 188.0, 200.0]), i, 1e-9);
     assert_near("H", of("H", &[194.0 - 6.0, 12.0, b, tw]), i, 1e-9);
-    // Unequal flanges: h^2 I1 I2 / (I1 + I2).
+    // I with unequal flanges: h^2 I1 I2 / (I1 + I2).
     let (i1, i2) = (6.0 * b.powi(3) / 12.0, 6.0 * 60.0_f64.powi(3) / 12.0);
     assert_near(
         "I, one narrow",
@@ -190,7 +192,7 @@ fn the_warping_constants_of_open_sections_are_those_of_the_books() {
         h * h * i1 * i2 / (i1 + i2),
         1e-9,
     );
-    // Channel: b^3 h^2 t / 12 (3 b t + 2 h tw) / (6 b t + h tw), midline sizes.
+    // Channel with midline sizes: b^3 h^2 t / 12 (3 b t + 2 h tw) / (6 b t + h tw).
     let (h, b) = (194.0_f64, 58.0_f64);
     let channel =
         b.powi(3) * h * h * t / 12.0 * (3.0 * b * t + 2.0 * h * tw) / (6.0 * b * t + h * tw);
@@ -214,7 +216,7 @@ fn the_warping_constants_of_open_sections_are_those_of_the_books() {
     }
 }
 
-/// From E CW theta'''' - GJ theta'' = m with theta = theta' = 0 at the root and nothing at the tip.
+/// The solution of E CW theta'''' - GJ theta'' = m with theta = theta' = 0 at the root and free ends at the tip.
 #[test]
 fn torques_along_a_warping_beam_twist_it_as_vlasov_has_it_however_few_the_elements() {
     let g = E / (2.0 + 2.0 * NU);
@@ -223,7 +225,7 @@ fn torques_along_a_warping_beam_twist_it_as_vlasov_has_it_however_few_the_elemen
         let lambda = (g * j / (E * cw)).sqrt();
         let psi = lambda * length;
         let uniform = if psi < 0.01 {
-            // Without Saint-Venant's part it is a cantilever of E CW under m.
+            // Without Saint-Venant's term it is a cantilever with the stiffness E CW under m.
             m * length.powi(4) / (8.0 * E * cw)
         } else {
             let curl = (1.0 + psi * psi.sinh()) / psi.cosh() - 1.0;
@@ -242,8 +244,10 @@ fn torques_along_a_warping_beam_twist_it_as_vlasov_has_it_however_few_the_elemen
     }
 }
 
-/// What the tip of a bar does depends on the torque along it alone, not on where elements end: spans and places within one element
-/// against elements that end there, a linear torque over all of it against its parts.
+/// The motion of the tip depends only on the torque along the bar, and not on the division into elements.
+///
+/// The test compares torques over spans and at points within one element with elements that end there. It also compares
+/// a linear torque over the whole element with its parts.
 #[test]
 fn a_torque_within_a_warping_beam_is_the_same_wherever_elements_end() {
     for (j, cw) in [(28_800.0, 1e10), (2.88e6, 1e8), (1.0, 1e14)] {
@@ -257,17 +261,17 @@ fn a_torque_within_a_warping_beam_is_the_same_wherever_elements_end() {
         };
         let card = |element: u32, rest: &str| format!("PLOAD1,1,{element},MXE,FR,{rest}");
         let pairs = [
-            // Concentrated at two thirds.
+            // Concentrated torque at two thirds.
             (
                 vec![card(1, ".666666666667,500.")],
                 vec![card(2, "1.,500.")],
             ),
-            // Over the middle third, from 30 to 90.
+            // Torque over the middle third, from 30 to 90.
             (
                 vec![card(1, ".333333333333,30.,.666666666667,90.")],
                 vec![card(2, "0.,30.,1.,90.")],
             ),
-            // Over all of it, from nothing to 90.
+            // Torque over the whole element, from zero to 90.
             (
                 vec![card(1, "0.,0.,1.,90.")],
                 vec![
@@ -280,7 +284,7 @@ fn a_torque_within_a_warping_beam_is_the_same_wherever_elements_end() {
         for (one, three) in pairs {
             let (a, b) = (solved(1, &one), solved(3, &three));
             assert_near(&one[0], a[0], b[0], 1e-6);
-            // Far from a torque the rate dies out to nothing.
+            // Far from a torque, the rate of twist decays to zero.
             let rate = (a[1] - b[1]).abs();
             assert!(rate < 1e-6 * (b[0] / 1500.0), "{}: {a:?} {b:?}", one[0]);
         }
@@ -307,7 +311,7 @@ fn bimoments_count_neither_as_forces_of_supports_nor_as_forces_on_a_free_body() 
     assert!(r.residual < 1e-9, "{}", r.residual);
     assert_near("reaction", r.total[3], -(1e6 + 100.0 * 1500.0), 1e-9);
     assert!(r.total[0].abs() < 1e-6 * r.total[3].abs(), "{:?}", r.total);
-    // Free, under a torque that grows along it: the bimoments of its ends don't cancel, and push nothing.
+    // A free bar under a torque that grows along it. The bimoments of its ends do not cancel, and they exert no force.
     let mut b = bar(1, 1500.0, (28_800.0, 1e10));
     b.card("PLOAD1,1,1,MXE,FR,0.,0.,1.,100.");
     b.card("CONM2,51,1,,2.,,,,,\n,900.,,900.,,,900.\nCONM2,52,2,,2.,,,,,\n,900.,,900.,,,900.");

@@ -1,11 +1,11 @@
-//! Whole structures of other people, solved as free bodies: satellites and a support structure.
+//! Solves whole structures from other sources as free bodies: satellites and a support structure.
 
 use crate::decks::{faulty_model_of, find_shared_path};
 use crate::mesh::free_modes;
 use strainbridge::fe::*;
 use strainbridge::model::Model;
 
-/// First elastic frequencies and the strain of a unit load at a grid far out.
+/// Returns the first elastic frequencies, and the strain under a unit load at a distant grid.
 fn solve(
     deck: &str,
     alter: impl Fn(&mut Model),
@@ -15,7 +15,7 @@ fn solve(
     alter(&mut model);
     let mpc = control.mpc_of_structure();
     let modal = free_modes(&model, mpc, 4);
-    // The shell grid farthest from the centre of gravity.
+    // The shell grid with the largest distance from the centre of gravity.
     let cg = modal.mass.unwrap().cg;
     let far = model
         .shells
@@ -83,7 +83,7 @@ fn check(deck: &str, alter: impl Fn(&mut Model)) {
         assert!(largest > 0.0);
         assert!(case.displacement.iter().flatten().all(|u| u.is_finite()));
     }
-    // Lumped mass of the solver against the mass that the cards give.
+    // The lumped mass of the solver against the mass of the cards.
     let weight = model.weight().mass;
     assert!((mass / weight - 1.0).abs() < 1e-6, "{mass} for {weight}");
 }
@@ -100,7 +100,8 @@ fn a_support_structure_vibrates_and_strains_freely() {
 
 #[test]
 fn a_satellite_of_many_files_vibrates_and_strains_freely() {
-    // Its outer panel 06 (grids 55010 and up) is not joined to anything in the deck: said so, then left out.
+    // The deck does not join the outer panel 06 (grids 55010 and up) to anything. The error reports it. The test then
+    // removes the panel.
     let deck = "deck_satellite_includes/JOBS/QS/relative_path.bdf";
     let Some(path) = find_shared_path(&format!("nastran/{deck}")) else {
         return;

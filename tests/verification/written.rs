@@ -1,4 +1,4 @@
-//! Solids, plies and quadratic shells in the result file that is written: read back they are what was solved.
+//! Solids, plies and quadratic shells in a written result file: the values read back equal the solution.
 
 use crate::mesh::Bulk;
 use nastran::op2::{EncodedBlock, Op2Writer};
@@ -15,7 +15,7 @@ fn strain_of_solids_plies_and_curved_shells_survives_the_result_file() {
     b.card("PCOMP,1\n,2,0.5,30.,YES,2,0.7,-20.,YES");
     b.card("PSHELL,6,1,2.0,1,,1");
     let ids = b.patch(2, 1, |u, v| [20.0 * u, 10.0 * v, 0.0]);
-    // A brick on the second element, a curved element beside the first.
+    // A brick on the second element, and a curved element next to the first.
     let [p, q, r, s] = [ids[1][0], ids[2][0], ids[2][1], ids[1][1]];
     let top: Vec<u32> = [[10., 0., 5.], [20., 0., 5.], [20., 10., 5.], [10., 10., 5.]]
         .iter()
@@ -55,7 +55,7 @@ fn strain_of_solids_plies_and_curved_shells_survives_the_result_file() {
     let bytes = op2.finish().unwrap();
     let file = ResultsFile::read(&bytes, "written.op2").unwrap();
     let mut seen = Vec::new();
-    // Single precision.
+    // The file has single precision.
     let close = |a: f64, b: f64| assert!((a - b).abs() <= 1e-6 * b.abs() + 1e-12, "{a} for {b}");
     for (i, block) in file.blocks().iter().enumerate() {
         let rows = file.rows(i).unwrap();

@@ -1,15 +1,16 @@
-//! `check JOB` agrees with the commands: what one of them refuses or can't rely on, it says, and it refuses nothing that they read.
+//! `check JOB` agrees with the commands. It reports what a command refuses or cannot rely on, and refuses nothing that
+//! the commands read.
 
 use super::copies::copy_example;
 use std::path::Path;
 use std::process::Command;
 
-/// A job of loads in a record of the fleet's form, whose S is given.
+/// Job for loads from a fleet record with a given S.
 const RECORD: &str = "units = \"m-kg-s\"\nreport_units = { force = \"kN\", moment = \"kN m\" }\n\
                       [sensitivity]\nfile = \"s_wheels.csv\"\nper = { force = \"kN\" }\n\
                       [measured]\nstrain = \"A_2026-05-01.csv\"\nnoise_microstrain = 0.1\n";
 
-/// Exit code and words of a command on a job.
+/// Returns exit code and output of a command on a job.
 fn ask(command: &str, job: &Path) -> (i32, String) {
     let mut asked = Command::new(env!("CARGO_BIN_EXE_strainbridge"));
     asked.arg(command).arg(job);
@@ -18,26 +19,26 @@ fn ask(command: &str, job: &Path) -> (i32, String) {
     }
     let done = asked.output().unwrap();
     let said = [done.stdout, done.stderr].concat();
-    // Later lines of a finding are indented.
+    // Further lines of a finding are indented.
     let said = String::from_utf8_lossy(&said).replace("\n    ", " ");
     (done.status.code().unwrap(), said)
 }
 
-/// What is done to a file of a job.
+/// Name of a damage, and the change of a file.
 type Damage<'a> = (&'a str, &'a dyn Fn(&str) -> Vec<u8>);
 
-/// What comes of a damaged file, by the command and by `check`.
+/// Expected result of the command and of `check` on a damaged file.
 #[derive(Clone, Copy)]
 enum Ends {
-    /// With 0: what was done is no damage.
+    /// Exit code 0, because the change does no damage.
     Right,
-    /// With 1 and an error of this code.
+    /// Exit code 1 with an error of this code.
     Error(&'static str),
-    /// With 2 and a fault in these words.
+    /// Exit code 2 with a fault that contains these words.
     Fault(&'static str),
 }
 
-/// Asserts that the command and `check` end alike, as stated and for the reason stated, after each damage to `file`.
+/// Fails if the command and `check` do not end as stated, with the stated reason, after each damage to `file`.
 fn agree(folder: &Path, job: &str, command: &str, file: &str, damages: &[(Damage, Ends)]) {
     assert!(!damages.is_empty());
     let (job, file) = (folder.join(job), folder.join(file));
@@ -58,7 +59,7 @@ fn agree(folder: &Path, job: &str, command: &str, file: &str, damages: &[(Damage
             let (done, said) = ask(asked, &job);
             assert_eq!(done, code, "{name}: {asked}\n{said}");
             assert!(said.contains(&why), "{name}: {asked}\n{said}");
-            // A fault names the file that is wrong.
+            // A fault names the wrong file.
             let named = file.file_name().unwrap().to_str().unwrap();
             assert!(code < 2 || said.contains(named), "{name}: {asked}\n{said}");
         }
@@ -66,7 +67,7 @@ fn agree(folder: &Path, job: &str, command: &str, file: &str, damages: &[(Damage
     std::fs::write(&file, whole).unwrap();
 }
 
-/// The text with the field in this column of its third line replaced.
+/// Returns the text with another field in this column of its third line.
 fn with_field(text: &str, column: usize, field: &str) -> Vec<u8> {
     let lines = text.lines().enumerate().map(|(i, line)| {
         let mut fields: Vec<&str> = line.split(',').collect();
@@ -78,7 +79,7 @@ fn with_field(text: &str, column: usize, field: &str) -> Vec<u8> {
     lines.collect::<String>().into_bytes()
 }
 
-/// The text with all numbers of these columns times `factor`.
+/// Returns the text with all numbers of these columns multiplied by `factor`.
 fn times(text: &str, columns: std::ops::Range<usize>, factor: f64) -> Vec<u8> {
     let lines = text.lines().map(|line| {
         let fields = line
@@ -93,7 +94,7 @@ fn times(text: &str, columns: std::ops::Range<usize>, factor: f64) -> Vec<u8> {
     lines.collect::<String>().into_bytes()
 }
 
-/// The first lines of a text.
+/// Returns the first lines of a text.
 fn lines(text: &str, n: usize) -> Vec<u8> {
     text.split_inclusive('\n')
         .take(n)
@@ -244,7 +245,7 @@ fn loads_and_gauges_are_counted_where_they_were_read() {
     std::fs::write(folder.join("job.toml"), RECORD).unwrap();
     let (code, said) = ask("check", &folder.join("job.toml"));
     assert_eq!(code, 0, "{said}");
-    // The header of s_wheels.csv names three, its rows twelve.
+    // The header of s_wheels.csv names three loads, and its rows name twelve gauges.
     assert!(said.contains("3 loads, 12 gauges"), "{said}");
 }
 
@@ -332,7 +333,7 @@ fn of_runs_check_says_what_respond_and_reconcile_say() {
         "s_payload.csv",
         &signature,
     );
-    // A hypothesis of the user's own whose table is not there.
+    // A hypothesis of the user whose table is missing.
     let matrix = std::fs::read_to_string(folder.join("reconcile_matrix.toml")).unwrap();
     let own = "\n[[reconcile.effect]]\nid = \"own\"\nsignature = \"own.csv\"\nprior = 1\n";
     let job = folder.join("own.toml");
@@ -356,7 +357,7 @@ fn a_point_away_from_the_element_beside_it_is_an_error_that_names_gauge_and_dist
     for command in ["check", "sensitivity"] {
         let (code, said) = ask(command, &job);
         assert_eq!(code, 1, "{command}: {said}");
-        // From the edge of the element, within 125 mm of its middle, to the point.
+        // The distance from the point to the edge of the element, which is within 125 mm of its middle.
         let at = said.find("is 111").unwrap_or_else(|| panic!("{said}"));
         assert!(
             said[..at].contains("gauges.csv:2") && said.contains("`P01`"),
@@ -412,7 +413,7 @@ fn fleet_says_of_a_gauge_without_a_row_of_s_what_recover_says() {
 #[test]
 fn of_a_deck_that_can_not_be_solved_or_glued_on_check_says_what_the_commands_say() {
     let folder = copy_example("check_deck", "frame");
-    // A bar that hangs on the carrier by a hinge.
+    // A hinge connects a bar to the carrier.
     let hinge = "GRID,990,,-300.,-400.,0.\nPBAR,990,1,10.,100.,100.,200.\n\
                  CBAR,990,990,1,990,0.,0.,1.,\n,456\nENDDATA";
     let of_deck: [(Damage, Ends); 2] = [
@@ -435,7 +436,7 @@ fn of_a_deck_that_can_not_be_solved_or_glued_on_check_says_what_the_commands_say
     let text = std::fs::read_to_string(folder.join("place.toml")).unwrap();
     let held = text.replacen("support = \"free\"", "support = 7", 1);
     std::fs::write(folder.join("held.toml"), held).unwrap();
-    // Grid 901 depends on others.
+    // Grid 901 is dependent.
     let all = "SPC1,7,123456,1,THRU,900\nENDDATA";
     let of_support: [(Damage, Ends); 1] = [(
         ("every dof held", &|t| {
@@ -460,7 +461,7 @@ fn of_a_deck_that_can_not_be_solved_or_glued_on_check_says_what_the_commands_say
     agree(&folder, "place.toml", "place", "place.toml", &of_job);
 }
 
-/// The readings of a table, a row a run, changed: row (the header is 0), column, field.
+/// Returns a table of readings with changed fields. `change` gets row (the header is 0), column and field.
 fn readings(text: &str, change: impl Fn(usize, usize, &str) -> String) -> Vec<u8> {
     let lines = text.lines().enumerate().map(|(i, line)| {
         let fields = line.split(',').enumerate().map(|(c, f)| change(i, c, f));

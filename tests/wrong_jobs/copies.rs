@@ -1,8 +1,8 @@
-//! Copies of the folders of `examples/`, to be damaged.
+//! Copies of the folders of `examples/`, which the tests damage.
 
 use std::path::{Path, PathBuf};
 
-/// A copy of a folder of `examples/`, its files alone, under a name that no other test has.
+/// Copies the files of a folder of `examples/`, without subfolders. No other test may use the same name.
 pub fn copy_example(name: &str, folder: &str) -> PathBuf {
     let from = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("examples")
@@ -21,7 +21,7 @@ pub fn copy_example(name: &str, folder: &str) -> PathBuf {
     to
 }
 
-/// Changes a file of a folder, which it has to do.
+/// Changes a file of a folder. Fails if the change has no effect.
 pub fn edit(folder: &Path, file: &str, change: impl Fn(&str) -> String) {
     let path = folder.join(file);
     let text = std::fs::read_to_string(&path).unwrap();

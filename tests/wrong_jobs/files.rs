@@ -1,11 +1,11 @@
-//! Jobs of `examples/` whose files are cut, replaced or of a header alone.
+//! Jobs of `examples/` with files that are cut, replaced or have only a header.
 
 use super::copies::{copy_example, edit};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 
-/// Exit code and standard error of a call in a folder.
+/// Returns exit code and standard error of a call in a folder.
 fn call(folder: &Path, arguments: &[&str]) -> (i32, String) {
     let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
         .args(arguments)
@@ -13,7 +13,7 @@ fn call(folder: &Path, arguments: &[&str]) -> (i32, String) {
         .current_dir(folder)
         .output()
         .unwrap();
-    // Later lines of a finding are indented.
+    // Further lines of a finding are indented.
     let error = String::from_utf8_lossy(&done.stderr).replace("\n    ", " ");
     (done.status.code().unwrap_or(-1), error)
 }
@@ -67,7 +67,7 @@ fn a_file_that_no_command_wrote_is_refused_before_anything_is_computed_and_stays
         assert_eq!(std::fs::read_to_string(out.join(name)).unwrap(), mine);
         assert_eq!(std::fs::read_dir(&out).unwrap().count(), 1, "{command}");
     }
-    // Names that depend on the answer are asked for when it is there.
+    // Some file names depend on the answer. The command tests for these files as soon as it has the answer.
     let out = dir.join("late");
     std::fs::create_dir_all(&out).unwrap();
     std::fs::write(out.join("loads.xlsx"), mine).unwrap();
@@ -79,7 +79,7 @@ fn a_file_that_no_command_wrote_is_refused_before_anything_is_computed_and_stays
         mine
     );
     assert_eq!(std::fs::read_dir(&out).unwrap().count(), 1);
-    // The story's own jobs are no better.
+    // `demo` must not overwrite a job either.
     let (code, said) = call(&dir, &["demo", "."]);
     assert_eq!(code, 2, "{said}");
     let place = std::fs::read_to_string(dir.join("place.toml")).unwrap();
@@ -115,7 +115,7 @@ fn what_a_command_wrote_it_may_write_again_and_what_others_wrote_stays_and_is_sa
     let (code, said) = call(&dir, &["recover", "recover.toml", "--out", "alone"]);
     assert_eq!(code, 0, "{said}");
     assert!(!said.contains("also contains"), "{said}");
-    // Two at once lose nothing of what the other lists.
+    // Two commands at the same time keep the entries of each other.
     let run = |command: &str| {
         Command::new(env!("CARGO_BIN_EXE_strainbridge"))
             .args([command, "recover.toml", "--no-cache", "--out", "both"])
@@ -147,7 +147,7 @@ fn a_folder_of_two_commands_is_verified_by_the_files_of_the_last() {
     std::fs::remove_file(dir.join("recover.out/loads.csv")).unwrap();
     let (code, said) = call(&dir, &["verify", "recover.out"]);
     assert_eq!(code, 1, "{said}");
-    // What it would replace is what it verifies.
+    // The command would replace the files that it verifies.
     let (code, said) = call(&dir, &["verify", "recover.out", "--out", "recover.out"]);
     assert_eq!(code, 2, "{said}");
 }
@@ -198,7 +198,7 @@ fn a_table_whose_last_number_may_be_cut_is_said_and_a_record_is_read_without_it(
         );
         assert!(said.contains("table-may-be-cut"), "{less}: {said}");
     }
-    // The end of the line alone: its numbers are whole.
+    // Without the last line end, the numbers are still complete.
     std::fs::write(&record, &whole[..whole.len() - 1]).unwrap();
     let (_, said) = call(&dir, &recover);
     assert!(!said.contains("table-may-be-cut"), "{said}");
@@ -206,13 +206,13 @@ fn a_table_whose_last_number_may_be_cut_is_said_and_a_record_is_read_without_it(
     let dir = copy_example("cut_runs", "frame");
     let strain = std::fs::read(dir.join("strain.csv")).unwrap();
     std::fs::write(dir.join("strain.csv"), &strain[..strain.len() - 2]).unwrap();
-    // All numbers of the table have two digits after the point, and the last has one.
+    // All numbers of the table have two decimals, but the last number has one.
     for command in ["recover", "check"] {
         let (code, said) = call(&dir, &[command, "recover.toml"]);
         assert_eq!(code, 1, "{said}");
         assert!(said.contains("error [table-may-be-cut]"), "{said}");
     }
-    // Numbers as people write them tell nothing.
+    // If the number of decimals varies, as in numbers typed by hand, it shows nothing.
     let text = String::from_utf8(strain).unwrap();
     let (header, rows) = text.split_once('\n').unwrap();
     let written = format!("{header}\n{}", rows.replace("0,", ","));
@@ -232,7 +232,7 @@ fn a_record_whose_rate_changes_is_told_so_and_keeps_its_samples() {
     };
     let (code, said) = call(&dir, &["recover", "fleet.toml", "--out", "whole"]);
     assert_eq!(code, 0, "{said}");
-    // 20 Hz; every second sample of the second half is left out, which ends with the last one.
+    // 20 Hz. The second half has only every other sample, and it ends with the last sample.
     let half = (samples("whole") / 2) as usize;
     edit(&dir, "A_2026-05-01.csv", |t| {
         let lines: Vec<&str> = t.lines().collect();
@@ -267,7 +267,7 @@ fn a_record_of_no_number_is_refused_without_one() {
     for word in ["NaN", "inf "] {
         assert!(!said.contains(word), "{said}");
     }
-    // A run without a reading among others.
+    // One run without any reading.
     let dir = copy_example("no_reading", "frame");
     edit(&dir, "strain.csv", |t| {
         let lines = t.lines().map(|line| match line.split_once(',') {
@@ -415,7 +415,7 @@ fn results_that_a_job_names_are_opened_by_those_that_have_no_use_for_them() {
             ("ballast", "ballast.toml"),
         ] {
             let (code, said) = call(&dir, &[command, job, "--out", "out"]);
-            // The run that writes the results of `cases` is still to come.
+            // The results for `cases` come from a later run.
             let expected = if (command, name) == ("cases", "nope.op2") {
                 0
             } else {

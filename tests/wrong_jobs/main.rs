@@ -1,4 +1,4 @@
-//! Jobs with something wrong in them end in an error or a fault that names it, by their commands and by `check` alike.
+//! A faulty job ends in an error or a fault that names the problem, both with its command and with `check`.
 
 mod check;
 mod copies;

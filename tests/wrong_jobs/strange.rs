@@ -1,10 +1,10 @@
-//! What a stranger may give to the command: times out of order, numbers cut within, decks that contradict themselves.
+//! Unusual input: times out of order, truncated numbers, contradictory decks.
 
 use super::copies::{copy_example, edit};
 use std::path::Path;
 use std::process::Command;
 
-/// Exit code and all words of a call in a folder.
+/// Returns exit code and all output of a call in a folder.
 fn call(folder: &Path, arguments: &[&str]) -> (i32, String) {
     let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
         .args(arguments)
@@ -12,7 +12,7 @@ fn call(folder: &Path, arguments: &[&str]) -> (i32, String) {
         .output()
         .unwrap();
     let said = [done.stdout, done.stderr].concat();
-    // Later lines of a finding are indented.
+    // Further lines of a finding are indented.
     let said = String::from_utf8_lossy(&said).replace("\n    ", " ");
     (done.status.code().unwrap_or(-1), said)
 }
@@ -46,7 +46,7 @@ fn samples_out_of_order_are_refused_by_respond_too() {
             assert!(said.contains(&place), "{times:?}: {said}");
         }
     }
-    // Runs have names, in any order.
+    // Run names may have any order.
     table("run", ["9", "7", "8", "1"]);
     let (code, said) = call(&dir, &respond);
     assert_eq!(code, 0, "{said}");
@@ -57,7 +57,7 @@ fn a_last_number_without_the_point_that_all_others_have_is_an_error() {
     let dir = copy_example("cut_point", "frame");
     let whole = std::fs::read_to_string(dir.join("strain.csv")).unwrap();
     let cut = whole.trim_end().rfind('.').unwrap();
-    // What is left of the last number is a whole one.
+    // The truncated last number is still a valid integer.
     std::fs::write(dir.join("strain.csv"), &whole[..cut]).unwrap();
     for command in ["recover", "check"] {
         let (code, said) = call(&dir, &[command, "recover.toml"]);
@@ -108,7 +108,7 @@ fn check_of_a_deck_says_what_solving_it_would_say_of_its_supports_and_shapes() {
     assert!(code == 0 && said.contains("[inverted-solid]"), "{said}");
 }
 
-/// The table with every field replaced by what `change` makes of it: line (the header is 0), column, field.
+/// Returns the table with changed fields. `change` gets line (the header is 0), column and field.
 fn fields(text: &str, change: impl Fn(usize, usize, &str) -> String) -> String {
     let line = |(i, line): (usize, &str)| {
         let fields = line.split(',').enumerate().map(|(c, f)| change(i, c, f));
@@ -183,7 +183,7 @@ fn blank_readings_and_runs_without_a_measurement_are_said() {
     change(&|i, c, f| if i == 2 && c > 0 { first[c] } else { f }.to_owned());
     let (_, said) = call(&dir, &["recover", "recover.toml"]);
     assert!(said.contains("[readings-repeated] R01 and R02"), "{said}");
-    // Of a logger that knows two numbers runs are alike by themselves.
+    // If a logger gives only two different numbers, equal runs are normal.
     let coarse = |f: &str| if f.starts_with('-') { "-10" } else { "10" };
     change(&|i, c, f| {
         let read = if i == 2 && c > 0 { first[c] } else { f };
@@ -191,7 +191,7 @@ fn blank_readings_and_runs_without_a_measurement_are_said() {
     });
     let (_, said) = call(&dir, &["check", "recover.toml"]);
     assert!(!said.contains("readings-repeated"), "{said}");
-    // A gauge that the job leaves out is not missing.
+    // A gauge that the job ignores is not reported as missing.
     change(&|i, c, f| if i > 0 && c == 3 { "" } else { f }.to_owned());
     edit(&dir, "recover.toml", |t| {
         format!("{t}\n[[correction]]\ngauge = \"P03\"\nignore = true\n")
@@ -211,7 +211,7 @@ fn a_record_that_repeats_itself_in_a_part_is_said_to_stand_still_or_to_be_no_mea
         said
     };
     assert!(!said(&whole).contains("record-stands-still"));
-    // From t = 14.95 s to 17.40 s, 20 samples a second: what a logger fills in, and what one that hangs repeats.
+    // From t = 14.95 s to 17.40 s at 20 Hz: zeros that a logger inserts, and values that a frozen logger repeats.
     let stuck = |i: usize| (300..350).contains(&i);
     let zeros = fields(&whole, |i, c, f| {
         if stuck(i) && c > 0 { "0" } else { f }.to_owned()
@@ -270,7 +270,7 @@ fn a_runs_file_of_other_runs_is_refused_by_payload_and_places_that_are_assumed_a
     assert!(said.contains("[payload-place-assumed] R03"), "{said}");
 }
 
-/// Linux has a device on which nothing can be written.
+/// On Linux, every write to this device fails.
 #[test]
 fn an_answer_that_does_not_get_to_standard_output_is_no_success() {
     let Ok(full) = std::fs::File::options().write(true).open("/dev/full") else {
@@ -294,7 +294,7 @@ fn an_answer_that_does_not_get_to_standard_output_is_no_success() {
     }
 }
 
-/// Ended by the system of a batch queue while it writes, as by Ctrl-C.
+/// A batch system terminates the command while it writes, as Ctrl-C does.
 #[cfg(unix)]
 #[test]
 fn a_command_that_is_told_to_end_leaves_no_half_files() {
@@ -304,7 +304,7 @@ fn a_command_that_is_told_to_end_leaves_no_half_files() {
     let readings: Vec<&str> = rows.lines().map(|l| l.split_once(',').unwrap().1).collect();
     let out = dir.join("out");
     let mut ended = false;
-    // As many samples as it takes to be met while it writes.
+    // Enough samples that the signal arrives during the write.
     for times in [1000, 4000, 16000] {
         let samples = (0..readings.len() * times)
             .map(|i| format!("{:.2},{}\n", 0.05 * i as f64, readings[i % readings.len()]));
@@ -352,7 +352,7 @@ fn a_long_chain_of_load_cards_is_solved_and_a_circle_of_them_is_named() {
     assert_eq!(code, 0, "{said}");
     let text = std::fs::read_to_string(dir.join("out/result.json")).unwrap();
     let result: serde_json::Value = serde_json::from_str(&text).unwrap();
-    // The force at the end of the chain, against which the support holds.
+    // The force at the end of the chain, which the support carries.
     let force = result["reactions"][0]["total"][0].as_f64().unwrap();
     assert!((force + 100.0).abs() < 1e-6, "{force}");
     std::fs::write(dir.join("circle.bdf"), deck(5)).unwrap();
@@ -380,7 +380,7 @@ fn what_follows_plus_and_minus_in_words_is_half_of_the_interval_in_the_table() {
         let words = said.split_whitespace().skip_while(|w| w != load);
         let mut after = words.skip_while(|w| *w != "±").skip(1);
         let shown: f64 = after.next().unwrap().parse().unwrap();
-        // Two digits are shown.
+        // The output has two digits.
         assert!(
             (shown / widest - 1.0).abs() < 0.05,
             "{load}: {shown} {widest}"

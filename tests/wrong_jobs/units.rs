@@ -1,11 +1,11 @@
-//! Jobs of `examples/` whose numbers are in other units than stated: nothing is answered without an error.
+//! Jobs of `examples/` with numbers in other units than stated. Every answer has an error.
 
 use super::copies::{copy_example, edit};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 
-/// A table with the numbers of a column, or of all but the first, times a factor.
+/// Returns a table with the numbers of one column, or of all columns but the first, multiplied by a factor.
 fn scale_table(text: &str, column: Option<&str>, factor: f64) -> String {
     let mut lines = text.lines();
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();
@@ -21,7 +21,7 @@ fn scale_table(text: &str, column: Option<&str>, factor: f64) -> String {
     out
 }
 
-/// The same with one number of a line put in place of that of a column.
+/// Returns a table with one number in a line replaced.
 fn with_number(text: &str, line: usize, column: &str, number: &str) -> String {
     let mut header = text.lines().next().unwrap().split(',');
     let at = header.position(|c| c == column).unwrap();
@@ -35,7 +35,8 @@ fn with_number(text: &str, line: usize, column: &str, number: &str) -> String {
     lines.collect()
 }
 
-/// Runs a command in a folder: exit code, its findings (severity, code, subject, message and remedy), standard error.
+/// Runs a command in a folder. Returns exit code, findings (severity, code, subject, message and remedy), and standard
+/// error.
 fn run_command(folder: &Path, arguments: &[&str]) -> (i32, Vec<String>, String) {
     let out = folder.join("judged.out");
     let _ = std::fs::remove_dir_all(&out);
@@ -63,7 +64,7 @@ fn run_command(folder: &Path, arguments: &[&str]) -> (i32, Vec<String>, String) 
     (done.status.code().unwrap_or(-1), codes, errors)
 }
 
-/// What an error says of the unit, or of where it is stated: of one code one of these.
+/// Texts about the unit, or about the place where it is stated. An error of this code contains one of them.
 const SAYS: [(&str, &[&str]); 9] = [
     ("input-unit", &["[runs] units"]),
     (
@@ -88,7 +89,7 @@ const SAYS: [(&str, &[&str]); 9] = [
     ("units-modulus", &["`units` of the job"]),
 ];
 
-/// Asserts an exit code of 1 with an error that begins with this code, its subject where stated, and says what `SAYS` says of it.
+/// Fails unless the exit code is 1 and an error has this code, the stated subject, and a text of `SAYS`.
 fn asks(folder: &Path, arguments: &[&str], error: &str) {
     let (exit, findings, errors) = run_command(folder, arguments);
     assert_eq!(exit, 1, "{arguments:?}\n{errors}");
@@ -103,7 +104,7 @@ fn asks(folder: &Path, arguments: &[&str], error: &str) {
     );
 }
 
-/// Asserts a fault at this place, and nothing written.
+/// Fails unless the command has a fault at this place and writes nothing.
 fn refuses(folder: &Path, arguments: &[&str], place: &str) {
     let (exit, _, errors) = run_command(folder, arguments);
     assert_eq!(exit, 2, "{arguments:?}\n{errors}");
@@ -123,7 +124,7 @@ fn every_command_that_reads_strain_asks_for_its_unit() {
             (1e-6, "readings-below-noise"),
             (1e3, "reading-beyond-gauges"),
         ];
-        // What S is learnt from alone may be any signal that stands out of its noise.
+        // In a calibration, S can be in any unit, so only readings below the noise are an error.
         let asked = if folder == "bridge" { 1 } else { 2 };
         for (factor, code) in &both[..asked] {
             let factor = *factor;
@@ -161,7 +162,7 @@ fn every_command_that_reads_strain_asks_for_its_unit() {
             &format!("reading-beyond-gauges {vehicle} P01,"),
         );
     }
-    // The first record of each is named.
+    // The finding names the first record of each vehicle.
     let (_, findings, _) = run_command(&to, &fleet);
     for first in [records[0], records[2]] {
         let named = format!("the first {first}: ");
@@ -317,7 +318,7 @@ fn a_deck_whose_mass_is_more_than_numbers_can_be_is_a_fault_of_every_command() {
         edit(&folder, "frame.bdf", |t| t.replace(from, to));
         let says = "mass: the mass of the model";
         refuses(&folder, &["sensitivity", "recover.toml"], says);
-        // What it read is written, the fault among it.
+        // `check` writes its report, including the fault.
         let (exit, _, errors) = run_command(&folder, &["check", "recover.toml"]);
         assert_eq!(exit, 2, "{errors}");
         assert!(errors.contains(says), "{errors}");
@@ -366,7 +367,7 @@ fn limits_of_a_vehicle_that_leave_no_value_are_faults_and_open_ones_change_nothi
         "[1e6, 1e6]",
         "[-1e308, 1e308]",
         "[inf, inf]",
-        // Negative stiffness is against nature.
+        // Negative stiffness is not physical.
         "[-1e7, -1e6]",
     ] {
         let to = with(&format!("bounds = {{ k_s = {limits} }}"));
@@ -432,7 +433,8 @@ fn one_reading_beyond_five_per_cent_is_doubtful_and_one_beyond_twenty_is_no_stra
     }
 }
 
-/// Element 19 of the frame ends at x = 1250 mm and is 260 mm large; its plate is 6 mm thick, and P01 sits on its face.
+/// Element 19 of the frame ends at x = 1250 mm and has a size of 260 mm. Its plate is 6 mm thick, and P01 is on its
+/// face.
 #[test]
 fn a_point_beside_its_element_is_doubtful_beyond_its_tolerance_and_wrong_beyond_its_size() {
     let tolerant = "\n[placement]\nposition_tolerance = 10.0\n";
@@ -484,7 +486,7 @@ fn loads_beside_a_long_record_are_answered_without_a_comparison() {
         let (header, rows) = t.split_once('\n').unwrap();
         let readings = rows.lines().next().unwrap().split_once(',').unwrap().1;
         let mut record = header.replacen("run", "time", 1) + "\n";
-        // Beyond 16 MB a record is passed over, not read whole.
+        // `check` skips records above 16 MB and does not read them completely.
         for i in 0.. {
             if record.len() > 17 << 20 {
                 break;
@@ -499,7 +501,7 @@ fn loads_beside_a_long_record_are_answered_without_a_comparison() {
     assert!(codes.iter().any(said), "{codes:?}");
 }
 
-/// A deck in mm and kg with a density of kg/m3, and one in inches with weight densities: no job states units.
+/// A deck in mm and kg with a density in kg/m3, and a deck in inches with weight densities. No job states units.
 #[test]
 fn a_deck_alone_is_tested_for_its_densities() {
     let deck = |material: &str| {

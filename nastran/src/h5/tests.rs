@@ -283,7 +283,7 @@ fn truncated_and_mutated_files_give_an_answer_or_an_error_but_no_panic() {
     for cut in (0..bytes.len()).step_by(4001) {
         read_all(&bytes[..cut]);
     }
-    // A small linear congruential generator (Knuth's constants): the same mutations on every machine.
+    // A small linear congruential generator (Knuth's constants) gives the same mutations on every machine.
     let mut state = 20_261_121_u64;
     let mut next = move |n: usize| {
         state = state

@@ -1,7 +1,7 @@
 use super::{Punch, PunchError};
 use crate::results::{Analysis, ElementType, Quantity, RowId, ShellForm};
 
-/// A line as Nastran punches it: the id columns, then slots of 18 columns.
+/// Returns a line of a punch file: the id columns, then slots of 18 columns.
 fn line(head: &str, slots: &[&str]) -> String {
     let mut text = format!("{head:<18}");
     for s in slots {
@@ -326,7 +326,7 @@ fn truncated_and_mutated_files_give_an_answer_or_an_error_but_no_panic() {
     for cut in 0..whole.len() {
         read_all(&whole[..cut]);
     }
-    // A small linear congruential generator (Knuth's constants): the same mutations on every machine.
+    // A small linear congruential generator (Knuth's constants) gives the same mutations on every machine.
     let mut state = 20_261_121_u64;
     let mut next = move |n: usize| {
         state = state

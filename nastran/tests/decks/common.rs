@@ -1,4 +1,4 @@
-//! What the tests share: the real cases, and a loader that reads their files.
+//! Common code of the tests: the real cases, and a loader that reads their files.
 
 #![allow(dead_code)] // each test binary uses its part
 
@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 use nastran::bdf::{Deck, IncludeRequest, LoadedFile, Loader, read_deck};
 
-/// The folder of real cases, where it is present.
+/// Returns the folder of real cases, if it is present.
 pub(crate) fn cases_folder() -> Option<PathBuf> {
     crate::support::find_shared_path("nastran")
 }
 
-/// A case: its folder, and its `case.json` and `expected.json`.
+/// A case with its folder, `case.json` and `expected.json`.
 pub(crate) struct Case {
     pub(crate) name: String,
     pub(crate) folder: PathBuf,
@@ -19,7 +19,7 @@ pub(crate) struct Case {
     pub(crate) expected: serde_json::Value,
 }
 
-/// Every case of the folder; `None` where it is absent.
+/// Returns every case of the folder, or `None` if the folder is absent.
 fn cases() -> Option<Vec<Case>> {
     let folder = cases_folder()?;
     let mut list = Vec::new();
@@ -46,11 +46,13 @@ fn cases() -> Option<Vec<Case>> {
     Some(list)
 }
 
-/// Cases with a deck that the folder has at least (28 in November 2026).
+/// Least number of cases with a deck in the folder (28 in November 2026).
 const LEAST: usize = 25;
 
-/// Calls `check` for every case with a deck, and adds up what it compared; fails where that is less than the folder is known to hold,
-/// so that a test can't pass by comparing nothing. Nothing is asked where the folder is absent.
+/// Calls `check` for every case with a deck and adds up the number of comparisons.
+///
+/// It fails if there are fewer comparisons than the folder is known to contain, so that a test cannot pass without any comparison. It does nothing if
+/// the folder is absent.
 pub(crate) fn at_least(least: usize, mut check: impl FnMut(&Case, &Deck) -> usize) {
     let Some(cases) = cases() else { return };
     let (mut decks, mut compared) = (0, 0);
@@ -65,12 +67,12 @@ pub(crate) fn at_least(least: usize, mut check: impl FnMut(&Case, &Deck) -> usiz
 }
 
 impl Case {
-    /// Path of the case's deck.
+    /// Returns the path of the case's deck.
     pub(crate) fn deck_path(&self) -> Option<PathBuf> {
         Some(self.folder.join(self.case["bdf"].as_str()?))
     }
 
-    /// The case's deck.
+    /// Returns the case's deck.
     pub(crate) fn deck(&self) -> Option<Deck> {
         self.deck_path().map(|p| read_file(&p))
     }

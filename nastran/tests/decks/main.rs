@@ -1,4 +1,4 @@
-//! The decks of the real cases against another program's reading of them.
+//! Compares the decks of the real cases with the result of another program.
 
 mod common;
 mod robust;
@@ -10,14 +10,15 @@ use std::collections::BTreeMap;
 use nastran::bdf::Deck;
 use nastran::cards::ParamValue;
 
-/// Cards the other program counts differently or that OP2 geometry blocks (its source where it cannot read the deck) split.
+/// Cards that the other program counts differently, or that the geometry blocks of an OP2 split. The other program reads those blocks if it cannot
+/// read the deck.
 const OP2_SPLITS: [&str; 8] = [
     "FORCE", "TEMPD", "MATT1", "MATT4", "MAT2", "TABLEM4", "SPCADD", "CORD2C",
 ];
 
 #[test]
 fn every_deck_of_the_real_cases_is_read_without_a_fault() {
-    // One grid a deck at the very least: a reader that reads nothing has no faults either.
+    // At least one grid per deck, because a reader that reads nothing has no faults either.
     common::at_least(25, |case, deck| {
         let shown: Vec<String> = deck
             .faults
@@ -77,7 +78,7 @@ fn solution_and_parameters_agree_with_another_reader() {
         let Some(params) = case.expected["mesh"]["params"].as_object() else {
             return compared;
         };
-        // results blocks hold parameters of the run that the deck does not state
+        // The results contain parameters of the run that the deck does not state.
         if case.expected["mesh_source"] == "bdf" {
             assert_eq!(deck.cards.params.len(), params.len(), "{}", case.name);
         }
@@ -158,7 +159,7 @@ fn numbers_of_grids_elements_and_masses_agree_with_another_reader() {
             "{}: masses",
             case.name
         );
-        // system 0 counts there
+        // The other program also counts system 0.
         assert_eq!(
             Some(c.coords.len() as u64 + 1),
             mesh["coords"].as_u64(),
@@ -186,7 +187,7 @@ fn the_replicated_cards_of_a_real_deck_are_made() {
         if case.name != "nx_quad8_replicated_deck" {
             return 0;
         }
-        // one card written out, nine by `=,=,107,=`
+        // The deck has one complete card, and nine by `=,=,107,=`.
         assert_eq!(deck.counts["DEFORM"], 10);
         1
     });
@@ -194,7 +195,7 @@ fn the_replicated_cards_of_a_real_deck_are_made() {
 
 #[test]
 fn quads_agree_with_another_reader() {
-    // The set holds 526.
+    // The set has 526.
     common::at_least(500, |case, deck| {
         let Some(quads) = case.expected["mesh"]["cquad4_frames"].as_array() else {
             return 0;

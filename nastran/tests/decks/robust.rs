@@ -1,4 +1,4 @@
-//! Decks cut off and damaged: an answer with faults, no panic, bounded memory.
+//! Decks that are cut off or damaged: the reader answers with faults, without a panic, and with limited memory.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use nastran::bdf::{IncludeRequest, LoadedFile, Loader, read_deck, write_deck};
 
 use crate::common;
 
-/// Keeps the files it has read, so that thousands of readings touch the disk once.
+/// Keeps the files that it has read, so that thousands of readings access the disk once.
 #[derive(Default)]
 struct Kept(BTreeMap<String, Vec<u8>>);
 
@@ -32,7 +32,7 @@ impl Loader for Kept {
     }
 }
 
-/// Every deck file of the set, included files too.
+/// Returns every deck file of the set, including included files.
 fn files() -> Vec<PathBuf> {
     fn walk(folder: &Path, list: &mut Vec<PathBuf>) {
         for entry in std::fs::read_dir(folder).unwrap() {
@@ -55,7 +55,7 @@ fn files() -> Vec<PathBuf> {
     list
 }
 
-/// Reads and writes; what was read must be written, whatever it is.
+/// Reads a deck and writes it. The written deck must equal the input.
 fn survives(path: &Path, bytes: &[u8], loader: &mut Kept) {
     let deck = read_deck(&path.to_string_lossy(), bytes.to_vec(), loader);
     assert_eq!(write_deck(&deck)[0].1, bytes);
@@ -67,7 +67,7 @@ fn survives(path: &Path, bytes: &[u8], loader: &mut Kept) {
     }
 }
 
-/// Next number of a linear congruential generator (Knuth, MMIX).
+/// Returns the next number of a linear congruential generator (Knuth, MMIX).
 fn next(state: &mut u64) -> usize {
     *state = state
         .wrapping_mul(6364136223846793005)
@@ -81,7 +81,7 @@ fn decks_cut_off_at_any_line_are_read() {
     for path in files() {
         let bytes = std::fs::read(&path).unwrap();
         let ends: Vec<usize> = (0..bytes.len()).filter(|&i| bytes[i] == b'\n').collect();
-        // every line of small files, about as many bytes of large ones
+        // Every line of small files, and about as many bytes of large ones.
         let step = (ends.len() * bytes.len() / 4_000_000).max(1);
         for end in ends.iter().step_by(step) {
             survives(&path, &bytes[..*end], &mut loader);
@@ -97,13 +97,13 @@ fn decks_with_damaged_bytes_are_read() {
     if files.is_empty() {
         return;
     }
-    // what makes a difference to a reader of decks
+    // Characters with a special meaning in decks.
     let telling = b"$,=*+-.\n\r\t '\"()0987eEdD\0\xff\x80ABINTHRU";
     let mut state = 20_240_501;
     for _ in 0..3_000 {
         let path = &files[next(&mut state) % files.len()];
         let bytes = std::fs::read(path).unwrap();
-        // a window of the larger files, its start kept
+        // A window of the larger files, including their start in half of the cases.
         let size = bytes.len().min(24_000);
         let start = if next(&mut state).is_multiple_of(2) {
             0

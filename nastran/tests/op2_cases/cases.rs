@@ -1,13 +1,13 @@
-//! Walks the shared folder.
+//! Reads all cases of the shared folder.
 
 use nastran::op2::Op2;
 use serde_json::Value;
 use std::path::Path;
 
-/// Cases with an OP2 that the set has at least (28 in November 2026).
+/// Least number of cases with an OP2 in the set (28 in November 2026).
 const LEAST: usize = 25;
 
-/// Calls `check` with name, file and oracle of every case that has an OP2; what it compared, `None` where the set is absent.
+/// Calls `check` with name, file and oracle of every case with an OP2. Returns the number of comparisons, or `None` if the set is absent.
 pub fn each_op2(mut check: impl FnMut(&str, &Op2<'_>, &Value) -> usize) -> Option<usize> {
     let shared = crate::support::find_shared_path("nastran")?;
     let (mut cases, mut compared) = (0, 0);
@@ -34,7 +34,9 @@ pub fn each_op2(mut check: impl FnMut(&str, &Op2<'_>, &Value) -> usize) -> Optio
     Some(compared)
 }
 
-/// Calls `check` for every case; fails where it compared less than the set is known to hold, so that a test can't pass by comparing nothing.
+/// Calls `check` for every case.
+///
+/// It fails if there are fewer comparisons than the set is known to contain, so that a test cannot pass without any comparison.
 pub fn at_least(least: usize, check: impl FnMut(&str, &Op2<'_>, &Value) -> usize) {
     let compared = each_op2(check);
     assert!(compared.is_none_or(|n| n >= least), "{compared:?} compared");

@@ -1,8 +1,8 @@
-//! pyNastran's result and column names in our words.
+//! Converts the result and column names of pyNastran to those of this crate.
 
 use nastran::results::Quantity;
 
-/// The quantity of one of pyNastran's results; fails for a name that is neither known nor listed as left out.
+/// Returns the quantity of a result of pyNastran. Fails for a name that is neither known nor listed as omitted.
 pub fn quantity(result: &str) -> Quantity {
     match result {
         "displacements" => Quantity::Displacement,
@@ -26,7 +26,7 @@ pub fn quantity(result: &str) -> Quantity {
     }
 }
 
-/// Where each of pyNastran's columns stands among ours.
+/// Returns the position of each column of pyNastran among the columns of this crate.
 pub fn positions(result: &str, theirs: &[&str], ours: &[&str]) -> Vec<usize> {
     theirs
         .iter()
@@ -47,7 +47,7 @@ pub fn positions(result: &str, theirs: &[&str], ours: &[&str]) -> Vec<usize> {
         .collect()
 }
 
-/// Our names of one of pyNastran's columns, where they differ.
+/// Returns the column names of this crate for a column of pyNastran, if they differ.
 fn alias(result: &str, name: &str) -> &'static [&'static str] {
     let force = result.starts_with("force");
     let solid = ["ctetra", "cpenta", "chexa", "cpyram"]

@@ -1,4 +1,4 @@
-//! Every case of the shared set that has an OP2, against pyNastran's reading of it (`expected.json`); a new case needs no code.
+//! Compares every case of the shared set with an OP2 with the result of pyNastran (`expected.json`). A new case needs no code.
 
 mod cases;
 mod columns;
@@ -41,19 +41,19 @@ fn byte_order_word_size_label_and_table_names_agree() {
 
 #[test]
 fn every_result_table_agrees_in_ids_sums_and_sampled_rows() {
-    // The set holds 433.
+    // The set has 433.
     at_least(400, tables::compare);
 }
 
 #[test]
 fn shell_strain_in_a_table_named_for_stress_agrees() {
-    // The set holds four.
+    // The set has four.
     at_least(4, raw_strain::compare);
 }
 
 #[test]
 fn grid_point_weight_agrees() {
-    // The set holds three.
+    // The set has three.
     at_least(3, |case, op2, expected| {
         let want = &expected["op2"]["grid_point_weight"];
         let Some((_, want)) = want.as_object().and_then(|o| o.iter().next()) else {
@@ -98,7 +98,7 @@ fn a_file_that_is_no_op2_is_refused_with_its_first_bytes() {
 
 #[test]
 fn cards_of_the_geometry_blocks_agree_with_the_mesh() {
-    // The set holds 21 files with geometry blocks.
+    // The set has 21 files with geometry blocks.
     at_least(18, |case, op2, expected| {
         usize::from(mesh::compare(case, op2, expected))
     });

@@ -1,4 +1,4 @@
-//! Cards of the geometry blocks against pyNastran's mesh: from the same blocks, or from the deck the file was solved from.
+//! Compares cards of the geometry blocks with the mesh of pyNastran, which comes from the same blocks or from the deck of the run.
 
 use nastran::cards::{
     Cards, CoordDefinition, CoordKind, MaterialAngle, ShellShape, SolidShape, SpringStiffness,
@@ -6,7 +6,7 @@ use nastran::cards::{
 use nastran::op2::Op2;
 use serde_json::Value;
 
-/// Compares a case; whether it had geometry blocks.
+/// Compares a case. Returns whether it has geometry blocks.
 pub(crate) fn compare(case: &str, op2: &Op2<'_>, expected: &Value) -> bool {
     let (cards, notes) = op2.cards();
     let mesh = &expected["mesh"];
@@ -15,16 +15,16 @@ pub(crate) fn compare(case: &str, op2: &Op2<'_>, expected: &Value) -> bool {
     }
     let from_blocks = expected["mesh_source"] == "op2 geometry blocks";
     for (name, count) in mesh["cards"].as_object().unwrap() {
-        // decks may hold what the solver does not write: cards that no one uses, and defaults
+        // Decks may contain items that the solver does not write: unused cards and defaults.
         if let Some(got) = count_of(&cards, name) {
-            // springs between scalar points are springs like those between grids
+            // Springs between scalar points count together with springs between grids.
             let alike = match name.as_str() {
                 "CELAS1" => &mesh["cards"]["CELAS3"],
                 "CELAS2" => &mesh["cards"]["CELAS4"],
                 _ => &Value::Null,
             };
             let want = (count.as_u64().unwrap() + alike.as_u64().unwrap_or(0)) as usize;
-            // a deck that was edited after the run may hold more
+            // A deck that was edited after the run may contain more cards.
             let fits = if from_blocks {
                 got == want
             } else {
@@ -46,7 +46,7 @@ pub(crate) fn compare(case: &str, op2: &Op2<'_>, expected: &Value) -> bool {
             assert!(missing > 0, "{case}: no grid {}", want["id"]);
             continue;
         };
-        // pyNastran gives an explicit 0 the value of GRDSET
+        // pyNastran replaces an explicit 0 by the value of GRDSET.
         let cd = grid.cd.unwrap();
         assert!(
             want["cd"] == cd || (cd == 0 && !from_blocks),
@@ -55,7 +55,7 @@ pub(crate) fn compare(case: &str, op2: &Op2<'_>, expected: &Value) -> bool {
         );
         let got = basic(&cards, grid.cp.unwrap(), grid.x, 0);
         for (w, g) in want["xyz_basic"].as_array().unwrap().iter().zip(got) {
-            // a deck's coordinates are rounded to 32 bits in the file
+            // The file has coordinates of the deck rounded to 32 bits.
             let w = w.as_f64().unwrap();
             assert!(
                 (w - g).abs() <= 3e-7 * (1.0 + got.iter().fold(0.0, |a: f64, x| a.max(x.abs()))),
@@ -111,7 +111,9 @@ pub(crate) fn compare(case: &str, op2: &Op2<'_>, expected: &Value) -> bool {
     true
 }
 
-/// Cards that decks and files count differently: a grid written twice, several SPC1 in one, PCOMP with their PSHELL, parameters of the solver.
+/// Returns whether decks and files count cards with this name differently.
+///
+/// Examples are a grid that occurs twice, several SPC1 in one, PCOMP with their PSHELL, and parameters of the solver.
 fn may_differ(name: &str) -> bool {
     matches!(
         name,
@@ -129,7 +131,7 @@ fn may_differ(name: &str) -> bool {
     )
 }
 
-/// How many cards of this name there are; `None` for a name we keep no cards of.
+/// Returns the number of cards with this name, or `None` for a name without stored cards.
 fn count_of(c: &Cards, name: &str) -> Option<usize> {
     let shells = |shape| c.shells.iter().filter(|s| s.shape == shape).count();
     let solids = |shape| c.solids.iter().filter(|s| s.shape == shape).count();
@@ -210,7 +212,7 @@ fn count_of(c: &Cards, name: &str) -> Option<usize> {
     })
 }
 
-/// A point of system `cid` in basic.
+/// Returns a point of system `cid` in the basic system.
 fn basic(cards: &Cards, cid: u32, x: [f64; 3], depth: usize) -> [f64; 3] {
     if cid == 0 {
         return x;

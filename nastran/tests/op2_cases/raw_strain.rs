@@ -1,10 +1,10 @@
-//! Shell strain that pyNastran skips, read word by word by the script that writes the oracle.
+//! Shell strain that pyNastran skips. The script of the oracle reads it word by word.
 
 use nastran::op2::Op2;
 use nastran::results::{Quantity, ShellForm};
 use serde_json::Value;
 
-/// Compares a case; how many blocks it has.
+/// Compares a case. Returns the number of its blocks.
 pub fn compare(case: &str, op2: &Op2<'_>, expected: &Value) -> usize {
     let empty = Vec::new();
     let blocks = expected["raw_shell_strain"].as_array().unwrap_or(&empty);

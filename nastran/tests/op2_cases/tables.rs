@@ -1,4 +1,4 @@
-//! One of pyNastran's result tables against our blocks.
+//! Compares a result table of pyNastran with the blocks of this crate.
 
 use crate::columns;
 use nastran::op2::Op2;
@@ -6,7 +6,7 @@ use nastran::results::{Analysis, Rows};
 use serde_json::Value;
 use std::collections::HashMap;
 
-/// Compares every result table of a case; how many there were.
+/// Compares every result table of a case. Returns their number.
 pub fn compare(case: &str, op2: &Op2<'_>, expected: &Value) -> usize {
     let empty = Vec::new();
     let results = expected["op2"]["results"].as_array().unwrap_or(&empty);
@@ -16,7 +16,7 @@ pub fn compare(case: &str, op2: &Op2<'_>, expected: &Value) -> usize {
         assert!(want["l2"].is_array(), "{place}: the oracle has no numbers");
         let steps = want["shape"][0].as_u64().unwrap() as usize;
         let mut blocks = find_matching_blocks(op2, want);
-        // the same key may stand for several runs of blocks (buckling loops): take them in file order
+        // One key may mean several series of blocks (buckling loops), which are compared in the order of the file.
         let key = format!(
             "{}{}{}{}",
             want["result"], want["subcase_key"], want["table_name"], want["element_type"]
@@ -34,7 +34,7 @@ pub fn compare(case: &str, op2: &Op2<'_>, expected: &Value) -> usize {
     results.len()
 }
 
-/// Blocks that may be the table.
+/// Returns the blocks that may correspond to the table.
 fn find_matching_blocks(op2: &Op2<'_>, want: &Value) -> Vec<usize> {
     let quantity = columns::quantity(want["result"].as_str().unwrap());
     let int = |name: &str| want[name].as_i64();
@@ -72,7 +72,7 @@ fn compare_table(place: &str, op2: &Op2<'_>, want: &Value, blocks: &[usize]) {
         .map(|c| c.as_str().unwrap())
         .collect();
     let at = columns::positions(want["result"].as_str().unwrap(), &theirs, rows[0].columns);
-    // pyNastran keeps nodal tables of 64-bit files as float32
+    // pyNastran stores nodal tables of 64-bit files as float32.
     let tolerance = if want["dtype"] == "float64" {
         1e-12
     } else {

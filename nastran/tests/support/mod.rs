@@ -1,13 +1,13 @@
-//! Reference material beside the repository (`../shared`), for the tests of both crates.
+//! Reference material next to the repository (`../shared`), for the tests of both crates.
 //!
-//! Where a file is absent its test is skipped, and the skip is counted: a line in the file that `STRAINBRIDGE_SKIPPED` names. With
-//! `STRAINBRIDGE_SHARED=required` an absent file fails the test.
+//! If a file is absent, its test is skipped, and the skip is counted by a line in the file that `STRAINBRIDGE_SKIPPED` names. With
+//! `STRAINBRIDGE_SHARED=required`, an absent file fails the test.
 #![allow(dead_code, clippy::panic, clippy::print_stderr)]
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// A file or folder of the reference material; `None` where it is absent.
+/// Returns a file or folder of the reference material, or `None` if it is absent.
 pub fn find_shared_path(path: &str) -> Option<PathBuf> {
     let own = Path::new(env!("CARGO_MANIFEST_DIR"));
     let root = if own.ends_with("nastran") {
@@ -16,7 +16,7 @@ pub fn find_shared_path(path: &str) -> Option<PathBuf> {
         own
     };
     let full = root.join("../shared").join(path);
-    // Without the steps up: decks resolve what they include against it.
+    // The path must not contain `..`, because decks resolve their INCLUDE statements relative to it.
     if let Ok(found) = std::fs::canonicalize(&full) {
         return Some(found);
     }
@@ -27,7 +27,7 @@ pub fn find_shared_path(path: &str) -> Option<PathBuf> {
     None
 }
 
-/// Says and counts that a program or a package is absent; with `STRAINBRIDGE_TESTS=required` it fails the test.
+/// Prints and counts that a program or a package is missing. With `STRAINBRIDGE_TESTS=required` it fails the test.
 pub fn skip(absent: &str) {
     let required = std::env::var("STRAINBRIDGE_TESTS").is_ok_and(|v| v == "required");
     assert!(!required, "{absent}, and required");
@@ -35,7 +35,7 @@ pub fn skip(absent: &str) {
     count_skip(absent);
 }
 
-/// Writes what a test is skipped for into the file that `STRAINBRIDGE_SKIPPED` names.
+/// Appends the reason of a skip to the file that `STRAINBRIDGE_SKIPPED` names.
 pub fn count_skip(absent: &str) {
     let list = std::env::var("STRAINBRIDGE_SKIPPED").ok();
     let list = list.and_then(|list| {
@@ -47,12 +47,12 @@ pub fn count_skip(absent: &str) {
     }
 }
 
-/// The bytes of a file of the reference material.
+/// Returns the bytes of a file of the reference material.
 pub fn bytes(path: &str) -> Option<Vec<u8>> {
     std::fs::read(find_shared_path(path)?).ok()
 }
 
-/// The text of a file of the reference material.
+/// Returns the text of a file of the reference material.
 pub fn text(path: &str) -> Option<String> {
     std::fs::read_to_string(find_shared_path(path)?).ok()
 }

@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 
 const NOISE: f64 = 0.1e-6;
 
-/// Runs of two loads from 20 to 100 kN; strain is `S f (1 + bend (f_0 + f_1)) + zero`, and noise.
+/// Returns runs of two loads from 20 to 100 kN. Strain is `S f (1 + bend (f_0 + f_1)) + zero` plus noise.
 fn runs(
     s: &Matrix,
     count: usize,

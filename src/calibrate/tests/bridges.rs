@@ -42,7 +42,7 @@ fn cells(path: &Path) -> Vec<Vec<String>> {
     text.lines().map(split).collect()
 }
 
-/// Runs that `keep` takes of the columns quality and fit_for_weighing.
+/// Returns the runs that `keep` selects by the columns quality and fit_for_weighing.
 fn bridge(name: &str, keep: impl Fn(&str, &str) -> bool) -> Option<Bridge> {
     let runs = cells(&find_bridge_file(&format!("{name}/runs.csv"))?);
     let peaks = cells(&find_bridge_file(&format!("{name}/peaks.csv"))?);

@@ -9,12 +9,12 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
-/// Rows of the truth are off by this, common to a gauge and entry by entry.
+/// Relative error of the true rows, common to a gauge and for each entry.
 const OFF: f64 = 0.02;
 /// Length over which rows change evenly: an element of such a strip.
 const REACH: f64 = 20.0;
 
-/// Differences of the closed form.
+/// Returns the changes of the rows by an offset, as differences of the closed form.
 fn off_drawing() -> OffDrawing {
     let sites = sites();
     let between = |from: [f64; 3], to: [f64; 3], span: f64| {

@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 
 const NOISE: f64 = 1e-6;
 
-/// Microstrain a kN in each of three lanes.
+/// Microstrain per kN in each of three lanes.
 const ROWS: [[f64; 3]; 8] = [
     [2.0, 0.6, 0.1],
     [1.4, 1.2, 0.2],

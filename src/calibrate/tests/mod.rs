@@ -14,7 +14,7 @@ mod synthetic;
 use super::Calibration;
 use crate::finding::Severity;
 
-/// Severity and subject of the first finding of a code.
+/// Returns severity and subject of the first finding with a code.
 fn severe(c: &Calibration, code: &str) -> Option<(Severity, String)> {
     let found = c.findings.iter().find(|f| f.code == code);
     found.map(|f| (f.severity, f.subject.clone()))

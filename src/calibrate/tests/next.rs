@@ -1,4 +1,4 @@
-//! The next known load against plain formulas of dense matrices.
+//! Compares the next known load with plain formulas of dense matrices.
 
 use super::installed_position::{NOISE, draw_normal, pushes, reading, row, sites};
 use crate::calibrate::posterior::{Equation, solve};
@@ -12,7 +12,7 @@ use nalgebra::DMatrix;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// Four pushes of the clamped strip, the loads two by two.
+/// Calibrates with four pushes of the clamped strip. The loads act in pairs.
 fn calibrate_four_pushes() -> Calibration {
     let sites = sites();
     let runs = pushes().into_iter().take(4).enumerate();

@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 
 const NOISE: f64 = 1e-6;
 
-/// Microstrain a unit of vertical and axial force and of torque: pairs above and below a plate, four of them at 45 degrees.
+/// Microstrain per unit of vertical and axial force and of torque: pairs above and below a plate, four of them at 45 degrees.
 const PLATE: [[f64; 3]; 8] = [
     [-2.5, 0.0048, 0.0],
     [2.5, 0.0048, 0.0],
@@ -33,7 +33,7 @@ const LOADS: [[f64; 3]; 8] = [
     [120.0, -2_000.0, 5_000.0],
 ];
 
-/// Every loading `times` times on the plate, whose rows are off the model's by 2 % common to a gauge.
+/// Returns every loading `times` times on the plate. Its rows have an error of 2 % that is common to a gauge.
 fn task(times: usize, seed: u64) -> Task {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut normal = || {

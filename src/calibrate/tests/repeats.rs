@@ -13,7 +13,7 @@ use rayon::prelude::*;
 const NOISE: f64 = 0.1e-6;
 const GAUGES: usize = 8;
 
-/// Two lanes of a bridge: strain of each gauge a kN.
+/// Returns two lanes of a bridge: strain of each gauge per kN.
 pub(super) fn lanes(random: &mut ChaCha8Rng) -> Matrix {
     Matrix::from_fn(GAUGES, 2, |g, l| {
         let near = if l == 0 { GAUGES - g } else { g + 1 };
@@ -35,7 +35,7 @@ pub(super) fn task(k: usize, runs: Vec<KnownRun>, model: Option<ModelPrior>) -> 
     }
 }
 
-/// Values of one more run with their sigma and the half width of the interval: each load, then the sum.
+/// Recovers one more run. Returns each load and the sum, with sigma and half width of the interval.
 pub(super) fn recover_with_intervals(
     s: &Sensitivity,
     strain: Vec<f64>,
@@ -171,7 +171,7 @@ fn by_sum(total: f64, sd: f64) -> KnownLoads {
     }
 }
 
-/// Information that separates the loads of runs of which only the sum is known.
+/// Information that separates the loads of runs with a known sum only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum LoadSeparation {
     /// A model.
@@ -286,7 +286,7 @@ fn runs_weighed_by_their_sum_alone_teach_with_intervals_as_wide_as_their_errors(
     }
 }
 
-/// Error of the slope of sixteen passages of two lanes, and its sigma.
+/// Returns the error of the slope from sixteen passages in two lanes, and its sigma.
 fn slope_of(slope: f64, seed: u64) -> [f64; 2] {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let s = lanes(&mut random);

@@ -1,4 +1,4 @@
-//! Record of a calibration on its runs: whether each run had one load alone.
+//! Tests whether a calibration records that each run had one load alone.
 
 use super::installed_position::draw_normal;
 use super::repeats::lanes;
@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 
 const NOISE: f64 = 1e-8;
 
-/// Two lanes of random strain, three passages each by 3 % scatter, and `more`.
+/// Returns two lanes of random strain with three passages each and a scatter of 3 %, and the runs `more`.
 fn task(more: &[[f64; 2]]) -> Task {
     let mut random = ChaCha8Rng::seed_from_u64(5);
     let s = lanes(&mut random);

@@ -1,4 +1,4 @@
-//! Structures made of random numbers, whose truth is known.
+//! Random structures with known truth.
 
 use super::installed_position::draw_normal;
 use crate::calibrate::*;
@@ -9,13 +9,13 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-/// One trial of the frame's protocol: rows of the truth off by 5 % common to a gauge and 2 % entry by entry.
+/// One trial of the frame's protocol. The true rows have an error of 5 % common to a gauge and 2 % for each entry.
 struct Trial {
-    /// Errors of the loads of one further run, by model alone, runs alone (where they determine S) and both.
+    /// Errors of the loads of one further run, from the model alone, from the runs alone (if they determine S) and from both.
     model: Vec<f64>,
     runs: Option<Vec<f64>>,
     both: Vec<f64>,
-    /// Sigma of the last.
+    /// Sigma of the estimate from both.
     sigma: Vec<f64>,
     held: usize,
 }

@@ -1,4 +1,4 @@
-//! Reactions against statics, a beam on three supports, and the truck on springs to ground solved by supports instead.
+//! Reactions compared with statics, a beam on three supports, and the truck on springs to ground solved with supports.
 
 use super::*;
 use crate::fe::{LoadCase, Relief, SolveOptions, UnitLoad, solve_cases};
@@ -25,7 +25,7 @@ fn grid(model: &Model, id: u32) -> GridIx {
     model.grid_ix(id).expect("the grid exists")
 }
 
-/// A stiff square table of side 2 with legs 1 2 3 4 at (+-1, +-1) about the point mass 5 at the origin.
+/// Returns a stiff square table of side 2 with legs 1 2 3 4 at (+-1, +-1) around the point mass 5 at the origin.
 fn table() -> Model {
     let mut t = String::from("BEGIN BULK\n");
     for (id, x, y) in [
@@ -83,7 +83,7 @@ fn contacts_on_a_line_are_refused() {
     ));
 }
 
-/// The beam truck: quick to solve, with every joint of the shell truck.
+/// Returns the beam truck, which is quick to solve and has every joint of the shell truck.
 fn truck_text() -> String {
     include_str!("../../../models/truck-beam/truck.bdf").to_owned()
 }
@@ -93,7 +93,7 @@ const GRAVITY: f64 = 9806.65;
 
 #[test]
 fn reactions_of_the_truck_are_those_of_a_solution_on_supports() {
-    // Springs to ground under the hubs and three more dofs held: no inertia relief, another path through the solver.
+    // Springs to ground under the hubs and three more fixed dofs. Without inertia relief, the solver takes another path.
     let rate = 4.0e4;
     let mut text = truck_text();
     let mut extra = format!("GRAV,7,,{GRAVITY},0.,0.,-1.\n");

@@ -6,7 +6,7 @@ use nastran::bdf::{MemoryLoader, read_deck};
 use nastran::op2::write_blocks;
 use nastran::results::ResultsFile;
 
-/// A plate of one quad 2 x 1 and one triangle, a bar, in MPa and mm.
+/// A plate of one quad 2 x 1 and one triangle, and a bar, in MPa and mm.
 const DECK: &str = "SOL 101\nCEND\nBEGIN BULK
 GRID,1,,0.,0.,0.
 GRID,2,,2.,0.,0.
@@ -33,7 +33,7 @@ fn model() -> Model {
     Model::from_cards(&deck.cards).0
 }
 
-/// A punch block: header, then entries of an id and reals.
+/// Returns a punch block: header, then entries of an id and reals.
 pub(super) fn block(
     subcase: u32,
     quantity: &str,
@@ -56,7 +56,7 @@ pub(super) fn block(
     text
 }
 
-/// Two fibres of fibre distance and three components; the other words are zero.
+/// Returns two fibres, each with fibre distance and three components. The other words are zero.
 pub(super) fn shell(z: [f64; 2], a: [f64; 3], b: [f64; 3]) -> Vec<f64> {
     [
         [z[0], a[0], a[1], a[2], 0.0, 0.0, 0.0, 0.0],
@@ -208,7 +208,7 @@ fn displacements_of_a_table_in_the_basic_frame_stay_as_they_are() {
         let solution = solution_from_results(&model(), &files, &ReadOptions::default());
         solution.cases[0].displacement[model().grid_ix(5).unwrap().us()]
     };
-    // Grid 5 has its own displacement frame.
+    // Grid 5 has a separate displacement frame.
     assert_ne!(at_5(&bytes), stated);
     let names: Vec<usize> = (0..bytes.len() - 8)
         .filter(|&i| bytes[i..].starts_with(b"OUGV1   "))

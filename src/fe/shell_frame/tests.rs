@@ -5,7 +5,7 @@ fn v(x: f64, y: f64, z: f64) -> Vec3 {
     Vec3::new(x, y, z)
 }
 
-/// A skewed, tilted quad in the plane of two orthonormal vectors.
+/// Returns a skewed, tilted quad in the plane of two orthonormal vectors.
 fn quad() -> ([Vec3; 4], Vec3, Vec3) {
     let a = v(2.0, 1.0, -1.0).normalize();
     let b = a.cross(&v(0.3, -1.0, 0.8)).normalize();
@@ -17,7 +17,7 @@ fn quad() -> ([Vec3; 4], Vec3, Vec3) {
     )
 }
 
-/// Strain of a given symmetric tensor in a frame: exx, eyy, gxy (engineering shear).
+/// Returns the strain of a symmetric tensor in a frame: exx, eyy, gxy (engineering shear).
 fn in_frame(tensor: &Mat3, axes: &Mat3) -> [f64; 3] {
     let local = axes * tensor * axes.transpose();
     [local[(0, 0)], local[(1, 1)], 2.0 * local[(0, 1)]]

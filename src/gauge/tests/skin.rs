@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Numbers the corners of every shell in `which` the other way round, which turns its normal.
+/// Reverses the corner order of every shell in `which`, which reverses its normal.
 fn flip_normals(mut m: Model, which: &[usize]) -> Model {
     for &i in which {
         m.shells[i].grids.swap(1, 3);
@@ -122,12 +122,12 @@ fn next_to_a_web_the_skin_of_the_flange_is_found() {
     );
 }
 
-/// Bending: basic strain that changes its sign through the thickness and along x, and a part along the plate.
+/// Returns a bending field: basic strain that changes its sign through the thickness and varies along x, and a membrane part.
 fn bending_field(m: &Model, corners: CornerRows) -> CaseResult {
     let mut case = field(m, corners, |x, z| {
         E.map(|e| e * (0.2 + (1.0 + 0.01 * x.x) * z))
     });
-    // `field` sorts fibres by their distance along each shell's own normal. This field needs the basic z.
+    // `field` sorts fibres by their distance along the normal of each shell. This field needs the basic z.
     for (i, s) in m.shells.iter().enumerate() {
         if shell_axes(m, s, ShellPlace::Centre).unwrap()[(2, 2)] < 0.0 {
             case.shells.centre[i].swap(0, 1);

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Accelerometers of one vehicle with these means, read as m/s2.
+/// Returns accelerometers of one vehicle with these means, read as m/s2.
 fn accelerometers(means: &[f64]) -> Vec<MotionChannel<'static>> {
     let names = ["a_body", "a_wheel", "a_rear"];
     let channel = |(name, mean): (&&'static str, &f64)| MotionChannel {

@@ -1,7 +1,8 @@
 use super::block_matrix::DenseTerm;
 use super::*;
 
-/// A grid of springs, `side` squared groups of `m` unknowns each, every neighbour pair joined by a stiffness, corner held.
+/// Returns a grid of springs with `side` squared groups of `m` unknowns each. A stiffness joins every pair of neighbours. A corner is fixed if
+/// `held`.
 fn lattice(side: usize, m: usize, held: bool) -> (BlockGraph, Vec<u8>, Vec<(Vec<u32>, Vec<f64>)>) {
     let n = side * side;
     let mut terms = Vec::new();
@@ -74,7 +75,7 @@ fn the_solution_of_many_right_hand_sides_satisfies_the_equations() {
         let factor = Factor::new(&symbolic, matrix.clone()).unwrap();
         assert!(factor.lost.is_empty());
         let n = symbolic.n_unknowns();
-        // More right-hand sides than are solved together.
+        // There are more right-hand sides than one pass solves.
         let b: Vec<f64> = (0..29 * n)
             .map(|i| ((i * 37 + 11) % 101) as f64 / 50.0 - 1.0)
             .collect();

@@ -1,16 +1,18 @@
-//! A zero that is followed through runs without load, of known drift.
+//! A zero interpolated between runs without load, with a known drift.
 
 use super::{Drift, ZeroWeights, zero_run_weights};
 use crate::measured::strain_table::{StrainRows, StrainTable};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Variance of a sum of three uniform numbers is 1 in these units: near enough to a Gaussian for second moments.
+/// Returns a random number with variance 1, the sum of three uniform numbers. Its second moments are close enough to those of a Gaussian.
 fn draw_normal(random: &mut ChaCha8Rng) -> f64 {
     (0..3).map(|_| random.random_range(-1.0..1.0)).sum()
 }
 
-/// Error of the followed zero over its stated sd, root mean square over trials, rows between zero runs and rows after the last.
+/// Returns the ratio of the error of the interpolated zero to its stated sd, as root mean square over trials.
+///
+/// The first ratio is for rows between zero runs, the second for rows after the last.
 fn ratios(steady: f64, walk: f64) -> [f64; 2] {
     const NOISE: f64 = 0.5;
     const GAUGES: usize = 8;

@@ -4,7 +4,7 @@ fn assert_close(a: f64, b: f64, tolerance: f64) {
     assert!((a - b).abs() < tolerance, "{a} against {b}");
 }
 
-/// Corners and exact mid-side places of a straight element: the edge terms vanish.
+/// Returns the corners and exact mid-side places of a straight element. Its edge terms vanish.
 fn straight_node_locations(edges: &[(usize, usize)], corners: &[[f64; 3]]) -> Vec<Option<Vec3>> {
     let x: Vec<Vec3> = corners.iter().map(|c| Vec3::from(*c)).collect();
     let mid = edges.iter().map(|(a, b)| (x[*a] + x[*b]) / 2.0);

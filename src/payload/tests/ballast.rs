@@ -1,8 +1,8 @@
-//! Masses found from reactions that statics gives.
+//! Masses from reactions that statics gives.
 
 use crate::payload::{BallastSpec, size_ballast};
 
-/// Four wheels of a rigid frame at x = 0 and 10, y = -1 and 1, on springs of equal rate.
+/// Returns the reactions of four wheels of a rigid frame at x = 0 and 10, y = -1 and 1, on springs of equal rate.
 fn unit(at: [f64; 2]) -> Vec<f64> {
     [(0.0, -1.0), (0.0, 1.0), (10.0, -1.0), (10.0, 1.0)]
         .iter()

@@ -1,4 +1,4 @@
-//! Tests of this layer.
+//! Tests of payload and ballast.
 
 mod ballast;
 mod near_zero;

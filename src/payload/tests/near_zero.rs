@@ -8,10 +8,10 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-/// Microstrain a newton of eight gauges on a clamped plate.
+/// Microstrain per newton of eight gauges on a clamped plate.
 const ANSWERS: [f64; 8] = [2.5, -2.5, 1.36, -1.36, 0.6, -0.65, 0.4, -0.35];
 
-/// Sd of least squares over all gauges at one microstrain of noise, N.
+/// Returns the sd of least squares over all gauges at one microstrain of noise, N.
 fn sigma() -> f64 {
     1.0 / ANSWERS.iter().map(|a| a * a).sum::<f64>().sqrt()
 }

@@ -6,7 +6,7 @@ use crate::units::MICROSTRAIN;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Wheels from the payload's nominal place, m.
+/// Positions of the wheels relative to the nominal place of the payload, m.
 const ARMS: [[f64; 2]; 6] = [
     [-5.0, -1.0],
     [-5.0, 1.0],
@@ -31,14 +31,14 @@ impl Lot {
     }
 }
 
-/// Reactions of springs of equal rate under a rigid body: `(J'J)^-1 J'`, J the rows (1, x, y).
+/// Returns the reactions of springs of equal rate under a rigid body: `(J'J)^-1 J'`, where J has the rows (1, x, y).
 fn floor() -> Matrix {
     let j = Matrix::from_fn(6, 3, |w, k| [1.0, ARMS[w][0], ARMS[w][1]][k]);
     let normal = (j.transpose() * &j).try_inverse().expect("not on a line");
     &j * normal
 }
 
-/// Gauges that read 1 to 10 microstrain a kN of each wheel and of the payload.
+/// Returns a truck whose gauges read 1 to 10 microstrain per kN of each wheel and of the payload.
 fn truck(lot: &mut Lot, gauges: usize) -> PayloadModel {
     let wheels = Matrix::from_fn(gauges, 6, |_, _| MICROSTRAIN * lot.draw_uniform(-5.0, 5.0));
     let payload = Matrix::from_fn(gauges, 3, |_, k| {
@@ -65,7 +65,7 @@ fn spec(place: Place) -> WeighSpec {
     }
 }
 
-/// A run without errors.
+/// Returns a run without errors.
 fn exact_run(model: &PayloadModel, force: f64, shift: [f64; 2]) -> PayloadRun {
     let p = [force, force * shift[0], force * shift[1]];
     let floor = model.floor.as_ref().expect("the truck has a floor");

@@ -1,4 +1,4 @@
-//! Layouts of least condition number.
+//! Layouts with the smallest condition number.
 
 use super::*;
 use crate::linalg::{Matrix, dense};

@@ -1,7 +1,7 @@
 use super::*;
 use crate::stop::Stop;
 
-/// Five candidates with independent gains. It requests a stop after this number of scored sets.
+/// Scorer with five candidates of independent gains. It requests a stop after a number of scored sets.
 struct CountingScorer {
     stop: Stop,
     last: usize,

@@ -1,4 +1,4 @@
-//! Noise that readings show, in simulation with a known truth. Limits of coverage are three standard deviations of a binomial share.
+//! Noise estimated from readings, in simulation with a known truth. Limits of coverage are three standard deviations of a binomial share.
 
 use super::super::{ErrorModel, Readings, Recovery, recover};
 use super::{NOISE_ASSUMED, noise_without_load};
@@ -15,7 +15,7 @@ const NOISE: ErrorModel = ErrorModel {
     model_rel: 0.0,
 };
 
-/// Standard normal number (Box and Muller).
+/// Returns a standard normal number (Box and Muller).
 fn draw_normal(rng: &mut ChaCha8Rng) -> f64 {
     let [u, v]: [f64; 2] = [rng.random(), rng.random()];
     (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
@@ -77,7 +77,7 @@ impl Trial {
         recover(&self.s, &self.readings, NOISE)
     }
 
-    /// Share of the intervals that contain the truth, and the smallest of the loads.
+    /// Returns the share of the intervals that contain the true load: over all loads, and the smallest share of a load.
     fn interval_coverage(&self, recovery: &Recovery) -> (f64, f64) {
         let by_load = (0..LOADS).map(|l| {
             let inside = |(r, f): (&super::super::RunEstimate, &Vec<f64>)| {
@@ -93,7 +93,7 @@ impl Trial {
         (by_load.iter().sum::<f64>() / LOADS as f64, least)
     }
 
-    /// Mean half width over the one of the best estimate, which knows the covariance of the noise.
+    /// Returns the mean half width divided by that of the best estimate, which uses the true covariance of the noise.
     fn width(&self, recovery: &Recovery) -> f64 {
         let best = Sensitivity {
             noise: Some(GaugeNoise::of_covariance(self.noise.clone())),
@@ -106,7 +106,7 @@ impl Trial {
     }
 }
 
-/// Noise in the root mean square as stated, from a third of it to three times as much.
+/// Returns noise with the stated root mean square. It varies by gauge from a third to three times the stated noise.
 fn by_gauge(correlation: f64) -> Matrix {
     let sd: Vec<f64> = (0..GAUGES)
         .map(|g| (2.2 * ((7 * g) % GAUGES) as f64 / (GAUGES - 1) as f64 - 1.1).exp())
@@ -124,7 +124,7 @@ fn correlated_covariance(correlation: f64) -> Matrix {
         .clone()
 }
 
-/// Three standard deviations of a share of 95 % in so many trials.
+/// Returns three standard deviations of a share of 95 % in this number of trials.
 fn slack(of: usize) -> f64 {
     3.0 * (0.95 * 0.05 / of as f64).sqrt()
 }
@@ -198,7 +198,7 @@ fn a_zero_record_shows_noise_of_any_form() {
     assert!(found.is_none() && finding.is_none());
 }
 
-/// Coverage over seeded structures and noise, `STRAINBRIDGE_TRIALS` of them.
+/// Coverage over `STRAINBRIDGE_TRIALS` seeded structures with noise.
 #[test]
 fn coverage_over_structures() {
     let trials = std::env::var("STRAINBRIDGE_TRIALS").ok();
@@ -221,7 +221,7 @@ fn coverage_over_structures() {
     assert!((0.93..0.97).contains(&share), "{share}");
 }
 
-/// A case of the shared folder: S in strain per unit load, readings and, where the case has it, the truth.
+/// Returns a case of the shared folder: S in strain per unit load, readings and, if the case has it, the truth.
 fn case(name: &str) -> Option<(Sensitivity, Vec<Vec<f64>>, Vec<Vec<f64>>)> {
     let read = |file: &str| crate::support::text(&format!("cases/calibrate/{name}/{file}"));
     let numbers = |text: &str| -> Vec<Vec<f64>> {
@@ -248,7 +248,7 @@ fn case(name: &str) -> Option<(Sensitivity, Vec<Vec<f64>>, Vec<Vec<f64>>)> {
     Some((s, strain.collect(), truth))
 }
 
-/// Both had 1,850 and 2,026 of 2,400 intervals with the truth when noise was taken as stated.
+/// With the noise as stated, 1,850 and 2,026 of 2,400 intervals contained the true load.
 #[test]
 fn shared_noise_of_two_cases_is_shown() {
     for name in ["noise_common_mode_rho09", "noise_differs_by_gauge"] {
@@ -287,7 +287,7 @@ fn coloured_noise_of_a_record_makes_no_sound_gauge_a_suspect() {
     assert_eq!(got.findings.iter().find(named), None);
 }
 
-/// First order noise of the stated size at 100 Hz, with corners that loggers and drift have; 15 s each.
+/// First-order noise of the stated size at 100 Hz, with typical corner frequencies of loggers and drift, for 15 s each.
 #[test]
 fn coloured_noise_names_no_gauge_more_often_than_white_noise() {
     let trials = std::env::var("STRAINBRIDGE_TRIALS").ok();

@@ -1,6 +1,6 @@
 //! Coverage of the 95 % intervals over 2,000 seeded trials.
 //!
-//! Two sides of 95 +- 1.5 %: with 2,000 trials of six or nine loads each the share itself is known to .3 %.
+//! The limits are 95 +- 1.5 %. With 2,000 trials of six or nine loads each, the standard deviation of the share is .3 %.
 
 use super::super::history::{Filter, SampleLoads};
 use super::super::*;
@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 
 const TRIALS: u64 = 2000;
 
-/// A trial: true loads, strain.
+/// Returns a trial: true loads, strain.
 fn draw(s: &Sensitivity, seed: u64, size: impl Fn(usize) -> f64) -> (Vec<f64>, Vec<f64>) {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let f: Vec<f64> = (0..s.loads.len())
@@ -35,7 +35,7 @@ fn assert_covers(what: &str, covered: u64, of: u64) {
     assert!((0.935..=0.965).contains(&share), "{what}: {share}");
 }
 
-/// Runs one by one; `silent` gauge gives nothing.
+/// Tests runs one by one. The gauge `silent` has no reading.
 fn of_runs(s: &Sensitivity, size: impl Fn(usize) -> f64, silent: Option<usize>) {
     let (mut covered, mut of) = (0, 0);
     for seed in 0..TRIALS {

@@ -13,7 +13,7 @@ use rand_chacha::ChaCha8Rng;
 
 const KN: f64 = 1e3;
 
-/// Header after `skip` columns, and the numbers there.
+/// Returns the header after `skip` columns, the keys, and the numbers after these columns.
 fn table(text: &str, skip: usize) -> (Vec<String>, Vec<String>, Vec<Vec<f64>>) {
     let mut lines = text.lines();
     let header = lines
@@ -45,7 +45,7 @@ struct Frame {
     truth: Vec<Vec<f64>>,
 }
 
-/// The ladder frame with MYSTRAN's influence coefficients, loads in N and N m (kN in the files), the first `loads` of nine.
+/// Returns the ladder frame with MYSTRAN's influence coefficients and the first `loads` of nine loads in N and N m (kN in the files).
 fn frame(loads: usize) -> Option<Frame> {
     let folder = "nastran/mystran_frame_units/measured";
     let (names, gauges, m) = table(&shared(&format!("{folder}/sensitivity_truth.csv"))?, 1);
@@ -162,7 +162,7 @@ fn draw_normal(rng: &mut ChaCha8Rng) -> f64 {
     (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
 }
 
-/// Share of intervals that hold the truth over `trials` seeded runs, S in error by `draw` (relative error of coefficient g, l).
+/// Returns the coverage of the intervals over `trials` seeded runs. `draw` returns the relative error of coefficient (g, l) of S.
 fn coverage(
     trials: u64,
     errors: ErrorModel,

@@ -13,7 +13,7 @@ fn filter(s: &Sensitivity, errors: ErrorModel, typical: &[f64]) -> Filter {
     Filter::new(s, vec![0.0; n], errors, 1.0, typical, Widening::none()).unwrap()
 }
 
-/// 14 gauges, 6 wanted loads of 10 and 10 nuisance loads of 1 with stated sizes: more loads than gauges.
+/// Returns 14 gauges, 6 wanted loads of 10 and 10 nuisance loads of 1 with stated sizes. There are more loads than gauges.
 pub(super) fn many_nuisances() -> Sensitivity {
     let mut rng = ChaCha8Rng::seed_from_u64(7);
     let loads = (0..16)

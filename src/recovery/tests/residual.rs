@@ -1,4 +1,4 @@
-//! Tests findings on residuals: right jobs and wrong gauges.
+//! Tests findings on residuals of correct jobs and of wrong gauges.
 
 use super::super::*;
 use super::{KN, draw_normal, frame};
@@ -8,7 +8,7 @@ use crate::sensitivity::{Load, Sensitivity};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// 20 gauges, 6 loads.
+/// Returns 20 gauges and 6 loads.
 fn job(seed: u64) -> (Sensitivity, ChaCha8Rng) {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let s = Sensitivity {
@@ -21,7 +21,7 @@ fn job(seed: u64) -> (Sensitivity, ChaCha8Rng) {
     (s, rng)
 }
 
-/// 12 similar runs of that job, S in error by `model_rel` of every coefficient, the same in all runs; noise of 1 microstrain.
+/// Returns 12 similar runs of that job. Every coefficient of S has an error of `model_rel`, equal in all runs, and the noise is 1 microstrain.
 fn right_runs(s: &Sensitivity, rng: &mut ChaCha8Rng, model_rel: f64) -> Vec<Readings> {
     let wrong = Matrix::from_fn(20, 6, |g, l| {
         s.values[(g, l)] * (1.0 + model_rel * draw_normal(rng))
@@ -245,7 +245,7 @@ fn the_gain_that_is_stated_of_a_suspect_is_that_against_the_others_and_its_inter
     }
 }
 
-/// Size and half width, percent, that a finding states of a gain.
+/// Returns the size and half width of a gain that a finding states, in percent.
 fn size_and_half(found: &Finding) -> Option<[f64; 2]> {
     let (size, rest) = found
         .message

@@ -1,4 +1,4 @@
-//! Several loads at once where each known run had one.
+//! Several loads at once, although each calibration run had one load.
 
 use super::super::simultaneous_loads::{CODE, check};
 use super::super::*;

@@ -14,7 +14,7 @@ fn all_lines(layout: &Layout) -> Vec<String> {
     all.cloned().collect()
 }
 
-/// A load a row, as many as asked for.
+/// Returns a table of `n` loads, one per row.
 fn loads(n: usize) -> ConsoleTable {
     let row = |i: usize| vec![format!("LOAD{i}.FZ"), format!("{i}.50 ± 0.36"), "kN".into()];
     ConsoleTable::new(

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 
 type Point = [i64; 2];
 
-/// The steps of length one along the axes that lines take, each once, whichever way it is walked.
+/// Returns the steps of length one along the axes that the lines take. Each step counts once, in either direction.
 fn steps(lines: &[Vec<Point>]) -> BTreeSet<[Point; 2]> {
     let mut out = BTreeSet::new();
     for pair in lines.iter().flat_map(|l| l.windows(2)) {
@@ -88,7 +88,7 @@ fn ticks_are_round_and_inside() {
     assert_eq!(words, ["1e-2", "1e-1", "1e0", "1e1"]);
 }
 
-/// Shapes of the picture of a figure.
+/// Returns the first picture of a figure.
 fn first_picture(figure: &Figure) -> Picture {
     pictures(figure).remove(0)
 }

@@ -105,7 +105,7 @@ fn a_small_model_is_drawn_whole_with_a_part_a_property() {
     assert_eq!(area(&model, &parts[1]), 10.0);
 }
 
-/// Elements are picked on parts of shells alone, so a part consists of shells or has no shells. The largest property keeps a separate part.
+/// Elements are selected only on parts of shells, so a part consists of shells or has no shells. The largest property is a separate part.
 #[test]
 fn small_properties_go_together_shells_apart_from_the_rest() {
     let mut model = plate(24, 0);
@@ -153,7 +153,7 @@ fn small_properties_go_together_shells_apart_from_the_rest() {
 
 #[test]
 fn a_large_model_is_drawn_coarser_and_its_small_parts_stay_whole() {
-    // 313,600 elements; the first 100 are a strip one element wide.
+    // 313,600 elements. The first 100 are a strip with a width of one element.
     let model = plate(560, 100);
     let parts = skin(&model, 1, Finest::FewFields);
     let triangles: usize = parts.iter().map(|p| p.drawn.triangles.len()).sum();
@@ -171,7 +171,7 @@ fn a_vertex_takes_the_mean_around_its_grid_and_of_its_grids_the_largest() {
     let parts = skin(&model, 1, Finest::FewFields);
     let values = Values::from_case(&model, &bending_case(&model, |i| i as f64));
     let [bottom, top] = values.strain_at_vertices(&parts[0]);
-    // The middle grid touches elements 0 to 3, the first corner element 0 alone.
+    // The middle grid is a corner of elements 0 to 3. The first corner belongs to element 0 only.
     let at = |id: u32| {
         let local = parts[0].grids.iter().position(|g| g.0 + 1 == id).unwrap();
         parts[0].drawn.vertex_of[local] as usize

@@ -1,7 +1,7 @@
 use super::content_hz;
 use std::f64::consts::TAU;
 
-/// Uniform noise of unit standard deviation (splitmix64).
+/// Returns uniform noise of unit standard deviation (splitmix64).
 fn noise(n: usize) -> Vec<f64> {
     let mut state = 5_u64;
     (0..n)

@@ -12,7 +12,7 @@ fn cycles_of(history: &[f64]) -> Vec<Cycle> {
     out
 }
 
-/// Cycle counts by whole range, 1 to 10.
+/// Returns cycle counts by whole range, 1 to 10.
 fn table(history: &[f64]) -> Vec<f64> {
     let mut counts = vec![0.0; 11];
     for c in cycles_of(history) {
@@ -21,7 +21,7 @@ fn table(history: &[f64]) -> Vec<f64> {
     counts
 }
 
-/// The history of ASTM E1049-85, Fig. 6: reversals A to I.
+/// Returns the history of ASTM E1049-85, Fig. 6: reversals A to I.
 const FIG_6: [f64; 9] = [-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0];
 
 #[test]

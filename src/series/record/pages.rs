@@ -181,7 +181,7 @@ mod tests {
     use parquet::schema::parser::parse_message_type;
     use std::sync::Arc;
 
-    /// Even samples of one channel, every seventh missing, values in streams of bytes.
+    /// Returns a file with evenly spaced samples of one channel, every seventh missing. Values are encoded as separate byte streams.
     fn split(n: i16) -> Vec<u8> {
         let properties = WriterProperties::builder()
             .set_dictionary_enabled(false)
@@ -189,7 +189,7 @@ mod tests {
         write_samples(n, properties)
     }
 
-    /// Writes even samples of one channel, every seventh missing, with these properties.
+    /// Writes evenly spaced samples of one channel, every seventh missing, with these properties.
     fn write_samples(n: i16, properties: WriterPropertiesBuilder) -> Vec<u8> {
         let schema = "message m { required double time; optional float g; }";
         let schema = Arc::new(parse_message_type(schema).unwrap());

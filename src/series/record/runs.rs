@@ -112,7 +112,7 @@ mod tests {
     use parquet::schema::parser::parse_message_type;
     use std::sync::Arc;
 
-    /// Three runs of two gauges, the second without a reading in the second run.
+    /// Returns three runs of two gauges. The second gauge has no reading in the second run.
     fn runs(name: &str, compression: Compression) -> Vec<u8> {
         let schema = format!(
             "message m {{ required binary {name} (STRING); required double P01; optional float P02; }}"

@@ -12,7 +12,7 @@ fn open(text: &str) -> Result<Record, SeriesError> {
     )
 }
 
-/// All samples of all columns, row by row.
+/// Returns all samples of all columns, row by row.
 fn rows(record: &Record) -> Vec<Vec<f64>> {
     let k = record.columns().len();
     let picks: Vec<Option<usize>> = (0..k).map(Some).collect();
@@ -233,7 +233,7 @@ fn faults_of_a_table_name_their_line() {
     ));
 }
 
-/// A table whose times are made by a rule, its only channel twice the time.
+/// Returns a table whose times follow a rule. Its only channel is twice the time.
 fn table_with_times(n: usize, time: impl Fn(usize) -> f64, digits: usize) -> String {
     let mut text = String::from("time,a\n");
     for i in 0..n {
@@ -261,7 +261,7 @@ fn steps_within_a_fiftieth_are_even_and_those_beyond_are_resampled_and_said() {
         let expected = 2.0 * uneven.clock.time_s(i);
         assert!((row[0] - expected).abs() < 1e-9, "{i} {}", row[0]);
     }
-    // Times rounded by printing are no jitter: 128 Hz with three digits.
+    // Times rounded by printing are not jitter: 128 Hz with three digits.
     let printed = open(&table_with_times(500, |i| i as f64 / 128.0, 3)).unwrap();
     assert_eq!(printed.clock.evenness, Evenness::Even);
     assert!((printed.clock.rate_hz / 128.0 - 1.0).abs() < 1e-3);
@@ -362,7 +362,7 @@ fn a_rate_that_changes_is_told_with_its_time_and_no_sample_is_called_missing() {
     assert_eq!((lossy.clock.change, lossy.clock.missing), (None, 15));
 }
 
-/// 300,000 rows: several pieces, so that lines, gaps and uneven steps cross their borders.
+/// 300,000 rows are several pieces, so that lines, gaps and uneven steps cross the piece borders.
 #[test]
 fn pieces_join_without_a_seam() {
     let n = 400_000;
@@ -475,7 +475,7 @@ fn parquet_is_read_by_parts_of_row_groups() {
     }
 }
 
-/// A damaged file is a fault or another record, never a panic.
+/// A damaged file gives a fault or another record, and never a panic.
 #[test]
 fn mutated_files_do_not_panic() {
     let mut seed = 7_u64;

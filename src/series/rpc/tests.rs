@@ -10,7 +10,7 @@ fn targets() -> Vec<Target> {
     vec![t("LF.FZ", "kN", -2.0, 5.0), t("still", "kN m", 0.0, 0.0)]
 }
 
-/// 3,000 samples: a full frame and a part of one.
+/// Number of samples: a full frame and a part of another one.
 const N: usize = 3000;
 
 fn sample(i: usize) -> [f64; 2] {
@@ -81,7 +81,7 @@ fn a_gap_repeats_the_sample_before_it_and_is_counted() {
     }
 }
 
-/// A header by hand, as the format describes it: groups of two frames, big endian, reals.
+/// Returns a header by hand, as the format describes it: groups of two frames, big endian, reals.
 #[test]
 fn groups_of_several_frames_and_big_endian_reals_are_demultiplexed() {
     let keys = [

@@ -1,7 +1,7 @@
 use super::*;
 use std::f64::consts::TAU;
 
-/// Two signals of three sines each, whose periods have no common multiple.
+/// Returns two signals of three sines each, whose periods have no common multiple.
 fn signals(start_s: f64, rate_hz: f64, n: usize) -> Vec<Vec<f32>> {
     let of = |frequencies: [f64; 3]| {
         let value = |i: usize| {
@@ -76,7 +76,7 @@ fn constant_unlike_and_periodic_signals_have_no_shift() {
     assert!(matches!(found, Err(NoShift::Ambiguous(_))), "{found:?}");
 }
 
-/// Four samples determine every value of a cubic. Of a parabola a straight line misses `u (1 - u)` of half the second difference.
+/// Four samples determine every value of a cubic. For a parabola, linear interpolation has the error `u (1 - u)` times half of the second difference.
 #[test]
 fn values_between_samples_are_those_of_the_cubic() {
     let samples: Vec<Vec<f32>> = vec![(0..8).map(|i| (i * i * i - 5 * i * i) as f32).collect()];

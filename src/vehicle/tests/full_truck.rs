@@ -107,7 +107,7 @@ fn whole_truck_record(r: &Readings) -> Channels {
     Channels::from_list(RATE_HZ, list).unwrap()
 }
 
-/// The truck's places, springs inboard of the wheels and the rear ones near a common trunnion.
+/// Returns the places of the truck. Springs are inboard of the wheels, and the rear springs are near a common trunnion.
 fn full_task(terms: &[&str], high: f64) -> IdentifyTask {
     let truck = roll_off();
     let mut places = std::collections::BTreeMap::new();

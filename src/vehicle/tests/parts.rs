@@ -1,4 +1,4 @@
-//! Fits, intervals, simulation, checks and bad input, each on its own.
+//! Separate tests of fits, intervals, simulation, checks and faulty input.
 
 use super::*;
 use crate::finding::Severity;
@@ -179,7 +179,7 @@ fn a_simulated_step_follows_the_closed_form() {
     }
 }
 
-/// Thesis 4.4: the same motion whether the wheel force or the wheel's motion drives the model.
+/// Thesis 4.4: the motion is the same whether the wheel force or the motion of the wheel drives the model.
 #[test]
 fn body_motion_is_the_same_from_wheel_force_and_from_wheel_motion() {
     let q = task("front2", &["k_s", "c_s", "k3_s"], (0.7, 20.0));

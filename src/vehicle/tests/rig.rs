@@ -71,7 +71,7 @@ fn rig(seed: u64) -> Channels {
     .unwrap()
 }
 
-/// The thesis is off by 0.1, 9.7, 2.7 and 0.1 % (Table 4.1).
+/// The errors in the thesis are 0.1, 9.7, 2.7 and 0.1 % (Table 4.1).
 #[test]
 fn the_rig_of_chapter_4_gives_all_four_parameters_within_one_per_cent() {
     let q = task("rig", &[], (3.0, 60.0));
@@ -87,7 +87,7 @@ fn the_rig_of_chapter_4_gives_all_four_parameters_within_one_per_cent() {
     }
 }
 
-/// Ten optimisations of the thesis gave ten answers, m_2 from 1.08 to 42 kg (Table 4.2).
+/// Ten optimisations of the thesis gave ten results, with m_2 from 1.08 to 42 kg (Table 4.2).
 #[test]
 fn accelerations_only_give_the_rigs_ratios_once_and_for_all_and_name_the_lost_factor() {
     let mut record = rig(4);

@@ -15,7 +15,7 @@ const G: f64 = 9.81;
 
 pub(super) struct Axle {
     pub x: f64,
-    /// Where its springs bear on the frame.
+    /// Positions at which the springs act on the frame.
     pub seat: f64,
     pub mass: f64,
     pub roll_inertia: f64,
@@ -35,7 +35,7 @@ pub(super) struct Truck {
     pub axles: Vec<Axle>,
 }
 
-/// Readings at each corner, axle by axle, left then right.
+/// Readings at each corner, axle by axle, left before right.
 pub(super) struct Readings {
     pub body: Vec<Vec<f64>>,
     pub hub: Vec<Vec<f64>>,
@@ -77,7 +77,7 @@ impl Gauss {
     }
 }
 
-/// Height of one track every millimetre-like step `dx`: waves by a random walk with a leak, so that slopes are white.
+/// Returns the height of one track at every step `dx`. A random walk with a leak gives waves with white slopes.
 fn road(length_m: f64, dx: f64, roughness: f64, seed: u64) -> [Vec<f64>; 2] {
     let mut g = Gauss(ChaCha8Rng::seed_from_u64(seed));
     let n = (length_m / dx) as usize + 1;
@@ -103,7 +103,7 @@ fn height(track: &[f64], x: f64, dx: f64) -> f64 {
     track[i] + (track[i + 1] - track[i]) * (u - i as f64)
 }
 
-/// State: heave, pitch, roll of the body, heave and roll of each axle; their rates; friction states.
+/// State: heave, pitch and roll of the body, heave and roll of each axle, their rates, and friction states.
 type State = Vec<f64>;
 
 pub(super) fn drive(
@@ -166,7 +166,7 @@ pub(super) fn drive(
     out
 }
 
-/// Static wheel forces (each side of each axle): least change of spring stretch that balances weight and pitch.
+/// Returns the static wheel forces (each side of each axle). They have the least change of spring stretch that balances weight and pitch.
 fn static_forces(truck: &Truck) -> Vec<f64> {
     // The body settles by s0 + s1 x. The sum of 2 k (s0 + s1 x) is m g, and the moment about the centre of mass is 0.
     let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);

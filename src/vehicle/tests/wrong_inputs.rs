@@ -1,4 +1,4 @@
-//! Reversed, exchanged and wrongly scaled channels of an independently simulated truck, and sound records on many roads.
+//! Reversed, exchanged and wrongly scaled channels of an independently simulated truck, and correct records on many roads.
 
 use super::truck_simulator::{RATE_HZ, Readings, Truck, drive, roll_off};
 use super::*;
@@ -24,7 +24,7 @@ fn record(list: Vec<(String, Vec<f64>)>) -> Channels {
     Channels::from_list(RATE_HZ, list.into_iter().map(channel).collect()).unwrap()
 }
 
-/// Accelerometers that do not measure gravity.
+/// Returns the channels of accelerometers that do not measure gravity.
 fn without_gravity(mut r: Channels) -> Channels {
     let accelerations = r.list.iter_mut().filter(|c| c.name.starts_with("a_"));
     accelerations.for_each(|c| c.samples.iter_mut().for_each(|v| *v -= G));
@@ -39,7 +39,7 @@ fn front(r: &Readings) -> Channels {
     ])
 }
 
-/// Both sides of two axles as one: their means, and their forces added.
+/// Combines both sides of two axles into one: the means of accelerations and the sums of forces.
 fn half(r: &Readings) -> Channels {
     let joined = |x: &[Vec<f64>], axle: usize, share: f64| -> Vec<f64> {
         let sides = x[2 * axle].iter().zip(&x[2 * axle + 1]);
@@ -64,7 +64,7 @@ fn full_truck_record(r: &Readings) -> Channels {
     record(list)
 }
 
-/// The tasks of a quarter, half and full truck with two axles.
+/// Returns the tasks of a quarter, half and full truck with two axles.
 fn tasks() -> [IdentifyTask; 3] {
     let truck = two_axles();
     let of = |model: &str, places: BTreeMap<String, [f64; 2]>| {
@@ -125,7 +125,7 @@ fn exchange_channels(r: &Channels, a: &str, b: &str) -> Channels {
     out
 }
 
-/// Asserts that a fault is found: its code, an error, and the subject, or a description among those that fit as well.
+/// Fails unless a fault is found with its code, as an error, and with its subject or an equivalent description.
 fn finds(task: &IdentifyTask, r: &Channels, code: &str, subject: &str, described: &str) {
     let found = identify(task, r, None).unwrap();
     let wrong = found.wrong_input();
@@ -194,7 +194,7 @@ fn exchanged_channels_are_found() {
     }
 }
 
-/// In a quarter truck a scaled body acceleration passes for another mass but for the stretch of the spring: the model has to fit well.
+/// In a quarter truck, a scaled body acceleration resembles another mass, except for the stretch of the spring. The model must fit well.
 #[test]
 fn one_channel_in_another_unit_is_found() {
     let quarter = super::parts::quarter(10_000, 12, [3200.0, 1100.0, 490e3, 8000.0]);
@@ -208,7 +208,7 @@ fn one_channel_in_another_unit_is_found() {
     }
 }
 
-/// Masses and springs scale with the ratio of forces and accelerations: only weight and the size of a vehicle show its unit.
+/// Masses and springs scale with the ratio of forces to accelerations. Only the weight and the size of a vehicle show the unit.
 #[test]
 fn the_unit_of_all_accelerations_or_forces_is_found_by_the_masses() {
     for (task, r) in tasks().iter().zip(&records()) {
@@ -253,7 +253,7 @@ fn a_record_that_confirms_no_unit_is_a_warning_that_states_the_assumed_one() {
     assert_eq!(identify(&task, &r, None).unwrap().wrong_input(), None);
 }
 
-/// Sound records: quarter, half and full trucks on smooth and rough roads, slow and fast, with and without gravity in the means.
+/// Correct records: quarter, half and full trucks on smooth and rough roads, slow and fast, with and without gravity in the means.
 #[test]
 fn sound_records_have_no_wrong_input() {
     const SEEDS: u64 = 4;

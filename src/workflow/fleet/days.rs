@@ -325,7 +325,7 @@ mod tests {
     #[test]
     fn days_are_ordered_by_the_calendar_or_by_their_numbers() {
         for days in [
-            // Ordered by numbers.
+            // Days are ordered as numbers.
             &[
                 "1",
                 "02",

@@ -234,7 +234,7 @@ mod tests {
 
     #[test]
     fn mean_scatter_noise_and_missing_readings_are_those_of_each_gauge() {
-        // Eleven gauges: eight in vectors and three separate. Gauge g reads g plus and minus (g + 1) in turn.
+        // Eleven gauges: eight in vectors and three separate. Gauge g reads g plus and minus (g + 1), alternately.
         let (n, rows) = (11, 96);
         let swing =
             |g: usize, i: usize| (g + 1) as f64 * if i.is_multiple_of(2) { 1.0 } else { -1.0 };

@@ -196,7 +196,7 @@ mod tests {
                 chance <= ALARM * (1.0 + 1e-9),
                 "{vehicles} {days}: {chance}"
             );
-            // A vehicle whose gauge is off on most days is reported among a thousand vehicles.
+            // A vehicle with a wrong gauge on most days is reported among a thousand vehicles.
             assert!(days < 20 || told(&days), "{vehicles} {days}");
         }
         // Among 20,000 records, one record with a probability of 3e-5 is no alarm, and one with 1e-8 is an alarm.

@@ -1,8 +1,10 @@
-//! Hides an effect in the readings of a frame: seeded, own physics, so that the search is not asked to undo itself.
+//! Hides an effect in the readings of a frame.
 //!
-//! The base frame lends its influence matrices, gauges and load columns; runs, loads, noise, background and effect are new. The
-//! background of a messy case is 1 % of gain scatter, 1 degree of placement scatter (the model error that the job declares) and
-//! influence coefficients that are off by a fraction of a percent each, as on another mesh.
+//! The generator is seeded and has separate physics, so that the search does not invert its own formulas. The influence
+//! matrices, gauges and load columns come from a base frame. Runs, loads, noise, background and effect are new.
+//!
+//! The messy background has 1 % of gain scatter and 1 degree of angle scatter, which is the model error that the job
+//! declares. In addition, each influence coefficient differs by a fraction of a percent, as on another mesh.
 
 use super::drawn::draw_normal;
 use rand::{RngExt, SeedableRng};
@@ -12,24 +14,24 @@ use strainbridge::reconcile::strain::{
     PayloadWeight, StrainFrame, WheelForces, angle_scatter, predict,
 };
 
-/// What lies behind a case.
+/// Case with a hidden effect.
 pub struct Hidden {
-    /// Case as the analyst sees it.
+    /// Case as the analyst has it.
     pub frame: StrainFrame,
-    /// Ids with places; `none`, `unknown`.
+    /// Effect ids with places, or `none`, or `unknown`.
     pub truth: Vec<String>,
-    /// Root mean square of the effect on the readings over what noise allows.
+    /// Root mean square of the effect on the readings, divided by the noise.
     pub signal: f64,
 }
 
-/// How good the model is.
+/// Quality of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Background {
     /// Exact.
     Clean,
-    /// Gains, angles and coefficients are off as stated above.
+    /// Gains, angles and coefficients have the errors stated above.
     Messy,
-    /// They are, and the noise is 1.5 times what the job states.
+    /// Same errors as `Messy`, and noise of 1.5 times the stated noise.
     Noisy,
 }
 
@@ -63,7 +65,7 @@ pub const EFFECTS: [(&str, [f64; 5]); 26] = [
     ("intermittent_channel", [1.0, 1.0, 1.0, 1.0, 1.0]),
 ];
 
-/// Discrepancies that no effect of the library makes.
+/// Discrepancies that no effect of the library describes.
 pub const UNMODELLED: [&str; 7] = [
     "hysteresis",
     "hardening",
@@ -78,7 +80,8 @@ fn pick<T: Copy>(rng: &mut ChaCha8Rng, from: &[T]) -> T {
     from[rng.random_range(0..from.len())]
 }
 
-/// Wheel forces on flat ground as the base case has them: linear in the payload and its moment, by least squares per wheel.
+/// Returns the wheel forces on flat ground in the base case. They are linear in the payload and its moment, by least
+/// squares for each wheel.
 fn flat_ground(base: &StrainFrame) -> Vec<[f64; 2]> {
     let n_l = base.n_loads();
     (0..n_l)
@@ -96,7 +99,8 @@ fn flat_ground(base: &StrainFrame) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// A case with the given effect (`none`, one of [`UNMODELLED`], or several joined by `+`) of the given size.
+/// Returns a case with the given effect and size. The effect is `none`, one of [`UNMODELLED`], or several joined by
+/// `+`.
 pub fn hide(
     base: &StrainFrame,
     effect: &str,
@@ -135,7 +139,7 @@ pub fn hide(
             loads[r * n_l + l] = mass * (flat[l][0] + x * flat[l][1]);
         }
     }
-    // The analyst's model as it stands, and the truth: gains, angles, coefficients off.
+    // The analyst's model, and the truth with other gains, angles and coefficients.
     frame.loads = loads;
     let mut truth = frame.clone();
     if background != Background::Clean {
@@ -161,7 +165,7 @@ pub fn hide(
     let mut parts: Vec<String> = Vec::new();
     let mut readings = clean.clone();
     for one in effect.split('+') {
-        // Without a size: the fourth of its five.
+        // Without a size, the fourth of the five sizes.
         let usual = EFFECTS.iter().find(|e| e.0 == one).map_or(1.0, |e| e.1[3]);
         let size = if size.is_nan() { usual } else { size };
         apply(
@@ -221,7 +225,7 @@ fn strain_at_angle(
     exx * c * c + eyy * s * s + shear * s * c
 }
 
-/// Adds what `effect` of `size` does to `readings`, and writes its name down.
+/// Adds the change by `effect` of `size` to `readings`, and records its id.
 fn apply(
     effect: &str,
     size: f64,
@@ -236,7 +240,7 @@ fn apply(
         let p = predict(t, &[]);
         ((0..n_r).map(|r| p[r * n_g + g].powi(2)).sum::<f64>() / n_r as f64).sqrt()
     };
-    // Faults of a gauge that reads next to nothing can't be found: take one of the better half.
+    // A fault of a gauge with tiny readings cannot be found, so the gauge is one of those with larger readings.
     let mut order: Vec<usize> = (0..n_g).collect();
     order.sort_by(|&a, &b| strength(truth, b).total_cmp(&strength(truth, a)));
     let g = order[rng.random_range(0..n_g * 3 / 4)];
@@ -288,7 +292,7 @@ fn apply(
             parts.push(format!("wheel_scale:{load}"));
         }
         "run_exchange" => {
-            // Two runs with different payloads: exchanged twins show nothing.
+            // The two runs have different payloads. An exchange of runs with equal payloads has no effect.
             let fit = frame.observations.fit_runs();
             let mass = |r: usize| frame.payload[r][0];
             let a = fit[rng.random_range(0..fit.len())];
@@ -311,7 +315,7 @@ fn apply(
             ));
         }
         "run_record" => {
-            // A mass that was written down wrong, in a run with some.
+            // A wrong recorded mass, in a run with a payload.
             let loaded: Vec<usize> = frame
                 .observations
                 .fit_runs()
@@ -499,7 +503,7 @@ fn apply(
         "uneven_ground" => {
             frame.wheel_forces = WheelForces::FlatGroundModel;
             for r in 0..n_r {
-                // A twist of the ground: every axle turns the other way, the sum over each side stays.
+                // Twist of the ground: every axle rotates, and the sum over each side is constant.
                 let twist = [draw_normal(rng), draw_normal(rng)];
                 let change = [twist[0], twist[1], -twist[0] - twist[1]];
                 for (l, sign) in [-1.0, -1.0, -1.0, 1.0, 1.0, 1.0].into_iter().enumerate() {
@@ -533,7 +537,7 @@ fn add_unmodelled_effect(
     let top = clean.iter().fold(0.0f64, |a, v| a.max(v.abs()));
     let scale = (clean.iter().map(|v| v * v).sum::<f64>() / clean.len() as f64).sqrt();
     match which {
-        // What is left of the run before stays in part.
+        // A part of the strain of the previous run remains.
         "hysteresis" => {
             for r in 1..n_r {
                 for g in 0..n_g {
@@ -554,7 +558,7 @@ fn add_unmodelled_effect(
                 }
             }
         }
-        // A force at a place nobody thinks of: one pattern, another size in every run.
+        // A force at an unknown place: one pattern, with another size in every run.
         "unknown_load" => {
             let pattern: Vec<f64> = (0..n_g)
                 .map(|_| 0.5 * size * scale * draw_normal(rng))
@@ -566,14 +570,14 @@ fn add_unmodelled_effect(
                 }
             }
         }
-        // Something happened in one run.
+        // An event in one run only.
         "one_run" => {
             let r = rng.random_range(0..n_r * 2 / 3);
             for g in 0..n_g {
                 readings[r * n_g + g] += size * scale * draw_normal(rng);
             }
         }
-        // Channels leak into their neighbours.
+        // Crosstalk from the neighbouring channel.
         "cross_talk" => {
             for r in 0..n_r {
                 for g in 1..n_g {

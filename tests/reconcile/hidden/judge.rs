@@ -1,22 +1,22 @@
-//! What an answer is worth against what was hidden.
+//! Compares an answer with the hidden effect.
 
 use super::generator::Hidden;
 use strainbridge::reconcile::{Outcome, Verdict};
 
-/// The answer against the truth, effects by their kind.
+/// Comparison of the answer with the truth, by kind of effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// All of it and nothing else; for what is unmodelled, `unknown`; for controls, `none`.
+    /// All effects and no others. For unmodelled effects, `unknown`. For controls, `none`.
     Hit,
-    /// A rival was named, and the truth is listed as one that can't be told from it.
+    /// Another effect was identified, and the truth is listed as indistinguishable from it.
     Alias,
-    /// Some of it, nothing wrong.
+    /// Some of the effects and no wrong one.
     Partial,
-    /// `none` or `below-detectability` where there is something.
+    /// `none` or `below-detectability`, although there is an effect.
     None,
     /// `unknown` for an effect of the library.
     Unknown,
-    /// Something that is not there.
+    /// An effect that is not in the readings.
     False,
 }
 
@@ -29,7 +29,7 @@ fn kinds<'a>(ids: impl Iterator<Item = &'a String>) -> Vec<String> {
     out
 }
 
-/// Judges the outcome of a case.
+/// Classifies the outcome of a case.
 pub fn judge(case: &Hidden, outcome: &Outcome) -> Answer {
     let want = kinds(case.truth.iter());
     let got = match outcome.verdict {

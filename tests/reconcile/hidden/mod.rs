@@ -16,7 +16,7 @@ use strainbridge::reconcile::strain::{
     WheelForces, Wiring,
 };
 
-/// Folder of the shared material, where present.
+/// Returns the folder of the shared material, if present.
 pub fn find_shared_folder() -> Option<PathBuf> {
     support::find_shared_path("hidden_effects")
 }
@@ -54,8 +54,10 @@ impl Table {
     }
 }
 
-/// A frame of wheel forces alone: strain = `influence` (gauges by loads and four payload columns) times `loads` (runs by loads); noise of a
-/// microstrain, forces and model exact.
+/// Returns a frame with wheel forces only: strain = `influence` times `loads`.
+///
+/// `influence` is gauges by loads and four payload columns, `loads` is runs by loads. The noise is one microstrain.
+/// Forces and model are exact.
 pub fn plain_frame(
     observations: Observations,
     gauges: Vec<GaugeFacts>,
@@ -97,7 +99,7 @@ pub fn plain_frame(
     }
 }
 
-/// The frame of a case folder in matrix form.
+/// Returns the frame of a case folder in matrix form.
 pub fn frame_of(dir: &Path) -> StrainFrame {
     let meta: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(dir.join("meta.json")).expect("meta.json"))

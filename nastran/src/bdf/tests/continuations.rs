@@ -1,6 +1,6 @@
 use super::{fault_texts, read_clean_deck};
 
-/// A PSHELL with Z1, Z2.
+/// Returns Z1 and Z2 of a PSHELL.
 fn fibres(text: &str) -> (Option<f64>, Option<f64>) {
     let deck = read_clean_deck(text);
     let p = &deck.cards.pshells[0];

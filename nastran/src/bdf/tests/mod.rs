@@ -1,4 +1,4 @@
-//! Decks for one rule each; the rules are from the quick reference guides.
+//! Decks that test one rule each. The rules come from the quick reference guides.
 
 mod cards;
 mod case_control;
@@ -16,7 +16,7 @@ mod vocabulary;
 
 use super::{Deck, MemoryLoader, read_deck};
 
-/// Reads bulk data alone.
+/// Reads text that has only bulk data.
 fn bulk(text: &str) -> Deck {
     read_deck(
         "test.bdf",

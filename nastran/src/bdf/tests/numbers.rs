@@ -53,7 +53,7 @@ fn text_and_broken_numbers_are_no_numbers() {
     }
 }
 
-/// A linear congruential generator (Knuth, MMIX).
+/// Returns the next number of a linear congruential generator (Knuth, MMIX).
 fn next(state: &mut u64) -> u64 {
     *state = state
         .wrapping_mul(6364136223846793005)

@@ -21,7 +21,7 @@ fn beam<'a>(sections: &'a [(f64, Section)], k: [f64; 2]) -> LocalBeam<'a> {
     }
 }
 
-/// Displacements of B under a load there, A held.
+/// Returns the displacements of B under a load there, with A fixed.
 fn tip(k: &crate::linalg::SMatrix<f64, 12, 12>, load: [f64; 6]) -> Vec<f64> {
     let kb = k.fixed_view::<6, 6>(6, 6).into_owned();
     (kb.try_inverse().unwrap() * crate::linalg::Vector6::from(load))

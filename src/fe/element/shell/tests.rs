@@ -13,7 +13,7 @@ fn steel() -> ShellLaw {
     }
 }
 
-/// A warped, skewed quadrilateral turned anyhow in space, its directors tilted towards imagined neighbours.
+/// Returns a warped, skewed quadrilateral in a general orientation. Its directors are tilted towards assumed neighbours.
 fn warped_quad() -> [Vec3; 4] {
     let r = nalgebra::Rotation3::from_euler_angles(0.4, -0.9, 1.7);
     [
@@ -51,7 +51,7 @@ fn input<'a, const N: usize>(
     }
 }
 
-/// Largest entry of K R over (largest entry of K) times size, over the six rigid motions.
+/// Returns the largest entry of K R over the six rigid motions, divided by the largest entry of K and by the size.
 fn rigid_residual<const N: usize, const M: usize>(k: &[[f64; M]; M], x: &[Vec3; N]) -> f64 {
     let largest = k.iter().flatten().fold(0.0_f64, |a, v| a.max(v.abs()));
     let size = x.iter().map(|v| v.norm()).fold(0.0, f64::max);

@@ -14,7 +14,7 @@ fn steel() -> Matrix6<f64> {
     })
 }
 
-/// A distorted element turned anyhow in space; `mids` of its edges carry a grid, the last of them off the middle.
+/// Returns a distorted element in a general orientation. `mids` of its edges have a grid, and the last one is not in the middle.
 fn distorted_element(shape: SolidShape, mids: &[usize]) -> SolidInput {
     let r = nalgebra::Rotation3::from_euler_angles(0.4, -0.9, 1.7);
     let corners: &[[f64; 3]] = match shape {

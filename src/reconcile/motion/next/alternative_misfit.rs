@@ -134,7 +134,7 @@ mod tests {
         Complex64::new(re, im)
     }
 
-    /// Equations of one bin that are linear in three channels: residual = rows times readings.
+    /// Returns equations of one bin that are linear in three channels: residual = rows times readings.
     fn linear_record(
         rows: &[[Complex64; 3]],
         readings: [Complex64; 3],

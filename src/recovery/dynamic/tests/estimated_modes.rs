@@ -1,4 +1,4 @@
-//! Frequencies and damping estimated from the record, against the structure that made it.
+//! Frequencies and damping estimated from the record, compared with the structure that generated it.
 
 use super::{N_GAUGES, STRUCTURE, Structure, draw_normal, load, loads_at, strain, variance};
 use crate::recovery::dynamic::{Dynamics, EstimatedModes, estimate_modes, readings_at_rest};
@@ -12,7 +12,7 @@ const SAMPLES: u32 = 5000;
 const NOISE: f64 = 1e-4;
 const UP_TO: f64 = 20.0;
 
-/// Two loads of thirty waves each, all over the band.
+/// Returns two loads with thirty waves each over the whole band.
 fn broad_waves(random: &mut ChaCha8Rng) -> super::Waves {
     [0, 1].map(|_| {
         let mut wave = || {
@@ -37,7 +37,7 @@ fn simulate_record(
         .collect()
 }
 
-/// Structure with other frequencies; its strain at rest is the same.
+/// Returns the structure with other frequencies and equal static strain.
 fn with_frequencies(factors: [f64; 3]) -> Structure {
     let mut real = STRUCTURE;
     for (j, factor) in factors.into_iter().enumerate() {
@@ -105,7 +105,7 @@ fn frequencies_that_are_off_are_estimated_and_loads_hold_their_intervals() {
     );
 }
 
-/// Zeros of the gauges are no vibration: offsets of thousands of times the noise change neither the estimate nor the explained share.
+/// Zero offsets of the gauges are not vibration. Offsets of thousands of times the noise change neither the estimate nor the explained share.
 #[test]
 fn offsets_of_the_gauges_change_nothing() {
     let mut random = ChaCha8Rng::seed_from_u64(34);
@@ -130,7 +130,7 @@ fn offsets_of_the_gauges_change_nothing() {
     }
 }
 
-/// A frequency that is 14 % off contradicts a stated 2 %; one within its stated uncertainty does not.
+/// A frequency error of 14 % contradicts a stated 2 %. An error within the stated uncertainty does not.
 #[test]
 fn a_frequency_far_off_contradicts_what_is_stated() {
     let mut random = ChaCha8Rng::seed_from_u64(32);
@@ -149,7 +149,7 @@ fn a_frequency_far_off_contradicts_what_is_stated() {
     assert!(off < 2.0 && unexplained < 0.01, "{off} {unexplained}");
 }
 
-/// A damping of 0.2 that nobody stated is found, and loads are right with it; taken as 0.02 it contradicts the record.
+/// A damping of 0.2 that is not stated is estimated, and the loads are correct with it. If 0.02 is stated, it contradicts the record.
 #[test]
 fn damping_is_estimated_and_a_wrong_one_is_contradicted() {
     let mut random = ChaCha8Rng::seed_from_u64(33);
@@ -180,7 +180,7 @@ fn damping_is_estimated_and_a_wrong_one_is_contradicted() {
     );
 }
 
-/// With as many loads as gauges the record contains no information on the modes.
+/// With as many loads as gauges, the record contains no information on the modes.
 #[test]
 fn as_many_loads_as_gauges_estimate_nothing() {
     let (s, dynamics) = super::oscillator(0.02, 20.0);

@@ -94,7 +94,7 @@ fn intervals_of_sums_of_loads_hold_what_one_mode_puts_into_all() {
     }
 }
 
-/// Gauges of which some read in one half, others in the other half, and never all: each set has its own errors.
+/// Some gauges read in one half, others in the other half, and never all of them. Each set has separate errors.
 #[test]
 fn intervals_hold_for_the_gauges_that_read() {
     let halves = |record: &mut [Vec<f64>]| {

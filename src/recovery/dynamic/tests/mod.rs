@@ -8,7 +8,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 
-/// Mean 0, variance 1 (Box and Muller).
+/// Returns a random number of mean 0 and variance 1 (Box and Muller).
 fn draw_normal(random: &mut ChaCha8Rng) -> f64 {
     let (a, b): (f64, f64) = (
         random.random_range(1e-12..1.0),
@@ -28,7 +28,7 @@ fn sensitivity(values: Matrix) -> Sensitivity {
     }
 }
 
-/// A mass on a spring with a gauge on it, 10 Hz: the strain of a force at rest is that force.
+/// Returns a mass on a spring with a gauge, 10 Hz. The static strain of a force equals the force.
 fn oscillator(damping: f64, up_to_hz: f64) -> (Sensitivity, Dynamics) {
     let modes = vec![ElasticMode {
         hz: 10.0,
@@ -125,7 +125,7 @@ impl Structure {
         x.inv() * self.work[j][l]
     }
 
-    /// Modal superposition: strain of gauge `g` under load `l` of the frequency.
+    /// Returns the strain of gauge `g` under load `l` at the frequency, by modal superposition.
     fn response(&self, g: usize, l: usize, hz: f64) -> Complex<f64> {
         (0..4)
             .map(|j| self.modal_response(j, l, hz) * self.strain[j][g])
@@ -152,7 +152,7 @@ impl Structure {
     }
 }
 
-/// Sizes, frequencies and phases of what makes up two loads.
+/// Sizes, frequencies and phases of the waves of two loads.
 type Waves = [Vec<[f64; 3]>; 2];
 
 fn waves(hz: [&[f64]; 2], random: &mut ChaCha8Rng) -> Waves {

@@ -1,8 +1,8 @@
-//! Tallies of parts against the tally of the whole record, and the interval of damage over days.
+//! Compares tallies of parts with the tally of the whole record, and tests the interval of damage over days.
 
 use crate::series::rainflow::*;
 
-/// Numbers between -1 and 1, the same everywhere (splitmix64).
+/// Uniform numbers between -1 and 1, equal on every machine (splitmix64).
 struct Numbers(u64);
 
 impl Numbers {
@@ -14,7 +14,7 @@ impl Numbers {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// Mean 0, standard deviation 1.
+    /// Returns a random number of mean 0 and standard deviation 1.
     fn normal_number(&mut self) -> f64 {
         (0..12).map(|_| 0.5 * self.even()).sum()
     }
@@ -22,7 +22,7 @@ impl Numbers {
 
 fn tally(rows: &[f64], k: usize, load: usize, noise: f64) -> Tally {
     let mut counter = Counter::new(load, k, noise, 0.25, Law::from_slope(5.0));
-    // In blocks of uneven size, as records come.
+    // In blocks of different size, as in real records.
     for block in rows.chunks(k * 37) {
         push(&mut counter, block, &vec![noise; k]);
     }
@@ -35,7 +35,7 @@ fn push(counter: &mut Counter, rows: &[f64], noise: &[f64]) {
     counter.push(rows, &marks);
 }
 
-/// Two loads; the first rounded, so that many reversals are equal, with gaps.
+/// Returns two loads with gaps. The first one is rounded, so that many reversals are equal.
 fn history(n: usize) -> Vec<f64> {
     let mut numbers = Numbers(3);
     let (mut a, mut b) = (0.0, 0.0);
@@ -191,7 +191,7 @@ fn damage_without_the_bias_of_noise_is_the_same_however_the_record_is_cut() {
     }
 }
 
-/// Ratio of the bias taken off to the bias there is, `periods` of a sine of `length` samples.
+/// Returns the ratio of the subtracted bias to the true bias for `periods` of a sine of `length` samples.
 fn removed_bias_ratio(length: f64, periods: f64, share: f64, slope: f64) -> f64 {
     let mut numbers = Numbers(length as u64);
     let law = Law::from_slope(slope);
@@ -319,7 +319,7 @@ fn below_a_knee_a_cycle_does_what_the_flatter_line_says() {
     }
 }
 
-/// A day of two correlated loads in slow waves of random size, as wheels see them.
+/// Returns a day of two correlated loads in slow waves of random size, similar to wheel loads.
 fn day(numbers: &mut Numbers, n: usize) -> Vec<f64> {
     let mut waves = [[0.0_f64; 2]; 2];
     let mut rows = Vec::with_capacity(2 * n);

@@ -1,4 +1,4 @@
-//! Tables in the manners of measuring programs, written here after what their exports look like; and what nobody can read for sure.
+//! Tables in the formats of measuring programs, written by hand after real exports, and tables with an ambiguous format.
 
 use super::Csv;
 use crate::series::error::SeriesError;
@@ -10,7 +10,7 @@ fn open(bytes: &[u8]) -> Result<Record, SeriesError> {
     Record::new(Box::new(Csv::new(Arc::new(bytes.to_vec()))?), None, None)
 }
 
-/// Samples of a column.
+/// Returns the samples of a column.
 fn samples(record: &Record, name: &str) -> Result<Vec<f64>, SeriesError> {
     let at = record.columns().iter().position(|c| c.name == name);
     assert!(at.is_some(), "{name}: {:?}", record.columns());
@@ -24,7 +24,7 @@ fn samples(record: &Record, name: &str) -> Result<Vec<f64>, SeriesError> {
     Ok(out)
 }
 
-/// Why a table is refused when it is opened or read.
+/// Returns the reason for which a table is refused when it is opened or read.
 fn refusal(text: &str) -> String {
     let record = match open(text.as_bytes()) {
         Err(e) => return e.to_string(),

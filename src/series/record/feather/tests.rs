@@ -1,4 +1,4 @@
-//! `samples.txt` has files that pyarrow 25 and polars 1 wrote, in base64: a name and a file a line.
+//! `samples.txt` contains files that pyarrow 25 and polars 1 wrote, in base64. Each line has a name and a file.
 
 use super::Feather;
 use crate::series::record::arrow::from_base64;

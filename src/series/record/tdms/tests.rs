@@ -8,13 +8,13 @@ const NOON: i64 = 2_082_844_800 + 20_574 * 86_400 + 43_200;
 enum Property {
     Real(f64),
     Text(&'static str),
-    /// Seconds since 1904 and a fraction.
+    /// Timestamp as seconds since 1904 and a fraction.
     Time(i64, f64),
 }
 
 enum Samples {
     Reals(Vec<f64>),
-    /// Seconds since 1904.
+    /// Timestamp as seconds since 1904.
     Times(Vec<f64>),
 }
 
@@ -44,7 +44,7 @@ fn text(t: &str) -> Vec<u8> {
     [&(t.len() as u32).to_le_bytes()[..], t.as_bytes()].concat()
 }
 
-/// A file of one segment.
+/// Returns a file of one segment.
 fn file(channels: &[Channel]) -> Vec<u8> {
     let mut head = (channels.len() as u32).to_le_bytes().to_vec();
     let mut raw = Vec::new();
@@ -92,7 +92,7 @@ fn open(channels: &[Channel], wanted: &[&str]) -> Result<Record, SeriesError> {
     open_record(Arc::new(file(channels)), &options)
 }
 
-/// Two channels at 100 Hz, the second of which begins later.
+/// Returns two channels at 100 Hz. The second one starts later.
 fn pair(offset_s: f64, start: (i64, f64)) -> [Channel; 2] {
     let clock = |offset, start: (i64, f64)| {
         vec![
@@ -200,7 +200,7 @@ fn channels_at_other_times_and_channels_without_samples_are_listed_by_group() {
     assert_eq!(record.other_channels(), expected);
 }
 
-/// A channel of a waveform, 10 units between its samples.
+/// Returns a channel of a waveform with 10 units between its samples.
 fn waveform(path: &'static str, more: Vec<(&'static str, Property)>) -> Channel {
     let mut properties = vec![("wf_increment", P::Real(10.0))];
     properties.extend(more);

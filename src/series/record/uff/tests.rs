@@ -2,7 +2,7 @@ use crate::series::error::SeriesError;
 use crate::series::record::{Options, Record, open_record};
 use std::sync::Arc;
 
-/// A data set 58 of 6 samples, `step` between them, its abscissa of kind 17 (time) in `unit`.
+/// Returns a data set 58 of 6 samples with `step` between them. Its abscissa has kind 17 (time) and the given `unit`.
 fn data_set(name: &str, step: f64, unit: &str) -> String {
     let none = "         0    0    0    0 NONE                 NONE                \n";
     format!(
