@@ -101,7 +101,7 @@ impl Conditioner {
 /// # Errors
 /// A temperature channel that the record lacks or that is a gauge, a stretch of zero beyond the record or with too few readings, two zeros, a corner
 /// above half of the sample rate, or a record that is too long.
-pub(super) fn condition(job: &Job, record: Record, wanted: &[String]) -> Result<Record, Faults> {
+pub(crate) fn condition(job: &Job, record: Record, wanted: &[String]) -> Result<Record, Faults> {
     let Some(asked) = &job.conditioning else {
         return Ok(record);
     };
@@ -112,7 +112,7 @@ pub(super) fn condition(job: &Job, record: Record, wanted: &[String]) -> Result<
             &*job.file, asked.line, field, wrong, remedy,
         ))
     };
-    refuse_two_zeros(job, asked).map_err(|(key, wrong)| fault(key, wrong))?;
+    check_zeros(job)?;
     let temperature = match &asked.temperature {
         Some(t) => {
             let measured = temperature_of(&record, t, wanted);
@@ -177,6 +177,20 @@ pub(super) fn condition(job: &Job, record: Record, wanted: &[String]) -> Result<
     );
     let channel = asked.temperature.as_ref().map(|t| t.channel.as_str());
     record.with_conditioned_readings(work.readings, (first_s, step_s), (work.steps, channel))
+}
+
+/// Checks that a job with `[conditioning]` has one zero.
+///
+/// # Errors
+/// Steps that remove static strain in a job that subtracts a zero or adds a reference state itself.
+pub(crate) fn check_zeros(job: &Job) -> Result<(), Faults> {
+    let Some(asked) = &job.conditioning else {
+        return Ok(());
+    };
+    refuse_two_zeros(job, asked).map_err(|(key, (wrong, remedy))| {
+        let field = format!("conditioning.{key}");
+        Fault::with_line(&*job.file, asked.line, field, wrong, remedy).into()
+    })
 }
 
 /// Refuses steps that remove static strain in a job that subtracts a zero or adds a reference state itself.

@@ -14,7 +14,7 @@ use crate::recovery::net::Series;
 use crate::recovery::reading_plausibility::LARGEST_STRAIN;
 use crate::series::SeriesError;
 use crate::series::constant_columns::{self, ColumnContents, Gives};
-use crate::series::record::{self as series, Clock, Options, Times, open_record};
+use crate::series::record::{self as series, Clock, Column, Options, Times, open_record};
 use crate::units::MICROSTRAIN;
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
@@ -52,19 +52,38 @@ impl Record {
         bytes: FileBytes,
         wanted: &[String],
     ) -> Result<Self, Faults> {
-        let mut options = Options {
-            declared_hz: None,
-            time_unit_s,
-            wanted: wanted.to_vec(),
-        };
+        let options = Self::options(job, time_unit_s, wanted);
+        let inner = open_record(Arc::new(bytes), &options).map_err(|e| record_fault(file, &e))?;
+        Self::from_series(job, file, inner, wanted)
+    }
+
+    /// Returns how a record of a job is opened, to read the columns `wanted` and the temperature of `[conditioning]`.
+    pub fn options(job: &Job, time_unit_s: Option<f64>, wanted: &[String]) -> Options {
+        let mut wanted = wanted.to_vec();
         let temperature = job
             .conditioning
             .as_ref()
             .and_then(|c| c.temperature.as_ref());
         if let Some(t) = temperature.filter(|_| !wanted.is_empty()) {
-            options.wanted.push(t.channel.clone());
+            wanted.push(t.channel.clone());
         }
-        let inner = open_record(Arc::new(bytes), &options).map_err(|e| record_fault(file, &e))?;
+        Options {
+            declared_hz: None,
+            time_unit_s,
+            wanted,
+        }
+    }
+
+    /// Returns the record of a job with the columns of an open record, to read the columns `wanted`.
+    ///
+    /// # Errors
+    /// Units that are not units of strain.
+    pub fn from_series(
+        job: &Job,
+        file: &str,
+        inner: series::Record,
+        wanted: &[String],
+    ) -> Result<Self, Faults> {
         let columns = find_gauge_columns(file, inner.columns(), wanted)?;
         let gauge = |c: &StrainColumn| column_of(&job.corrections, &c.name).to_owned();
         let micro = |c: &StrainColumn| c.microstrain.unwrap_or(f64::NAN);
@@ -143,6 +162,11 @@ impl Record {
             conditioning: Some(conditioning),
             ..record
         })
+    }
+
+    /// Returns the columns of the file, or of the conditioned readings, microstrain, named after their gauges.
+    pub fn into_series(self) -> Arc<series::Record> {
+        self.inner
     }
 
     /// Returns the change of the readings by `[conditioning]`.
@@ -265,7 +289,9 @@ impl Record {
             .for_each(|v| *v /= MICROSTRAIN);
         let n = readings.len();
         let whole = series::MemoryRecord {
-            columns: Vec::new(),
+            columns: (self.names_read().iter())
+                .map(|name| Column::of_channel(name, "um/m"))
+                .collect(),
             times: Times::Even {
                 start_s,
                 step_s,

@@ -2,6 +2,7 @@
 //! mains hum.
 
 use crate::drawn::Numbers;
+use crate::in_fleet::{check_extremes, fleet_and_extremes};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use strainbridge::host::context::InMemory;
@@ -304,4 +305,25 @@ fn what_conditioning_cannot_do_is_a_fault() {
         .map(|_| ())
         .unwrap_err();
     assert!(format!("{fault:?}").contains("contains runs"), "{fault:?}");
+}
+
+/// Left load: 24.5 periods of a sine with a range of 1800 N, so that the pseudo-damage with slope 5 is 24.5 times 1800^5.
+#[test]
+fn fleet_conditions_records_as_recover_does() {
+    let on = [true, true, true, true, true];
+    let files = files(on, ALL);
+    let (fleet, findings, extremes) = fleet_and_extremes("conditioned", &files, &job(ALL));
+    check_extremes(&fleet, &findings, &extremes);
+    let left = &fleet.vehicles[0].loads[0];
+    let expected = 24.5 * 1800_f64.powi(5);
+    // The fitted drift and the thermal strain leave up to 11 N of 900 N, the power makes 6 % of it.
+    assert!(
+        (left.damage / expected - 1.0).abs() < 0.1,
+        "{}",
+        left.damage / expected
+    );
+    assert!(
+        findings.iter().any(|f| f.code == "corrections-applied"),
+        "{findings:?}"
+    );
 }

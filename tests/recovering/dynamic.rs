@@ -2,6 +2,7 @@
 //! beam.
 
 use crate::drawn::Numbers;
+use crate::in_fleet::{check_extremes, fleet_and_extremes};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use strainbridge::host::context::InMemory;
@@ -439,4 +440,31 @@ fn damping_by_band_and_from_the_record_give_the_loads_of_a_number() {
     let (worst, _, held, codes) = with("\"estimate\"");
     assert!(held > 0.93 && worst < 1.0, "{held} {worst}");
     assert!(!codes.contains(&"modes-contradicted"), "{codes:?}");
+}
+
+#[test]
+fn fleet_removes_vibration_as_recover_does() {
+    let up_to = 3.5 * first_hz();
+    let dynamic = format!(
+        "[dynamic]\nup_to_hz = {up_to:.4}\ndamping = 1e-5\nfrequency_uncertainty_rel = 0.001\n"
+    );
+    let files = record();
+    let (fleet, findings, extremes) = fleet_and_extremes("dynamic", &files, &job(&dynamic));
+    check_extremes(&fleet, &findings, &extremes);
+    let codes: Vec<&str> = findings.iter().map(|f| f.code).collect();
+    assert!(codes.contains(&"vibration-taken-out"), "{codes:?}");
+    assert!(!codes.contains(&"samples-with-gaps"), "{codes:?}");
+    // Extremes of the force that acts, with the limit of the recovered samples above.
+    let times = (0..SAMPLES).map(|i| i as f64 / RATE);
+    let forces: Vec<f64> = times.map(|t| parts(t, |_| 1.0)).collect();
+    let largest = forces.iter().copied().fold(f64::MIN, f64::max);
+    let tip = &fleet.vehicles[0].loads[0];
+    assert!(
+        (tip.max.unwrap() - largest).abs() < 0.3,
+        "{:?} {largest}",
+        tip.max
+    );
+    // Without the section, 3 N near the first mode read as 20 N.
+    let (fleet, ..) = fleet_and_extremes("static", &files, &job(""));
+    assert!(fleet.vehicles[0].loads[0].max.unwrap() > largest + 10.0);
 }

@@ -10,6 +10,7 @@ mod conditioned;
 mod drawn;
 mod dynamic;
 mod files;
+mod in_fleet;
 mod kinds;
 mod misled;
 mod mistakes;

@@ -7,6 +7,7 @@ use crate::host::work::Work;
 use crate::job::Job;
 use crate::job::calibrated_range::calibrated_range;
 use crate::job::correct::channel_of;
+use crate::measured::conditioning::check_zeros;
 use crate::measured::noise::prepare_with_noise;
 use crate::measured::reference::reference_strain;
 use crate::measured::zero::no_zero_runs;
@@ -15,7 +16,7 @@ use crate::sensitivity::check_separability;
 use crate::series::rainflow::{Knee, Law};
 use crate::strain_chain::named_results::check_tables;
 use crate::strain_chain::{alternative_rows, stated_errors};
-use crate::workflow::recover::{VerticalLoads, list_load_columns};
+use crate::workflow::recover::{VerticalLoads, VibrationModel, list_load_columns};
 
 /// Classes up to the expected size of a load.
 const CLASSES: f64 = 32.0;
@@ -32,18 +33,7 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
         return Err(Fault::new(&*job.file, "measured", "the job has no [measured]", remedy).into());
     };
     no_zero_runs(job, measured, "FILES")?;
-    if let Some(dynamic) = &job.dynamic {
-        let wrong = "records of a fleet are read in pieces, and the vibration of the structure cannot be subtracted";
-        let remedy = "delete [dynamic], and low-pass filter the strain below a third of the first mode; or `recover` the records one by one";
-        return Err(Fault::with_line(&*job.file, dynamic.line, "dynamic", wrong, remedy).into());
-    }
-    if let Some(conditioning) = &job.conditioning {
-        let wrong = "records of a fleet are read in pieces, and [conditioning] needs whole records";
-        let remedy = "delete [conditioning] and condition the records before; or `recover` the records one by one";
-        return Err(
-            Fault::with_line(&*job.file, conditioning.line, "conditioning", wrong, remedy).into(),
-        );
-    }
+    check_zeros(job)?;
     let prepared = prepare_with_noise(work, job)?;
     let s = &prepared.sensitivity;
     work.findings.extend(check_separability(s));
@@ -89,6 +79,7 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
     let fields = prepared.fields.as_ref();
     let alternatives = alternative_rows(work, job, fields, &prepared.sensitivity.gauges);
     let vertical = VerticalLoads::of_job(job);
+    let vibration = VibrationModel::of_job(work, job, &prepared, &prepared.sensitivity)?;
     Ok(Kernel {
         alternatives,
         vertical,
@@ -100,9 +91,8 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
         listed,
         law,
         widths,
-        time_unit_s: measured.time_unit_s,
-        corrections: job.corrections.clone(),
-        reserved: job.reserved.clone(),
+        job: job.clone(),
+        vibration,
         under_way: UnderWay::default(),
     })
 }

@@ -1,17 +1,17 @@
 //! Evaluation of one record, without files or messages, on the threads of the current pool.
 
+use super::conditioned_record::FleetRecord;
 use super::day::{Day, GaugeDay, LoadDay};
 use super::dead_parts::{blank_of, dead_parts, report_dead_parts};
 use super::health::Health;
 use super::record_recovery::{Part, RecordRecovery, UnderWay, count_pieces};
 use super::sample_tests::{TestedSamples, findings_of};
 use super::scale::{noise_of, scales};
-use crate::finding::{Finding, Severity, list_few};
+use crate::finding::{Finding, list_few};
 use crate::host::fault::{Fault, Faults};
-use crate::host::files::may_be_cut;
 use crate::input_faults::AlternativeRows;
-use crate::job::StrainCorrection;
 use crate::job::correct::{Channel, channel_of, column_of, columns_wanted};
+use crate::job::{Job, StrainCorrection};
 use crate::linalg::Matrix;
 use crate::measured::columns::{gauge_without_column, strain_without_gauge, unknown_columns};
 use crate::measured::faults::record_fault;
@@ -27,10 +27,11 @@ use crate::series::constant_columns::{ColumnContents, Gives};
 use crate::series::rainflow::{Counter, Law, Marks};
 use crate::series::record::Record;
 use crate::units::MICROSTRAIN;
-use crate::workflow::recover::{ListedLoads, VerticalLoads, silent_throughout};
+use crate::workflow::recover::{ListedLoads, VerticalLoads, VibrationModel, silent_throughout};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// Number of pieces of a record that are sampled in advance.
 const LOOKED_AT: usize = 10;
@@ -71,12 +72,10 @@ pub struct Kernel {
     pub law: Law,
     /// Width of a class, by load and sum, report units.
     pub widths: Vec<f64>,
-    /// Seconds in the unit of times in tables that state none; `None`: seconds.
-    pub time_unit_s: Option<f64>,
-    /// Known faults of channels and their corrections.
-    pub corrections: Vec<StrainCorrection>,
-    /// Names of the readings of validation gauges, which are not read.
-    pub reserved: Vec<String>,
+    /// Job without its validation gauges: time unit of the records, known faults of channels, columns that are not read, `[conditioning]`.
+    pub job: Job,
+    /// Modes of the structure at all gauges of S; `None` for a job without `[dynamic]`.
+    pub(super) vibration: Option<VibrationModel>,
     /// Records that are being recovered.
     pub(super) under_way: UnderWay,
 }
@@ -86,23 +85,28 @@ impl Kernel {
     ///
     /// # Errors
     /// Faults of the record that prevent the recovery of its loads.
-    pub fn day(&self, record: &Record) -> Result<Day, Faults> {
-        let mut findings = Vec::new();
-        findings.extend(clock::check_time_steps("time", &record.clock));
-        let cut = record
-            .left_out()
-            .map(|_| may_be_cut("last line", Severity::Warning));
-        findings.extend(cut);
-        let mut r = self.prepare_recovery(record, &mut findings)?;
-        let mut pass = self.pass(record, &r)?;
-        let dead = dead_parts(record, &r, &pass.judged, self.errors, self.noise_factor)?;
+    pub fn day(&self, opened: FleetRecord) -> Result<Day, Faults> {
+        let FleetRecord {
+            record,
+            corrections,
+            mut findings,
+        } = opened;
+        let mut r = self.prepare_recovery(&record, &corrections, &mut findings)?;
+        let mut pass = self.pass(&record, &r)?;
+        let dead = dead_parts(&record, &r, &pass.judged, self.errors, self.noise_factor)?;
         r.blank = blank_of(&dead);
-        if !r.blank.is_empty() {
-            // The second pass leaves out the readings of gauges where they are dead.
-            pass = self.pass(record, &r)?;
+        let quasi_static = self.remove_vibration(&record, &mut r, &mut findings)?;
+        let is_changed = quasi_static.is_some();
+        let record = quasi_static.map_or(record, Arc::new);
+        if is_changed || !r.blank.is_empty() {
+            // The second pass leaves out vibration, and the readings of gauges where they are dead.
+            pass = self.pass(&record, &r)?;
         }
+        // The finding on the vibration states the samples that its filter leaves blank.
+        let by_filter = pass.missing.gaps == r.blank_by_filter;
+        let stated = |f: &Finding| !(by_filter && f.code == "samples-with-gaps");
         let gaps = check_gaps("samples", &r.sensitivity, &pass.missing);
-        findings.extend(gaps);
+        findings.extend(gaps.into_iter().filter(stated));
         let judged = std::mem::take(&mut pass.judged);
         let mut ends = judged.ends();
         let time_s = |i| record.clock.time_s(i);
@@ -112,7 +116,7 @@ impl Kernel {
         {
             // Another pass uses the weights for the noise that the record shows.
             r.filter = filter;
-            pass = self.pass(record, &r)?;
+            pass = self.pass(&record, &r)?;
             ends = pass.judged.ends();
         }
         let filter = widened.as_ref().unwrap_or(&r.filter);
@@ -162,7 +166,7 @@ impl Kernel {
             counters: (0..k).map(counter).collect(),
             health: Health::new(&r.s),
             missing: MissingReadings::new(k),
-            judged: TestedSamples::new(r.used.len(), k, record.clock.samples),
+            judged: r.tested_samples(),
             by_gauges: BTreeMap::new(),
             noise,
         };
@@ -200,10 +204,10 @@ impl Kernel {
         time_s: impl Fn(usize) -> f64,
         findings: &mut Vec<Finding>,
     ) -> (Option<Filter>, Option<GaugeNoise>) {
-        let (errors, factor) = (self.errors, self.noise_factor);
+        let with = (self.errors, r.noise_factor, r.errors_beyond.as_ref());
         let installed = self.alternatives.iter().map(|a| a.of_gauges(&r.used));
         let installed: Vec<AlternativeRows> = installed.collect();
-        let judgements = judged.recover_loads((&r.sensitivity, &installed), errors, factor, time_s);
+        let judgements = judged.recover_loads((&r.sensitivity, &installed), with, time_s);
         let Some(first) = judgements.first() else {
             return (None, None);
         };
@@ -218,40 +222,49 @@ impl Kernel {
             noise: noise.clone().or(r.sensitivity.noise.clone()),
             ..r.sensitivity.clone()
         };
-        let filter = Filter::new(
-            &s,
-            r.zero.clone(),
-            self.errors,
-            self.noise_factor,
-            &r.typical,
-            widening,
-        );
-        let filter = filter.map(|mut filter| {
+        (self.filter(&s, r, widening), noise)
+    }
+
+    /// Returns the filter of a record with other S or intervals; `None` if S contains numbers that are not finite.
+    pub(super) fn filter(
+        &self,
+        s: &Sensitivity,
+        r: &RecordRecovery,
+        widening: Widening,
+    ) -> Option<Filter> {
+        let zero = r.zero.clone();
+        let filter = Filter::new(s, zero, self.errors, r.noise_factor, &r.typical, widening);
+        filter.map(|mut filter| {
+            if let Some(errors) = &r.errors_beyond {
+                filter.add_reading_covariance(errors.clone());
+            }
             filter.combine(&self.listed.sums);
             filter
-        });
-        (filter, noise)
+        })
     }
 
     /// The columns that a record is read for.
     pub fn wanted_columns(&self) -> Vec<String> {
-        let gauges = self.sensitivity.gauges.iter().chain(&self.reserved);
-        columns_wanted(&self.corrections, gauges)
+        let gauges = self.sensitivity.gauges.iter().chain(&self.job.reserved);
+        columns_wanted(&self.job.corrections, gauges)
     }
 
     /// The gauges that read, and the filter from them.
     fn prepare_recovery(
         &self,
         record: &Record,
+        corrections: &[StrainCorrection],
         findings: &mut Vec<Finding>,
     ) -> Result<RecordRecovery, Faults> {
         let all = &self.sensitivity;
-        let columns = find_gauge_columns("record", record.columns(), &self.wanted_columns())?;
+        let gauges = all.gauges.iter().chain(&self.job.reserved);
+        let wanted = columns_wanted(corrections, gauges);
+        let columns = find_gauge_columns("record", record.columns(), &wanted)?;
         let names: Vec<String> = columns
             .iter()
-            .map(|c| column_of(&self.corrections, &c.name).to_owned())
+            .map(|c| column_of(corrections, &c.name).to_owned())
             .collect();
-        let others = names.iter().filter(|n| !self.reserved.contains(n));
+        let others = names.iter().filter(|n| !self.job.reserved.contains(n));
         let others: Vec<String> = others.cloned().collect();
         let unknown = strain_without_gauge("", &others, &all.gauges);
         findings.extend(unknown);
@@ -262,11 +275,11 @@ impl Kernel {
             .collect();
         let mut found = Vec::new();
         for (g, name) in all.gauges.iter().enumerate() {
-            let channel = channel_of(&self.corrections, name);
+            let channel = channel_of(corrections, name);
             if channel.ignore {
                 continue;
             }
-            match places.get(column_of(&self.corrections, name)) {
+            match places.get(column_of(corrections, name)) {
                 Some(&(c, micro)) => found.push((g, c, line_of(micro, channel))),
                 None => findings.push(gauge_without_column("", &[name], &unknown)),
             }
@@ -421,25 +434,19 @@ impl Kernel {
                 "state readings in microstrain (strain times 1e6)",
             ));
         }
-        let mut filter = Filter::new(
-            &s,
-            zero.clone(),
-            self.errors,
-            self.noise_factor,
-            &typical,
-            Widening::none(),
-        )
-        .ok_or_else(singular)?;
-        filter.combine(&self.listed.sums);
         let factors: Vec<f64> = self.listed.units.iter().map(|u| u.factor).collect();
         let row = |g: usize| factors.iter().enumerate().map(move |(l, f)| (g, l, *f));
         // Sums of loads cause no strain in addition to their loads.
         let values = |(g, l, f)| if l < k { s.values[(g, l)] / f } else { 0.0 };
         let values = |g: usize| row(g).map(values).collect();
         let by_row = (0..used.len()).map(values).collect();
-        Ok(RecordRecovery {
-            filter,
+        let mut r = RecordRecovery {
+            filter: plain,
             silent: Vec::new(),
+            noise_factor: self.noise_factor,
+            errors_beyond: None,
+            apart: 1,
+            blank_by_filter: 0,
             sensitivity: s,
             typical,
             columns: alive.iter().map(|a| Some(a.1)).collect(),
@@ -450,7 +457,11 @@ impl Kernel {
             s: by_row,
             used,
             factors,
-        })
+        };
+        r.filter = self
+            .filter(&r.sensitivity, &r, Widening::none())
+            .ok_or_else(singular)?;
+        Ok(r)
     }
 }
 

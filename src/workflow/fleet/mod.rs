@@ -4,6 +4,7 @@
 //! inputs. A second run therefore processes only new records, and many machines can share one folder. [`merge`] joins the days of a vehicle exactly.
 
 mod calibration_range;
+mod conditioned_record;
 mod damage_references;
 pub mod day;
 mod days;
@@ -19,6 +20,7 @@ pub mod name;
 mod other_scale;
 mod other_unit;
 mod outcome;
+mod quasi_static;
 mod record_findings;
 mod record_recovery;
 pub mod records;
@@ -43,8 +45,7 @@ use crate::host::outcome::{Outcome, StatedUnits};
 use crate::host::words::count_of;
 use crate::host::work::{Work, cancelled_fault};
 use crate::job::{Fleet as FleetKeys, Job};
-use crate::measured::faults::record_fault;
-use crate::series::record::{Options, open_source};
+use conditioned_record::FleetRecord;
 use damage_references::{DamageReferences, check_targets};
 use day::{Day, FileHead, FileResult};
 use days::DayOrder;
@@ -476,13 +477,7 @@ fn reason(faults: Faults) -> String {
 /// # Errors
 /// The reason why the loads or their damage can't be computed.
 pub fn day_of(kernel: &Kernel, opened: &OpenedFile) -> Result<Day, Faults> {
-    let options = Options {
-        declared_hz: None,
-        time_unit_s: kernel.time_unit_s,
-        wanted: kernel.wanted_columns(),
-    };
-    let record = open_source(opened.source(), &options).map_err(|e| record_fault("record", &e))?;
-    let day = kernel.day(&record)?;
+    let day = kernel.day(FleetRecord::open(kernel, opened)?)?;
     let is_number = |l: &&day::LoadDay| {
         let sums = &l.tally.sums;
         let [a, b, c] = sums.damage;

@@ -3,6 +3,7 @@
 use super::health::Health;
 use super::sample_tests::TestedSamples;
 use crate::recovery::MissingReadings;
+use crate::recovery::dynamic::ReadingCovariance;
 use crate::recovery::history::{Filter, SampleLoads};
 use crate::sensitivity::Sensitivity;
 use crate::series::SeriesError;
@@ -71,6 +72,14 @@ pub(super) struct RecordRecovery {
     pub factors: Vec<f64>,
     /// Samples of the record.
     pub samples: usize,
+    /// Noise variance of a reading less zero, in units of the variance of a single reading.
+    pub noise_factor: f64,
+    /// Errors of the readings beyond this noise, if vibration was removed from them.
+    pub errors_beyond: Option<ReadingCovariance>,
+    /// Number of samples after which noise is independent.
+    pub apart: usize,
+    /// Number of samples that are blank because vibration was removed.
+    pub blank_by_filter: u64,
 }
 
 /// Result of a piece of a record.
@@ -101,6 +110,41 @@ impl Part {
 }
 
 impl RecordRecovery {
+    /// Returns an empty selection of samples to test.
+    pub fn tested_samples(&self) -> TestedSamples {
+        TestedSamples::new(
+            self.used.len(),
+            self.factors.len(),
+            (self.samples, self.apart),
+        )
+    }
+
+    /// Returns the readings of the used gauges, strain, every sample, a column each. Readings in dead parts are NaN.
+    ///
+    /// # Errors
+    /// A piece that can't be decoded.
+    pub fn strain_columns(&self, record: &Record) -> Result<Vec<Vec<f64>>, SeriesError> {
+        let n = self.used.len();
+        let [factors, offsets] = &self.scale;
+        let mut out = vec![Vec::with_capacity(record.clock.samples); n];
+        let mut strain = Vec::new();
+        for piece in 0..record.n_pieces() {
+            record.read(piece, &self.columns, &mut |block| {
+                strain.clear();
+                for row in block.values.chunks_exact(n.max(1)) {
+                    let scale = factors.iter().zip(offsets);
+                    strain.extend(row.iter().zip(scale).map(|(v, (a, b))| v * a + b));
+                }
+                blank_readings(&mut strain, n, block.first, &self.blank);
+                for row in strain.chunks_exact(n.max(1)) {
+                    out.iter_mut().zip(row).for_each(|(c, v)| c.push(*v));
+                }
+                ControlFlow::Continue(())
+            })?;
+        }
+        Ok(out)
+    }
+
     /// A piece of the record, decoded and recovered, its samples marked.
     ///
     /// # Errors
@@ -113,7 +157,7 @@ impl RecordRecovery {
             marks: Vec::with_capacity(end - begin),
             health: Health::new(&self.s),
             missing: MissingReadings::new(k),
-            judged: TestedSamples::new(n, k, record.clock.samples),
+            judged: self.tested_samples(),
             by_gauges: BTreeMap::new(),
         };
         let [factors, offsets] = &self.scale;

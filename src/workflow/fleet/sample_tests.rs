@@ -3,6 +3,7 @@
 
 use crate::finding::{Finding, Severity, list_few};
 use crate::input_faults::AlternativeRows;
+use crate::recovery::dynamic::ReadingCovariance;
 use crate::recovery::{
     Alternatives, ErrorModel, NOT_SOLVABLE, Readings, Recovery, UNEXPLAINED,
     recover_samples_with_alternatives, uncalibrated_strain,
@@ -36,8 +37,8 @@ pub struct TestedSamples {
 }
 
 impl TestedSamples {
-    /// Creates a selection without samples for a record of `samples`.
-    pub fn new(n_gauges: usize, n_loads: usize, samples: usize) -> Self {
+    /// Creates a selection without samples for a record of `samples`, whose noise is independent after `apart` samples.
+    pub fn new(n_gauges: usize, n_loads: usize, (samples, apart): (usize, usize)) -> Self {
         let spread = TESTED_SAMPLES
             .saturating_sub(2 * n_loads)
             .max(TESTED_SAMPLES / 2);
@@ -49,7 +50,7 @@ impl TestedSamples {
         Self {
             n_gauges,
             n_loads,
-            stride: samples.div_ceil(spread).max(1),
+            stride: samples.div_ceil(spread).max(apart).max(1),
             spread: BTreeMap::new(),
             extremes: vec![none; 2 * n_loads],
         }
@@ -127,12 +128,11 @@ impl TestedSamples {
     }
 
     /// Recovers all of these samples. If the loads explain them, recovers the extremes alone too: among 200 samples a single wrong one may not be
-    /// significant. Empty if no gauge reads. `installed` are the rows of S of gauges that are installed otherwise than stated.
+    /// significant. Empty if no gauge reads. `beyond` are errors beyond the noise. `installed` are the rows of S of gauges that are installed otherwise than stated.
     pub fn recover_loads(
         self,
         (s, installed): (&Sensitivity, &[AlternativeRows]),
-        errors: ErrorModel,
-        noise_factor: f64,
+        (errors, noise_factor, beyond): (ErrorModel, f64, Option<&ReadingCovariance>),
         time_s: impl Fn(usize) -> f64,
     ) -> Vec<Recovery> {
         let extremes = self.extremes.into_iter().map(|e| (e.at, e.strain));
@@ -142,6 +142,12 @@ impl TestedSamples {
         all.extend(extremes.clone());
         let mut out = Vec::new();
         for samples in [all, extremes] {
+            let errors_of = |(i, strain): (&usize, &Vec<f64>)| {
+                let reads = |g: &usize| strain[*g].is_finite();
+                let used: Vec<usize> = (0..strain.len()).filter(reads).collect();
+                beyond.map(|b| b.covariances_at(*i, &used))
+            };
+            let of_samples = samples.iter().filter_map(errors_of).collect();
             let readings: Vec<Readings> = samples
                 .into_iter()
                 .map(|(i, strain)| Readings::of_sample(time_s(i), strain, noise_factor))
@@ -149,8 +155,12 @@ impl TestedSamples {
             if readings.is_empty() {
                 continue;
             }
-            let mut rows = || installed.to_vec();
-            let with = (Vec::new(), &mut rows as &mut Alternatives);
+            // Vibration changes the readings of gauges that are installed otherwise too, and is not removed for them.
+            let mut rows = || match beyond {
+                Some(_) => Vec::new(),
+                None => installed.to_vec(),
+            };
+            let with = (of_samples, &mut rows as &mut Alternatives);
             let recovery = recover_samples_with_alternatives(s, readings, errors, with);
             let unexplained = recovery.findings.iter().any(|f| f.code == UNEXPLAINED);
             out.push(recovery);

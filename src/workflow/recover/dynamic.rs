@@ -7,13 +7,15 @@ use crate::finding::{Finding, Severity};
 use crate::gauge::gauge_reading;
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
-use crate::job::{Damping, Dynamic};
+use crate::job::{Damping, Dynamic, Job};
 use crate::measured::record::{MOST_NUMBERS, Record};
+use crate::recovery::ErrorModel;
 use crate::recovery::dynamic::{
     AtRest, Deviation, Dynamics, ElasticMode, EstimatedModes, RULES, ReadingCovariance, Unfit,
     estimate_modes, readings_at_rest, triangle, window,
 };
 use crate::sensitivity::Sensitivity;
+use crate::strain_chain::JobSensitivity;
 use crate::strain_chain::built_in_solver::{ElasticModes, cases_of_job, faults_of, modes_kept};
 use crate::strain_chain::deck::DeckModel;
 use crate::units::number;
@@ -63,111 +65,170 @@ pub struct ModeInUse {
     pub estimated: bool,
 }
 
-/// Quasi-static record, and the errors of its readings.
-pub(super) struct QuasiStaticRecord {
-    pub record: Record,
+/// Readings without the vibration of the structure, and their errors.
+pub(crate) struct QuasiStaticReadings {
+    /// Strain by gauge, every sample; NaN if nothing is known.
+    pub readings: Vec<Vec<f64>>,
     pub motion: Motion,
     /// Noise variance of a reading, in units of the variance of a reading as measured.
-    pub noise_factor: f64,
+    pub noise_share: f64,
     /// Covariance of the readings beyond that noise.
     pub doubt: ReadingCovariance,
     /// Number of samples after which noise is independent.
     pub apart: usize,
-    /// Number of samples that are blank in the quasi-static record only.
+    /// Number of samples that are blank in the quasi-static readings only.
     pub blank: usize,
+    pub findings: Vec<Finding>,
 }
 
-/// Returns the record without the vibration of the structure, if the job asks for it.
+/// Modes of the structure of a job with `[dynamic]`, at its gauges and loads.
+#[derive(Clone, Debug)]
+pub(crate) struct VibrationModel {
+    /// Job file.
+    file: String,
+    asked: Dynamic,
+    stated: Dynamics,
+}
+
+impl VibrationModel {
+    /// Returns the modes at the gauges and loads of `s`; `None` for a job without `[dynamic]`.
+    ///
+    /// # Errors
+    /// A job without a model that could vibrate, too many modes below the band, or a load or gauge that is not part of the model.
+    pub fn of_job(
+        work: &mut Work,
+        job: &Job,
+        prepared: &JobSensitivity,
+        s: &Sensitivity,
+    ) -> Result<Option<Self>, Faults> {
+        let Some(asked) = &job.dynamic else {
+            return Ok(None);
+        };
+        Ok(Some(Self {
+            file: job.file.clone(),
+            asked: asked.clone(),
+            stated: dynamics(work, (job, prepared), asked, s)?,
+        }))
+    }
+
+    /// Returns the modes at these gauges, in their order.
+    pub fn of_gauges(&self, gauges: &[usize]) -> Self {
+        let mut own = self.clone();
+        for mode in &mut own.stated.modes {
+            mode.strain = gauges.iter().map(|g| mode.strain[*g]).collect();
+        }
+        own
+    }
+
+    fn fault(&self, wrong: String, remedy: &str) -> Faults {
+        let line = self.asked.line;
+        Fault::with_line(&*self.file, line, "dynamic", wrong, remedy).into()
+    }
+
+    /// Checks that the readings of a record and their errors fit into memory.
+    ///
+    /// # Errors
+    /// A record that is too long.
+    pub fn check_length(&self, samples: usize, n: usize, step_s: f64) -> Result<(), Faults> {
+        let errors = samples / window(&self.stated, 1.0 / step_s) * triangle(n);
+        match samples.saturating_mul(n).saturating_add(errors) > MOST_NUMBERS {
+            false => Ok(()),
+            true => Err(self.fault(
+                format!(
+                    "the record has {samples} samples of {n} gauges. Readings and their errors must be held in memory while the \
+                     vibration of the structure is subtracted"
+                ),
+                "cut the record into parts. The limit is 100 million numbers: readings, and half of the squared number of gauges in each \
+                 period of `up_to_hz`",
+            )),
+        }
+    }
+
+    /// Returns the readings of a record without the vibration of the structure. `readings` are strain by gauge of `s`, every sample. `go_on` returns
+    /// an error if the work is stopped.
+    ///
+    /// # Errors
+    /// A band that does not fit the sampling rate, gauges that don't determine the loads in the band, or a record that is too short or does not
+    /// determine the damping.
+    pub fn remove(
+        &self,
+        s: &Sensitivity,
+        errors: ErrorModel,
+        readings: &[Vec<f64>],
+        (step_s, file): (f64, &str),
+        go_on: &dyn Fn() -> Result<(), Faults>,
+    ) -> Result<QuasiStaticReadings, Faults> {
+        let (asked, stated) = (&self.asked, &self.stated);
+        let noise = errors.noise_variance(1.0).sqrt();
+        let open = asked.damping == Damping::Estimate;
+        let with = (readings, 1.0 / step_s);
+        let estimated = estimate_modes(s, stated, open, (noise, errors.model_rel), with);
+        let estimated = estimated.map_err(|e| self.fault(e.to_string(), remedy_of(&e)))?;
+        if open && estimated.is_none() {
+            return Err(self.fault(
+                "the record does not determine the damping: this takes more gauges than loads, a mode below 1.5 `up_to_hz`, and a \
+                 stretch without gaps"
+                    .to_owned(),
+                "state the damping as a number, or add gauges",
+            ));
+        }
+        let dynamics = estimated.as_ref().map_or(stated, |e| &e.dynamics);
+        go_on()?;
+        let rested = readings_at_rest(s, dynamics, noise, readings, 1.0 / step_s);
+        let rested = rested.map_err(|e| self.fault(e.to_string(), remedy_of(&e)))?;
+        let motion = motion_of((stated, dynamics), &rested, step_s);
+        if rested.known == 0 && rested.read > 0 {
+            return Err(self.fault(
+                format!(
+                    "no stretch of the record with readings of the same gauges is longer than {:.4} s. A quasi-static sample depends on \
+                     half of that time",
+                    2.0 * motion.blank_s
+                ),
+                "record a longer time, or state a higher `up_to_hz`",
+            ));
+        }
+        let contradicted = estimated
+            .as_ref()
+            .and_then(|e| contradiction((stated, open), e, file));
+        let removed = vibration_finding(&motion, asked, file);
+        Ok(QuasiStaticReadings {
+            noise_share: rested.noise_share,
+            doubt: rested.doubt,
+            apart: independent_spacing(dynamics, step_s),
+            blank: rested.blank,
+            motion,
+            readings: rested.readings,
+            findings: std::iter::once(removed).chain(contradicted).collect(),
+        })
+    }
+}
+
+/// Returns the record without the vibration of the structure, and its errors, if the job asks for it.
 ///
 /// # Errors
-/// A job without a model that could vibrate. A band that does not fit the sampling rate. Gauges that don't determine the loads in the band. A record
-/// that is too long.
+/// As [`VibrationModel::of_job`] and [`VibrationModel::remove`], or a record that is too long.
 pub(super) fn remove_vibration(
     work: &mut Work,
     task: &Task,
     record: &Record,
     s: &Sensitivity,
-) -> Result<Option<QuasiStaticRecord>, Faults> {
-    let Some(asked) = &task.job.dynamic else {
+) -> Result<Option<(Record, QuasiStaticReadings)>, Faults> {
+    let Some(model) = VibrationModel::of_job(work, task.job, task.prepared, s)? else {
         return Ok(None);
     };
-    let fault = |wrong: String, remedy: &str| {
-        Faults::from(Fault::with_line(
-            &*task.job.file,
-            asked.line,
-            "dynamic",
-            wrong,
-            remedy,
-        ))
-    };
-    let samples = record.clock().samples;
-    let n = s.gauges.len();
-    let stated = dynamics(work, task, asked, s)?;
     let (first_s, step_s) = record.first_and_step();
-    let errors = samples / window(&stated, 1.0 / step_s) * triangle(n);
-    if samples.saturating_mul(n).saturating_add(errors) > MOST_NUMBERS {
-        return Err(fault(
-            format!(
-                "the record has {samples} samples of {n} gauges. Readings and their errors must be held in memory while the vibration of \
-                 the structure is subtracted"
-            ),
-            "cut the record into parts. The limit is 100 million numbers: readings, and half of the squared number of gauges in each \
-             period of `up_to_hz`",
-        ));
-    }
+    model.check_length(record.clock().samples, s.gauges.len(), step_s)?;
     let readings = record.columns()?;
     work.go_on()?;
-    let noise = task.errors.noise_variance(1.0).sqrt();
-    let open = asked.damping == Damping::Estimate;
-    let errors = (noise, task.errors.model_rel);
-    let with = (&*readings, 1.0 / step_s);
-    let estimated = work.stage("estimate modes", |_| {
-        estimate_modes(s, &stated, open, errors, with)
-    });
-    let estimated = estimated.map_err(|e| fault(e.to_string(), remedy_of(&e)))?;
-    if open && estimated.is_none() {
-        return Err(fault(
-            "the record does not determine the damping: this takes more gauges than loads, a mode below 1.5 `up_to_hz`, and a stretch \
-             without gaps"
-                .to_owned(),
-            "state the damping as a number, or add gauges",
-        ));
-    }
-    let dynamics = estimated.as_ref().map_or(&stated, |e| &e.dynamics);
-    work.go_on()?;
-    let rested = work.stage("vibration", |_| {
-        readings_at_rest(s, dynamics, noise, &readings, 1.0 / step_s)
-    });
-    let rested = rested.map_err(|e| fault(e.to_string(), remedy_of(&e)))?;
+    let of_record = (step_s, &*task.measured.strain.given);
+    let mut removed = work.stage("vibration", |w| {
+        model.remove(s, task.errors, &readings, of_record, &|| Ok(w.go_on()?))
+    })?;
     drop(readings);
-    let motion = motion_of((&stated, dynamics), &rested, step_s);
-    if rested.known == 0 && rested.read > 0 {
-        return Err(fault(
-            format!(
-                "no stretch of the record with readings of the same gauges is longer than {:.4} s. A quasi-static sample depends on half \
-                 of that time",
-                2.0 * motion.blank_s
-            ),
-            "record a longer time, or state a higher `up_to_hz`",
-        ));
-    }
-    work.findings.push(vibration_finding(
-        &motion,
-        asked,
-        &task.measured.strain.given,
-    ));
-    let contradicted = estimated
-        .as_ref()
-        .and_then(|e| contradiction((&stated, open), e, &task.measured.strain.given));
-    work.findings.extend(contradicted);
-    Ok(Some(QuasiStaticRecord {
-        noise_factor: task.noise_factor - 1.0 + rested.noise_share,
-        doubt: rested.doubt,
-        apart: independent_spacing(dynamics, step_s),
-        blank: rested.blank,
-        motion,
-        record: record.with_readings(rested.readings, (first_s, step_s))?,
-    }))
+    work.findings.append(&mut removed.findings);
+    let readings = std::mem::take(&mut removed.readings);
+    let record = record.with_readings(readings, (first_s, step_s))?;
+    Ok(Some((record, removed)))
 }
 
 /// Returns the number of samples between independent noise values. White noise in a band up to `f` is independent at a spacing of `1 / (2 f)`.
@@ -196,17 +257,16 @@ fn remedy_of(e: &Unfit) -> &'static str {
 /// Modes of the job's structure at the gauges and loads of S.
 fn dynamics(
     work: &mut Work,
-    task: &Task,
+    (job, prepared): (&Job, &JobSensitivity),
     asked: &Dynamic,
     s: &Sensitivity,
 ) -> Result<Dynamics, Faults> {
-    let job = task.job;
     let fault = |field: &str, wrong: String, remedy: &str| {
         Faults::from(Fault::with_line(
             &*job.file, asked.line, field, wrong, remedy,
         ))
     };
-    let Some(fields) = &task.prepared.fields else {
+    let Some(fields) = &prepared.fields else {
         return Err(fault(
             "dynamic",
             "S is given without a model: the modes of the structure are unknown".to_owned(),
@@ -240,7 +300,7 @@ fn dynamics(
     }
     let strain_of = |case: &CaseResult| -> Result<Vec<f64>, Faults> {
         let at = |name: &String| {
-            let gauge = task.prepared.gauges.iter().find(|g| g.name == *name);
+            let gauge = prepared.gauges.iter().find(|g| g.name == *name);
             gauge.and_then(|g| gauge_reading(g, case)).ok_or_else(|| {
                 fault(
                     "gauge",

@@ -42,6 +42,7 @@ pub use compare::{Comparison, ComparisonShift, LoadComparison};
 pub use damage::LoadDamage;
 pub(super) use dead_parts::silent_in_part;
 pub use dynamic::Motion;
+pub(crate) use dynamic::VibrationModel;
 pub use files::rpc_targets;
 pub use history::{History, HistoryRow};
 pub(super) use listed_loads::{ListedLoads, list_load_columns};

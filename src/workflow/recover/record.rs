@@ -73,11 +73,12 @@ pub(super) fn record(
     let parts = sections::parts(task.job, &clock)?;
     let rested = remove_vibration(work, task, &record, &sensitivity)?;
     let (judged, errors, at_rest, motion, blank) = match rested {
-        Some(r) => {
-            let readings = spread((r.noise_factor, r.apart), &r.record, &zero)?;
+        Some((quasi_static, r)) => {
+            let noise_factor = task.noise_factor - 1.0 + r.noise_share;
+            let readings = spread((noise_factor, r.apart), &quasi_static, &zero)?;
             let judged = recover_quasi_static_samples(task, &sensitivity, readings, &r.doubt);
-            let errors = (r.noise_factor, Some(r.doubt));
-            (judged, errors, Some(r.record), Some(r.motion), r.blank)
+            let errors = (noise_factor, Some(r.doubt));
+            (judged, errors, Some(quasi_static), Some(r.motion), r.blank)
         }
         None => {
             let judged = recover_tested_samples(work, task, &sensitivity, readings);

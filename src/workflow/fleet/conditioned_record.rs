@@ -1,0 +1,60 @@
+//! An open record of a fleet, its readings changed by `[conditioning]` if the job has this section.
+
+use super::kernel::Kernel;
+use crate::finding::{Finding, Severity};
+use crate::host::fault::Faults;
+use crate::host::files::{OpenedFile, may_be_cut};
+use crate::job::StrainCorrection;
+use crate::measured::conditioning::{condition, report_conditioning, report_doubtful_drift};
+use crate::measured::faults::record_fault;
+use crate::measured::record::Record as StrainRecord;
+use crate::recovery::clock;
+use crate::series::record::{Record, open_source};
+use std::sync::Arc;
+
+/// An open record of a fleet.
+pub struct FleetRecord {
+    /// Samples.
+    pub record: Arc<Record>,
+    /// Corrections that its readings still need.
+    pub corrections: Vec<StrainCorrection>,
+    /// Findings on its times, its end and the steps of `[conditioning]`.
+    pub findings: Vec<Finding>,
+}
+
+impl FleetRecord {
+    /// Opens a record. With `[conditioning]` all of its readings are in memory, corrected and named after their gauges.
+    ///
+    /// # Errors
+    /// A record that can't be read, and the errors of [`condition`].
+    pub fn open(kernel: &Kernel, opened: &OpenedFile) -> Result<Self, Faults> {
+        let (job, wanted) = (&kernel.job, kernel.wanted_columns());
+        let time_unit_s = job.measured.as_ref().and_then(|m| m.time_unit_s);
+        let options = StrainRecord::options(job, time_unit_s, &wanted);
+        let record = open_source(opened.source(), &options);
+        let record = record.map_err(|e| record_fault("record", &e))?;
+        let cut = record.left_out();
+        let cut = cut.map(|_| may_be_cut("last line", Severity::Warning));
+        let mut findings = clock::check_time_steps("time", &record.clock);
+        findings.extend(cut);
+        if job.conditioning.is_none() {
+            return Ok(Self {
+                record: Arc::new(record),
+                corrections: job.corrections.clone(),
+                findings,
+            });
+        }
+        let strain = StrainRecord::from_series(job, "record", record, &wanted)?;
+        let strain = condition(job, strain, &wanted)?;
+        let steps = strain.conditioning_steps();
+        let noise = kernel.errors.noise_variance(1.0).sqrt();
+        findings.extend(report_conditioning(steps));
+        findings.extend(report_doubtful_drift(steps, noise));
+        let ignored = job.corrections.iter().filter(|c| c.ignore);
+        Ok(Self {
+            corrections: ignored.cloned().collect(),
+            record: strain.into_series(),
+            findings,
+        })
+    }
+}
