@@ -42,11 +42,21 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
 fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
     let mut fitted = ConsistentFit::from_task(task, &[])?;
     let mut shifts = shift::check(task, &fitted.state);
+    // Too few runs let a wrong gauge look like an error of all rows or of some runs.
+    let hidden = known_load_faults::hidden_gauge_faults(task, &shifts);
+    let changed = known_load_faults::with_prior_of_faults(task, &hidden);
+    let (stated, task) = (task, changed.as_ref().unwrap_or(task));
+    if !hidden.is_empty() {
+        fitted = ConsistentFit::from_task(task, &[])?;
+        shifts = shift::check(task, &fitted.state);
+        known_load_faults::add_faults(&mut shifts, stated, &hidden);
+    }
     let mut wrongly_wired = shift::wrongly_wired(&shifts);
     if task.model.is_some() && !wrongly_wired.is_empty() {
         // A gauge with reversed polarity contains no information on the error of the model.
         fitted = ConsistentFit::from_task(task, &wrongly_wired)?;
         shifts = shift::check(task, &fitted.state);
+        known_load_faults::add_faults(&mut shifts, stated, &hidden);
         wrongly_wired = shift::wrongly_wired(&shifts);
     }
     let ConsistentFit {

@@ -5,9 +5,10 @@ use super::start::is_known;
 use super::types::{GaugeShift, KnownRun, ShiftWord, Task};
 use crate::finding::{Finding, Severity};
 use crate::input_faults::{
-    Channels, FaultTreatment, InputFault, Inputs, KnownLoads, RecordedRuns, Rules,
+    Channels, DetectedFault, FaultTreatment, InputFault, Inputs, KnownLoads, RecordedRuns, Rules,
     findings_of_recorded_loads, search_faults,
 };
+use crate::linalg::Matrix;
 
 /// Returns the findings on known loads of the other sign, in another unit, or exchanged; without a model there are none. Gauges that are
 /// `wrongly_wired` do not count.
@@ -32,10 +33,8 @@ pub(super) fn wrong_loads(task: &Task, used: &[usize], wrongly_wired: Vec<usize>
     findings_of_recorded_loads(&runs, "the runs file")
 }
 
-/// Returns the findings on gauges for which known loads show an offset, another unit, a reversed sign, each other's readings, or the same reading in
-/// all runs. Without a model there are none. `shifts` contains the faults that the rows of S show. S includes an offset, a unit and a constant
-/// reading, so that these are warnings. A sign or an exchange that the rows of S do not show is an error: S is between the model and the readings.
-pub(super) fn wrong_gauges(task: &Task, used: &[usize], shifts: &[GaugeShift]) -> Vec<Finding> {
+/// Returns the faults of gauges that the known loads show with the model as it is, the clearest first. Without a model there are none.
+fn faults_of_gauges(task: &Task, used: &[usize]) -> Vec<DetectedFault> {
     let Some(model) = &task.model else {
         return Vec::new();
     };
@@ -63,27 +62,127 @@ pub(super) fn wrong_gauges(task: &Task, used: &[usize], shifts: &[GaugeShift]) -
         load_noise: (0..k).map(sd).collect(),
         model_rel: model.uncertainty_rel,
     };
-    let found = search_faults(&misfit, &mut Vec::new, &Rules::STATED);
+    search_faults(&misfit, &mut Vec::new, &Rules::STATED)
+}
+
+/// Returns the dead gauges, and the reversed and exchanged gauges that `shifts` do not show. The list is empty if the known loads are wrong.
+pub(super) fn hidden_gauge_faults(task: &Task, shifts: &[GaugeShift]) -> Vec<InputFault> {
+    let all: Vec<usize> = (0..task.runs.len()).collect();
+    if task.model.is_none() || !wrong_loads(task, &all, Vec::new()).is_empty() {
+        return Vec::new();
+    }
+    let found = faults_of_gauges(task, &all).into_iter().map(|f| f.fault);
+    let is_hidden = |f: &InputFault| match word_of(f) {
+        // A dead gauge that the shifts show still makes runs contradict each other, as the model predicts strain there.
+        Some(words) => {
+            (words.iter()).any(|(g, word)| *word == ShiftWord::Dead || shifts[*g].word != *word)
+        }
+        None => false,
+    };
+    found.filter(is_hidden).collect()
+}
+
+/// Returns what the shifts of the gauges of a fault say about them; `None` for a fault whose effect on a row of S is not known.
+fn word_of(fault: &InputFault) -> Option<Vec<(usize, ShiftWord)>> {
+    match *fault {
+        InputFault::Sign(Channels::One(g)) => Some(vec![(g, ShiftWord::Sign)]),
+        InputFault::Dead(g) => Some(vec![(g, ShiftWord::Dead)]),
+        InputFault::Exchanged(a, b) => {
+            let with = |with| ShiftWord::Exchanged { with };
+            Some(vec![(a, with(b)), (b, with(a))])
+        }
+        _ => None,
+    }
+}
+
+/// Returns the task with the rows of the model that the faulty gauges have; `None` without faults or model.
+pub(super) fn with_prior_of_faults(task: &Task, faults: &[InputFault]) -> Option<Task> {
+    let model = task.model.as_ref().filter(|_| !faults.is_empty())?;
+    let change = |rows: &mut Matrix| {
+        for fault in faults {
+            let scale = match fault {
+                InputFault::Sign(_) => -1.0,
+                InputFault::Dead(_) => 0.0,
+                _ => 1.0,
+            };
+            match fault.gauges()[..] {
+                [g] => (0..rows.ncols()).for_each(|l| rows[(g, l)] *= scale),
+                [a, b] => (0..rows.ncols()).for_each(|l| {
+                    (rows[(a, l)], rows[(b, l)]) = (rows[(b, l)], rows[(a, l)]);
+                }),
+                _ => {}
+            }
+        }
+    };
+    let mut model = model.clone();
+    change(&mut model.values);
+    model.moves.iter_mut().for_each(|m| change(&mut m.change));
+    if let Some(of) = &mut model.off_drawing {
+        let all = [
+            &mut of.turned,
+            &mut of.crossed,
+            &mut of.along,
+            &mut of.across,
+        ];
+        all.into_iter().for_each(change);
+    }
+    Some(Task {
+        model: Some(model),
+        ..task.clone()
+    })
+}
+
+/// Changes shifts from the rows of [`with_prior_of_faults`] to shifts from the rows of the model of `stated`. The distance of the rows is in sigmas
+/// of the stated error, with loads of the size that strains some gauge most.
+pub(super) fn add_faults(shifts: &mut [GaugeShift], stated: &Task, faults: &[InputFault]) {
+    let Some(model) = &stated.model else { return };
+    let largest = |l: usize| {
+        model
+            .values
+            .column(l)
+            .iter()
+            .fold(0.0_f64, |m, v| m.max(v.abs()))
+    };
+    let scales: Vec<f64> = (0..model.values.ncols()).map(largest).collect();
+    let norm = |value: &dyn Fn(usize) -> f64| {
+        let of_load = |(l, c): (usize, &f64)| if *c > 0.0 { value(l) / c } else { 0.0 };
+        let each = scales.iter().enumerate().map(of_load);
+        each.map(|v| v * v).sum::<f64>().sqrt()
+    };
+    for (g, word) in faults.iter().filter_map(word_of).flatten() {
+        let row = |l: usize| model.values[(g, l)];
+        let found = |l: usize| match word {
+            ShiftWord::Sign => -row(l),
+            ShiftWord::Exchanged { with } => model.values[(with, l)],
+            _ => 0.0,
+        };
+        let (moved, size) = (norm(&|l| found(l) - row(l)), norm(&row));
+        let own: f64 = (0..scales.len()).map(|l| found(l) * row(l)).sum();
+        let all: f64 = (0..scales.len()).map(|l| row(l) * row(l)).sum();
+        let shift = &mut shifts[g];
+        shift.scale *= own / all;
+        shift.shift = moved / (model.uncertainty_rel * size);
+        shift.word = word;
+    }
+}
+
+/// Returns the findings on gauges for which known loads show an offset, another unit, or the same reading in all runs. `shifts` contains the faults
+/// that the rows of S show. S includes the effect of these faults, so that no finding is an error.
+pub(super) fn wrong_gauges(task: &Task, used: &[usize], shifts: &[GaugeShift]) -> Vec<Finding> {
     let is_new = |f: &InputFault| {
         let kind = matches!(
             f,
-            InputFault::Offset(..)
-                | InputFault::Unit(..)
-                | InputFault::Stuck(_)
-                | InputFault::Sign(Channels::One(_))
-                | InputFault::Exchanged(..)
+            InputFault::Offset(..) | InputFault::Unit(..) | InputFault::Stuck(_)
         );
         let of = f.gauges();
         kind && of
             .iter()
             .all(|g| shifts.get(*g).is_none_or(|s| s.word == ShiftWord::None))
     };
-    let new = found.iter().filter(|f| is_new(&f.fault));
+    let found = faults_of_gauges(task, used).into_iter();
+    let new = found.filter(|f| is_new(&f.fault));
     new.map(|f| Finding {
-        severity: match f.fault {
-            InputFault::Sign(_) | InputFault::Exchanged(..) => Severity::Error,
-            _ => Severity::Warning,
-        },
+        severity: Severity::Warning,
         ..f.finding(&task.gauges, FaultTreatment::AsMeasured)
     })
     .collect()
