@@ -81,9 +81,9 @@ const INFORMATIVE: [&str; 19] = [
 /// A column that is read.
 #[derive(Clone, Copy)]
 pub(super) struct GaugeColumn {
-    /// Place in the table.
+    /// Index of the column in the table.
     pub at: usize,
-    /// Job units (degrees for an angle) in one of its numbers.
+    /// Factor from a number of the column to job units (degrees for an angle).
     pub scale: f64,
 }
 

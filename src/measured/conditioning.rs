@@ -248,7 +248,7 @@ fn run_steps(
     }
     if let Some(zero) = zero {
         work.apply("zero", |x| {
-            // A gauge without a reading in the stretch has none at all.
+            // Only a gauge without any reading in the record can lack readings in the time span: other gauges were refused before.
             let offset = finite_mean(&x[zero.clone()]);
             x.iter_mut().for_each(|v| *v -= offset);
         });

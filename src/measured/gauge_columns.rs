@@ -165,7 +165,7 @@ fn holder(column: &Column, names: &Names) -> Result<Holds, ColumnUnitFault> {
             some => (name, some),
         }
     } else if let Some(gauge) = names.in_whole(header) {
-        // The unit is stated elsewhere, or is a strain unit in the header's brackets; else the brackets contain a label.
+        // The unit is in a row of units, or is a unit of strain in the header's brackets. Any other text in brackets is a label.
         let unit = match column.stated.as_str() {
             "" => microstrain_in(&header.bracket).or(Some(1.0)),
             stated => microstrain_in(stated),

@@ -22,7 +22,7 @@ pub struct Effort {
     pub seed: u64,
 }
 
-/// Rows chosen (ascending) and their criterion.
+/// Chosen rows in ascending order, with the criterion of this choice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowSelection {
     /// Indices into the rows.

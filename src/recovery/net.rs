@@ -126,7 +126,7 @@ fn net_of(n: f64, value: f64, var: f64, noise: f64, effective: impl Fn() -> f64)
             sigma: noise / n.sqrt(),
         };
     }
-    // If a record is constant by chance, its mean is still not better than the noise of the gauge over the number of samples.
+    // If a record is constant by chance, the variance of its mean is still at least `noise^2 / n`.
     Net {
         value,
         sigma: (var / effective()).max(noise * noise / n).sqrt(),

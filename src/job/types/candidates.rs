@@ -74,14 +74,14 @@ impl Candidates {
 /// `clear_of` of `[candidates]`: least distances, 0 where not stated.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Clearances {
-    /// From free edges; from rims of holes too, where `holes` is not stated.
+    /// Least distance from free edges. It also applies to rims of holes if `holes` is not stated.
     pub edges: f64,
-    /// From rims of holes.
+    /// Least distance from rims of holes.
     pub holes: Option<f64>,
-    /// From edges where plates meet: welds.
+    /// Least distance from edges where plates meet, such as welds.
     pub joints: f64,
-    /// From grids at which loads act.
+    /// Least distance from grids at which loads act.
     pub loads: f64,
-    /// From grids that rigid elements, RBE3 and bushes hold.
+    /// Least distance from grids that rigid elements, RBE3 or bushes connect.
     pub attachments: f64,
 }

@@ -12,7 +12,7 @@ pub(super) const GROUPS: usize = 4096;
 pub struct BlockMatrix {
     /// First block of each block column, and the total.
     pub(super) column: Vec<usize>,
-    /// Block row, ascending in a column; the first is the diagonal block.
+    /// Row of each block, ascending within a block column. The first block of a column is the diagonal block.
     pub(super) row: Vec<u32>,
     /// First value of each block, and the total.
     pub(super) value_start: Vec<usize>,

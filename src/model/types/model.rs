@@ -59,7 +59,7 @@ pub struct Model {
     pub mpc: Option<u32>,
     /// SPC sets that the subcases of the deck's case control select, ascending, each once; empty for a model made without a deck.
     pub selected_spcs: Vec<u32>,
-    /// SPC sets, SPCADD resolved; enforced displacements included.
+    /// SPC sets. SPCADD is resolved, and enforced displacements are included.
     pub spcs: Vec<SpcSet>,
     /// SUPORT and SUPORT1 (set id, `None` for SUPORT).
     pub suports: Vec<(Option<u32>, Vec<(GridIx, Dofs)>)>,

@@ -69,7 +69,7 @@ impl Candidate {
         }
     }
 
-    /// Returns whether the effect can be so large that nothing in a record is explained without it. More effects may be found in addition.
+    /// Returns whether the effect can be so large that no other effect explains the record alone. Other effects may be present in addition.
     pub fn overturns(&self) -> bool {
         matches!(
             self.shapes.first(),

@@ -55,7 +55,7 @@ const UNWANTED: [&str; 22] = [
 pub struct UnitLoadDeck {
     /// Description of the support of the structure.
     pub support: String,
-    /// By load: its subcase and the applied load.
+    /// Subcase and applied load of each load.
     pub subcases: Vec<Value>,
     /// The deck and the edits that make it.
     #[serde(skip)]

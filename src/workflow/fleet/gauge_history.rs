@@ -67,7 +67,7 @@ fn typical_reading(days: &[GaugeDay]) -> f64 {
     median(sds.collect()).unwrap_or(0.0)
 }
 
-/// Returns for each day whether the vehicle moves, by the gauges that read.
+/// Returns for each day whether the vehicle moves, according to the gauges with readings.
 pub(super) fn moving_days(gauges: &[(String, Vec<GaugeDay>)], n_days: usize) -> Vec<bool> {
     let typical: Vec<f64> = gauges.iter().map(|g| typical_reading(&g.1)).collect();
     let moves = |day: usize| {

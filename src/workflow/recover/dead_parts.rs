@@ -34,7 +34,7 @@ pub(super) fn without_dead_parts(
 ) -> Result<MaskedRecord, Faults> {
     let mut samples = spread_readings(task, &record, zero)?;
     let looked: Vec<(usize, &[f64])> = samples.iter().map(|r| (r.0, &*r.1.strain)).collect();
-    // Names without S give no prediction from the other gauges.
+    // Gauge names alone, without S, give no prediction from the other gauges.
     let stuck = match s.loads.is_empty() {
         true => Vec::new(),
         false => check(s, &looked, task.errors, task.noise_factor),

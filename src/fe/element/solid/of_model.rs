@@ -124,10 +124,10 @@ fn expansion<'a>(law: &'a SolidLaw, rise: &'a [f64]) -> impl Fn(&[Function]) -> 
     }
 }
 
-/// Forces of a temperature rise by grid of the element: three a grid, basic frame.
+/// Returns the forces that a temperature rise causes: three components for each grid of the element, basic frame.
 ///
 /// # Errors
-/// As `solid_stiffness`.
+/// The errors of `solid_stiffness`.
 pub(crate) fn solid_thermal_force(
     model: &Model,
     i: usize,
