@@ -171,7 +171,7 @@ fn sigma(s: &Sensitivity, noise: f64, sizes: &[f64], l: usize, covariance: &[f64
         return f64::NAN;
     };
     let size = sizes[l];
-    // Scatter of this loading, in place of scatter of all.
+    // The scatter of this loading replaces the mean scatter of all loadings.
     let k = sizes.len();
     let q2 = size * size * known.mean_square.get(l * k + l).copied().unwrap_or(0.0);
     if !(q2 > 0.0) {

@@ -76,7 +76,7 @@ fn effective_factor_count(sample: &[f64], basis: &[Vec<f64>], w: f64) -> f64 {
             x.iter_mut().zip(u).for_each(|(x, u)| *x -= along * u);
         }
     };
-    // Rows first, then columns.
+    // The projection acts on the rows first, then on the columns.
     let mut rest = sample.to_vec();
     rest.chunks_exact_mut(n.max(1)).for_each(outside);
     let mut rest: Vec<f64> = (0..n * n).map(|i| rest[i % n * n + i / n]).collect();

@@ -151,7 +151,7 @@ pub(super) fn find_lowest_modes(
     drop(start);
     let mut basis: Vec<Field> = Vec::new();
     let mut masses = mass_times(mass, &block);
-    // `projected` is Q' M A Q by basis vectors; `along` has its columns for the last block.
+    // `projected` is Q' M A Q over the basis vectors. `along` contains the columns of Q' M A Q for the last block.
     let mut projected = DMatrix::<f64>::zeros(0, 0);
     let mut along = DMatrix::zeros(0, block.len());
     let found = loop {
@@ -244,7 +244,7 @@ fn orthonormalize_block(
     let scale = block.iter().zip(&masses).map(square).fold(0.0, f64::max);
     drop(masses);
     if !basis.is_empty() {
-        // A Lanczos step couples a block only to the last two. Their components are removed first, then the rounding error along all basis vectors.
+        // A Lanczos step couples a block only to the last two blocks. Components along these blocks are removed first, then rounding errors along all vectors.
         let first = basis.len().saturating_sub(2 * BLOCK);
         let tied = along.rows(first, basis.len() - first).into_owned();
         subtract(&mut block, &basis[first..], &tied);

@@ -50,7 +50,7 @@ impl System {
         let model = prepared.model;
         let support = (sets.0, relief);
         let reduction = reduce(model, &prepared.axes, sets)?;
-        // Ordering the unknowns leaves a thread idle, which computes the body meanwhile.
+        // The ordering of the unknowns leaves a thread idle. This thread computes the rigid body in the meantime.
         let (assembled, body) = rayon::join(
             || assemble(prepared, &reduction),
             || body(prepared, mass, &reduction, relief),

@@ -73,7 +73,7 @@ pub fn evaluate_cause_sets(
             )
         })
         .collect();
-    // Each cause costs as much log evidence as the naming of any effect. Of equally good sets, the one with fewer causes is therefore first.
+    // Each cause in a set costs `DECISIVE` of log evidence. Of equally good sets, the set with fewer causes is therefore first.
     let penalised = |s: &CauseSet| s.log_evidence - DECISIVE * s.names.len() as f64;
     sets.sort_by(|a, b| penalised(b).total_cmp(&penalised(a)));
     let Some(best) = sets.first().cloned() else {

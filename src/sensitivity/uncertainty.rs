@@ -263,7 +263,7 @@ impl Uncertainty {
     /// Returns the uncertainty of the combined column `S f` for the load combination `f`.
     pub fn combine_loads(&self, f: &[f64]) -> Self {
         if !self.center.is_empty() {
-            // Component of the center along `f`, and the remaining vector.
+            // `part` is the component of the center along `f`, and `rest` is the remaining vector.
             let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
             let part = dot(&self.center, f) / dot(f, f).max(f64::MIN_POSITIVE);
             let rest: Vec<f64> = (self.center.iter().zip(f))

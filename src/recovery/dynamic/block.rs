@@ -66,7 +66,7 @@ impl Kernel {
         // Use the shortest transform that contains the band.
         let short = (2 * self.bins.len()).next_power_of_two().min(self.length);
         let step = self.length / short;
-        // The range contains at least one sample, which may be before the first wanted one.
+        // The range contains at least one sample, which may be before the first wanted sample.
         let first_told = self.reach / step;
         let told = first_told..kept.end.div_ceil(step);
         let thin = |bins: &[Complex<f64>]| back(bins, short)[told.clone()].to_vec();

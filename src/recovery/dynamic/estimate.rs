@@ -282,7 +282,7 @@ impl Problem<'_> {
             }
         };
         let scatter: Vec<f64> = (0..p).map(scatter).collect();
-        // Covariance of the gradient; a parameter that the residual does not contain has none.
+        // Covariance of the gradient. A parameter without effect on the residual has zeros.
         let mut gradient = Matrix::from_fn(p, p, |i, j| {
             normal.matrix[(i, j)] * variance * scatter[i] * scatter[j] + normal.by_shape[(i, j)]
         });

@@ -167,7 +167,7 @@ impl Normal {
 
     /// Returns the parameters' change that minimises the linearised residual, the shortest of all.
     pub fn step(&self) -> Vector {
-        // Scaled to a diagonal of 1; combinations that the residual does not contain stay as they are.
+        // The matrix is scaled to a diagonal of 1. Combinations of parameters without effect on the residual get no step.
         let n = self.right.len();
         let scale = |i: usize| self.matrix[(i, i)].max(f64::MIN_POSITIVE).sqrt();
         let scaled = Matrix::from_fn(n, n, |i, j| self.matrix[(i, j)] / (scale(i) * scale(j)));

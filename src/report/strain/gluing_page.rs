@@ -281,7 +281,7 @@ fn sketch(model: &Model, p: &PlacedGauge, view: &View) -> Picture {
     let end = |s: f64| [0, 1].map(|k| SKETCH[k] / 2.0 + s * along[k]);
     picture.line(end(-7.0), end(7.0), "#b2182b", 0.9);
     picture.circle(end(0.0), 1.0, "#b2182b", 0.0);
-    // Right and up of the view, and the length of a bar.
+    // Two arrows show the directions right and up of the view. A bar shows the scale.
     let corner = [6.0, SKETCH[1] - 6.0];
     let tips = [[corner[0] + 12.0, corner[1]], [corner[0], corner[1] - 12.0]];
     for (tip, v) in tips.iter().zip([view.right, view.up]) {

@@ -357,7 +357,7 @@ fn starts_of_times(clock: &Clock, steps: &Steps) -> Vec<usize> {
             };
             starts.push(at);
         }
-        // A piece without rows begins where the next one does.
+        // A piece without rows begins where the next piece begins.
         let mut next = clock.samples;
         for (start, s) in starts.iter_mut().zip(&steps.spans).rev() {
             if s.rows == 0 {

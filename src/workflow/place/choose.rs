@@ -130,7 +130,7 @@ fn well_conditioned(task: &Task, kind: &Kind, spec: &Spec, layout: &mut Layout) 
         return None;
     }
     let k = task.cases.len();
-    // The gauges that stay have the noise of all gauges.
+    // The gauges that stay installed have the same noise as all other gauges.
     let noise = task.job.placement.noise_microstrain;
     let mut base = vec![0.0; k * k];
     for row in &task.kept_rows {

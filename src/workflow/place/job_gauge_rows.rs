@@ -98,7 +98,7 @@ impl Task<'_> {
             let noise = self.noise_of(gauge);
             let sd = match self.given_row(gauge) {
                 Some((own, _)) => match &own.uncertainty {
-                    // As for the left-out runs, `scale` is a factor on the whole standard deviation.
+                    // `scale` is a factor on the whole standard deviation, here as in the test of left-out runs.
                     Some(u) => noise * u.scale,
                     None => noise.hypot(model_rel * spd::dot(row, row).sqrt()),
                 },
