@@ -69,7 +69,7 @@ impl KnownLoads {
     }
 }
 
-/// Strain without load, by gauge; zeros without a common zero.
+/// Returns the strain without load by gauge. It contains zeros if the task has no common zero.
 pub(super) fn zero_of(task: &Task, posterior: &Posterior) -> Vec<f64> {
     let k = posterior.k;
     match task.is_extended() {

@@ -12,7 +12,7 @@ pub(super) struct NormalEquations {
 }
 
 impl NormalEquations {
-    /// Sums the normal equations of gauge `g` over the runs with a reading of it.
+    /// Sums the normal equations of gauge `g` over the runs in which the gauge has a reading.
     pub fn from_runs(g: usize, k: usize, runs: &[ByGauge]) -> Self {
         let mut out = Self {
             matrix: vec![0.0; k * k],

@@ -4,7 +4,7 @@ use super::types::KnownLoads;
 use super::unknown_directions::{FreeDirections, project_out};
 use crate::linalg::spd;
 
-/// Loads of one run given S: the known loads, corrected by the readings.
+/// Loads of one run under a given S: the known loads, corrected by the readings.
 pub(super) struct CorrectedLoads {
     /// Most probable loads, in loads of unit size.
     pub phi: Vec<f64>,
@@ -17,7 +17,7 @@ pub(super) struct CorrectedLoads {
 }
 
 /// Returns the loads from their Gaussian prior `known` and the readings `y` with covariance `r` (by rows). `s` contains rows by gauge, for loads of
-/// unit size: `f = f0 + D S' (S D S' + R)^-1 (y - S f0)`. Along `free` directions there is no `f0` to compare with, and `f` replaces it.
+/// unit size: `f = f0 + D S' (S D S' + R)^-1 (y - S f0)`. Along `free` directions the loads are unknown beforehand, and `f` replaces `f0`.
 ///
 /// # Reference
 /// W. A. Fuller, Measurement Error Models (1987), section 2.2.

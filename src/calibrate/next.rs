@@ -13,16 +13,16 @@ pub struct NextRun {
     pub loads: Vec<f64>,
     /// Information gained on S, natural units: half the log of the ratio of determinants.
     pub information: f64,
-    /// For the load of the list that gains most: its number.
+    /// Number of the load that gains most from this run.
     pub load: usize,
-    /// Standard deviation of that load, recovered at its size in the list, today.
+    /// Present standard deviation of that load, recovered at its size in `loads`.
     pub sigma_before: f64,
-    /// And after such a run.
+    /// Standard deviation of that load after the run.
     pub sigma_after: f64,
 }
 
-/// Returns candidates by information gained, the best first; no candidates if S is not calibrated. `sizes` states the size of each load. Each load
-/// alone and all loads together are tried.
+/// Returns candidates for the next run, sorted by the information that they add, the best first. Without a calibrated S the list is empty. `sizes`
+/// states the size of each load. Each load alone and all loads together are tried.
 ///
 /// # Errors
 /// `sizes` does not contain one finite number for each load.

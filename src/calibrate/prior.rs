@@ -39,7 +39,7 @@ impl From<ModelError> for RowError {
     }
 }
 
-/// Without a model.
+/// Returns the prior of the rows without a model.
 pub(super) fn diffuse_prior(n: usize, k: usize, largest_strain: f64) -> Vec<RowPrior> {
     let sd = DIFFUSE * largest_strain;
     let row = RowPrior {

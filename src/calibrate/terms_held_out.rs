@@ -80,7 +80,7 @@ fn left_out_error(loadings: &[&Loading], k: usize, with_zero: bool) -> Option<f6
 }
 
 impl LackOfFit {
-    /// Returns whether a common zero is recommended: it reduces the error of left-out runs by more than chance.
+    /// Returns whether a common zero is recommended, because it reduces the error of left-out runs by more than chance.
     pub fn recommends_intercept(&self) -> Option<bool> {
         let held_out = self.held_out?;
         Some(held_out.intercept < BETTER * held_out.linear)

@@ -44,7 +44,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// Period at which the remaining time is updated.
 const TICK: Duration = Duration::from_millis(250);
 
-/// A line on standard error for the stage in progress; silent if standard error is not a terminal.
+/// Line of standard error with the stage in progress. Nothing is printed if standard error is not a terminal.
 #[derive(Default)]
 pub struct Terminal {
     meter: Arc<Meter>,

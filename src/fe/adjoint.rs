@@ -92,8 +92,8 @@ impl<'a> Adjoint<'a> {
         self.prepared.model
     }
 
-    /// Change of every reading under every load for each 1 that `d` grows by, `n_readings x n_loads` by rows: strain per unit load; zero
-    /// for temperatures.
+    /// Returns the derivative of every reading under every load by the design variable `d`, `n_readings x n_loads` by rows, strain per unit load.
+    /// Temperatures contribute zero.
     ///
     /// # Errors
     /// Shells that can't be formed.
@@ -132,7 +132,7 @@ impl<'a> Adjoint<'a> {
     }
 }
 
-/// Returns the adjoint forces of a reading: by grid of its shells, the reading per unit of displacement.
+/// Returns the adjoint forces of a reading: the derivative of the reading by the displacement of each grid of its shells.
 pub(super) fn forces_of(
     prepared: &PreparedModel<'_>,
     terms: &[StrainTerm],

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// Numbering of the unknowns: groups are the grids with a free dof that an element touches.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Numbering {
-    /// Group of each grid; `None`: no unknown there.
+    /// Group of each grid. `None` if the grid has no unknown.
     pub(crate) group: Vec<Option<u32>>,
     /// Grid of each group.
     pub(crate) grid: Vec<u32>,
@@ -25,7 +25,7 @@ impl Numbering {
         self.free.iter().map(|b| b.count_ones() as u8).collect()
     }
 
-    /// Grid and dof (0 to 5) of an unknown; `start` is the first unknown of each group.
+    /// Returns grid and dof (0 to 5) of an unknown. `start` is the first unknown of each group.
     pub(super) fn dof_of(&self, unknown: usize, start: &[usize]) -> (usize, usize) {
         let g = start.partition_point(|&s| s <= unknown) - 1;
         let dof = (0..6)
@@ -46,7 +46,7 @@ impl Numbering {
         }
     }
 
-    /// A field over all dofs, zero where there is no unknown.
+    /// Returns a field over all dofs, with zeros at dofs without an unknown.
     pub(crate) fn unpack(&self, values: &[f64]) -> Vec<[f64; 6]> {
         let mut field = vec![[0.0; 6]; self.group.len()];
         let mut at = 0;
@@ -160,7 +160,7 @@ pub(crate) fn assemble(
     })
 }
 
-/// Turns an element's matrix to the displacement frames of its grids.
+/// Transforms an element's matrix to the displacement frames of its grids.
 pub(super) fn to_displacement_frames(axes: &[Option<Mat3>], k: &mut ElementMatrix) {
     let n = k.n();
     for (b, g) in k.grids.iter().enumerate() {

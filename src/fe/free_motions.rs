@@ -15,7 +15,7 @@ use std::ops::Range;
 /// Largest resistance to a free rigid motion, as a share of the resistance to the motion that is resisted most.
 const FREE_MOTION: f64 = 1e-10;
 
-/// Grids that belong to the structure: of an element, or tied to it.
+/// Returns the grids that belong to the structure: grids of elements, and grids tied to such grids.
 pub(super) fn find_structure_grids(model: &Model, reduction: &Reduction) -> Vec<bool> {
     let mut touched = vec![false; model.grids.len()];
     for element in model.elements() {
@@ -51,7 +51,7 @@ pub(super) struct RigidStructure<'a> {
 }
 
 impl RigidStructure<'_> {
-    /// Returns the motions that nothing resists, one a column: three translations, three rotations about the centre.
+    /// Returns the motions that nothing resists, one in each column: three translations, three rotations about the centre.
     pub(super) fn free_motions(&self) -> DMatrix<f64> {
         let mut resisted = self.by_constraints();
         self.add_springs(&mut resisted);
@@ -201,7 +201,7 @@ fn add(resisted: &mut Matrix6<f64>, row: Vector6<f64>) {
     *resisted += row * row.transpose();
 }
 
-/// Rigid motions of a model without a selected SPC set, by what resists them.
+/// Rigid motions of a model without a selected SPC set, grouped by what resists them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct HeldMotions {
     /// Motions that nothing resists.

@@ -92,7 +92,7 @@ fn runs() -> String {
     )
 }
 
-/// Unit loads and where gauges may go.
+/// Returns the part of the job with the unit loads and the places where gauges may go.
 pub(super) fn plan() -> String {
     let properties: Vec<String> = ZONES
         .iter()

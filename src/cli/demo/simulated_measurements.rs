@@ -78,7 +78,7 @@ impl SimulatedMeasurements {
         (off / size).sqrt()
     }
 
-    /// The recovered wheel loads of the run with the largest error, with their intervals, and the true ones in red.
+    /// Returns a figure of the recovered wheel loads with intervals, for the run with the largest error. The true loads are red.
     pub(super) fn figure_of(&self, result: &Value) -> Figure {
         let of_run = |(run, wheels, _): &(String, Vec<f64>, f64)| {
             let row = |((wheel, _), truth): (&(&str, u32), &f64)| {

@@ -20,7 +20,7 @@ impl ElementMatrix {
         }
     }
 
-    /// From rows of fixed length.
+    /// Creates a matrix from rows of fixed length.
     pub(crate) fn from_rows<const M: usize>(grids: &[GridIx], rows: &[[f64; M]; M]) -> Self {
         Self {
             grids: grids.to_vec(),
@@ -42,7 +42,7 @@ impl ElementMatrix {
     }
 }
 
-/// 6 x 6 mass of a point at an offset, referred to its grid.
+/// Returns the 6 x 6 mass of a point at an offset from its grid, about the grid.
 pub(crate) fn point_mass(m: f64, offset: &Vec3) -> Matrix6<f64> {
     let c = offset.cross_matrix();
     let mut matrix = Matrix6::zeros();

@@ -12,7 +12,7 @@ fn name(rod: &Rod) -> &'static str {
     }
 }
 
-/// Stiffness of rod `i`, basic frame: EA/L along, GJ/L about its axis.
+/// Returns the stiffness of rod `i`, basic frame: EA/L along the axis, GJ/L about the axis.
 ///
 /// # Errors
 /// No length; a material that is no MAT1.

@@ -33,13 +33,13 @@ pub struct Floor {
 pub struct FloorLoad {
     /// Force along the axis.
     pub force: f64,
-    /// Moments about the two other axes, at the centre of the contacts.
+    /// Moments about the two horizontal axes, at the centre of the contacts.
     pub moment: [f64; 2],
     /// Displacement of each contact along the axis on the free structure.
     pub lift: Vec<f64>,
 }
 
-/// Why there are no reactions.
+/// Reason why there are no reactions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FloorError {
     /// Contacts on a line.
@@ -109,7 +109,8 @@ impl std::error::Error for FloorError {}
 const LINE: f64 = 1e-6;
 
 impl Floor {
-    /// Computes the floor under `contacts`. `lifts[i][j]` is the displacement along `axis` (0 x, 1 y, 2 z; up) of contact j under a unit force at i.
+    /// Computes the floor under `contacts`. `lifts[i][j]` is the displacement along `axis` (0 x, 1 y, 2 z; up) of contact j under a unit force at
+    /// contact i.
     ///
     /// `rate` is the stiffness between contact and floor (a tyre), force per length; `None`: rigid.
     ///
@@ -191,7 +192,7 @@ impl Floor {
         self.axis
     }
 
-    /// Reactions (up positive) under a load; linear in it.
+    /// Returns the reactions (positive upwards) under a load. They are linear in the load.
     pub fn reactions(&self, load: &FloorLoad) -> Vec<f64> {
         let n = self.contacts.len();
         let mut right = Vector::zeros(n + 3);

@@ -251,7 +251,7 @@ pub(crate) struct BeamForces {
     moment: [f64; 2],
 }
 
-/// Returns the forces on end B of beam `i` from displacements (basic), those that hold what acts between its ends included.
+/// Returns the forces on end B of beam `i` from displacements (basic). They include the forces that balance the loads between the ends.
 ///
 /// # Errors
 /// As `beam_stiffness`.

@@ -4,7 +4,7 @@ use super::quad4::quad_points;
 use super::tria3::tria_points;
 use crate::model::Vec3;
 
-/// Integrals of products of shape functions, times one and times the thickness; a triangle leaves the fourth row and column zero.
+/// Integrals of products of shape functions, with weight one and with the thickness as weight. For a triangle, the fourth row and column are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct CornerProducts {
     pub(crate) area: [[f64; 4]; 4],

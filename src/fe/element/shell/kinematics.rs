@@ -41,7 +41,7 @@ impl Tangents {
     }
 }
 
-/// Orthonormal axes in the tangent plane, x nearest to a given direction, and derivatives of r, s along them.
+/// Orthonormal axes in the tangent plane, with x nearest to a given direction, and the derivatives of r and s along these axes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TangentFrame {
     pub(super) e1: Vec3,
@@ -128,7 +128,7 @@ pub(super) fn membrane<const N: usize, const M: usize>(
 /// Adds the contribution of bending sides to the mid-surface strains rr, ss, 2 rs.
 ///
 /// Between corners i and j the side bulges as a parabola along the side. The bulge is (x_j - x_i) x n / 8 times the difference of their rotations
-/// about n. `slopes` are the derivatives along r and s of the parabolas, which are one in the middle of their sides.
+/// about n. `slopes` are the derivatives along r and s of parabolas with the value one in the middle of their sides.
 ///
 /// # Reference
 /// Allman, A compatible triangular element including vertex rotations, Computers and Structures 19 (1984) 1.
@@ -187,7 +187,7 @@ pub(super) fn shear<const N: usize, const M: usize>(
     rows
 }
 
-/// Rotation about the surface normal less half the curl of the displacements about the same normal.
+/// Returns the row of the rotation about the surface normal minus half the curl of the displacements about this normal.
 pub(super) fn drilling_row<const N: usize, const M: usize>(
     local: &TangentFrame,
     shape: &Shape<N>,
@@ -206,7 +206,7 @@ pub(super) fn drilling_row<const N: usize, const M: usize>(
     row
 }
 
-/// Adds weight * (strain rows)' law (strain rows) to a stiffness; rows are membrane, curvature, shear, drilling.
+/// Section of a shell: its law, its thickness, and K6ROT, the factor of the drilling stiffness.
 pub(super) struct Section<'a> {
     pub(super) law: &'a ShellLaw,
     pub(super) t: f64,

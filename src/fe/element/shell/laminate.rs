@@ -30,7 +30,7 @@ pub(crate) enum Lamination {
 }
 
 impl Lamination {
-    /// Returns the option for LAM as written; `None` for options that are not supported (SMCORE ..).
+    /// Returns the LAM option in its written form. `None` for unsupported options (SMCORE ..).
     pub(crate) fn parse_lam(lam: &str) -> Option<Self> {
         match lam {
             "" | "SYM" => Some(Self::Full),

@@ -61,7 +61,7 @@ impl ManyRows {
     }
 }
 
-/// Grids of a shell: corners, then the mid-side grids there are, each with the number of its side.
+/// Returns the grids of a shell: the corners, then the existing mid-side grids, each with the number of its side.
 pub(crate) fn many_grids(shell: &Shell) -> (Vec<GridIx>, Vec<usize>) {
     (shell.all_grids(), shell.middles().collect())
 }

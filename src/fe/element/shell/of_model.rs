@@ -210,7 +210,7 @@ fn densities(model: &Model, property: &crate::model::ShellProperty) -> (f64, f64
     }
 }
 
-/// Consistent mass of a shell with mid-side grids: its grids and, row by row, their shares, before WTMASS.
+/// Returns the consistent mass of a shell with mid-side grids: the grids, and the mass matrix by rows, before WTMASS.
 pub(crate) fn many_mass(model: &Model, i: usize) -> (Vec<crate::model::GridIx>, Vec<f64>) {
     let shell = &model.shells[i];
     let grids = shell.all_grids();
@@ -230,8 +230,8 @@ pub(crate) fn many_mass(model: &Model, i: usize) -> (Vec<crate::model::GridIx>, 
     (grids, products)
 }
 
-/// Consistent mass of shell `i` by pairs of corners, before WTMASS: integral of the product of their shape functions times
-/// (density * thickness + NSM). The sum of a row is what a lumped mass puts at that corner.
+/// Returns the consistent mass of shell `i` by pairs of corners, before WTMASS: the integral of the product of two shape functions times (density * thickness +
+/// NSM). The sum of a row is the lumped mass at that corner.
 pub(crate) fn shell_mass(model: &Model, i: usize) -> [[f64; 4]; 4] {
     let shell = &model.shells[i];
     let Some(property) = model.shell_properties.get(shell.property.us()) else {

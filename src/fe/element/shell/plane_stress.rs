@@ -2,7 +2,7 @@
 
 use crate::model::{Material, MaterialKind};
 
-/// A shell without MID3 is rigid in transverse shear: this many times its elastic shear stiffness.
+/// Factor on the elastic shear stiffness that makes a shell without MID3 rigid in transverse shear.
 pub(super) const RIGID_SHEAR: f64 = 1e3;
 
 /// G11 G12 G13 / G22 G23 / G33 of plane stress.

@@ -23,7 +23,7 @@ fn shape(r: f64, s: f64) -> Shape<3> {
     }
 }
 
-/// Shape functions and weights of the integration points; weights sum to half the parallelogram of the two sides.
+/// Returns shape functions and weights of the integration points. The weights sum to half the parallelogram of the two sides.
 pub(super) fn tria_points() -> [(Shape<3>, f64); 7] {
     RADON.map(|(r, s, w)| (shape(r, s), w))
 }

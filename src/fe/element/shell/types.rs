@@ -5,7 +5,7 @@ use crate::model::Vec3;
 /// A linear form on the element's unknowns.
 pub(super) type Row<const M: usize> = [f64; M];
 
-/// Matrices of stress = G strain (engineering shear) in the output frame; scaled by thickness where they are used.
+/// Matrices of `stress = G strain` (engineering shear) in the output frame. They are multiplied by the thickness where they are used.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ShellLaw {
     /// Membrane; `None`: no membrane stiffness.
@@ -50,7 +50,7 @@ pub(crate) enum Sides {
     Bending,
 }
 
-/// Matrices of a shell to compute: its stiffness takes most of the time.
+/// Matrices of a shell to compute. The stiffness takes most of the time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Parts {
     All,
@@ -64,7 +64,7 @@ pub(crate) struct ShellMatrices<const N: usize, const M: usize> {
     pub(crate) stiffness: [[f64; M]; M],
     pub(crate) centre: StrainRows<M>,
     pub(crate) corners: [StrainRows<M>; N],
-    /// Loads equivalent to thermal strain: the forces that prevent it, sign reversed.
+    /// Loads equivalent to thermal strain: the forces that prevent thermal strain, with reversed sign.
     pub(crate) thermal: [f64; M],
 }
 

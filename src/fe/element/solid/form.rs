@@ -9,7 +9,7 @@ use nastran::cards::SolidShape;
 #[derive(Clone, Debug)]
 pub(super) struct SolidInput {
     pub(super) shape: SolidShape,
-    /// Corners, then the mid-side grids there are.
+    /// Corners, then the existing mid-side grids.
     pub(super) x: Vec<Vec3>,
     /// Edge of each mid-side grid.
     pub(super) mids: Vec<usize>,
@@ -65,7 +65,7 @@ impl SolidInput {
         }
     }
 
-    /// 1, or -1 for an element numbered as its mirror image: the same body, which solvers accept.
+    /// Returns the orientation of the numbering: 1, or -1 for an element that is numbered as its mirror image. Solvers accept both.
     pub(super) fn hand(&self) -> f64 {
         let centre = &Tables::get(self.shape).centre;
         self.jacobian(&centre.functions(self.shape, &self.mids))
