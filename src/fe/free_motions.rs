@@ -238,7 +238,7 @@ fn with_structure<T>(model: &Model, with: impl FnOnce(&RigidStructure<'_>) -> T)
     }))
 }
 
-/// Returns how the rigid motions of a model are held by its springs to ground and the permanent constraints of its grids.
+/// Returns which rigid motions of a model are resisted by its springs to ground and by the permanent constraints of its grids.
 pub(super) fn held_motions(model: &Model) -> HeldMotions {
     let unheld = HeldMotions {
         free: 6,

@@ -18,7 +18,7 @@ pub(crate) struct BeamLoads<'a> {
     acceleration: Option<Vec<[f64; 6]>>,
 }
 
-/// A PLOAD1 without anything else; empty for other loads.
+/// Returns the load if it is a single PLOAD1. Other loads give an empty list.
 pub(crate) fn as_line_load(load: &Load) -> Interior {
     Interior {
         loads: scale_line_load(load, 1.0)

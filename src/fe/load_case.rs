@@ -3,7 +3,7 @@
 use crate::model::{GridIx, Model, Vec3};
 use nastran::bdf::Subcase;
 
-/// How the loads of a case are held in balance.
+/// Way in which the loads of a case are balanced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Relief {
     /// By the SPC set alone.
@@ -79,7 +79,7 @@ fn loads_of_subcase(s: &Subcase) -> Vec<UnitLoad> {
         .collect()
 }
 
-/// Unit loads as load cases, subcases numbered 1 .. n; `spc` and `relief` hold them all.
+/// Returns unit loads as load cases with subcases numbered 1 .. n. `spc` and `relief` apply to all cases.
 pub fn unit_cases(
     model: &Model,
     (spc, relief): (Option<u32>, Relief),
@@ -98,7 +98,7 @@ pub fn unit_cases(
         .collect()
 }
 
-/// A unit load: what acts in one load case.
+/// A unit load: the action of one load case.
 #[derive(Clone, Debug, PartialEq)]
 pub enum UnitLoad {
     /// A force and a moment at a grid, basic frame.

@@ -30,7 +30,7 @@ pub(crate) struct Mass {
 /// Mass, centre of gravity and the 6 x 6 matrix of rigid motions about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MassProperties {
-    /// Mass of the model, as [`crate::model::Weight`] has it.
+    /// Mass of the model, equal to the mass in [`crate::model::Weight`].
     pub mass: f64,
     /// Centre of gravity, basic frame.
     pub cg: Vec3,
@@ -39,8 +39,9 @@ pub struct MassProperties {
 }
 
 impl Mass {
-    /// Mass of all elements and concentrated masses: lumped, or with PARAM,COUPMASS consistent for shells, bars, beams and solids (rods and
-    /// shear panels stay lumped). Solids with mid-side grids are consistent always: lumped by rows their corners would have negative mass.
+    /// Computes the mass of all elements and concentrated masses. It is lumped. With PARAM,COUPMASS it is consistent for shells, bars, beams and
+    /// solids. Rods and shear panels stay lumped. Solids with mid-side grids are always consistent, because lumping by rows gives their corners
+    /// negative mass.
     pub(crate) fn new(prepared: &PreparedModel<'_>) -> Self {
         let model = prepared.model;
         let mut mass = Self {
@@ -197,7 +198,7 @@ impl Mass {
         masses.find(|m| m.ends.iter().flatten().any(|(g, _)| scalar(g)))
     }
 
-    /// Adds the centrifugal forces of masses off their grids in a rotation `omega`: those at the grids are [`Mass::on_grids`] of the field.
+    /// Adds the centrifugal forces of masses away from their grids in a rotation `omega`. [`Mass::on_grids`] gives the forces of masses at the grids.
     pub(super) fn add_off_grids(&self, factor: f64, omega: &Vec3, f: &mut [[f64; 6]]) {
         let gradient = centrifugal_gradient(omega) * factor;
         for (g, m) in &self.blocks {
@@ -225,7 +226,7 @@ impl Mass {
         matrix
     }
 
-    /// Mass and centre of gravity; `None` without mass.
+    /// Returns mass and centre of gravity. `None` without mass.
     pub(crate) fn properties(&self, x: &[Vec3]) -> Option<MassProperties> {
         let near = x.first().copied().unwrap_or_else(Vec3::zeros);
         let Weight { mass, cg } =

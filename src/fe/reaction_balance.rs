@@ -51,7 +51,8 @@ impl LoadImbalance {
     }
 }
 
-/// A finding where reactions leave loads unbalanced; `elements` are those at supports, `mpc` whether equations of a set take part.
+/// Returns a finding if reactions do not balance the loads. `elements` are the elements at supports. `mpc` states whether equations of an MPC set
+/// act.
 ///
 /// # Errors
 /// Elements that can't be formed.

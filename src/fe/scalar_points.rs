@@ -43,7 +43,7 @@ pub(super) fn carry_to_grids(
     }
 }
 
-/// Gives scalar points that follow grids the displacement that these give them. Basic frame.
+/// Gives scalar points that follow grids the displacement that follows from these grids. Basic frame.
 pub(super) fn follow_grids(
     prepared: &PreparedModel<'_>,
     reduction: &Reduction,
@@ -65,8 +65,8 @@ pub(super) fn follow_grids(
     }
 }
 
-/// Checks that no load acts on an independent scalar point of a free structure. How its force reaches the body is unknown, so inertia can't balance
-/// it. `field` is the result of [`carry_to_grids`].
+/// Checks that no load acts on an independent scalar point of a free structure. Inertia can't balance such a load, because the path of its force into
+/// the body is unknown. `field` is the result of [`carry_to_grids`].
 ///
 /// # Errors
 /// Such a load, with its point.

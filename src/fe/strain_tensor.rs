@@ -78,7 +78,7 @@ pub fn largest_in_plane(strain: PlaneStrain) -> f64 {
     if most + least < 0.0 { least } else { most }
 }
 
-/// Principal strains of xx yy zz xy yz zx (engineering shear), largest first; not a number where any is not.
+/// Returns the principal strains of xx yy zz xy yz zx (engineering shear), the largest first. They are NaN if a component is NaN.
 pub fn principal_strains(strain: &[f64; 6]) -> [f64; 3] {
     if strain.iter().any(|v| !v.is_finite()) {
         return [f64::NAN; 3];

@@ -35,8 +35,8 @@ pub(super) struct System {
 impl System {
     /// Assembles the stiffness under an SPC and an MPC set, with determinate supports if inertia balances the loads.
     ///
-    /// Springs of the size of their stiffness act as determinate supports, and at dofs without stiffness. A balanced load causes no force in them, so
-    /// the result equals the result of a rigid support.
+    /// Springs act as determinate supports, and at dofs without stiffness. Their stiffness has the size of the other stiffness at the grid. A
+    /// balanced load causes no force in these springs, so the result equals the result of a rigid support.
     ///
     /// # Errors
     /// See [`FeError`].
@@ -111,7 +111,7 @@ impl System {
         })
     }
 
-    /// The free rigid motions of a structure with these constraints and its own mass.
+    /// Returns the free rigid motions of a structure with these constraints and its mass.
     ///
     /// # Errors
     /// See [`RigidBody::new`].

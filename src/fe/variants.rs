@@ -81,7 +81,8 @@ pub fn solve_variants<T>(
     Ok(out)
 }
 
-/// The constrained stiffness that all cases share; `None` where they don't, where something is enforced, or nothing is free.
+/// Returns the constrained stiffness that all cases share. `None` if the cases have different constraints, if a displacement is enforced, or if no
+/// dof is free.
 pub(super) fn system_of(
     prepared: &PreparedModel<'_>,
     mass: &Mass,
@@ -336,7 +337,8 @@ fn follow(to: &mut [f64], factors: &[f64], more: &[f64], n: usize) {
     });
 }
 
-/// Shells and bushes whose stiffness may differ; `None` where anything else does that stiffness, constraints or numbering depend on.
+/// Returns the shells and bushes whose stiffness differs. `None` if a variant changes anything else that stiffness, constraints or numbering depend
+/// on.
 pub(super) fn changed_elements(a: &Model, b: &Model) -> Option<Vec<ElementRef>> {
     let material = |m: MaterialIx| a.materials.get(m.us()) == b.materials.get(m.us());
     let same = a.grids == b.grids

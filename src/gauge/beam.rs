@@ -9,7 +9,7 @@ use crate::fe::strain_tensor::Surface;
 use crate::finding::{Finding, Severity};
 use crate::model::{BeamIx, Model, Vec3};
 
-/// Position along a beam, and the recovery point C D E F (0 to 3) there.
+/// Position along a beam, and the recovery point C D E F (0 to 3) at this position.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BeamSeat {
     pub(super) beam: BeamIx,
@@ -126,7 +126,7 @@ pub(super) fn on_beam(
     })
 }
 
-/// Returns a warning for a gauge at a recovery point on the neutral axis. A point whose coordinates the property does not state is on it.
+/// Returns a warning for a gauge at a recovery point on the neutral axis. Points without stated coordinates are on this axis.
 pub(super) fn point_on_axis(model: &Model, spec: &GaugeSpec, seat: BeamSeat) -> Option<Finding> {
     let beam = model.beams.get(seat.beam.us())?;
     let property = model.beam_properties.get(beam.property.us())?;

@@ -76,7 +76,7 @@ impl Output {
         fill_file(&part, fill).map_err(|e| unwritable_file_fault(&self.folder.join(name), &e))
     }
 
-    /// Opens file `name` to be written piece by piece; flush it before [`Output::commit`].
+    /// Opens file `name` for writing piece by piece. Flush the file before [`Output::commit`].
     ///
     /// # Errors
     /// A fault if it cannot be created.
@@ -93,7 +93,7 @@ impl Output {
         self.pending.iter().any(|p| p.1 == target)
     }
 
-    /// Bytes of file `name` as written so far, which must be flushed. Drop them before [`Output::commit`].
+    /// Returns the bytes that have been written to file `name`. Flush the file first, and drop the bytes before [`Output::commit`].
     ///
     /// # Errors
     /// A fault if it cannot be read.
@@ -162,8 +162,7 @@ impl Output {
     /// Refuses names of files that are inputs of the answer, or that no command wrote into the folder. Overwriting them would change the next answer
     /// or lose data.
     ///
-    /// # Errors
-    /// A fault for each.
+    /// # Errors A fault for each such file.
     pub fn check_spared(&self, sources: &[PathBuf]) -> Result<(), Faults> {
         let sources = canonicalize_paths(sources);
         let ours = Manifest::read(&self.folder);
@@ -252,7 +251,7 @@ impl Output {
         Ok(kept)
     }
 
-    /// Renames every file to its name and keeps earlier files of the command: for a command that writes a folder bit by bit.
+    /// Renames every file to its name and keeps earlier files of the command: for a command that writes its folder in several calls.
     ///
     /// # Errors
     /// As [`Output::commit`].
@@ -283,7 +282,7 @@ impl Output {
         Ok(())
     }
 
-    /// Renames every file to its name and does not change the folder otherwise, for a file in a user's folder.
+    /// Renames every file to its name and makes no other change in the folder. It is used for a file in a user's folder.
     ///
     /// # Errors
     /// A fault for the first file that cannot be renamed.

@@ -48,7 +48,7 @@ impl<'a> Work<'a> {
         out
     }
 
-    /// Adds seconds under a name of their own, for the steps of a stage.
+    /// Adds seconds under a separate name, for the steps of a stage.
     pub fn note_seconds(&mut self, name: &str, seconds: f64) {
         self.seconds.add(name, seconds);
     }

@@ -11,7 +11,7 @@ use crate::host::fault::{Fault, FaultList, Faults};
 pub struct Channel {
     /// Subtracted first, microstrain.
     pub offset: f64,
-    /// Divisor of the reading less its offset.
+    /// Divisor of the reading after subtraction of the offset.
     pub factor: f64,
     /// Whether the readings of the channel are ignored.
     pub ignore: bool,
@@ -58,7 +58,7 @@ pub fn channel_of(corrections: &[StrainCorrection], gauge: &str) -> Channel {
     )
 }
 
-/// The column that holds the readings of this gauge: another's, where the two are exchanged.
+/// Returns the column that contains the readings of this gauge. It is the column of the other gauge if two gauges are exchanged.
 pub fn column_of<'a>(corrections: &'a [StrainCorrection], gauge: &'a str) -> &'a str {
     corrections
         .iter()

@@ -11,7 +11,7 @@ use crate::host::words::format_number;
 /// No quantity of a job is larger in any system of units; the square of one that is smaller stays a number.
 const LARGEST: f64 = 1e30;
 
-/// The job's text and the faults found in it so far.
+/// Text of the job, and the faults found so far.
 pub(super) struct Collector<'a> {
     pub file: &'a str,
     pub text: &'a str,
@@ -51,7 +51,7 @@ impl<'a> Collector<'a> {
             .push(Fault::with_line(self.file, line, field, wrong, remedy));
     }
 
-    /// The value of a key that must be there; `section` is where it is missed.
+    /// Returns the value of a required key. Otherwise it adds a fault; `section` is the section that lacks the key.
     pub(super) fn require<T: Clone, U>(
         &mut self,
         value: &S<T>,
@@ -121,7 +121,7 @@ impl<'a> Collector<'a> {
         found
     }
 
-    /// Returns a number if it is finite, no larger than [`LARGEST`] and passes `ok`, else adds a fault. `expected` describes `ok`.
+    /// Returns a number that is finite, at most [`LARGEST`], and passes `ok`. Otherwise it adds a fault. `expected` describes `ok`.
     pub(super) fn number(
         &mut self,
         value: &S<f64>,
@@ -147,7 +147,7 @@ impl<'a> Collector<'a> {
         self.number(value, key, "0 or more", |x| x >= 0.0)
     }
 
-    /// A relative error, a fraction from 0 to 1; a larger one may be percent, which the fault asks for.
+    /// Returns a relative error, a fraction from 0 to 1. Otherwise it adds a fault, which asks whether a larger number is in percent.
     pub(super) fn fraction(&mut self, value: &S<f64>, key: &str) -> Option<f64> {
         const EXPECTED: &str = "a fraction from 0 to 1";
         let percent = |x: f64| x > 1.0 && x <= 100.0;

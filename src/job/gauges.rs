@@ -18,7 +18,7 @@ use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::files::Inputs;
 use crate::placement::Role;
 
-/// The gauges of `[gauges] file`; faults are added to the list.
+/// Reads the gauges of `[gauges] file` and adds faults to the list.
 pub(super) fn read_gauge_file(
     inputs: &mut Inputs,
     job: &Job,
@@ -38,7 +38,7 @@ pub(super) fn read_gauge_file(
     gauges
 }
 
-/// Returns a table of gauges, its columns and the gauges in it; `None` if it can't be read. Faults are added to the list.
+/// Returns a table of gauges with its columns and gauges. `None` if the table can't be read. Faults are added to the list.
 pub(super) fn read_gauges(
     inputs: &mut Inputs,
     job: &Job,

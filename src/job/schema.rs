@@ -18,7 +18,7 @@ pub struct Key {
     pub meaning: &'static str,
     /// Unit of the key; `None` for text, counts and fractions.
     pub unit: Option<&'static str>,
-    /// Description of the default; `None` for sections, and for keys of which one of several is required.
+    /// Description of the default. `None` for sections, and for groups of keys of which one is required.
     pub default: Option<&'static str>,
     /// Allowed values, if only these are valid.
     pub words: Vec<&'static str>,

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use std::borrow::{Borrow, Cow};
 use std::ops::Range;
 
-/// A value with its place, `None` where the key is absent.
+/// A value with its place in the file. `None` if the key is absent.
 pub(super) type S<T> = Option<SpannedValue<T>>;
 
 /// A value and its place in the file.

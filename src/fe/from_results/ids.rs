@@ -1,6 +1,6 @@
 //! From ids of a file to indices of the model.
 
-/// Finds ids in an ascending list; ids asked for in the list's own order cost one comparison each.
+/// Lookup of ids in an ascending list. A sequence of ids in the order of the list costs one comparison for each id.
 pub(super) struct Ids<'a, T, F> {
     list: &'a [T],
     id: F,

@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// Fibre distances count as equal up to this share of the thickness: single precision with room for the deck's rounding.
 const FIBRE_TOLERANCE: f64 = 1e-4;
 
-/// Collects the shell rows of one subcase, block by block.
+/// Collector of the shell rows of one subcase, block by block.
 pub(super) struct ShellCollector<'m> {
     model: &'m Model,
     /// By shell of the model: its slot.

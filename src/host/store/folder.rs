@@ -9,7 +9,7 @@ const KEPT: usize = 64;
 /// Their bytes.
 const MOST_BYTES: u64 = 4 << 30;
 
-/// Folder that stores solutions of the built-in solver as `<key>.solution`. It removes the oldest ones above a fixed number and size.
+/// Folder that stores solutions of the built-in solver as `<key>.solution`. It removes the oldest solutions above a fixed number and size.
 ///
 /// # Example
 /// A second command on the same deck takes the stored solution:
@@ -39,13 +39,13 @@ const MOST_BYTES: u64 = 4 << 30;
 pub struct Folder(PathBuf);
 
 impl Folder {
-    /// Uses this folder. It is created when the first solution is stored.
+    /// Returns the store in this folder. The folder is created when the first solution is stored.
     pub fn new(folder: impl Into<PathBuf>) -> Self {
         Self(folder.into())
     }
 
-    /// Uses the folder `STRAINBRIDGE_CACHE`. Without this variable it is `strainbridge` in `XDG_CACHE_HOME`, in the cache folder of the
-    /// system, or in the folder for temporary files.
+    /// Returns the store in the folder `STRAINBRIDGE_CACHE`. Without this variable, the folder is `strainbridge` in `XDG_CACHE_HOME`, in the cache
+    /// folder of the system, or in the folder for temporary files.
     pub fn of_user() -> Self {
         let at = |name: &str| {
             let path = PathBuf::from(std::env::var_os(name)?);
@@ -68,13 +68,13 @@ impl Folder {
         &self.0
     }
 
-    /// Returns the number of stored solutions and their bytes.
+    /// Returns the number of stored solutions and their total size in bytes.
     pub fn size(&self) -> (usize, u64) {
         let kept = self.kept_solutions();
         (kept.len(), kept.iter().map(|k| k.1).sum())
     }
 
-    /// Removes every stored solution, and the folder if it is empty then. Returns their number and bytes.
+    /// Removes every stored solution, and the folder if it is then empty. Returns the number and the total size in bytes of the removed solutions.
     ///
     /// # Errors
     /// Returns the error of the first file that cannot be removed.

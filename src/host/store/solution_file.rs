@@ -93,7 +93,7 @@ fn reals(out: &mut Vec<u8>, values: &[f64]) {
         .for_each(|v| out.extend_from_slice(&v.to_le_bytes()));
 }
 
-/// `None` for bytes that are no solution of this hash, number of grids and of cases.
+/// Returns the stored solution. `None` if the bytes are not a solution with this hash, number of grids and number of cases.
 pub(super) fn decode(
     bytes: &[u8],
     Key(hash): &Key,

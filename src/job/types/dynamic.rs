@@ -7,9 +7,9 @@ pub struct Dynamic {
     pub up_to_hz: f64,
     /// Damping of the modes.
     pub damping: Damping,
-    /// One standard deviation of the modes' frequencies, share of each.
+    /// Standard deviation of the frequency of each mode, as a share of the frequency.
     pub frequency_uncertainty_rel: f64,
-    /// One standard deviation of the damping, share of it.
+    /// Standard deviation of the damping, as a share of the damping.
     pub damping_uncertainty_rel: f64,
     /// Line of the section in the job.
     pub line: u32,

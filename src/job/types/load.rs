@@ -70,7 +70,7 @@ pub enum LoadActs {
     Named,
 }
 
-/// Whether a load is asked for; what a placed gauge is for is [`crate::placement::Role`].
+/// Whether a load is wanted as a result. [`crate::placement::Role`] is the role of a placed gauge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum LoadRole {
@@ -83,13 +83,13 @@ pub enum LoadRole {
 pub struct JobLoad {
     /// Name.
     pub name: String,
-    /// Load as the job states it.
+    /// Place and direction of the load.
     pub acts: LoadActs,
-    /// The load in its subcase, job units, signed; not zero.
+    /// Size of the load in its subcase, job units, with sign. It is not zero.
     pub applied: f64,
     /// Results file of the load, if the job states one.
     pub result: Option<NamedFile>,
-    /// Subcase, if the job states one; else its number in job order.
+    /// Subcase, if the job states one. Otherwise the number of the load in the job is used.
     pub subcase: Option<u32>,
     /// Number in job order, from 1: the subcase of the load in the deck that `cases` writes.
     pub number: u32,
@@ -97,14 +97,14 @@ pub struct JobLoad {
     pub role: LoadRole,
     /// Prior standard deviation, job units.
     pub expected: Option<f64>,
-    /// How much its variance counts in criterion A; default 1.
+    /// Weight of the variance of the load in criterion A. The default is 1.
     pub weight: f64,
     /// Line of the job.
     pub line: u32,
 }
 
 impl JobLoad {
-    /// The subcase stated, else the one that `cases` gives.
+    /// Returns the stated subcase. Otherwise it is the number of the load in the job, which `cases` also uses.
     pub fn subcase(&self) -> u32 {
         self.subcase.unwrap_or(self.number)
     }
@@ -118,7 +118,7 @@ impl JobLoad {
         }
     }
 
-    /// The unit in which it is reported; `None` for a load set, which is counted in times the set.
+    /// Returns the unit of the load in reports. `None` for a load set, which is stated as a multiple of the set.
     pub fn report_unit(&self, units: &ReportUnits) -> Option<Unit> {
         Some(units.unit(self.quantity()?))
     }

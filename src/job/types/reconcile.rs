@@ -4,7 +4,7 @@ use super::named_file::NamedFile;
 use crate::job::shapes::{Ids, PropertyIds};
 use std::collections::BTreeMap;
 
-/// Which world `reconcile` compares.
+/// Kind of measurement that `reconcile` compares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum ReconcilePath {
@@ -27,7 +27,7 @@ pub struct Reconcile {
     pub temperature_set: Option<u32>,
     /// Effect ids; `None`: all.
     pub effects: Option<Vec<String>>,
-    /// Bushes whose stiffness may be wrong; `None`: all, where they are few.
+    /// Bushes whose stiffness may be wrong. `None` means all bushes if there are few.
     pub joints: Option<Ids>,
     /// Causes measured in addition to the readings: name, and column of the runs file.
     pub causes: BTreeMap<String, String>,
@@ -48,7 +48,7 @@ pub struct DescribedEffect {
     pub id: String,
     /// Change of the model at size one.
     pub source: EffectSource,
-    /// One standard deviation of its size before a run is seen.
+    /// Standard deviation of the size of the effect before the measurement.
     pub prior: f64,
     /// Line of the job.
     pub line: u32,

@@ -10,11 +10,11 @@ use std::collections::BTreeMap;
 pub struct Runs {
     /// The file.
     pub file: NamedFile,
-    /// Section of the job that names it: `runs`, `compare`, or `respond`.
+    /// Section of the job that names the file: `runs`, `compare` or `respond`.
     pub section: &'static str,
     /// Load name or `payload_force`, `payload_mass`, `payload_x`, `payload_y` to the column's name.
     pub columns: BTreeMap<String, String>,
-    /// Units of the file; the report units where not stated.
+    /// Units of the file. The default is the report units.
     pub units: ReportUnits,
     /// Quantities whose unit the job states.
     pub stated_units: Vec<Quantity>,
