@@ -34,7 +34,7 @@ pub struct Cholesky {
 }
 
 impl Cholesky {
-    /// The factor of `covariance` (`n x n` by rows, lower triangle read), or `None` where it is not positive definite.
+    /// Returns the factor of `covariance` (`n x n` by rows, lower triangle read). `None` if it is not positive definite.
     pub fn from_covariance(covariance: &[f64], n: usize) -> Option<Self> {
         if covariance.len() != n * n {
             return None;

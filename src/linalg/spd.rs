@@ -63,7 +63,7 @@ pub fn gram_of_lower(inv: &[f64], k: usize) -> Vec<f64> {
     g
 }
 
-/// Lower triangular `w` with `w' w = g` for a symmetric `g` that is not negative; rows of directions in which it is zero are zero.
+/// Returns a lower triangular `w` with `w' w = g` for a symmetric positive semidefinite `g`. Rows of directions in which `g` is zero are zero.
 pub fn lower_root(g: &[f64], k: usize) -> Vec<f64> {
     let mut rest = g.to_vec();
     let mut w = vec![0.0; k * k];
@@ -129,7 +129,7 @@ pub fn times(a: &[f64], x: &[f64], y: &mut [f64]) {
     }
 }
 
-/// Scalar product, in four sums side by side (one sum would wait for each addition).
+/// Returns the scalar product, computed in four parallel sums, because a single sum would wait for each addition.
 #[inline(always)]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().min(b.len());

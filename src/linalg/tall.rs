@@ -3,21 +3,21 @@
 use super::dense::bounded_svd;
 use nalgebra::{DMatrix, DVector};
 
-/// The triangular factor of tall rows: as much as least squares needs to know of them.
+/// Triangular factor of tall rows. It contains all information that least squares needs about the rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Triangle {
-    /// Which of the problem's columns these are, ascending.
+    /// Columns of the problem that the factor contains, ascending.
     pub columns: Vec<usize>,
     /// Rows of the factor, each as long as `columns`.
     pub rows: Vec<Vec<f64>>,
-    /// How many rows were reduced.
+    /// Number of rows that were reduced to the factor.
     pub n_rows: usize,
 }
 
-/// A least-squares solution with what it is worth.
+/// A least-squares solution with its quality.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
-    /// One value a column; 0 along directions that the rows do not determine.
+    /// Value for each column. It is 0 along directions that the rows do not determine.
     pub x: Vec<f64>,
     /// (A'A)^-1 by rows, undetermined directions left out.
     pub inverse: Vec<Vec<f64>>,
@@ -57,7 +57,7 @@ impl Triangle {
     }
 }
 
-/// x that minimises the sum over blocks of weight^2 |A x - y|^2, where column `n` of the triangles is y.
+/// Returns the `x` that minimises the sum over blocks of `weight^2 |A x - y|^2`. Column `n` of the triangles is `y`.
 pub fn solve(blocks: &[(f64, &Triangle)], n: usize) -> Solution {
     let m: usize = blocks.iter().map(|(_, t)| t.rows.len()).sum();
     let mut a = DMatrix::zeros(m.max(n), n);
@@ -171,7 +171,7 @@ pub fn solve_rows(a: &[Vec<f64>], y: &[f64]) -> Option<Solution> {
     ))
 }
 
-/// Pseudo-inverse (n x m by rows) of a small m x n matrix given by rows; `None` when it has not full column rank.
+/// Returns the pseudo-inverse (n x m by rows) of a small m x n matrix given by rows. `None` if the matrix does not have full column rank.
 pub fn left_inverse(a: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let n = a.first()?.len();
     let mut columns = Vec::new();

@@ -95,8 +95,8 @@ impl Conditioner {
     }
 }
 
-/// Returns the record with the readings that the job's `[conditioning]` makes of the columns `wanted`; `record` itself without the section.
-/// `[[correction]]` is applied first, and not again afterwards.
+/// Returns the record with the columns `wanted` conditioned as `[conditioning]` of the job states. Without this section, the result is `record`
+/// itself. `[[correction]]` is applied first, and not again afterwards.
 ///
 /// # Errors
 /// A temperature channel that the record lacks or that is a gauge, a stretch of zero beyond the record or with too few readings, two zeros, a corner

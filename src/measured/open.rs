@@ -31,7 +31,7 @@ impl MeasuredStrain {
         }
     }
 
-    /// Names of its columns, by gauge as the job calls them.
+    /// Returns the name of each column: the gauge as the job names it.
     pub fn gauges(&self) -> &[String] {
         match self {
             Self::Runs(table) => &table.gauges,

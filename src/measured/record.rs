@@ -19,7 +19,7 @@ use crate::units::MICROSTRAIN;
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
-/// Largest number of readings of a record, and of their errors, that are held in memory: 0.8 GB.
+/// Largest number of readings of a record, and of their errors, that are kept in memory: 0.8 GB.
 pub(crate) const MOST_NUMBERS: usize = 100_000_000;
 
 /// A record whose columns are read as strain.
@@ -27,7 +27,7 @@ pub(crate) const MOST_NUMBERS: usize = 100_000_000;
 pub(crate) struct Record {
     inner: Arc<series::Record>,
     file: String,
-    /// The gauge that each column holds the readings of, as the job calls it.
+    /// Gauge of each column, as the job names it.
     pub names: Vec<String>,
     /// Microstrain in one unit of each column; not a number where it is no strain.
     micro: Vec<f64>,
@@ -103,7 +103,7 @@ impl Record {
         self.with_columns(columns)
     }
 
-    /// Returns the record with the columns `wanted` read, with their corrections; with all columns of strain if `wanted` is empty.
+    /// Returns the record with the columns `wanted`, corrected. If `wanted` is empty, it contains all columns of strain.
     pub fn with_wanted_strain(self, job: &Job, wanted: &[String]) -> Self {
         let is_read = |c: &usize| {
             let name = column_of(&job.corrections, &self.names[*c]);
@@ -118,7 +118,8 @@ impl Record {
         self.with_columns(columns)
     }
 
-    /// Returns the record with conditioned readings, strain, a column for each column that is read; `except` is a column that it no longer has.
+    /// Returns the record with conditioned readings, strain, one column for each column that is read. The result does not contain the column
+    /// `except`.
     ///
     /// # Errors
     /// A record without samples.
@@ -194,7 +195,7 @@ impl Record {
         Ok(sums)
     }
 
-    /// Returns the first samples of the columns, microstrain, row by row; `most` of them or all of the first piece.
+    /// Returns the first samples of the columns, microstrain, row by row. It returns at most `most` samples, and at most the first piece.
     ///
     /// # Errors
     /// A piece that can't be read.
@@ -212,7 +213,7 @@ impl Record {
         Self { blank, ..self }
     }
 
-    /// Returns the samples of a part in which a gauge (a column by its number) is dead.
+    /// Returns the samples of a part in which a gauge is dead. The gauge is stated by the number of its column.
     ///
     /// # Errors
     /// A piece that can't be read.
@@ -250,7 +251,8 @@ impl Record {
         Ok(out)
     }
 
-    /// Returns this record with other readings, strain, a column each; the pair is the first sample's time and the time between samples, s.
+    /// Returns this record with other readings, strain, one column for each gauge. The pair contains the time of the first sample and the time step,
+    /// s.
     ///
     /// # Errors
     /// A record without samples.
@@ -312,7 +314,7 @@ impl Record {
         (clock.start_s, 1.0 / clock.rate_hz)
     }
 
-    /// Whether neither the file nor the job states the unit of its times, and their size does not show it.
+    /// Returns whether the unit of the times is unknown: neither file nor job states it, and the size of the times does not show it.
     pub fn is_time_unit_open(&self) -> bool {
         !self.inner.is_time_unit_stated()
     }
@@ -376,7 +378,7 @@ impl Record {
         Ok((self.times(i), values))
     }
 
-    /// How many readings of a piece, less `zero`, are too large to be strain.
+    /// Returns the number of readings of a piece that are too large to be strain after subtraction of `zero`.
     pub fn count_impossible_readings(&self, i: usize, zero: &[f64]) -> Result<u64, Fault> {
         let mut n = 0;
         self.each_strain_block(i, |strain| {

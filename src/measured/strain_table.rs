@@ -21,7 +21,7 @@ pub struct StrainTable {
     pub gauges: Vec<String>,
     /// Runs or samples.
     pub rows: StrainRows,
-    /// Row-major, `n_rows x n_gauges`; a blank is NaN.
+    /// Strain by rows, `n_rows x n_gauges`. NaN for a blank field.
     pub microstrain: Vec<f64>,
 }
 
@@ -34,7 +34,7 @@ impl StrainTable {
         }
     }
 
-    /// Returns the names of the runs; none of a record.
+    /// Returns the names of the runs. The list is empty for a record.
     pub fn runs(&self) -> &[String] {
         match &self.rows {
             StrainRows::Runs(names) => names,
@@ -60,7 +60,7 @@ impl StrainTable {
         self.gauges.retain(|_| of_gauge.next() == Some(&true));
     }
 
-    /// Gives every column its gauge's name and every reading its gauge's strain.
+    /// Replaces the name of each column by the name of its gauge, and each reading by the corrected strain of the gauge.
     pub(crate) fn put_right(&mut self, corrections: &[StrainCorrection]) {
         if corrections.is_empty() {
             return;

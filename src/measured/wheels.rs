@@ -9,15 +9,15 @@ use crate::model::{GridIx, Model, Vec3};
 
 /// Vertical loads of a job that are no payload.
 pub struct Wheels {
-    /// The axis they act along: 0 x, 1 y, 2 z.
+    /// Axis along which the wheel forces act: 0 x, 1 y, 2 z.
     pub axis: usize,
     /// Index of each in the job's loads.
     pub loads: Vec<usize>,
-    /// Their grids.
+    /// Grids of the wheels.
     pub grids: Vec<GridIx>,
 }
 
-/// The job's wheels: forces along the axis that most of its forces act along, at other grids than the payload's.
+/// Returns the wheels of the job: forces along the most frequent axis of its forces, at grids other than the payload grid.
 ///
 /// # Errors
 /// Fewer than three, grids that the deck lacks.

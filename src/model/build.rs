@@ -19,7 +19,7 @@ pub(super) struct Builder<'a> {
     pub grid_ix: HashMap<u32, GridIx>,
     pub material_ix: HashMap<u32, MaterialIx>,
     pub element_ids: HashMap<u32, (&'static str, Place)>,
-    /// Properties of bars (false) and beams (true) that are in the deck and have their own fault: they are not missing.
+    /// Properties of bars (false) and beams (true) in the deck that have their own fault. They do not count as missing.
     pub refused_properties: HashSet<(bool, u32)>,
     /// Grids that only state the place of a connector (GS).
     pub points: Vec<GridIx>,
@@ -150,7 +150,7 @@ impl Builder<'_> {
         });
     }
 
-    /// A fault, and `None`, where a number that must not be negative is.
+    /// Returns the number if it is not negative. Otherwise it adds a fault and returns `None`.
     pub(super) fn not_negative(
         &mut self,
         what: &'static str,
@@ -241,7 +241,7 @@ impl Builder<'_> {
         found
     }
 
-    /// Notes an element id. False, with a fault, where an element of the same card has it already.
+    /// Registers an element id. If an element of the same card already has the id, it adds a fault and returns false.
     pub(super) fn element(&mut self, id: u32, card: &'static str, at: Place) -> bool {
         match self.element_ids.get(&id).copied() {
             None => {
@@ -281,12 +281,12 @@ impl Builder<'_> {
             .map_or_else(Vec3::zeros, |g| g.x)
     }
 
-    /// Whether it is a scalar point.
+    /// Returns whether the grid is a scalar point.
     pub(super) fn is_scalar(&self, g: GridIx) -> bool {
         self.model.grids.get(g.us()).is_some_and(Grid::is_scalar)
     }
 
-    /// Displacement frame of a grid at its place, by rows.
+    /// Returns the axes of the displacement frame of a grid at its place, by rows.
     pub(super) fn cd_axes(&self, g: GridIx) -> Mat3 {
         self.model.cd_axes(g)
     }

@@ -106,7 +106,7 @@ impl Frame {
     }
 }
 
-/// The unit vector; `None` for a vector without length.
+/// Returns the unit vector. `None` for a vector without length.
 pub(crate) fn unit(v: Vec3) -> Option<Vec3> {
     let n = v.norm();
     (n > 0.0 && n.is_finite()).then(|| v / n)

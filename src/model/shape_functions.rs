@@ -120,7 +120,7 @@ pub(crate) fn face_functions(n_corners: usize, p: [f64; 2]) -> (Vec<[f64; 4]>, V
     (domain.corner_functions(p), domain.edge_functions(p))
 }
 
-/// Edges of a triangle or square by their corners, in the order of the mid-side grids.
+/// Returns the edges of a triangle or square by their corners, in the order of the mid-side grids.
 pub(crate) fn face_edges(n_corners: usize) -> &'static [(usize, usize)] {
     if n_corners == 3 { &TRIANGLE } else { &SQUARE }
 }

@@ -16,9 +16,9 @@ use crate::sensitivity::GaugeNoise;
 /// The answer for all runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Weighing {
-    /// By run.
+    /// Result for each run.
     pub runs: Vec<WeighedRun>,
-    /// By gauge; empty without strain.
+    /// Result for each gauge. Empty without strain.
     pub gauges: Vec<GaugeVerdict>,
     /// Runs whose strain no payload makes by a calibrated S.
     pub unlike: Vec<Finding>,

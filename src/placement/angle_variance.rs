@@ -53,7 +53,7 @@ fn subtract_scaled(f: &Trig, v: &Trig, lambda: f64) -> Trig {
     std::array::from_fn(|i| f[i] - lambda * v[i])
 }
 
-/// True where `f / v` certainly stays under `limit` at every angle (`v` is positive).
+/// Returns whether `f / v` is certainly below `limit` at every angle (`v` is positive).
 pub fn stays_under(f: &Trig, v: &Trig, limit: f64, samples: &[[f64; 4]; SAMPLES]) -> bool {
     let g = subtract_scaled(f, v, limit);
     let slack = overshoot(&g, std::f64::consts::TAU / SAMPLES as f64);
@@ -63,7 +63,7 @@ pub fn stays_under(f: &Trig, v: &Trig, limit: f64, samples: &[[f64; 4]; SAMPLES]
 /// Relative amount by which [`largest_ratio`] may return more than the true maximum, so that it is never less.
 const CERTIFIED_EXCESS: f64 = 1e-7;
 
-/// The angle in `[0, pi)` where `f / v` is largest, and an upper bound of that maximum (at most `1e-7` relative above it).
+/// Returns the angle in `[0, pi)` where `f / v` is largest, and an upper bound of this maximum (at most `1e-7` relative above it).
 pub fn largest_ratio(f: &Trig, v: &Trig, samples: &[[f64; 4]; SAMPLES]) -> (f64, f64) {
     let ratio = |t: f64| {
         let cs = phases(t);

@@ -26,7 +26,8 @@ pub struct Problem<'a> {
     pub incumbent: f64,
     /// Known upper bound of the criterion.
     pub upper: f64,
-    /// Approximate number of floating-point operations after which the search stops; counted, not timed, so that results don't depend on the machine.
+    /// Approximate number of floating-point operations after which the search stops. Operations are counted instead of time, so that results don't
+    /// depend on the machine.
     pub work: f64,
     /// Cancellation of the search.
     pub stop: &'a Stop,

@@ -25,7 +25,7 @@ pub struct Scatter {
     pub noise: f64,
     /// Angle tolerance, 1 sd, radians; needs tensors.
     pub angle_sd: f64,
-    /// Uncertainty of each load's part of the reading, 1 sd, a fraction (model and gauge factor, squares added); needs tensors.
+    /// Uncertainty of the contribution of each load to the reading, 1 sd, a fraction (model and gauge factor, squares added). It needs tensors.
     pub model_rel: f64,
     /// Separate variance of each place; empty if none.
     pub extra: Vec<f64>,
@@ -93,8 +93,8 @@ impl Candidates {
         }
     }
 
-    /// Candidates from tensors: `fill(place, t)` writes `t[3 load + component]`, components exx, eyy, gxy (engineering shear) in the
-    /// element frame, for each load times its expected size.
+    /// Creates candidates from tensors. `fill(place, t)` writes `t[3 load + component]` for each load times its expected size. The components are
+    /// exx, eyy, gxy (engineering shear) in the element frame.
     pub fn from_tensors(
         k: usize,
         n: usize,
@@ -146,7 +146,7 @@ impl Candidates {
         self.n
     }
 
-    /// Number of rows: places times angles (places where the angle is continuous).
+    /// Returns the number of rows: places times angles, or places if the angle is continuous.
     pub fn n_rows(&self) -> usize {
         match &self.angles {
             Angles::Grid(a) => self.n * a.len(),
@@ -159,7 +159,7 @@ impl Candidates {
         &self.angles
     }
 
-    /// Positions of the places, where known.
+    /// Returns the positions of the places, if known.
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions
     }
@@ -226,7 +226,7 @@ impl Candidates {
         .sqrt()
     }
 
-    /// How much a gauge's reading changes with its angle: rms over the expected loads (independent), per radian; 0 for fixed rows.
+    /// Returns the change of a gauge's reading with its angle: rms over the expected loads (independent), per radian. It is 0 for fixed rows.
     pub fn turn_rms(&self, choice: Choice) -> f64 {
         if self.angles == Angles::Fixed {
             return 0.0;
@@ -241,7 +241,7 @@ impl Candidates {
             .sqrt()
     }
 
-    /// The row of a gauge over the standard deviation of its reading.
+    /// Returns the row of a gauge divided by the standard deviation of its reading.
     pub fn row(&self, choice: Choice) -> Vec<f64> {
         let p = choice.place as usize;
         if self.angles == Angles::Fixed {

@@ -11,7 +11,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::sync::OnceLock;
 
-/// Gain in `det`, or in its logarithm, under which an exchange is rounding error.
+/// Gain in `det`, or in its logarithm, below which an exchange is rounding error.
 pub(super) const LEAST_GAIN: f64 = 1e-9;
 /// Share of its determinant under which a block counts as lost by an exchange.
 const LEAST_PART: f64 = 1e-9;
@@ -58,11 +58,11 @@ impl<'a, E: Fn(usize, usize) -> bool> List<'a, E> {
     }
 }
 
-/// A layout with what its exchanges need.
+/// A layout with the data for its exchanges.
 #[derive(Clone)]
 pub(super) struct CoordinateExchange {
     pub rows: Vec<usize>,
-    /// The criterion, under the base it was begun with.
+    /// Value of the criterion with the base of the start.
     pub value: f64,
     /// `tr(L M^-1)` of a linear criterion.
     spread: f64,
@@ -78,7 +78,7 @@ pub(super) struct CoordinateExchange {
 }
 
 impl CoordinateExchange {
-    /// Begins with these rows and `base` as prior information; `None` where that is singular.
+    /// Creates a layout from these rows with `base` as prior information. `None` if the information matrix is singular.
     pub fn from_rows<E: Fn(usize, usize) -> bool>(
         list: &List<E>,
         base: &[f64],
@@ -223,7 +223,7 @@ impl CoordinateExchange {
         (sum + spd::trace_of_product(&self.full.inverse, base) - list.active.k as f64).abs()
     }
 
-    /// Exchanges single rows until none gains; false where it came upon a layout that is singular.
+    /// Exchanges single rows until no exchange improves the layout. Returns false if a layout is singular.
     pub fn improve<E: Fn(usize, usize) -> bool>(&mut self, list: &List<E>, base: &[f64]) -> bool {
         for _ in 0..MAX_SWEEPS {
             let mut gained = false;
@@ -267,7 +267,7 @@ impl CoordinateExchange {
         true
     }
 
-    /// Becomes what `other` is, in the memory it has.
+    /// Copies `other` into the existing memory.
     pub fn copy(&mut self, other: &Self) {
         self.rows.copy_from_slice(&other.rows);
         self.blocked.copy_from_slice(&other.blocked);

@@ -58,7 +58,7 @@ pub struct Point {
 }
 
 impl Criterion {
-    /// The degree `q`: `value` rises by `q ln t` where `M` is multiplied by `t`, so `exp(difference / q)` is an efficiency.
+    /// Returns the degree `q`: if `M` is multiplied by `t`, `value` increases by `q ln t`. So `exp(difference / q)` is an efficiency.
     pub fn degree(&self, k: usize) -> usize {
         match self {
             Self::Ds(nuisance) => k - self.n_nuisance_columns(k, *nuisance),
@@ -71,7 +71,7 @@ impl Criterion {
         nuisance.min(k.saturating_sub(1))
     }
 
-    /// Value and slope at `m`; `None` where it is singular.
+    /// Returns value and slope at `m`. `None` if `m` is singular.
     pub fn evaluate_at(&self, m: &[f64], k: usize) -> Option<Point> {
         let l = spd::cholesky(m, k)?;
         let mut root = spd::inverse_lower(&l, k);

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 /// A straight piece, or a point twice.
 pub type Segment = [Vec3; 2];
 
-/// Edges that belong to one shell alone: borders, and the rims of holes.
+/// Returns the edges that belong to one shell only: borders, and rims of holes.
 pub fn free_edges(model: &Model) -> Vec<Segment> {
     by_edge(model, |shells| shells.len() == 1)
 }
@@ -116,7 +116,7 @@ fn material(
 /// Shells around a grid at most.
 const MOST_AROUND: usize = 64;
 
-/// Edges where plates meet at an angle, or more than two of them: where a weld is.
+/// Returns the edges where plates meet at an angle, or where more than two plates meet. Welds are there.
 pub fn joints(model: &Model) -> Vec<Segment> {
     let normal = |ix: &ShellIx| -> Option<Vec3> {
         let s = model.shells.get(ix.us())?;
@@ -181,7 +181,7 @@ pub fn attachments(model: &Model) -> Vec<Segment> {
         .collect()
 }
 
-/// By point, whether it is at least `distance` from every segment.
+/// Returns for each point whether its distance from every segment is at least `distance`.
 pub fn clear_of(points: &[Vec3], segments: &[Segment], distance: f64) -> Vec<bool> {
     if segments.is_empty() || !(distance > 0.0) {
         return vec![true; points.len()];

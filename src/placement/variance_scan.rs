@@ -4,7 +4,7 @@ use super::angle_variance::{self, Form, SAMPLES};
 use super::candidates::{Angles, Candidates, Choice, LANES};
 use rayon::prelude::*;
 
-/// A candidate and its variance (an upper bound within 1e-7 where the angle is continuous).
+/// A candidate and its variance. For a continuous angle, the variance is an upper bound within 1e-7.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CandidateVariance {
     /// `a' M^-1 a`.

@@ -8,7 +8,7 @@ use crate::linalg::spd;
 /// Rows handled together.
 const WIDE: usize = 16;
 
-/// The rows of a list in blocks, the last one filled up with zeros.
+/// Rows of a list in blocks. Zeros fill the last block.
 #[derive(Clone, Debug)]
 pub(super) struct PackedRows {
     k: usize,
@@ -37,7 +37,7 @@ impl PackedRows {
         }
     }
 
-    /// Rows with those that fill up.
+    /// Returns the number of rows, including the rows of zeros.
     pub fn len(&self) -> usize {
         self.n
     }
@@ -81,7 +81,7 @@ fn product(block: &[f64], u: &[f64]) -> [f64; WIDE] {
     sum
 }
 
-/// An inverse with the variances of all rows, and their cross variances with the chosen ones (by slot).
+/// An inverse, with the variances of all rows and their cross variances with the chosen rows (by slot).
 #[derive(Clone, Debug, Default)]
 pub(super) struct Table {
     pub inverse: Vec<f64>,
@@ -111,7 +111,7 @@ impl Table {
         t
     }
 
-    /// Becomes what `other` is, in the memory it has.
+    /// Copies `other` into the existing memory.
     pub fn copy(&mut self, other: &Self) {
         self.inverse.copy_from_slice(&other.inverse);
         self.d.copy_from_slice(&other.d);
@@ -129,7 +129,8 @@ impl Table {
         (1.0 + self.d[i]) * (1.0 - self.d[j]) + cross * cross
     }
 
-    /// The largest factor above `least` of a row in place of `j` in `slot`, and the row; `mask` is added to the factors.
+    /// Returns the row whose exchange with row `j` in `slot` gives the largest factor above `least`, with this factor. `mask` is added to the
+    /// factors.
     pub fn find_best_row(
         &self,
         packed: &PackedRows,

@@ -20,7 +20,7 @@ pub struct Cause {
     pub values: Vec<f64>,
 }
 
-/// Set of causes with its evidence, gap and slopes.
+/// A set of causes with its evidence, gap and slopes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CauseSet {
     /// Names of the causes.

@@ -83,7 +83,8 @@ impl GapBasis {
     }
 }
 
-/// RMS(reading - model) / RMS(reading): before, after, and as expected of a right model. All three are computed in the same way.
+/// Gap `RMS(reading - model) / RMS(reading)`: without the effects, with the effects, and expected for a correct model. All three are computed in the
+/// same way.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct GapNumbers {
     /// Gap of the analyst's model.

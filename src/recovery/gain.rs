@@ -154,7 +154,7 @@ impl Gain {
         })
     }
 
-    /// Returns this gain with a covariance of its readings in addition to these errors, `n_used x n_used`, strain^2.
+    /// Returns this gain with an additional covariance of its readings, `n_used x n_used`, strain^2.
     pub fn with_noise(&self, of_readings: &Matrix) -> Self {
         Self {
             base: &self.base + &self.gain * of_readings * self.gain.transpose(),
@@ -203,7 +203,7 @@ impl Gain {
         }
     }
 
-    /// Number of loads, sums among them.
+    /// Returns the number of loads, including sums.
     pub fn n_loads(&self) -> usize {
         self.gain.nrows()
     }

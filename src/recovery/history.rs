@@ -44,15 +44,15 @@ pub struct Filter {
 /// Loads of samples.
 #[derive(Clone, Debug, Default)]
 pub struct SampleLoads {
-    /// `n_loads` a sample; NaN for a load that the gauges that read don't determine.
+    /// Values of the loads, `n_loads` for each sample. NaN for a load that the active gauges don't determine.
     pub values: Vec<f64>,
-    /// Samples in which a gauge gave nothing, and the estimate used for each; ascending.
+    /// Samples in which a gauge has no reading, ascending, with the estimate used for each.
     pub gaps: Vec<(usize, Option<Arc<Gain>>)>,
 }
 
 impl Filter {
-    /// Returns the filter for `s` with `zero` (strain by gauge) subtracted. Its weights include the model's error at `typical` loads, its intervals
-    /// `widening`. `None` if numbers are not finite.
+    /// Returns the filter for `s` with `zero` (strain by gauge) subtracted. The weights include the model error at `typical` loads. The intervals
+    /// include `widening`. `None` if numbers are not finite.
     pub fn new(
         s: &Sensitivity,
         zero: Vec<f64>,
@@ -80,7 +80,7 @@ impl Filter {
         Some(filter)
     }
 
-    /// Adds what readings are off by beyond these errors; before sums of loads are listed.
+    /// Adds further errors of the readings beyond the errors of the filter. Call it before sums of loads are added.
     pub fn add_reading_covariance(&mut self, doubt: ReadingCovariance) {
         let noise = doubt.of_noise(&self.whole.used);
         self.whole = Arc::new(self.whole.with_noise(&noise));
@@ -222,7 +222,7 @@ impl Filter {
         }
     }
 
-    /// The estimate from the gauges `used` alone; `None` where none reads.
+    /// Returns the estimate from the gauges `used` only. `None` if no gauge reads.
     pub fn estimate(&self, used: Vec<usize>) -> Option<Arc<Gain>> {
         if used.is_empty() {
             return None;

@@ -22,7 +22,7 @@ impl MissingReadings {
         }
     }
 
-    /// How many samples there are.
+    /// Returns the number of samples.
     pub fn samples(&self) -> u64 {
         self.whole + self.gaps
     }

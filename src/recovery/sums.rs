@@ -5,7 +5,7 @@ use super::missing_readings::MissingReadings;
 /// Sums over a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sums {
-    /// Counts of samples and gaps. In a sample with a silent gauge, only the loads that the other gauges determine are known.
+    /// Counts of samples and gaps. In a sample with a missing reading, only the loads that the other gauges determine are known.
     pub missing: MissingReadings,
     /// Smallest of each load.
     pub min: Vec<f64>,

@@ -22,7 +22,7 @@ const BEAM: &[&str] = &[
     "x_xb", "sxc", "sxd", "sxe", "sxf", "smax", "smin", "mst", "msc",
 ];
 
-/// One block of a solution, to be made into rows when its turn comes.
+/// One block of a solution whose rows are formed later.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlannedBlock {
     case: usize,
@@ -142,7 +142,7 @@ pub fn planned_blocks(model: &Model, solution: &Solution) -> Vec<PlannedBlock> {
     all
 }
 
-/// A planned block and its rows.
+/// Returns a planned block and its rows.
 pub fn rows_of_block(model: &Model, solution: &Solution, plan: PlannedBlock) -> (Block, Rows) {
     let case = &solution.cases[plan.case];
     match plan.content {

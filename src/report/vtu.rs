@@ -10,7 +10,7 @@ const LINE: u8 = 3;
 const TRIANGLE: u8 = 5;
 const QUAD: u8 = 9;
 
-/// Arrays are appended to the XML as raw little-endian bytes, each after its length in bytes (64 bit).
+/// Arrays that are appended to the XML as raw little-endian bytes, each after its length in bytes (64 bit).
 pub(super) struct AppendedArrays {
     pub(super) xml: String,
     offset: u64,

@@ -13,7 +13,7 @@ const PLANES: usize = 36;
 pub struct PlaceDamage {
     /// Damage on the plane where it is largest.
     pub value: f64,
-    /// Lower end of its 95 % interval.
+    /// Lower end of the 95 % interval.
     pub low: f64,
     /// Upper end.
     pub high: f64,

@@ -33,7 +33,7 @@ use std::collections::BTreeSet;
 pub struct Fields {
     /// Deck and model.
     pub deck: DeckModel,
-    /// Result files, or one solved here.
+    /// Solutions from result files, or the solution of the built-in solver.
     pub solutions: Vec<Solution>,
     solved_here: bool,
     /// By load: solution, case.

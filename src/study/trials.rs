@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// A gauge of the pool: its row of S, and how that changes with angle and place.
+/// A gauge of the pool: its row of S, and the changes of this row with angle and place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoolGauge {
     /// Strain per job unit of each load.

@@ -64,7 +64,7 @@ pub fn check_mass_closure(
     Some((closure, Some(finding)))
 }
 
-/// Whether a mean wheel force, or its mass, contains the static load: less than a twentieth of the identified weight is a zeroed channel.
+/// Returns whether a mean wheel force, or its mass, contains the static load. Below a twentieth of the identified weight, the channel was zeroed.
 pub(super) fn is_static(weighed: f64, identified: f64) -> bool {
     weighed > 0.05 * identified && identified > 0.0
 }
@@ -107,7 +107,7 @@ fn mirror_name(name: &str) -> Option<String> {
     name.contains("_sl").then(|| name.replacen("_sl", "_sr", 1))
 }
 
-/// A parameter that ended at its bound: the data ask for a value against nature.
+/// Returns a finding on a parameter that ended at its bound. Without the bound, its value would be physically impossible.
 pub fn at_bound(name: &str, bound: f64, is_damping: bool) -> Finding {
     let what = if is_damping {
         "Damping is indistinguishable from zero, or another effect changes the phase."

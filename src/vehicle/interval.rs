@@ -7,7 +7,7 @@ use crate::estimate::student_95;
 /// Covariance of the free parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spread {
-    /// By rows, in the order of `Fit::free`.
+    /// Covariance by rows, in the order of `Fit::free`.
     pub covariance: Vec<Vec<f64>>,
     /// Factor on sigma for 95 % (Student t with blocks - 1 degrees of freedom).
     pub coverage_factor: f64,
@@ -102,7 +102,7 @@ pub fn residual(e: &Equation, values: &[f64]) -> Vec<f64> {
     r
 }
 
-/// How many independent samples carry the same information on power: n / sum of squared autocorrelations.
+/// Returns the number of independent samples with the same information on power: n / sum of squared autocorrelations.
 pub fn effective_samples(r: &[f64]) -> f64 {
     let n = r.len();
     let power: f64 = r.iter().map(|v| v * v).sum();

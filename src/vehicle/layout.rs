@@ -2,7 +2,7 @@
 
 use super::term::{Quantity, Term, share_done};
 
-/// Which small rigid motions a body has; vertical displacement at (x, y) is q0 + x q_pitch + y q_roll.
+/// Small rigid motions of a body. The vertical displacement at (x, y) is q0 + x q_pitch + y q_roll.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// Up and down.
@@ -28,7 +28,7 @@ impl Shape {
         }
     }
 
-    /// Letters of those functions: "", "x", "y".
+    /// Returns the letters of the functions of the shape: "", "x", "y".
     pub fn letters(self) -> &'static [&'static str] {
         match self {
             Self::Heave | Self::Witness => &[""],
@@ -52,10 +52,10 @@ impl Shape {
     }
 }
 
-/// A rigid body; its inertia is the integral of phi phi' dm over the functions phi of its shape.
+/// A rigid body. Its inertia is the integral of phi phi' dm over the functions phi of its shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// Suffix of its parameters, such as `b` in `m_b`.
+    /// Suffix of the parameters, such as `b` in `m_b`.
     pub name: String,
     /// Motions of the body.
     pub shape: Shape,
@@ -63,7 +63,7 @@ pub struct Body {
     pub x: f64,
     /// Coordinate y of a body without roll, across.
     pub y: f64,
-    /// Whether springs carry it.
+    /// Whether springs carry the body.
     pub sprung: bool,
 }
 
@@ -101,20 +101,20 @@ pub struct Sensor {
 /// A vertical force from outside: the road on a wheel, a shaker.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wheel {
-    /// Channel name of its force, whether measured or not.
+    /// Channel name of the wheel force, whether measured or not.
     pub channel: String,
     /// Position.
     pub at: Point,
 }
 
-/// A spring and damper; stretch d = sum of weight times displacement of its ends.
+/// A spring and damper. Its stretch d is the sum of weight times displacement over its ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
-    /// Suffix of its parameters, such as `s` in `k_s`.
+    /// Suffix of the parameters, such as `s` in `k_s`.
     pub name: String,
     /// Ends with weights: +1 body, -1 wheel.
     pub ends: Vec<(f64, Point)>,
-    /// Terms of its force; the force on each end is -weight times their sum.
+    /// Terms of the force. The force on each end is minus weight times the sum of the terms.
     pub terms: Vec<Term>,
 }
 
@@ -142,9 +142,9 @@ pub struct MassStep {
     pub body: usize,
     /// When the change begins, s of the record's time.
     pub at_s: f64,
-    /// How long it takes, s.
+    /// Duration of the change, s.
     pub over_s: f64,
-    /// Acceleration of gravity that the change brings into the balance; 0 where it only adds inertia.
+    /// Acceleration of gravity with which the change enters the balance. It is 0 if the change only adds inertia.
     pub gravity: f64,
 }
 
@@ -286,7 +286,7 @@ impl Vehicle {
             .map_or(vec![], |b| b.shape.functions(p.x, p.y))
     }
 
-    /// Bodies in groups that links join, each group ascending, groups in order of their first body.
+    /// Returns the bodies in groups that links join. Each group is ascending. The groups are in the order of their first body.
     pub fn components(&self) -> Vec<Vec<usize>> {
         let mut group: Vec<usize> = (0..self.bodies.len()).collect();
         for link in &self.links {

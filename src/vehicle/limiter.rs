@@ -6,7 +6,7 @@ use crate::series::detrend::without_mean;
 use crate::series::spectrum::{Band, Fourier, Spectrum};
 use crate::series::{Channels, SeriesError};
 
-/// Limits spectra to the band, thins and trims what they give.
+/// Limits spectra to the band, and thins and trims the resulting signals.
 pub(super) struct Limiter {
     pub fourier: Fourier,
     pub band: Band,
@@ -86,7 +86,7 @@ impl Limiter {
         x[trim.min(x.len())..self.n_kept.saturating_sub(trim).max(trim).min(x.len())].to_vec()
     }
 
-    /// A signal at the record's rate, its mean taken off, in the band.
+    /// Returns a signal at the rate of the record, without its mean, limited to the band.
     pub fn limited_samples(&mut self, x: &[f64]) -> Vec<f64> {
         let s = self.fourier.spectrum(&without_mean(x), self.rate_hz);
         self.samples_in_band(&s, 0)

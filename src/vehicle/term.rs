@@ -73,7 +73,7 @@ impl UnitNames {
     }
 }
 
-/// Which direction of stretch an end stop acts in.
+/// Direction of stretch in which an end stop acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// Both.
@@ -102,7 +102,7 @@ impl Side {
     }
 }
 
-/// One term of a link force; d is the stretch (body less wheel), v its rate, d = 0 at rest.
+/// One term of a link force. d is the stretch (body minus wheel), v its rate. At rest d is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Term {
     /// k d.
@@ -167,8 +167,8 @@ impl Term {
     }
 
     /// Returns the term of a name in a job: a coefficient's prefix or an effect id. A constant may follow in brackets: `coulomb_friction(0.006)`
-    /// (velocity), `bump_stop(0.03 compression)` (gap, side); without it, the constant is automatic. `dead_zone(0.004)` (gap) and
-    /// `stiffness_drift(0 64)` (begin and length in s) need it.
+    /// (velocity), `bump_stop(0.03 compression)` (gap, side); without brackets, the program determines the constant. `dead_zone(0.004)` (gap) and
+    /// `stiffness_drift(0 64)` (begin and length in s) require a constant.
     pub fn from_name(name: &str) -> Option<Self> {
         if let Some((plain, rest)) = name.split_once('(') {
             let inside = rest.strip_suffix(')')?;
@@ -210,7 +210,7 @@ impl Term {
         })
     }
 
-    /// The term as a job writes it, its constant included: [`Term::from_name`] reads it.
+    /// Returns the term with its constant in the form of a job, which [`Term::from_name`] reads.
     pub fn text(&self) -> String {
         match self {
             Self::Friction { velocity } if *velocity > 0.0 => {
@@ -305,7 +305,7 @@ impl Term {
         }
     }
 
-    /// Returns the basis function at a time of the record, s: a term that changes with time has its share at that time.
+    /// Returns the basis function at a time of the record, s. For a term that changes with time, it includes the share at this time.
     pub fn basis_at(&self, d: f64, v: f64, t_s: f64) -> f64 {
         match *self {
             Self::StiffnessChange { at_s, over_s } => d * share_done(at_s, over_s, t_s),

@@ -38,7 +38,7 @@ pub struct ModeRow {
     pub gap: f64,
     /// Modal effective mass along x, y, z and about axes through the centre of gravity.
     pub effective_mass: [f64; 6],
-    /// Strain at each gauge of the job for a generalised coordinate of 1, microstrain; null where a gauge has none.
+    /// Strain at each gauge of the job for a generalised coordinate of 1, microstrain. Null for a gauge without strain.
     pub gauge_microstrain: Vec<Option<f64>>,
 }
 

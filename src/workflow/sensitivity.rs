@@ -32,7 +32,7 @@ pub struct ComputedSensitivity {
     /// Mesh error by gauge, if the job asks for it; S is corrected for it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub mesh_error: Vec<GaugeMeshError>,
-    /// S itself, with the model and the gauges it was made of.
+    /// S itself, with the model and the gauges from which it was computed.
     #[serde(skip)]
     pub prepared: JobSensitivity,
     /// The job.

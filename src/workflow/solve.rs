@@ -37,21 +37,21 @@ pub struct SolvedCases {
     pub dofs: usize,
     /// Entries of the factor.
     pub factor_nonzeros: usize,
-    /// How the unknowns were ordered.
+    /// Ordering of the unknowns.
     pub ordering: Option<OrderingMethod>,
-    /// Smallest pivot over the largest entry of its row.
+    /// Smallest pivot divided by the largest entry of its row.
     pub smallest_pivot: f64,
     /// Nastran's epsilon of the worst case before and after refinement: |u'(f - K u)| / |u'f|.
     pub epsilon: [f64; 2],
     /// Units of mass, balance and reactions, from the job's system; null for a deck, which states no units.
     pub model_units: StatedUnits,
-    /// By load case: applied loads, inertia loads, remaining imbalance.
+    /// Applied loads, inertia loads and remaining imbalance of each load case.
     pub balance: Vec<Balance>,
-    /// Mass and its centre.
+    /// Mass and centre of gravity.
     pub mass: Option<MassAndCentre>,
     /// Description of the support of the structure under the unit loads of a job; `None` for a deck, whose subcases state their support.
     pub support: Option<String>,
-    /// By load case: resultants of the applied loads and of the reactions, and the reactions by grid, basic frame; empty without a support.
+    /// For each load case: resultants of the applied loads and of the reactions, and the reactions by grid, basic frame. Empty without a support.
     pub reactions: Vec<Reactions>,
     /// First elastic frequencies, per unit of time.
     pub elastic_modes_hz: Vec<f64>,

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 /// Groups of a task.
 pub(super) const GROUPS: usize = 4096;
 
-/// Lower triangle of a symmetric matrix by block columns; a block is stored by columns, diagonal blocks in full.
+/// Lower triangle of a symmetric matrix by block columns. Each block is stored by columns. Diagonal blocks are stored in full.
 #[derive(Clone, Debug, Default)]
 pub struct BlockMatrix {
     /// First block of each block column, and the total.
@@ -66,7 +66,7 @@ impl BlockMatrix {
         }
     }
 
-    /// Block rows of a group's column with their blocks, by columns; both numberings in elimination order.
+    /// Returns the blocks in the column of a group, each with its block row, by columns. Both numberings are in elimination order.
     pub(super) fn column_of(&self, g: usize) -> impl Iterator<Item = (u32, &[f64])> {
         let blocks = self.column[g]..self.column[g + 1];
         blocks.map(|b| {
@@ -75,7 +75,7 @@ impl BlockMatrix {
         })
     }
 
-    /// Scales rows and columns in place; `scale` in elimination order.
+    /// Scales rows and columns in place. `scale` is in elimination order.
     pub(super) fn scale(&mut self, symbolic: &Symbolic, scale: &[f64]) {
         let (column, row, value_start) = (&self.column, &self.row, &self.value_start);
         let mut rest = self.values.as_mut_slice();
@@ -104,7 +104,8 @@ impl BlockMatrix {
         });
     }
 
-    /// r -= A y, where `r` holds `M` columns row by row, and `y` holds those, from the one numbered `c`, among `k`; elimination order.
+    /// Subtracts a product: `r -= A y`. `r` contains `M` columns row by row. `y` contains `k` columns, of which the `M` columns from number `c` on
+    /// are used. Elimination order.
     pub(super) fn subtract_product<const M: usize>(
         &self,
         symbolic: &Symbolic,
@@ -198,7 +199,7 @@ impl BlockMatrix {
         y
     }
 
-    /// The lower triangle in the caller's numbering: rows, columns, values; for files and comparisons.
+    /// Returns the lower triangle in the caller's numbering (rows, columns, values), for files and comparisons.
     pub fn lower_triplets(&self, symbolic: &Symbolic) -> Vec<(usize, usize, f64)> {
         let mut all = Vec::new();
         for g in 0..symbolic.order.len() {

@@ -16,7 +16,7 @@ pub(super) struct EliminationForest {
 }
 
 impl EliminationForest {
-    /// Elimination tree (Liu 1990) of an order, its postorder, and the entries of its factor.
+    /// Returns the elimination tree (Liu 1990) of an order, its postorder, and the number of entries of the factor.
     pub(super) fn new(graph: &BlockGraph, order: &[u32], sizes: &[u8]) -> Self {
         let position = inverse(order);
         let n = order.len();

@@ -32,7 +32,7 @@ pub(super) struct Supernodes {
 }
 
 impl Supernodes {
-    /// The supernodes of a forest and the order (new to old group) that makes merged ones contiguous.
+    /// Returns the supernodes of a forest, and the order (new to old group) in which merged supernodes are contiguous.
     pub(super) fn new(
         graph: &BlockGraph,
         forest: &EliminationForest,
@@ -54,7 +54,7 @@ impl Supernodes {
         self.first[s] as usize..self.first[s + 1] as usize
     }
 
-    /// Groups below its own.
+    /// Returns the groups below the groups of supernode `s`.
     pub(super) fn rows(&self, s: usize) -> &[u32] {
         &self.rows[self.row_start[s]..self.row_start[s + 1]]
     }

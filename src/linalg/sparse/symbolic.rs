@@ -25,7 +25,7 @@ pub struct Symbolic {
 }
 
 impl Symbolic {
-    /// The smaller factor of the orders compared; `sizes` are the unknowns in each group.
+    /// Returns the smallest factor of the compared orders. `sizes` contains the number of unknowns of each group.
     ///
     /// # Errors
     /// More unknowns than 32-bit indices count.

@@ -3,7 +3,7 @@
 use super::area::{Area, Rectangle};
 use crate::model::types::Section;
 
-/// A section and its shear factors.
+/// A section with its shear factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model) struct Shape {
     pub section: Section,

@@ -1,7 +1,7 @@
 //! Shear centre and warping constant of an open thin-walled section.
 
-/// A straight wall between two points of the midline (indices), with its thickness. Walls are listed so that each begins where an
-/// earlier one has been (the first anywhere): a tree.
+/// A straight wall between two points of the midline (indices), with its thickness. The walls form a tree: each wall begins at a point of an earlier
+/// wall, and the first wall begins anywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Wall {
     pub from: usize,

@@ -59,7 +59,7 @@ pub enum ElementTemperature {
     },
 }
 
-/// A direction in a coordinate system: of a cylindrical or spherical one it differs from place to place.
+/// A direction in a coordinate system. In a cylindrical or spherical system it depends on the place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Direction {
     /// The system.

@@ -14,13 +14,13 @@ pub struct BundleLayout {
     pub bundles: Vec<usize>,
     /// The criterion.
     pub log_det: f64,
-    /// No layout within the budget has a larger one.
+    /// Upper bound of the criterion of all layouts within the budget.
     pub upper_bound: f64,
-    /// At least this share of the best possible.
+    /// Lower bound on the efficiency, relative to the best possible layout.
     pub efficiency_bound: f64,
 }
 
-/// The best layout found within the budget, with its bound.
+/// Returns the best layout found within the budget, with its bound.
 ///
 /// # Errors
 /// Where no layout within the budget separates the loads, or nothing fits.

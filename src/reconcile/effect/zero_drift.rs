@@ -4,7 +4,7 @@ use super::channel_fault::{ChannelFault, FaultScope, OnGauges};
 use super::{Amplitudes, Correction, Extension, FaultKind, Parameter};
 use crate::reconcile::strain::{Part, StrainFrame};
 
-/// How the zero moves.
+/// Way in which the zero changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ZeroDrift {
     /// By the same amount in all runs.

@@ -12,7 +12,7 @@ pub(super) const STATIC: std::ops::Range<f64> = 0.5..2.0;
 /// Factor on the velocity in the band that accounts for slower motion between the ends of a record.
 const SLOWER: f64 = 2.0;
 
-/// Balance of weight as one more row of the least squares: g (sum of masses) = sum of mean wheel forces.
+/// Balance of weight as an additional row of the least squares: g (sum of masses) = sum of mean wheel forces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RestRow {
     /// Parameters with the acceleration that each is multiplied by.

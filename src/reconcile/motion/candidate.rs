@@ -61,7 +61,7 @@ impl Candidate {
         self.shapes.first().is_some_and(own)
     }
 
-    /// Returns the link whose spring the effect bends: its force over stretch is not a straight line.
+    /// Returns the link whose spring becomes nonlinear by the effect. Its force is then not proportional to its stretch.
     pub fn bends_spring(&self) -> Option<usize> {
         match self.shapes.first()? {
             Change::Terms { link, terms } if terms.iter().all(|t| t.bends_spring()) => Some(*link),

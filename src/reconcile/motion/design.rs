@@ -17,11 +17,11 @@ pub type Bins = Vec<Complex64>;
 /// One equation of a compared body.
 #[derive(Clone, Debug)]
 pub struct BinEquation {
-    /// Such as `body b`.
+    /// Name, such as `body b`.
     pub name: String,
     /// Body.
     pub body: usize,
-    /// Which of its motions.
+    /// Motion of the body.
     pub motion: usize,
     /// Parameter index and column.
     pub columns: Vec<(usize, Bins)>,
@@ -53,11 +53,11 @@ pub struct Design {
     pub equations: Vec<BinEquation>,
     /// Channels of the compared bodies.
     pub channels: Vec<BinChannel>,
-    /// Samples of the record to one of the thinned signals.
+    /// Factor of thinning: number of samples of the record for each sample of the thinned signals.
     pub thinning: f64,
     /// Time of the record's first sample, s.
     pub record_start_s: f64,
-    /// The band of its bins.
+    /// Frequency band of the bins.
     pub band: Band,
     /// The vehicle.
     pub vehicle: Vehicle,

@@ -112,8 +112,8 @@ pub fn beyond_tolerance(frame: &MotionFrame, fit: &MotionFit) -> bool {
     })
 }
 
-/// Returns the lateness of a channel from a timing fault of size one, RMS over the record about its mean, s. This lateness is compared with the
-/// tolerance of synchronisation, which applies to one delay.
+/// Returns the delay of a channel from a timing fault of size one, RMS over the record about its mean, s. This delay is compared with the tolerance
+/// of synchronisation, which applies to one delay.
 pub(super) fn late_on_average(shape: &Change, fit: &MotionFit) -> f64 {
     let [begin, end] = fit.design.span_s();
     match shape {

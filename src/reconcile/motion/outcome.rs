@@ -15,7 +15,7 @@ pub struct MotionEffect {
     pub place: Option<String>,
     /// Change of the vehicle or of a channel.
     pub change: Change,
-    /// Sizes of its parameters.
+    /// Sizes of the parameters of the effect.
     pub size: Vec<f64>,
     /// One sd of each size.
     pub sigma: Vec<f64>,
@@ -41,7 +41,7 @@ pub struct MotionDetectionLimit {
 pub struct MotionOutcome {
     /// Verdict.
     pub verdict: Verdict,
-    /// Named effects; empty unless named.
+    /// Named effects. Empty unless the verdict is `named`.
     pub effects: Vec<MotionEffect>,
     /// Effects of the best attempt.
     pub best_attempt: Vec<MotionEffect>,

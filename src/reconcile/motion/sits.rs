@@ -29,7 +29,7 @@ pub struct GapSits {
     pub band_hz: Option<Stretch>,
     /// Stretch of the record, s.
     pub time_s: Option<Stretch>,
-    /// Size of what was measured, over its root mean square.
+    /// Size of the measured quantity, divided by its root mean square.
     pub size_over_rms: Option<Stretch>,
 }
 

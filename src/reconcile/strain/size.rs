@@ -21,7 +21,7 @@ struct RunBlock {
     covariance: Vec<f64>,
 }
 
-/// Run with its precision, scatter of amplitudes included, for fast sums.
+/// Run with its precision, including the scatter of amplitudes, for fast sums.
 pub struct RunPrecision<'a> {
     /// Places of the readings in the selection.
     pub at: &'a [usize],

@@ -9,24 +9,25 @@ use std::ops::Range;
 /// Blocks in memory at a time.
 const GROUP: usize = 16;
 
-/// A block at rest; errors and sums are of every `step`-th sample, often enough for the band.
+/// Quasi-static block of a record. Errors and sums contain every `step`-th sample, which is often enough for the band.
 pub(super) struct Block {
     /// First sample.
     pub first: usize,
-    /// By gauge that reads.
+    /// Readings of each gauge that reads.
     pub readings: Vec<Vec<f64>>,
     /// Samples between two samples with computed errors.
     pub step: usize,
     /// First sample with computed errors.
     pub first_told: usize,
-    /// By error, by gauge that reads: both quarters of its course at these samples, strain; it is as large as the mean of their squares.
+    /// Both quarters of the time history of each error, by error and by gauge that reads, at these samples, strain. The mean of their squares is the
+    /// size of the error.
     pub errors: Vec<Vec<[Vec<f64>; 2]>>,
-    /// By load: what loads recovered as if at rest are off by, and the loads, at these samples.
+    /// For each load at these samples: the load, and the error of its quasi-static recovery.
     pub motion: Vec<Vec<f64>>,
     pub loads: Vec<Vec<f64>>,
 }
 
-/// Spectrum of a channel: one value a frequency of the filter.
+/// Spectrum of a channel: one value for each frequency of the filter.
 pub(super) type Spectrum = Vec<Complex<f64>>;
 
 impl Kernel {
@@ -203,7 +204,7 @@ pub(super) fn spectrum(length: usize, sample: impl Fn(usize) -> f64) -> Spectrum
     out
 }
 
-/// The course over `length` samples of what has the first `bins` of a transform of `of` samples, nothing above them.
+/// Returns the time history over `length` samples from the first `bins` of a transform of `of` samples. Higher bins are zero.
 pub(super) fn time_history(bins: &[Complex<f64>], length: usize, of: usize) -> Vec<f64> {
     let back = inverse(length);
     let mut input = back.make_input_vec();

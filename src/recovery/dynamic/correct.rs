@@ -17,7 +17,7 @@ pub(super) const MOST_NUMBERS: usize = 32_000_000;
 /// Quasi-static readings of a record, with their errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AtRest {
-    /// By gauge, every sample; NaN where nothing is known.
+    /// Every sample of each gauge. NaN if nothing is known.
     pub readings: Vec<Vec<f64>>,
     /// Samples of which something was read.
     pub read: usize,
@@ -38,7 +38,7 @@ pub struct AtRest {
     pub load: Vec<f64>,
 }
 
-/// Stretches of a record by the gauges that read in them.
+/// Stretches of a record with the same active gauges.
 pub(super) struct Stretches {
     /// Gauges that read, all of them first, then by how long they do.
     sets: Vec<Vec<usize>>,
@@ -130,7 +130,7 @@ pub fn window(dynamics: &Dynamics, rate_hz: f64) -> usize {
 }
 
 impl Stretches {
-    /// Stretches in which the same gauges read.
+    /// Returns the stretches in which the same gauges read.
     pub fn from_readings(readings: &[Vec<f64>], samples: usize) -> Self {
         let reads = |i: usize| readings.iter().map(move |c| c[i].is_finite());
         let mut numbers: BTreeMap<Vec<bool>, usize> = BTreeMap::new();

@@ -49,7 +49,7 @@ pub(super) struct Bin {
     pub added: ComplexMatrix,
     /// Error of quasi-static readings by uncertain mode, `T psi`, if the response of the mode exceeds the assumed response by 1.
     pub spread: Vec<Vec<Complex<f64>>>,
-    /// Increase of the response by uncertain mode, for one standard deviation more of its frequency and of its damping.
+    /// Increase of the response for each uncertain mode, if its frequency or its damping is larger by one standard deviation.
     pub errors: Vec<[Complex<f64>; 2]>,
     /// Error of quasi-static readings for unit loads from modes outside the model, `T (S - Psi C) a`, `n x k`; `None` without such modes.
     pub further: Option<ComplexMatrix>,
@@ -63,7 +63,7 @@ impl Bin {
 }
 
 impl Kernel {
-    /// For samples at `rate_hz`, of `most_numbers` numbers at most.
+    /// Creates the filter for samples at `rate_hz`. It may contain at most `most_numbers` numbers.
     ///
     /// # Errors
     /// See [`Unfit`].

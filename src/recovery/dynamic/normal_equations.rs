@@ -6,7 +6,7 @@ use std::ops::Range;
 /// Sums of products over part of the record. Columns are the derivatives by parameter, the residual, and the residual without modes.
 #[derive(Clone)]
 pub(super) struct Products {
-    /// Loads and motions of the `m` modes with one another, `(k + m) x (k + m)`.
+    /// Products of loads and motions of the `m` modes with each other, `(k + m) x (k + m)`.
     pub loads: Matrix,
     /// Loads and motions with columns by gauge, `(k + m) x (p + 2)`.
     pub by_gauge: Vec<Matrix>,
@@ -20,7 +20,7 @@ pub(super) struct Normal {
     /// Derivatives with derivatives, and with the residual.
     pub matrix: Matrix,
     pub right: Vector,
-    /// Sum of squares of the residual, without modes too.
+    /// Sum of squares of the residual, also without the modes.
     pub squares: f64,
     pub squares_without: f64,
     /// Sum of squares of the part of the residual that the modes remove.
@@ -37,9 +37,9 @@ pub(super) struct Normal {
 
 /// Strain of the modes with parameters at the gauges.
 pub(super) struct Shapes {
-    /// By gauge, by mode.
+    /// Strain of each mode at each gauge.
     pub strain: Vec<Vec<f64>>,
-    /// One standard deviation, share of the strain.
+    /// One standard deviation, as a share of the strain.
     pub sd: f64,
     pub n_loads: usize,
 }
@@ -94,7 +94,7 @@ impl Products {
         }
     }
 
-    /// Returns the products of columns less their regression on the loads, with the coefficients `regression` by gauge, `k x (p + 2)`.
+    /// Returns the products of columns minus their regression on the loads. `regression` contains the coefficients by gauge, `k x (p + 2)`.
     pub fn orthogonal(&self, regression: &[Matrix]) -> Matrix {
         let mut out = self.columns.clone();
         let k = regression.first().map_or(0, Matrix::nrows);
@@ -179,7 +179,7 @@ impl Normal {
         Vector::from_fn(n, |i, _| step[i] / scale(i))
     }
 
-    /// Returns the variance of one residual: of noise, or what the best linear step leaves if that is larger.
+    /// Returns the variance of one residual. It is the variance of the noise, or of the remainder after the best linear step if this is larger.
     pub fn variance(&self, noise: f64) -> f64 {
         let left = (self.squares - self.right.dot(&self.step())).max(0.0) / self.freedom;
         (noise * noise * self.band).max(left).max(f64::MIN_POSITIVE)

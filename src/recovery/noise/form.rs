@@ -9,7 +9,7 @@ pub(super) struct Sample {
     pub t: Matrix,
     /// `m x m`: covariance of `T y`.
     pub covariance: Matrix,
-    /// Effective degrees of freedom behind it.
+    /// Effective degrees of freedom of the form.
     pub dof: f64,
 }
 

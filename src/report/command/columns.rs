@@ -3,7 +3,7 @@
 use crate::host::fault::Fault;
 use crate::host::output::Output;
 
-/// States the units of a table that was written, column by column of its header; empty: a name or a plain number.
+/// States the units of a written table, column by column. An empty unit stands for a name or a plain number.
 ///
 /// # Errors
 /// Where the table can't be read back.

@@ -22,7 +22,7 @@ use crate::vehicle::term::UnitNames;
 use crate::workflow::reconcile::{MotionPart, Reconciliation, SimulationFound};
 use std::fmt::Write;
 
-/// Writes the tables; `units` are the job's.
+/// Writes the tables. `units` are the units of the job.
 pub(super) fn write_motion(
     found: &MotionPart,
     units: &UnitNames,

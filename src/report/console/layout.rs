@@ -10,7 +10,7 @@ use super::wrap::wrap_lines;
 pub struct Room {
     /// Columns.
     pub width: usize,
-    /// Lines; `None`: as many as there are.
+    /// Number of lines. `None` means no limit.
     pub lines: Option<usize>,
     /// Whether the terminal shows characters beyond ASCII.
     pub is_utf8: bool,

@@ -11,7 +11,7 @@ pub(in crate::report) struct Scale {
 }
 
 impl Scale {
-    /// A scale on which all `values` are between the places; with a little room at both ends where they are `roomy`.
+    /// Creates a scale on which all `values` are between the ends, with some room at both ends if `roomy`.
     pub(in crate::report) fn from_values(
         values: impl Iterator<Item = f64>,
         place: [f64; 2],
@@ -40,7 +40,7 @@ impl Scale {
         }
     }
 
-    /// Position of a value; `None` if it has no place.
+    /// Returns the position of a value. `None` if the value is not on the scale.
     pub(in crate::report) fn position_of_value(&self, value: f64) -> Option<f64> {
         let v = if self.by_powers { value.log10() } else { value };
         let share = (v - self.ends[0]) / (self.ends[1] - self.ends[0]);

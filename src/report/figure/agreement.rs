@@ -16,7 +16,7 @@ pub struct GaugePoints {
     pub name: String,
     /// Residual, microstrain rms.
     pub residual: f64,
-    /// By kind.
+    /// Points of each kind.
     pub points: [Vec<(f64, f64)>; 2],
 }
 

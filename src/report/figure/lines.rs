@@ -28,7 +28,7 @@ pub enum Scale {
     LogY,
 }
 
-/// Groups of curves, shown one group at a time. In a group, the first curve is drawn first, below the others.
+/// Draws groups of curves, shown one group at a time. In a group, the first curve is drawn first, below the others.
 pub fn lines(
     groups: &[(String, Vec<Line>)],
     x: &str,

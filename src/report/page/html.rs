@@ -59,7 +59,7 @@ fn is_pair(blocks: &[Block]) -> bool {
     figures && tables.count() == 1
 }
 
-/// A block as a page has it.
+/// Returns a block as HTML of the page.
 pub(in crate::report) fn block(b: &Block) -> Markup {
     match b {
         Block::Text(t) => html! { p { (t) } },

@@ -28,7 +28,7 @@ pub enum PdfError {
     Write(String),
 }
 
-/// Bytes of `report.pdf`: A4, the same for the same page and origin.
+/// Returns the bytes of `report.pdf` in A4. The same page and origin give the same bytes.
 ///
 /// # Errors
 /// Only where the template is wrong.

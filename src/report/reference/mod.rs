@@ -20,7 +20,7 @@ pub fn pages() -> [(&'static str, String); 3] {
     ]
 }
 
-/// Fields of `result.json` by command; `*` as command: of every one.
+/// Returns the fields of `result.json` by command. The command `*` stands for every command.
 pub fn fields() -> Vec<[&'static str; 4]> {
     rows(FIELDS)
 }

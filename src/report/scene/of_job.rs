@@ -18,7 +18,7 @@ const MOST_RUNS: usize = 100;
 /// Arrows of one load set.
 const MOST_OF_SET: usize = 60;
 
-/// The scene of a job with a model: its gauges, its unit loads.
+/// Returns the scene of a job with a model, its gauges and its unit loads.
 pub fn scene_of_job<'a>(job: &Job, prepared: &'a JobSensitivity) -> Option<Scene<'a>> {
     let fields = prepared.fields.as_ref()?;
     let mark = |g| Mark::from_gauge(g, String::new());
@@ -249,7 +249,7 @@ pub fn scene_of_solution<'a>(
     }
 }
 
-/// The scene of a model alone, for planning where gauges may go.
+/// Returns the scene of a model alone, to plan where gauges may go.
 pub fn scene_of_model<'a>(model: &'a Model, places: Places) -> Scene<'a> {
     Scene {
         model,
@@ -276,7 +276,7 @@ pub fn placed_mark(p: &PlacedGauge) -> Mark {
     Mark::from_gauge(&p.gauge, note)
 }
 
-/// A gauge with its gap.
+/// Returns the mark of a gauge with its gap.
 pub fn mark_of_gap(at: Vec3, gap: &ChannelGap) -> Mark {
     Mark {
         name: gap.channel.clone(),

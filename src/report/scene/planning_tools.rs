@@ -4,7 +4,7 @@ use super::types::PickTargets;
 use maud::{Markup, html};
 use serde_json::{Map, Value, json};
 
-/// Returns the data for the page's script: null without pointing, else the lists and the file of picked places.
+/// Returns the data for the script of the page. It is null without pointing, otherwise the lists and the file of picked places.
 pub(super) fn script_data(pointing: &PickTargets) -> Value {
     match pointing {
         PickTargets::Nothing => Value::Null,

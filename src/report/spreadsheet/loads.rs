@@ -18,11 +18,11 @@ pub struct HistoryLoad {
     pub max: f64,
     /// Root mean square.
     pub rms: f64,
-    /// One standard deviation of a sample at the rms of all loads.
+    /// One standard deviation of a sample at the root mean square of all loads.
     pub sigma: f64,
 }
 
-/// Sheet `Loads`: a row a run; value and 95 % interval of each load.
+/// Returns the sheet `Loads` with a row for each run: value and 95 % interval of each load.
 pub fn runs_sheet(runs: &[RecoveredRun]) -> Sheet {
     let mut columns = vec!["run".to_owned()];
     for (name, _, unit) in runs.first().map_or(&[][..], |r| &r.loads) {

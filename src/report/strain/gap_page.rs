@@ -41,7 +41,7 @@ pub struct GapReport<'a> {
     pub findings: &'a [Finding],
 }
 
-/// The page: verdict, where the gap sits, what was added, gap and scatter before and after, the gap on the model; notes behind.
+/// Returns the page: verdict, place of the gap, changes of the model, gap and scatter before and after, the gap on the model, and notes.
 pub fn reconcile_page(report: &GapReport<'_>) -> Page {
     let outcome = report.outcome;
     let mut sections = vec![

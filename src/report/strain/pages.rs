@@ -64,7 +64,7 @@ pub fn sensitivity_page(
     )
 }
 
-/// The page of `place`; `counts` is what other numbers of gauges give.
+/// Returns the page of `place`. `counts` contains the results for other gauge counts.
 pub fn place_page(
     title: &str,
     scene: &Scene,
@@ -152,7 +152,7 @@ pub struct RecoveryPage<'a> {
     pub sensitivity: &'a Sensitivity,
     /// Runs.
     pub runs: &'a [RecoveredRun],
-    /// Points of static runs: predicted by all gauges, and by all others.
+    /// Points of static runs: strain predicted from all gauges, and from all other gauges.
     pub points: &'a [GaugePoints],
     /// Loads of a history.
     pub traces: &'a [LoadTrace],

@@ -14,7 +14,7 @@ pub struct Point {
 pub struct Cycle {
     /// The reversal that came first.
     pub from: Point,
-    /// The other.
+    /// Value of the second reversal of the cycle.
     pub to: Point,
     /// 1 or 0.5.
     pub count: f64,
@@ -136,8 +136,8 @@ impl<T> Rainflow<T> {
         self.latest = Some(point);
     }
 
-    /// Takes samples that follow each other, the first being number `first` of the record; as [`Rainflow::push_tagged`] of each.
-    /// `turns` is room for as many numbers.
+    /// Takes consecutive samples, of which the first is sample `first` of the record. The result equals [`Rainflow::push_tagged`] for each sample.
+    /// `turns` is working memory for as many numbers.
     #[inline(always)]
     pub(super) fn push_block(
         &mut self,
@@ -194,7 +194,7 @@ impl<T> Rainflow<T> {
         self.open
     }
 
-    /// The latest sample, if it is not a reversal yet.
+    /// Returns the latest sample if it is not yet a reversal.
     pub fn latest_sample(&self) -> Option<Point> {
         self.latest
     }
@@ -217,7 +217,8 @@ impl<T> Rainflow<T> {
 }
 
 impl<T: Clone> Rainflow<T> {
-    /// The residue of histories that follow each other, from theirs; `counted` gets the cycles that close across their borders.
+    /// Returns the residue of consecutive histories from the residues of the single histories. `counted` gets the cycles that close across their
+    /// borders.
     pub fn join_residues(
         residues: &[Vec<Reversal<T>>],
         counted: &mut impl FnMut(&Reversal<T>, &Reversal<T>),
@@ -241,7 +242,7 @@ impl<T: Clone> Rainflow<T> {
 }
 
 impl Rainflow {
-    /// Takes the next sample; `counted` gets every full cycle that closes. A value that is not finite is passed over.
+    /// Takes the next sample. `counted` gets every full cycle that closes. A value that is not finite is ignored.
     pub fn push(&mut self, point: Point, counted: &mut impl FnMut(Cycle)) {
         let closed = |b: &Reversal<()>, c: &Reversal<()>| {
             counted(Cycle {

@@ -402,7 +402,7 @@ fn white_noise(mark: u64) -> f64 {
     (f64::from(sum) - 131_070.0) / 37_837.227_237
 }
 
-/// A number without likeness to its neighbours (splitmix64).
+/// Returns a number that is independent of its neighbours (splitmix64).
 #[inline(always)]
 pub(super) fn mix_bits(x: u64) -> u64 {
     let mut z = x.wrapping_add(0x9E37_79B9_7F4A_7C15);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 /// Places of the small table; a power of two.
 const PLACES: usize = 1024;
 
-/// A class, or a pair of them.
+/// A class, or a pair of classes.
 pub(super) trait Key: Copy + Ord {
     /// A number that neighbours don't share.
     fn number(self) -> u32;
@@ -42,7 +42,7 @@ impl<K: Key> Counts<K> {
         }
     }
 
-    /// Counts one.
+    /// Adds one to the count.
     #[inline(always)]
     pub(super) fn add(&mut self, key: K) {
         let Some(slot) = self.lately.get_mut(key.number() as usize % PLACES) else {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub struct Knee {
     /// Range at the bend: smaller ranges do less damage than the power gives.
     pub range: f64,
-    /// The power below; infinite for no damage at all.
+    /// Power below the knee. Infinite if cycles below the knee cause no damage.
     #[serde(deserialize_with = "super::nullable_numbers::number_or_infinity")]
     pub slope: f64,
 }
@@ -43,7 +43,7 @@ impl Law {
         Self { slope, knee: None }
     }
 
-    /// Damage of one cycle of a range.
+    /// Returns the damage of one cycle with this range.
     #[inline(always)]
     pub fn damage(&self, range: f64) -> f64 {
         match self.knee {

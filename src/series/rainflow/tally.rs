@@ -6,8 +6,8 @@ use super::law::Law;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Standard deviations of the noise in the counted histories, in units of the noise of the loads. The first is without added noise; added
-/// noise doubles and triples it.
+/// Standard deviations of the noise in the counted histories, in units of the noise of the loads. The first history has no added noise. In the
+/// others, added noise doubles and triples the noise.
 pub const NOISE: [f64; 3] = [1.0, 2.0, 3.0];
 
 /// Extreme value of a history, and its sample.
@@ -19,7 +19,7 @@ pub struct Extreme {
     pub at: usize,
 }
 
-/// A reversal of a residue: its sample, its value, all loads at that time (empty if they are not needed).
+/// A reversal of a residue: its sample, its value, and all loads at that sample (empty if not needed).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ResidueReversal {
     /// Sample.
@@ -52,13 +52,13 @@ pub struct Tally {
     pub law: Law,
     /// Closed cycles by class of their first and second reversal, in order.
     pub cycles: Vec<(i32, i32, u64)>,
-    /// How often the load rose through the lower border of a class.
+    /// Number of times that the load rose through the lower border of each class.
     pub levels: Vec<(i32, u64)>,
     /// Largest value.
     pub max: Option<Extreme>,
     /// Smallest value.
     pub min: Option<Extreme>,
-    /// Samples, those without a value among them.
+    /// Number of samples, including samples without a value.
     pub samples: usize,
     /// Samples without a value.
     pub missing: usize,
@@ -69,7 +69,7 @@ pub struct Tally {
 }
 
 impl Sums {
-    /// Adds a cycle, or a share of one, from a value to another; `from` and `to` are all loads then.
+    /// Adds a cycle, or a share of a cycle, between two values. `from` and `to` contain all loads at both times.
     #[inline(always)]
     pub(super) fn add(&mut self, law: &Law, count: f64, change: f64, from: &[f64], to: &[f64]) {
         let range = change.abs();
@@ -86,8 +86,7 @@ impl Sums {
 }
 
 impl Tally {
-    /// The tally of times that follow each other; samples are counted through. `None` without parts, or where classes or laws
-    /// differ.
+    /// Returns the tally of consecutive times, with consecutive sample numbers. `None` without parts, or if classes or laws differ.
     pub fn join_parts(parts: &[&Self]) -> Option<Self> {
         let first = parts.first()?;
         let same = |t: &&&Self| {
@@ -269,7 +268,7 @@ pub(super) fn extremes(max: &mut Option<Extreme>, min: &mut Option<Extreme>, p: 
     }
 }
 
-/// The borders that a rise from one class to another goes through, by the class above.
+/// Returns the borders that a rise from one class to another crosses, each by the class above it.
 pub(super) fn risen_borders(from: i32, to: i32) -> impl Iterator<Item = i32> {
     // A step through more borders than this is not a real load.
     (from.saturating_add(1)..=to).take(1 << 20)

@@ -22,7 +22,7 @@ pub(super) struct EvenStepReader {
 }
 
 impl EvenStepReader {
-    /// The binary record of strainbridge; `unit` of its header is stated as the unit of every column without one.
+    /// Opens the binary record of strainbridge. The `unit` in its header is the unit of every column without a unit.
     pub(super) fn binary(bytes: Bytes) -> Result<Self, SeriesError> {
         let header = binary::read_header((*bytes).as_ref()).map_err(|e| SeriesError::Broken {
             wrong: e.to_string(),

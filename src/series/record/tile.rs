@@ -27,8 +27,8 @@ impl Tile {
         }
     }
 
-    /// Returns room for the numbers of column `j` of at most [`BLOCK`] rows. Columns to which it is not adjacent are first laid out into `values`,
-    /// `k` a row.
+    /// Returns room for the numbers of column `j` of at most [`BLOCK`] rows. If the columns are not contiguous, they are first arranged in `values`,
+    /// `k` for each row.
     pub(super) fn column(
         &mut self,
         j: usize,

@@ -5,7 +5,7 @@ use std::fmt;
 
 /// Bytes of a header record.
 pub(super) const RECORD: usize = 128;
-/// Bytes of its key.
+/// Bytes of the key of an entry.
 pub(super) const KEY: usize = 32;
 /// Bytes of a block.
 pub(super) const BLOCK: usize = 512;
@@ -15,15 +15,15 @@ const MOST_BLOCKS: usize = 1024;
 /// One channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RpcChannel {
-    /// `DESC.CHAN_n`; `n` where the file has none.
+    /// Name `DESC.CHAN_n`. It is `n` if the file has none.
     pub name: String,
     /// `UNITS.CHAN_n`.
     pub unit: String,
-    /// Value of one count; 1 for reals.
+    /// Value of one count. It is 1 for reals.
     pub scale: f64,
 }
 
-/// How numbers are stored.
+/// Storage of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Numbers {
     Int16,

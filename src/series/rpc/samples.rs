@@ -3,8 +3,7 @@
 use super::header::{Header, Numbers, RpcError, read_header};
 use crate::series::channels::{Channel, Channels};
 
-/// Numbers of samples `from .. to` in the units of the file, one sample after the other, appended in the order of `columns`
-/// (`None`: NaN).
+/// Appends the numbers of samples `from .. to` in the units of the file, one sample after the other, in the order of `columns` (`None` gives NaN).
 pub fn read_samples(
     h: &Header,
     bytes: &[u8],

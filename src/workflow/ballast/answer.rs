@@ -68,7 +68,7 @@ impl Answer for BallastAnswer {
     }
 }
 
-/// A lumped mass. Each number has its 95 % interval with the other numbers adjusted to the data.
+/// A lumped mass. Each number has a 95 % interval. For its ends, the other numbers are adjusted to the data.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HungMass {
     /// Mass.
@@ -81,9 +81,9 @@ pub struct HungMass {
     pub position_range: [[f64; 2]; 2],
     /// Grid of the completed deck.
     pub grid: u32,
-    /// RBE3 that ties it.
+    /// RBE3 that ties the mass.
     pub rbe3: u32,
-    /// CONM2 of it.
+    /// CONM2 of the mass.
     pub conm2: u32,
 }
 
@@ -102,7 +102,7 @@ pub struct Reaction {
     pub after: f64,
 }
 
-/// Total missing mass and its centre, from the resultant of the measured reactions less the reactions of the model.
+/// Total missing mass and its centre, from the resultant of measured reactions minus reactions of the model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TotalMass {
     /// Mass.
@@ -127,7 +127,7 @@ pub(super) struct BallastSizing<'a> {
     pub height: f64,
 }
 
-/// The answer in report units, once it has its deck.
+/// Returns the answer in report units, with the completed deck.
 pub(super) fn report_ballast(
     task: &Task,
     sized: &BallastSizing,

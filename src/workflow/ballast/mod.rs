@@ -28,7 +28,7 @@ use task::{Task, force};
 /// Noise of a measured reaction over the mean reaction, if the job states no noise.
 const ASSUMED_NOISE: f64 = 0.01;
 
-/// Finds lumped masses that match the model's reactions to the measured ones. Returns them with the completed deck, which is read back and
+/// Finds lumped masses that fit the reactions of the model to the measured reactions. Returns the masses with the completed deck, which is read and
 /// solved as a check.
 ///
 /// # Errors

@@ -46,7 +46,7 @@ pub(super) fn compare_check_loads(checked: &[CheckedRun], listed: &ListedLoads) 
     checked.iter().flat_map(of_run).collect()
 }
 
-/// The finding on check loads outside of their intervals; `None` where there are no more of them than 95 % leaves.
+/// Returns the finding on check loads outside their intervals. `None` if no more loads are outside than expected for 95 % intervals.
 pub(super) fn finding(checks: &[CheckLoad], loads: &[String]) -> Option<Finding> {
     let outside: Vec<&CheckLoad> = checks.iter().filter(|c| !c.inside).collect();
     let deviation = |c: &&CheckLoad| (c.recovered - c.applied).abs() / (0.5 * (c.high - c.low));

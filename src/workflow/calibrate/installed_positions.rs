@@ -18,7 +18,7 @@ const REACH: f64 = 6.0;
 /// Half step of the differences in place over the reach of a gauge: within its element and the next.
 const PLACE_STEP: f64 = 0.5;
 
-/// The job's gauges on its model, free to move.
+/// The job's gauges on its model. Their positions may change.
 pub(super) struct Sites<'a> {
     model: &'a Model,
     corners: CornerRows,
@@ -106,7 +106,7 @@ impl<'a> Sites<'a> {
         drawn.slope(way, step, |g| self.row_of(g))
     }
 
-    /// Where a gauge was found; `None` for one on a bar.
+    /// Returns the installed position of a gauge. `None` for a gauge on a bar.
     pub fn locate_gauge(
         &self,
         gauge: usize,

@@ -200,8 +200,8 @@ fn common_zero(job: &Job, has_prior: bool) -> Result<CommonZero, Faults> {
     }
 }
 
-/// Reads the data that [`calibrate`] uses, as far as that needs no solution of a model, and discards it. This applies to a job with `[calibration]`,
-/// and to a job that only `calibrate` can use.
+/// Reads the data that [`calibrate`] uses without solving a model, and discards it. This applies to a job with `[calibration]`, and to a job that
+/// only `calibrate` can use.
 ///
 /// # Errors
 /// Every fault of these files.

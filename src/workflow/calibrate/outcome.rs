@@ -65,7 +65,7 @@ pub struct CalibrationSummary {
     pub runs: usize,
     /// `model` or `none`.
     pub prior: &'static str,
-    /// By gauge.
+    /// Result for each gauge.
     pub gauges: Vec<CalibratedGauge>,
     /// Scatter between repeats over the strain; null if noise explains all scatter.
     pub repeat_scatter_rel: Option<f64>,
@@ -89,7 +89,7 @@ pub struct CalibrationSummary {
     pub checks: Vec<CheckLoad>,
     /// The next known load worth applying.
     pub next_run: Option<NextRunSummary>,
-    /// Relative error of the model as the runs show it.
+    /// Relative error of the model, as estimated from the runs.
     pub model_error: Option<ModelErrorSummary>,
     /// Left-out runs with their loads predicted from the other runs.
     pub left_out: Vec<LeftOutSummary>,
@@ -101,7 +101,7 @@ pub struct CalibrationSummary {
     pub dependence: Option<DependenceSummary>,
 }
 
-/// One gauge.
+/// Result for one gauge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[allow(missing_docs)]
 pub struct CalibratedGauge {
@@ -124,7 +124,7 @@ pub struct InstalledPositionSummary {
     pub along: Option<GlueSummary>,
     pub across: Option<GlueSummary>,
     pub angle_deg: Option<GlueSummary>,
-    /// Factor on its readings.
+    /// Factor on the readings of the gauge.
     pub gain: GlueSummary,
 }
 
@@ -142,11 +142,11 @@ pub struct GlueSummary {
 /// Gauge on the model at its installed position, as determined from the runs.
 #[derive(Clone, Debug)]
 pub struct InstalledGauge {
-    /// There.
+    /// Gauge at its installed position.
     pub gauge: Gauge,
     /// Position on the reference surface, basic frame.
     pub at: Vec3,
-    /// Whether strain is read at `at`; else in the middle of the element.
+    /// Whether strain is read at `at`. Otherwise it is read in the middle of the element.
     pub by_position: bool,
     /// Specification of the gauge, at its nominal position.
     pub spec: GaugeSpec,
@@ -174,7 +174,7 @@ pub struct NextRunSummary {
     pub loads: BTreeMap<String, f64>,
     /// Half the log of the ratio of determinants of the covariance of S.
     pub information: f64,
-    /// The load that gains most, with its standard deviation before and after, report units.
+    /// Load that gains most, with its standard deviation before and after the run, report units.
     pub load: String,
     /// Before.
     pub sigma_before: f64,
@@ -200,7 +200,7 @@ pub struct LeftOutSummary {
     pub run: String,
     /// Distance from the known loads, root mean square over the loads, in standard deviations.
     pub distance: f64,
-    /// By load, then by combination.
+    /// Result for each load, then for each combination.
     pub loads: Vec<LeftOutLoad>,
 }
 
@@ -246,9 +246,9 @@ pub struct LackOfFitSummary {
 /// Root mean square error of left-out runs, percent of the largest load.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HeldOutSummary {
-    /// Without a common zero.
+    /// Error without a common zero.
     pub linear_percent: f64,
-    /// With one.
+    /// Error with a common zero.
     pub intercept_percent: f64,
     /// `linear`, or `intercept` if the error with an intercept is clearly smaller.
     pub recommended: &'static str,
@@ -265,11 +265,11 @@ pub struct LoadResidual {
     pub unit: String,
     /// Root mean square over the runs that S was calibrated with.
     pub rms_percent: f64,
-    /// The largest of them.
+    /// Largest residual.
     pub max_percent: f64,
-    /// Root mean square over left-out runs; null without one.
+    /// Root mean square over left-out runs. Null if no run was left out.
     pub left_out_rms_percent: Option<f64>,
-    /// The largest of them.
+    /// Largest value over left-out runs.
     pub left_out_max_percent: Option<f64>,
     /// Run.
     pub left_out_max_run: Option<String>,
@@ -286,7 +286,7 @@ pub struct CheckLoad {
     pub applied: f64,
     /// Load recovered with the calibrated S.
     pub recovered: f64,
-    /// Lower end of the 95 % interval of the difference, around `recovered`: the error of the applied load is in it.
+    /// Lower end of the 95 % interval of the difference, around `recovered`. It includes the error of the applied load.
     pub low: f64,
     /// Upper end.
     pub high: f64,

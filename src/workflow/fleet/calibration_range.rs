@@ -7,7 +7,7 @@ use crate::recovery::outside_calibration::CalibratedLoad;
 use crate::workflow::recover::record_beyond_calibration;
 
 impl Kernel {
-    /// Findings on loads beyond the range of a calibrated S; `ends` are the smallest and the largest value of each load, report units.
+    /// Returns findings on loads beyond the range of a calibrated S. `ends` contains the smallest and the largest value of each load, report units.
     pub(super) fn beyond_calibration(
         &self,
         filter: &Filter,

@@ -17,15 +17,15 @@ pub struct ReferenceAnswer {
     pub vehicle: String,
     /// The day.
     pub day: String,
-    /// Path of its record.
+    /// Path of the record.
     pub path: String,
-    /// Digest of its bytes.
+    /// Digest of the bytes of the record.
     pub sha256: String,
-    /// Hours of it.
+    /// Hours of the record.
     pub hours: f64,
 }
 
-/// The reference with its damage.
+/// The reference, with its damage.
 pub(super) struct Reference {
     pub answer: ReferenceAnswer,
     /// By load, with the hours in which it is known.
@@ -67,8 +67,9 @@ impl Reference {
         })
     }
 
-    /// Returns the damage per hour of a load of a vehicle over the damage per hour of the reference. `days` are the days of the vehicle with their
-    /// damage by this load. If the gauge sets of a day and of the reference day are not nested, the errors of S count as independent on this day.
+    /// Returns the damage per hour of a load of a vehicle, divided by the damage per hour of the reference. `days` are the days of the vehicle with
+    /// their damage by this load. If the gauge sets of a day and of the reference day are not nested, the errors of S count as independent on this
+    /// day.
     pub fn damage_ratio(
         &self,
         vehicle: &str,

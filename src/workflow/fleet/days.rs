@@ -11,7 +11,7 @@ enum DayMonthOrder {
     Month,
 }
 
-/// How the days of a fleet follow each other.
+/// Order of the days of a fleet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DayOrder {
     /// By numbers, from left to right.
@@ -103,7 +103,7 @@ impl DayOrder {
         }
     }
 
-    /// Which of two days comes first.
+    /// Returns which of two days is first.
     pub fn compare(self, a: &str, b: &str) -> Ordering {
         match self {
             Self::Numbers => by_numbers(a, b),

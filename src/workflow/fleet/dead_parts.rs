@@ -13,7 +13,7 @@ use crate::series::record::{Clock, Record};
 use crate::workflow::recover::silent_in_part;
 use std::ops::Range;
 
-/// A gauge (of those used), what it gives in a part of the record, and the samples of that part.
+/// A dead part: the gauge (number among the used gauges), its content in this part, and the samples of this part.
 pub(super) type DeadPart = (usize, Gives, Range<usize>);
 
 /// Dead parts by the samples spread over the record, to the sample.

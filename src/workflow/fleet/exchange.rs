@@ -17,7 +17,7 @@ const TRIED: usize = 12;
 /// Two gauges whose readings explain each other.
 pub(super) struct Exchange {
     pub gauges: [usize; 2],
-    /// Residual of the readings as they are, rms, strain.
+    /// Residual of the readings without the exchange, rms, strain.
     pub before: f64,
     /// Residual with the readings of the two exchanged.
     pub after: f64,

@@ -44,7 +44,7 @@ impl Health {
         }
     }
 
-    /// Adds samples: strain less zero (`n_gauges` a row) and the loads recovered from it (`n_loads` a row).
+    /// Adds samples: strain minus zero (`n_gauges` for each row), and the loads recovered from it (`n_loads` for each row).
     pub fn add(&mut self, strain: &[f64], loads: &[f64]) {
         pulp::Arch::new().dispatch(Add {
             to: self,
@@ -117,7 +117,7 @@ impl Health {
         }
     }
 
-    /// Returns the result of each gauge to store; `leverage` by gauge.
+    /// Returns the result of each gauge for storing. `leverage` is by gauge.
     pub fn days(&self, names: &[String], leverage: &[f64]) -> Vec<GaugeDay> {
         let gauges = names.iter().zip(&self.sums).zip(leverage);
         gauges.map(|((name, s), h)| s.day(name, *h)).collect()

@@ -59,7 +59,7 @@ pub struct Kernel {
     pub errors: ErrorModel,
     /// Noise variance of a reading less zero, in units of the variance of a single reading.
     pub noise_factor: f64,
-    /// Range of each load of S in its calibration, job units; `None` where the job states none.
+    /// Range of each load of S in its calibration, job units. `None` if the job states none.
     pub ranges: Vec<Option<[f64; 2]>>,
     /// Loads of S, then sums of loads, whose cycles are counted, with their units.
     pub listed: ListedLoads,
@@ -67,7 +67,7 @@ pub struct Kernel {
     pub law: Law,
     /// Width of a class, by load and sum, report units.
     pub widths: Vec<f64>,
-    /// Seconds in the unit of times in tables that state none; `None`: seconds.
+    /// Unit of times in tables that state none, in seconds. `None` stands for seconds.
     pub time_unit_s: Option<f64>,
     /// Known faults of channels and their corrections.
     pub corrections: Vec<StrainCorrection>,

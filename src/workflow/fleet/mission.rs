@@ -11,11 +11,11 @@ use serde::Serialize;
 pub struct MissionLoad {
     /// Name of the load.
     pub load: String,
-    /// Unit; damage is in its power.
+    /// Unit of the load. The unit of damage is a power of this unit.
     pub unit: String,
     /// Damage of the mission.
     pub damage: f64,
-    /// Lower end of its 95 % interval by the errors of measurement.
+    /// Lower end of the 95 % interval from errors of measurement.
     pub damage_low: f64,
     /// Upper end.
     pub damage_high: f64,
@@ -49,11 +49,11 @@ pub struct KindAnswer {
 /// The mission.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MissionAnswer {
-    /// That it is an extrapolation, and from what.
+    /// Statement that the result is an extrapolation, with its basis.
     pub statement: String,
     /// Hours of the mission.
     pub hours: f64,
-    /// Kinds of days, as the job has them.
+    /// Kinds of days, as stated in the job.
     pub kinds: Vec<KindAnswer>,
     /// Loads, in the order of the job.
     pub loads: Vec<MissionLoad>,
@@ -166,7 +166,7 @@ impl MissionSums {
         })
     }
 
-    /// Adds a day to its kind.
+    /// Adds a day to its kind of days.
     ///
     /// # Errors
     /// A day of two kinds.
@@ -194,7 +194,7 @@ impl MissionSums {
         none.map(|k| &k.key)
     }
 
-    /// Damage of the mission, `hours * sum of share_i damage_i / hours_i`; `None` where a kind has no record.
+    /// Returns the damage of the mission, `hours * sum of share_i damage_i / hours_i`. `None` if a kind has no record.
     pub fn answer(&self) -> Option<MissionAnswer> {
         let first = self.kinds.first()?;
         if self.kinds.iter().any(|k| !(k.hours > 0.0)) {

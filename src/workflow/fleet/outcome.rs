@@ -22,11 +22,11 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct VehicleLoadAnswer {
     /// Name of the load.
     pub load: String,
-    /// Unit of `max`, `min`; damage is in its power.
+    /// Unit of `max` and `min`. The unit of damage is a power of this unit.
     pub unit: String,
-    /// Hours in which the load is known, which its damage covers.
+    /// Hours in which the load is known. Its damage covers these hours.
     pub hours: f64,
-    /// Largest value, and its day.
+    /// Largest value, with its day.
     pub max: Option<f64>,
     /// Day of the largest value.
     pub max_day: String,
@@ -38,7 +38,7 @@ pub struct VehicleLoadAnswer {
     pub min_day: String,
     /// Record and time of the smallest value.
     pub min_at: Option<SampleOf>,
-    /// Cycles; cycles of the residue count half.
+    /// Number of cycles. Cycles of the residue count half.
     pub cycles: f64,
     /// Damage, with the bias of noise subtracted.
     pub damage: f64,
@@ -85,7 +85,7 @@ pub struct VehicleLoadAnswer {
 pub struct VehicleAnswer {
     /// Name of the vehicle.
     pub name: String,
-    /// How many files count.
+    /// Number of files that count.
     pub files: usize,
     /// Days of the vehicle, in order.
     pub days: Vec<String>,
@@ -130,7 +130,7 @@ pub struct FileAnswer {
 }
 
 impl FileAnswer {
-    /// Whether it counts though its loads can't be relied on.
+    /// Returns whether the file counts although its loads are unreliable.
     pub fn is_doubtful(&self) -> bool {
         let is_error = |f: &Finding| f.severity == Severity::Error;
         self.status == Status::Done.word() && self.findings.iter().any(is_error)

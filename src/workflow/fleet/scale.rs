@@ -32,7 +32,7 @@ pub(super) fn noise_of(r: &RecordRecovery) -> Vec<f64> {
     factors.map(|(s, f)| s.max(0.0).sqrt() * f).collect()
 }
 
-/// Returns the covariance of the scale errors of each load with every load, `n_loads x n_loads` a load. It is the mean over the samples of the
+/// Returns the covariance of the scale errors of each load with every load, `n_loads x n_loads` for each load. It is the mean over the samples of the
 /// record. `whole` is the number of samples with all gauges, and `by_gauges` is the number with each other set of gauges.
 pub(super) fn scales(
     r: &RecordRecovery,

@@ -28,7 +28,7 @@ pub(super) struct JobPlan<'a> {
     pub results: &'a [PathBuf],
     /// Folder of the job.
     pub folder: &'a Path,
-    /// System of units; `None` leaves it open.
+    /// System of units. With `None` the job does not state it.
     pub system: Option<UnitSystem>,
     pub from: StrainFrom,
     /// Reason why given results are left out.

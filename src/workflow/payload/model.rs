@@ -24,13 +24,13 @@ use crate::units::MICROSTRAIN;
 
 /// The payload model, together with the data that the report plots.
 pub(super) struct Parts {
-    /// In report units of force and length.
+    /// Model in report units of force and length.
     pub model: PayloadModel,
-    /// S and gauges; `None` where strain is not used.
+    /// S and gauges. `None` if strain is not used.
     pub prepared: Option<JobSensitivity>,
 }
 
-/// The model in report units; sets nominal place, wheels and their reactions to the empty structure.
+/// Returns the model in report units. It also sets the nominal place, the wheels and their reactions to the empty structure.
 ///
 /// # Errors
 /// Faults of deck, gauges, tables; no payload grid.

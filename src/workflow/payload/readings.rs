@@ -33,7 +33,7 @@ pub struct NetReading {
     pub net_microstrain: Option<f64>,
     /// Standard deviation of the net reading, microstrain.
     pub sigma_microstrain: Option<f64>,
-    /// Net reading over its standard deviation.
+    /// Net reading divided by its standard deviation.
     pub signal_to_noise: Option<f64>,
 }
 

@@ -22,7 +22,7 @@ use std::collections::HashMap;
 /// Bundles at most: memory for their rows.
 const MOST_BUNDLES: usize = 4_000_000;
 
-/// Whether single gauges of one wiring are all there is to choose.
+/// Returns whether the choice is only between single gauges of one wiring.
 pub(super) fn is_plain(task: &Task) -> bool {
     let (c, p) = (&task.job.candidates, &task.job.placement);
     if let Some(spots) = &task.spots {
@@ -35,7 +35,7 @@ pub(super) fn is_plain(task: &Task) -> bool {
         && p.budget.is_none()
 }
 
-/// Chooses gauges. If these can't separate the loads, chooses again with the loads known to their expected size, and adds a finding.
+/// Chooses gauges. If they can't separate the loads, it chooses again with prior information on the sizes of the loads, and adds a finding.
 ///
 /// # Errors
 /// No layout fits the job.

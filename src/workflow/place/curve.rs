@@ -13,7 +13,7 @@ use crate::placement::quality::evaluate_rows;
 use crate::placement::{PlaceError, Spec};
 use crate::workflow::recover::ListedLoads;
 
-/// The curve over the job's numbers; numbers that can't separate the loads are left out.
+/// Returns the curve over the gauge counts of the job. Counts that can't separate the loads are left out.
 pub(super) fn curve(
     task: &Task,
     kinds: &[Kind],

@@ -58,7 +58,8 @@ pub(super) fn as_recovered(
     Some(out)
 }
 
-/// Standard deviation, job units, of a load or of a sum of loads (their numbers and factors): `c' C c`, `covariance` in shares of `scales`.
+/// Returns the standard deviation, job units, of a load or of a sum of loads (their numbers and factors): `c' C c`. `covariance` is in shares of
+/// `scales`.
 pub(super) fn sigma_of(covariance: &[f64], scales: &[f64], terms: &[(usize, f64)]) -> f64 {
     let k = scales.len();
     let pairs = terms.iter().flat_map(|a| terms.iter().map(move |b| (a, b)));

@@ -78,7 +78,7 @@ fn add_mesh_error(
     }
 }
 
-/// Candidates of every wiring that the job allows; `errors` are the mesh errors of the loads, where they are known.
+/// Returns the candidates of every wiring that the job allows. `errors` are the mesh errors of the loads, if known.
 pub(super) fn kinds(
     job: &Job,
     model: &Model,
@@ -123,7 +123,7 @@ pub(crate) fn column_order(job: &Job) -> Vec<usize> {
     order
 }
 
-/// Column scales: `expected`; where a load states none, the size that strains the candidates by [`ASSUMED_STRAIN`] rms.
+/// Returns the scales of the columns: `expected`, or for a load without it the size that strains the candidates by [`ASSUMED_STRAIN`] rms.
 pub(crate) fn scales(work: &mut Work, cases: &[LoadCaseOf], common: &[ShellIx]) -> Vec<f64> {
     let mut assumed = Vec::new();
     let scales = cases

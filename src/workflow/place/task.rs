@@ -23,13 +23,13 @@ pub(super) struct Task<'a> {
     pub fields: &'a Fields,
     /// Loads in job order.
     pub cases: Vec<LoadCaseOf<'a>>,
-    /// Their mesh errors; empty where they are not known.
+    /// Mesh errors of the loads. Empty if they are not known.
     pub errors: Vec<LoadCaseOf<'a>>,
     /// Column scales in job order.
     pub scales: Vec<f64>,
     /// Job index of each column of the candidates.
     pub order: Vec<usize>,
-    /// Where gauges can go.
+    /// Sites where gauges can go.
     pub sites: Vec<Site>,
     /// Named spots to choose from, if the job states a table of them. `sites` are then the sites of spots on shells.
     pub spots: Option<Vec<LaidSpot>>,
@@ -46,7 +46,7 @@ pub(super) struct Task<'a> {
 }
 
 impl<'a> Task<'a> {
-    /// Loads in the candidates' order, with their scales.
+    /// Returns the loads in the order of the candidates, with their scales.
     pub fn nuisance_first(&self) -> (Vec<LoadCaseOf<'a>>, Vec<f64>) {
         self.order
             .iter()
@@ -60,13 +60,13 @@ impl<'a> Task<'a> {
         order.filter_map(|&l| self.errors.get(l).cloned()).collect()
     }
 
-    /// Noise of a gauge with what may be left of its mesh error, microstrain, 1 sd.
+    /// Returns the noise of a gauge including its possible remaining mesh error, microstrain, 1 sd.
     pub fn with_mesh_error(&self, gauge: &Gauge, noise: f64) -> f64 {
         let strain = (self.cases.as_slice(), self.errors.as_slice());
         noise.hypot(left_in_reading(gauge, strain, &self.scales) / MICROSTRAIN)
     }
 
-    /// Lays the gauges that stay and takes away the sites too close to them.
+    /// Places the gauges that stay installed, and removes the sites that are too close to them.
     ///
     /// # Errors
     /// Names that are no gauge's, gauges that can't be laid, gauges without strain.
@@ -233,7 +233,7 @@ impl<'a> Task<'a> {
 /// Operations that a proof may take: a second or two.
 const PROOF: f64 = 1e10;
 
-/// Where a site is.
+/// Returns the position of a site.
 pub(super) fn position(fields: &Fields, (shell, side): Site) -> Option<Vec3> {
     use crate::fe::shell_frame::{ShellPlace, shell_axes};
     let model = fields.model();

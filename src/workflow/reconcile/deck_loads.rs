@@ -22,9 +22,9 @@ const SIDE_COMPONENTS: [Component; 5] = [
 
 /// Loads to solve for: columns of the influence matrix, side loads, masses, heat, nuisance loads.
 pub(super) struct SignatureLoads {
-    /// All of them, in this order.
+    /// All loads, in the order of the columns.
     pub(super) loads: Vec<UnitLoad>,
-    /// The first of them.
+    /// Loads that are columns of S. They are the first of `loads`.
     pub(super) columns: Vec<UnitLoad>,
     /// Name and grid of each load that is asked for.
     wheels: Vec<(String, GridIx)>,
@@ -93,7 +93,7 @@ impl SignatureLoads {
         })
     }
 
-    /// Names, places and signatures of the loads, `column(c)` the strain of load `c`; gauges and influence are left to the caller.
+    /// Returns names, places and signatures of the loads. `column(c)` is the strain of load `c`. The caller adds gauges and influence.
     pub(super) fn part(
         &self,
         job: &Job,

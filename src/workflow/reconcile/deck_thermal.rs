@@ -24,7 +24,7 @@ pub(super) struct UnitTemperatureModel {
     pub(super) model: Model,
     /// Strain for one degree everywhere, if materials expand differently.
     pub(super) even: Option<UnitLoad>,
-    /// One degree between the coldest and the warmest place of the deck's set.
+    /// Strain for a temperature pattern with one degree between the coldest and the warmest place of the deck's set.
     pub(super) pattern: Option<UnitLoad>,
     /// That pattern.
     shape: Option<TemperatureSet>,

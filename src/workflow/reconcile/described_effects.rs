@@ -31,7 +31,7 @@ pub(super) fn effects(job: &Job) -> &[DescribedEffect] {
         .map_or(&[], |r| r.described.as_slice())
 }
 
-/// Signatures of the hypotheses that a table gives; an `edit` needs a deck.
+/// Returns the signatures of the hypotheses with a table. An `edit` requires a deck.
 ///
 /// # Errors
 /// Tables that can't be read, an edit where there is no deck.
@@ -58,7 +58,7 @@ pub(super) fn from_tables(
     effects(job).iter().map(one).collect()
 }
 
-/// Reads the tables of the hypotheses and drops them.
+/// Reads the tables of the hypotheses as a check, and discards them.
 ///
 /// # Errors
 /// Tables that can't be read, gauges that a table lacks.

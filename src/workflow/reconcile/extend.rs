@@ -68,7 +68,7 @@ fn is_edit(job: &Job, id: &str) -> bool {
     effect_of(job, id).is_some_and(|e| !matches!(e.source, EffectSource::Signature(_)))
 }
 
-/// The extended model; `None`, with a finding for each effect that can't be put into it, where there is one.
+/// Returns the extended model. If an effect can't be added, it returns `None`, with a finding for each such effect.
 ///
 /// # Errors
 /// A job that can't be read again.

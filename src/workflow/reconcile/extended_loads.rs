@@ -8,7 +8,7 @@ use crate::units::{KILO, number};
 use nastran::bdf::{Field, format_card};
 use toml::{Table, Value};
 
-/// A component at a grid, and its size: kN or kN m.
+/// A load component at a grid, with its size in kN or kN m.
 pub(super) struct SideLoad {
     name: String,
     grid: u32,
@@ -79,7 +79,7 @@ pub(super) fn sizes_by_component(sizes: &[f64]) -> String {
     list.join(", ")
 }
 
-/// The component that a load's name begins or ends with; `FZ` where it has none (a temperature).
+/// Returns the component at the beginning or end of a load's name. It is `FZ` if the name has none (a temperature).
 pub(super) fn component_word(name: &str) -> &'static str {
     let has = |c: &Component| name.starts_with(c.name()) || name.ends_with(c.name());
     COMPONENTS

@@ -7,18 +7,18 @@
 use serde::{Serialize, Serializer};
 use std::path::Path;
 
-/// The deck with effects in it.
+/// File name of the deck with effects.
 pub const DECK: &str = "deck_extended.bdf";
 /// Readings, corrected.
 pub const STRAIN: &str = "strain_extended.csv";
-/// S with effects in it.
+/// File name of S with effects.
 pub const SENSITIVITY: &str = "sensitivity_extended.csv";
 /// Signature of the payload.
 pub const PAYLOAD: &str = "payload_extended.csv";
 /// Recorded loads and payload of each run.
 pub const RUNS: &str = "runs_extended.csv";
 
-/// Job with the named effects in it, and the content of its files; in `result.json` its path.
+/// Job with the named effects, and the content of its files. `result.json` contains its path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExtendedModel {
     /// File name of the job.
@@ -101,7 +101,7 @@ pub struct ExtendedRuns {
 pub struct ExtendedS {
     /// Influence of loads and payload, microstrain, `n_gauges x n_columns`.
     pub influence: Vec<f64>,
-    /// Whether the influence is another than the job's: then the payload's signature is, too.
+    /// Whether the influence differs from the influence of the job. The payload signature then differs as well.
     pub changed: bool,
     /// Other loads of the job: name, microstrain per unit by gauge.
     pub known: Vec<(String, Vec<f64>)>,

@@ -8,7 +8,7 @@ use crate::sensitivity::{GaugeNoise, Load, Sensitivity, Uncertainty};
 use crate::strain_chain::stated_noise;
 use crate::units::{KILO, MICROSTRAIN};
 
-/// S as every command has it, with the row of each channel and the scale of each load.
+/// S with the row of each channel and the scale of each load.
 pub(super) struct FrameColumns {
     sensitivity: Sensitivity,
     rows: Vec<usize>,
@@ -82,7 +82,7 @@ impl FrameColumns {
         Some(of_channels.of_loads(&loads))
     }
 
-    /// Returns the noise of the channels as the job states it; `None` where all have the same, independent of each other.
+    /// Returns the noise of the channels as the job states it. `None` if all channels have equal, independent noise.
     ///
     /// # Errors
     /// Returns the faults of [`stated_noise`].

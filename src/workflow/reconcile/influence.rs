@@ -39,7 +39,7 @@ pub(super) fn blank_payload(job: &Job, model: &Model, influence: &mut [f64], n_c
     }
 }
 
-/// Microstrain per unit of each case of `range`, `n_gauges x n_cases` by rows; NaN where there is no strain.
+/// Returns the microstrain per unit of each case of `range`, `n_gauges x n_cases` by rows. NaN without strain.
 pub(super) fn readings(
     gauges: &[Gauge],
     solution: &Solution,
@@ -97,8 +97,8 @@ pub(super) fn solve_each<T>(
     solved.map_err(|e| of_solver(job, &e))
 }
 
-/// Returns the changes of these readings on variants of the model: by variant, microstrain, `n_readings x n_loads` by rows. They are exact for
-/// bushes and of first order for shells. `None` where no single factor serves the variants.
+/// Returns the changes of these readings on variants of the model: by variant, microstrain, `n_readings x n_loads` by rows. They are exact for bushes
+/// and of first order for shells. `None` if the variants need more than one factor.
 ///
 /// # Errors
 /// Faults of the solver.

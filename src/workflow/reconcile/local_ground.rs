@@ -13,7 +13,7 @@ const WIDER: usize = 3;
 /// Smallest ratio of all shells to the shells of a region. A larger region is the structure, not a place in it.
 const FEW: usize = 4;
 
-/// Where regions may lie.
+/// Shells on which regions may be placed.
 pub(super) struct Ground<'a> {
     pub(super) model: &'a Model,
     /// Middles of the shells.

@@ -163,7 +163,7 @@ impl DeckFrame {
         })
     }
 
-    /// Shells of the region at `place`; none where there is no such region.
+    /// Returns the shells of the region at `place`. The list is empty if there is no such region.
     pub(super) fn shells_of_region(&self, place: &str) -> Vec<usize> {
         let region = self.regions.iter().find(|r| r.place == place);
         region.map_or_else(Vec::new, |r| r.shells.clone())

@@ -26,7 +26,7 @@ impl RefinedGaugeModel {
         Ok(Self { refined, laid })
     }
 
-    /// Lays gauges of the deck's model on the finer model; `None` if one is not on it.
+    /// Places gauges of the deck's model on the finer model. `None` if a gauge is not on it.
     pub(super) fn lay(&self, gauges: &[Gauge], model: &Model) -> Option<Vec<Gauge>> {
         lay_on(gauges, model, &self.refined)
     }

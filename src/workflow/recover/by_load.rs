@@ -14,11 +14,11 @@ pub struct LoadSpan {
     pub mean: f64,
     /// Largest value.
     pub largest: f64,
-    /// Half width of the widest 95 % interval; NaN where no run determines the load.
+    /// Half width of the widest 95 % interval. NaN if no run determines the load.
     pub half: f64,
     /// Report unit.
     pub unit: String,
-    /// Expected size of the load, or its largest value where the job states none.
+    /// Expected size of the load, or its largest value if the job states no size.
     pub size: f64,
 }
 

@@ -185,7 +185,7 @@ fn open_strain(work: &mut Work, job: &Job, measured: &Measured) -> Result<Measur
     })
 }
 
-/// Recovers the loads for the findings alone, as `check` needs them.
+/// Recovers the loads only for the findings, as `check` needs them.
 ///
 /// # Errors
 /// As [`recover_into`].
@@ -198,7 +198,7 @@ pub(super) fn recover_for_findings(
     recover_measured_loads(work, (job, measured), prepared, &mut Unheard).map(|_| ())
 }
 
-/// Readings and recovered loads of the job's static runs, for commands that go on from there.
+/// Returns readings and recovered loads of the job's static runs, for commands that use both.
 ///
 /// # Errors
 /// Unreadable tables; a record, which [`recover_into`] streams.

@@ -11,7 +11,7 @@ use crate::host::work::Work;
 use crate::job::{Measured, SectionExtent};
 use crate::measured::{self, MeasuredStrain};
 
-/// Recovers the loads of every section that has a file, and counts them; the loads of one file at a time are in memory.
+/// Recovers and counts the loads of every section with a separate file. Only the loads of one file at a time are in memory.
 ///
 /// # Errors
 /// Files that can't be read, or have runs.

@@ -8,7 +8,7 @@ use crate::strain_chain::LoadUnits;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Takes the loads of a record as they are recovered.
+/// Receiver of the loads of a record during recovery.
 pub trait RecordSink {
     /// Before the first block.
     ///
@@ -44,7 +44,7 @@ pub trait Samples: Sync {
     fn read(&self, from: usize, to: usize, columns: &[usize], out: &mut Vec<f64>);
 }
 
-/// Takes the loads of a record and keeps none.
+/// Receiver that discards the loads of a record.
 pub(super) struct Unheard;
 
 impl RecordSink for Unheard {
@@ -92,7 +92,7 @@ pub struct RecordHead {
     pub stride: usize,
     /// Files to make from the history.
     pub files: Vec<LoadFile>,
-    /// Whether loads are compared with recorded ones or counted by section.
+    /// Whether loads are compared with recorded loads or counted by section.
     pub is_compared: bool,
     /// Stretches of samples in which some gauges are dead, and the estimate from the remaining gauges.
     pub stretches: Vec<(Range<usize>, Arc<Gain>)>,

@@ -25,7 +25,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// Smallest, mean and largest sample of load `l`, job units; not numbers where none is known.
+    /// Returns the smallest, mean and largest sample of load `l`, job units. NaN if no sample is known.
     pub fn of_load(&self, l: usize) -> [f64; 3] {
         match self.loads.get(l) {
             Some([low, sum, high, count]) if *count > 0.0 => [*low, sum / count, *high],
@@ -37,7 +37,7 @@ impl Span {
 const NOTHING: [f64; 4] = [f64::INFINITY, 0.0, f64::NEG_INFINITY, 0.0];
 
 impl Spans {
-    /// For a record of `k` loads.
+    /// Creates a trace for a record of `k` loads.
     pub(super) fn new(k: usize) -> Self {
         Self {
             k,

@@ -44,7 +44,7 @@ pub struct Check {
     pub gauges: Vec<String>,
     /// States that have a row of strain.
     pub states: Vec<String>,
-    /// By state and gauge: predicted and measured, microstrain; NaN where nothing was measured.
+    /// Predicted and measured strain by state and gauge, microstrain. NaN if nothing was measured.
     pub pairs: Vec<Vec<(f64, f64)>>,
 }
 

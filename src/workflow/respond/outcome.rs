@@ -17,10 +17,10 @@ pub struct StressResponse {
     pub elements: Vec<Element>,
     /// Elements with a higher stress than all elements that share a grid with them.
     pub hot_spots: Vec<Element>,
-    /// Pseudo-damage of these elements over the history of loads, where the job states a slope.
+    /// Pseudo-damage of these elements over the history of loads, if the job states a slope.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub fatigue: Vec<ElementFatigue>,
-    /// How many states of the loads there are.
+    /// Number of load states.
     pub states: usize,
     /// Unit of the stresses.
     pub stress_unit: &'static str,
@@ -71,7 +71,7 @@ pub struct Field {
     pub peaks: Vec<Peak>,
     /// Rows asked for, or the hottest.
     pub order: Vec<usize>,
-    /// Rows hotter than all that share a grid with them, the hottest first.
+    /// Rows with a higher stress than all rows of elements that share a grid with them, the highest first.
     pub spots: Vec<usize>,
     /// States of the loads.
     pub states: Vec<LoadState>,

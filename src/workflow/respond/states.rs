@@ -20,7 +20,7 @@ use std::collections::HashSet;
 /// Rows of the table whose fields are in memory at a time.
 const PART: usize = 10_000;
 
-/// Load states, and whether they follow each other in time.
+/// Load states. They state whether they are consecutive in time.
 pub(super) struct States {
     pub states: Vec<LoadState>,
     pub is_history: bool,
@@ -68,7 +68,7 @@ pub(super) fn read(
     })
 }
 
-/// Columns `<load>`, and where there `<load>.low`, `<load>.high`, in report units, as `recover` writes them.
+/// Reads the columns `<load>` and, if present, `<load>.low` and `<load>.high`, in report units, as `recover` writes them.
 pub(super) fn from_table(work: &mut Work, job: &Job, named: &NamedFile) -> Result<States, Faults> {
     let names: Vec<String> = job.loads.iter().map(|l| l.name.clone()).collect();
     let bytes = work.inputs.read_named(job, named)?;

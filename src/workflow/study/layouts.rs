@@ -127,7 +127,7 @@ fn random_subsets(all: usize, n: usize, seed: u64) -> Vec<Vec<usize>> {
 }
 
 impl LayoutOf {
-    /// Returns the gauges of the layout; none for random layouts, of which there are many.
+    /// Returns the gauges of the layout. The list is empty for random layouts, of which there are many.
     pub fn chosen_gauges(&self) -> Vec<LayoutGauge> {
         match self.members.as_slice() {
             [one] if self.name != "random" => {

@@ -230,8 +230,8 @@ pub(crate) fn many_mass(model: &Model, i: usize) -> (Vec<crate::model::GridIx>, 
     (grids, products)
 }
 
-/// Returns the consistent mass of shell `i` by pairs of corners, before WTMASS: the integral of the product of two shape functions times (density * thickness +
-/// NSM). The sum of a row is the lumped mass at that corner.
+/// Returns the consistent mass of shell `i` by pairs of corners, before WTMASS. It is the integral of the product of two shape functions times
+/// (density * thickness + NSM). The sum of a row is the lumped mass at that corner.
 pub(crate) fn shell_mass(model: &Model, i: usize) -> [[f64; 4]; 4] {
     let shell = &model.shells[i];
     let Some(property) = model.shell_properties.get(shell.property.us()) else {

@@ -28,7 +28,7 @@ impl RecordFolder {
         }
     }
 
-    /// The folder with what was written so far.
+    /// Returns the folder with the files written so far.
     ///
     /// # Errors
     /// A fault where it can't be created.

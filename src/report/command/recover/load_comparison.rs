@@ -41,7 +41,7 @@ const SECTIONS: [(&str, &str); 11] = [
     ("damage_high", DAMAGE),
 ];
 
-/// Writes `comparison.csv` and `sections.csv`, where there is something in them.
+/// Writes `comparison.csv` and `sections.csv` if they have any content.
 ///
 /// # Errors
 /// A file that can't be written.

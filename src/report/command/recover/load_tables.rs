@@ -82,7 +82,7 @@ fn format_expected_residual(runs: &RecoveredRuns) -> String {
     }
 }
 
-/// A row a load: its largest value by magnitude with interval, and the share of its typical size.
+/// Returns a table with a row for each load: the largest value by magnitude with its interval, and its share of the typical size.
 pub(super) fn result_table(outcome: &Outcome<RecoveredLoads>) -> ConsoleTable {
     let spans = outcome.spans();
     if !outcome.comparison.loads.is_empty() {

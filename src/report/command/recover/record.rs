@@ -21,7 +21,8 @@ use std::io::Write;
 /// Blocks formed at a time.
 const GROUP: usize = 8;
 
-/// Writes everything; `loads.csv` and `loads.bin` only where the outcome holds its history, else a [`super::RecordFolder`] wrote them.
+/// Writes all files of a record. It writes `loads.csv` and `loads.bin` only if the outcome contains its history. Otherwise a [`super::RecordFolder`]
+/// has written them.
 ///
 /// # Errors
 /// The first file that can't be written.

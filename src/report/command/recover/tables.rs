@@ -20,7 +20,7 @@ pub(super) const CSV: &str = "loads.csv";
 /// Every sample as numbers.
 pub(super) const BIN: &str = "loads.bin";
 
-/// The two files while they are written.
+/// The two files during writing.
 pub(super) struct LoadTables {
     head: Arc<RecordHead>,
     /// To the thread that writes.

@@ -40,7 +40,7 @@ pub fn is_ambiguous(field: &[u8]) -> bool {
     matches!(parts[..], [a, b, c] if c.len() == 4 && [a, b].iter().all(|p| parse_whole_number(p).is_some_and(|n| (1..=12).contains(&n))))
 }
 
-/// Seconds since 1970 of a date in one field and a time of day in the other.
+/// Returns the seconds since 1970 of a date in one field and a time of day in another field.
 pub fn parse_date_and_time(one: &[u8], other: &[u8]) -> Option<f64> {
     let date = |field: &[u8]| days_of(std::str::from_utf8(field).ok()?.trim());
     let both =
@@ -48,8 +48,8 @@ pub fn parse_date_and_time(one: &[u8], other: &[u8]) -> Option<f64> {
     both(one, other).or_else(|| both(other, one))
 }
 
-/// Seconds since midnight of a time of day with its seconds: `12:00:00.002`, `1:05:09 PM`. Of two numbers nobody knows whether they are hours
-/// and minutes.
+/// Returns the seconds since midnight of a time of day with seconds: `12:00:00.002`, `1:05:09 PM`. A time of two numbers is ambiguous, because it may
+/// contain hours and minutes or minutes and seconds.
 pub fn of_day(field: &[u8]) -> Option<f64> {
     let text = std::str::from_utf8(field).ok()?.trim();
     let parts = text.split(':').count();

@@ -8,8 +8,8 @@ const TELLING: usize = 8;
 /// Returns the start of the last line if that line may be cut within its last field: `131.9` cut is `131.`, `131` or nothing. Such a line has no end
 /// of line although other lines have one.
 ///
-/// A last field with as many characters after the point as the fields before it is complete. A line with fewer fields than the line before is refused
-/// elsewhere. Of two lines, the first may be the header, so they show nothing.
+/// A last field with as many characters after the point as the fields before it is complete. Other code refuses a line with fewer fields than the
+/// line before. If the file has only two lines, the first may be the header, so that they show nothing.
 pub fn unsure_end(bytes: &[u8]) -> Option<usize> {
     let (start, lines) = last_lines(bytes);
     let (last, before) = lines.split_first()?;
@@ -35,8 +35,8 @@ pub fn unsure_end(bytes: &[u8]) -> Option<usize> {
     (!whole && !closed).then_some(start)
 }
 
-/// Whether the last line is certainly cut. [`unsure_end`] returns it, and its last number lacks a part that the other numbers of its column have. The
-/// part may be digits after the point (`has_fewer_digits`), the point or the exponent (`lacks_a_part`).
+/// Returns whether the last line, which [`unsure_end`] has found, is certainly cut. Its last number then lacks a part that the other numbers of its
+/// column have. The part may be digits after the point (`has_fewer_digits`), the point or the exponent (`lacks_a_part`).
 pub fn is_cut(bytes: &[u8]) -> bool {
     if unsure_end(bytes).is_none() {
         return false;

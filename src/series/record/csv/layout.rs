@@ -50,7 +50,7 @@ pub struct Layout {
     pub mark: DecimalMark,
     /// Name and unit of each field.
     pub columns: Vec<Column>,
-    /// Field of the time, and its content.
+    /// Field with the time, and the content of this field.
     pub time: Option<(usize, TimeKind)>,
     /// Whether the unit of time is stated.
     pub unit_stated: bool,
@@ -149,7 +149,7 @@ impl Layout {
         }
     }
 
-    /// Whether rows have times rather than names of runs: a column of time, and none called `run`.
+    /// Returns whether rows have times and not names of runs: there is a column of time, and no column `run`.
     pub fn is_record(&self) -> bool {
         self.time.is_some() && !self.columns.iter().any(|c| c.name == "run")
     }

@@ -109,7 +109,7 @@ impl Feather {
         Ok(())
     }
 
-    /// Returns the texts of the column of this name, a row each, blank for a null; `None` where no column of text has it.
+    /// Returns the texts of the column with this name, one for each row, blank for a null. `None` if no column of text has this name.
     ///
     /// # Errors
     /// Buffers that can't be read.

@@ -45,7 +45,8 @@ pub(super) struct Tdms {
 type Scale = Vec<f64>;
 
 impl Tdms {
-    /// Returns the channels sampled at equal times: the `wanted` channels (without any, the group with most numbers) and all sampled with them.
+    /// Returns the channels that were sampled at equal times: the `wanted` channels and all channels sampled with them. Without `wanted` channels, it
+    /// is the group with most numbers.
     ///
     /// # Errors
     /// A file that can't be read, channels of a kind that is not read, wanted channels that were sampled at other times.

@@ -12,7 +12,7 @@ const TIME: i64 = 17;
 /// Codes of a general response and of a time response among the types of function.
 const RESPONSES: [i64; 2] = [0, 1];
 
-/// Numbers in the file as they are.
+/// Numbers in the stored form of the file.
 #[derive(Clone, Copy, Debug)]
 pub struct Binary {
     at: usize,
@@ -54,7 +54,7 @@ pub struct Dataset {
     unit: String,
     /// Texts that may be the name: the first line of the head, the label of the numbers, grid and direction.
     titles: [String; 3],
-    /// Name that several data sets share: [`Self::column`] adds a number to it.
+    /// Name that several data sets have. [`Self::column`] adds a number to it.
     pub twice: Option<String>,
     /// Time of the first sample, s.
     pub start_s: f64,
@@ -86,7 +86,7 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// The time histories of a file; other data sets are passed over.
+/// Returns the time histories of a file. Other data sets are ignored.
 ///
 /// # Errors
 /// A file that is cut off, time histories on uneven steps or of complex numbers.

@@ -16,7 +16,7 @@ use serde::Serialize;
 /// Recovered against recorded loads.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Comparison {
-    /// By load.
+    /// Result for each load.
     #[serde(rename = "comparison", skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<LoadComparison>,
     /// Time shift of a record of loads.
@@ -50,9 +50,9 @@ pub struct LoadComparison {
     pub bias: f64,
     /// Root mean square difference.
     pub rms: f64,
-    /// Share of the recorded loads inside the 95 % interval of the recovered ones.
+    /// Share of the recorded loads inside the 95 % interval of the recovered loads.
     pub share_within: f64,
-    /// Damage by the recovered load over damage by the recorded load; `None` for runs.
+    /// Damage of the recovered load divided by the damage of the recorded load. `None` for runs.
     pub damage_ratio: Option<f64>,
     /// Lower end of its 95 % interval.
     pub damage_ratio_low: Option<f64>,
