@@ -12,8 +12,8 @@ pub struct Column {
     pub unit: String,
     /// Header of the channel in the file.
     pub header: Header,
-    /// Unit that the file states outside the brackets after the name: in a row below, for the channel, or for all numbers. Empty without such a unit. If
-    /// the brackets are part of a name, this is the unit of the column.
+    /// Unit that the file states outside the brackets after the name: in a row below, for the channel, or for all numbers. Empty without such a unit.
+    /// If the brackets are part of a name, this is the unit of the column.
     pub stated: String,
 }
 
