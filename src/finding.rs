@@ -113,7 +113,7 @@ pub fn few_of(names: &[impl Display], count: usize) -> String {
     }
 }
 
-/// The worst severity of a list.
+/// Returns the worst severity of a list.
 pub fn worst_severity(findings: &[Finding]) -> Option<Severity> {
     findings.iter().map(|f| f.severity).max()
 }

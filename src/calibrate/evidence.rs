@@ -93,7 +93,7 @@ impl<'a> RowEvidence<'a> {
         self.log
     }
 
-    /// First and second order of `L` in the amounts of some directions `t_i`: `t_i' B^-1 W^-1 d`, and `t_i' B^-1 W^-1 A t_j` by rows.
+    /// Returns the first and second order of `L` in the amounts of some directions `t_i`: `t_i' B^-1 W^-1 d`, and `t_i' B^-1 W^-1 A t_j` by rows.
     pub fn orders(&self, directions: &[&[f64]]) -> (Vec<f64>, Vec<f64>) {
         let first = directions.iter().map(|t| spd::dot(t, &self.slope));
         let mut second = Vec::with_capacity(directions.len() * directions.len());

@@ -14,7 +14,7 @@ pub(super) struct Loading {
     pub weight: Vec<f64>,
 }
 
-/// Means of repeats by loading.
+/// Returns the means of repeats by loading.
 pub(super) fn loadings(task: &Task, state: &State) -> Vec<Loading> {
     let n = task.gauges.len();
     let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();

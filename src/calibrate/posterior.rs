@@ -162,7 +162,7 @@ impl Posterior {
         gauges.iter().map(column).collect()
     }
 
-    /// Covariance of `S phi` over some gauges, by rows.
+    /// Returns the covariance of `S phi` over some gauges, by rows.
     pub fn spread(&self, gauges: &[usize], phi: &[f64]) -> Vec<f64> {
         let columns = self.columns(gauges, phi);
         project(&columns, gauges, phi, self.k)

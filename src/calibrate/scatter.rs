@@ -114,7 +114,7 @@ impl Scatter {
         }
     }
 
-    /// Root mean square over gauges.
+    /// Returns the root mean square over gauges.
     pub fn rms(&self) -> f64 {
         let n = (self.covariance.len() as f64).sqrt().round() as usize;
         let trace: f64 = (0..n).map(|g| self.covariance[g * n + g]).sum();

@@ -15,7 +15,7 @@ pub struct KnownLoads {
 }
 
 impl KnownLoads {
-    /// Loads known exactly.
+    /// Returns the loads known exactly.
     pub fn from_exact(mean: Vec<f64>) -> Self {
         let k = mean.len();
         Self {

@@ -86,14 +86,14 @@ impl FreeDirections<'_> {
         variance: 0.0,
     };
 
-    /// Covariance of loads `l` and `m`.
+    /// Returns the covariance of loads `l` and `m`.
     pub fn covariance(&self, l: usize, m: usize) -> f64 {
         let each = self.directions.iter().map(|z| z[l] * z[m]);
         self.variance * each.sum::<f64>()
     }
 }
 
-/// Directions along which the loads of a run, of unit size, have an sd of more than [`UNKNOWN`], orthonormal.
+/// Returns the directions along which the loads of a run, of unit size, have an sd of more than [`UNKNOWN`], orthonormal.
 pub(super) fn wide_directions(loads: &KnownLoads, scales: &[f64]) -> Vec<Vec<f64>> {
     let k = scales.len();
     if loads.covariance.iter().all(|v| *v == 0.0) {

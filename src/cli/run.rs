@@ -234,7 +234,7 @@ impl Run {
         let faults = outcome.answer.faults();
         let summary = outcome.summary();
         let texts = Texts {
-            // Faults go to standard error, and their summary too.
+            // Faults and their summary go to standard error.
             summary: if faults.is_empty() {
                 summary.as_str()
             } else {

@@ -117,7 +117,7 @@ impl Voice {
         }
     }
 
-    /// Columns of the terminal.
+    /// Returns the columns of the terminal.
     pub fn width(self) -> usize {
         self.room.width
     }

@@ -87,7 +87,7 @@ impl<'a> Adjoint<'a> {
         })
     }
 
-    /// The model.
+    /// Returns the model.
     pub fn model(&self) -> &Model {
         self.prepared.model
     }

@@ -20,7 +20,7 @@ pub(crate) struct Numbering {
 }
 
 impl Numbering {
-    /// Unknowns in each group.
+    /// Returns the unknowns in each group.
     pub(crate) fn sizes(&self) -> Vec<u8> {
         self.free.iter().map(|b| b.count_ones() as u8).collect()
     }
@@ -35,7 +35,7 @@ impl Numbering {
         (self.grid[g] as usize, dof)
     }
 
-    /// Values at the unknowns of a field over all dofs.
+    /// Writes the values of a field over all dofs at the unknowns to `out`.
     pub(crate) fn pack(&self, field: &[[f64; 6]], out: &mut [f64]) {
         let mut at = 0;
         for (g, free) in self.grid.iter().zip(&self.free) {
@@ -102,7 +102,7 @@ fn find_reached_dofs(reduction: &Reduction, grids: &[GridIx], dofs: u8) -> Vec<(
     list
 }
 
-/// The assembled stiffness T' K T.
+/// Returns the assembled stiffness T' K T.
 ///
 /// # Errors
 /// Elements that can't be formed; nothing to solve.

@@ -103,7 +103,7 @@ pub(super) fn anchors(model: &Model, reduction: &Reduction) -> Vec<bool> {
     anchors
 }
 
-/// Springs and bushes between the structure and an anchor.
+/// Returns the springs and bushes between the structure and an anchor.
 pub(super) fn to_anchors(model: &Model, reduction: &Reduction) -> Vec<Ground> {
     let anchors = anchors(model, reduction);
     let is_anchor = |g: GridIx| anchors[g.us()];

@@ -129,7 +129,7 @@ impl Mass {
         mass
     }
 
-    /// A point mass at an offset from a grid.
+    /// Adds a point mass at an offset from a grid.
     pub(super) fn add_point(&mut self, grid: GridIx, m: f64, offset: &Vec3) {
         if *offset == Vec3::zeros() {
             self.point[grid.us()] += m;
@@ -294,7 +294,7 @@ pub(super) fn add_acceleration(model: &Model, factor: f64, load: &Load, field: &
     }
 }
 
-/// Force and moment about a point of nodal forces.
+/// Returns the force and moment about a point of nodal forces.
 pub(crate) fn resultant(x: &[Vec3], f: &[[f64; 6]], centre: &Vec3) -> [f64; 6] {
     let mut sum = [0.0; 6];
     for (x, f) in x.iter().zip(f) {

@@ -150,7 +150,7 @@ pub fn solve_modes(
     })
 }
 
-/// Frequencies of the lowest elastic modes from the factor of a static solution.
+/// Returns the frequencies of the lowest elastic modes from the factor of a static solution.
 ///
 /// # Errors
 /// Returns every error of [`FeError`].

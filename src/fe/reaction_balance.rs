@@ -41,7 +41,7 @@ impl LoadImbalance {
         Self { left, size }
     }
 
-    /// The larger share.
+    /// Returns the larger share.
     pub(super) fn share(&self) -> f64 {
         let share = |i: usize| match self.size[i] > 0.0 {
             true => self.left[i] / self.size[i],

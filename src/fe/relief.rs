@@ -125,7 +125,7 @@ impl RigidBody {
         self.basis.ncols()
     }
 
-    /// The displacement field of a free motion, basic frame.
+    /// Returns the displacement field of a free motion, basic frame.
     pub(crate) fn motion(&self, column: usize) -> Vec<[f64; 6]> {
         self.field(&self.basis.column(column).into_owned())
     }

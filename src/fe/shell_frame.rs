@@ -40,7 +40,7 @@ pub fn tria_axes(p: [Vec3; 3]) -> Option<Mat3> {
     rows((p[1] - p[0]).try_normalize(0.0)?, z)
 }
 
-/// The frame at equal angles to tangents `r` and `s`: x is as far from r as y is from s.
+/// Returns the frame at equal angles to tangents `r` and `s`: x is as far from r as y is from s.
 pub fn balanced_axes(r: Vec3, s: Vec3) -> Option<Mat3> {
     let z = r.cross(&s).try_normalize(0.0)?;
     let (r, s) = (r.try_normalize(0.0)?, s.try_normalize(0.0)?);

@@ -101,7 +101,7 @@ pub fn solve_displacements(
     displacements(&prepare(model, cases)?, cases, options)
 }
 
-/// The strain of solved load cases.
+/// Returns the strain of solved load cases.
 ///
 /// # Errors
 /// Returns every error of [`FeError`].

@@ -50,7 +50,7 @@ pub fn n_elements(case: &CaseResult) -> usize {
     case.shells.elements.len() + case.beams.elements.len()
 }
 
-/// Number of rows that [`each_row`] gives for a whole case.
+/// Returns the number of rows that [`each_row`] gives for a whole case.
 pub fn n_rows(model: &Model, case: &CaseResult) -> usize {
     let known = |strain: &[PlaneStrain; 2]| !strain.iter().flatten().all(|v| v.is_nan());
     let shells = case.shells.elements.iter().enumerate().map(|(i, ix)| {
@@ -177,7 +177,7 @@ fn beam_rows(model: &Model, case: &CaseResult, i: usize, each: &mut impl FnMut(&
     }
 }
 
-/// Largest strain in any direction of the surface, or along the bar, without sign: `|m| + r` of Mohr's circle.
+/// Returns the largest strain in any direction of the surface, or along the bar, without sign: `|m| + r` of Mohr's circle.
 pub fn largest_strain(row: &StrainRow) -> f64 {
     let [exx, eyy, gxy] = row.local;
     match row.point {

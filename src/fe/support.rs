@@ -78,7 +78,7 @@ impl Support {
         }
     }
 
-    /// Unit loads as load cases on this support, subcases numbered 1 .. n.
+    /// Returns the unit loads as load cases on this support, subcases numbered 1 .. n.
     pub fn unit_cases(&self, model: &Model, loads: &[UnitLoad]) -> Vec<LoadCase> {
         unit_cases(model, (self.spc, self.relief), loads)
     }

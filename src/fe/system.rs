@@ -293,7 +293,7 @@ impl System {
         Ok(())
     }
 
-    /// Displacements of all grids, basic frame, from the unknowns.
+    /// Returns the displacements of all grids, basic frame, from the unknowns.
     pub(super) fn unpack(&self, prepared: &PreparedModel<'_>, values: &[f64]) -> Vec<[f64; 6]> {
         let mut u = self.reduction.expand(&self.numbering.unpack(values));
         for (u, axes) in u.iter_mut().zip(&prepared.axes) {

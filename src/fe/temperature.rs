@@ -85,7 +85,7 @@ impl Temperatures {
         (grids.map(|g| self.rise(g, tref)), [[0.0; 2]; 2])
     }
 
-    /// The rise of the grids of solid `i`.
+    /// Returns the temperature rise at the grids of solid `i`.
     pub(super) fn solid_rise(&self, model: &Model, i: usize, grids: &[GridIx]) -> Vec<f64> {
         let tref = model
             .solid_properties

@@ -66,7 +66,7 @@ pub struct Gauge {
 }
 
 impl Gauge {
-    /// Unit vector out of the side that the gauge sits on, basic frame.
+    /// Returns the unit vector out of the side of the gauge, basic frame.
     pub fn outward(&self) -> Vec3 {
         match self.surface {
             Surface::Top => self.normal,

@@ -21,7 +21,7 @@ pub const POINTS: [(f64, f64); 5] = [
 /// Cosine of 20 degrees, the default of PARAM,SNORM: plates that meet at a larger angle form a bend or a joint.
 pub const SMOOTH: f64 = 0.939_692_620_785_908_4;
 
-/// Shells that share an edge with `shell` and go on smoothly.
+/// Returns the shells that share an edge with `shell` and continue it smoothly.
 pub fn neighbours(model: &Model, shell: ShellIx) -> Vec<ShellIx> {
     let Some(me) = model.shells.get(shell.us()) else {
         return Vec::new();

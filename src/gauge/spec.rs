@@ -70,7 +70,7 @@ pub enum Rosette {
 }
 
 impl Rosette {
-    /// Leg names and angles, radians, right-handed about the element normal.
+    /// Returns the leg names and angles, radians, right-handed about the element normal.
     pub fn legs(self) -> [(&'static str, f64); 3] {
         let step = match self {
             Self::Rectangular => 45_f64,

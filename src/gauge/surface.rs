@@ -31,7 +31,7 @@ pub fn corners(model: &Model, shell: &Shell) -> Option<[Vec3; 4]> {
     Some([x(0)?, x(1)?, x(2)?, x(3)?])
 }
 
-/// Mean of the corners.
+/// Returns the mean of the corners.
 pub fn centre(model: &Model, shell: &Shell) -> Option<Vec3> {
     let n = shell.shape.n_corners();
     Some(corners(model, shell)?.iter().take(n).sum::<Vec3>() / n as f64)

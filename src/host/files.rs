@@ -154,7 +154,7 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Bytes of a table of text.
+    /// Returns the bytes of a table of text.
     pub(crate) fn table_bytes(&mut self, base: &Path, given: &str) -> Result<FileBytes, Fault> {
         let bytes = as_table(given, self.read(base, given)?)?;
         if let Some(format) = format_of(&bytes) {
@@ -229,7 +229,7 @@ impl<'a> Inputs<'a> {
         self.entries.iter().map(|e| e.1.clone()).collect()
     }
 
-    /// The list, hashes finished.
+    /// Returns the list of files with all hashes.
     pub fn list(&mut self) -> Vec<Input> {
         self.entries
             .iter_mut()
@@ -299,7 +299,7 @@ fn is_table(given: &str) -> bool {
     [".csv", ".tsv", ".txt"].iter().any(|e| name.ends_with(e))
 }
 
-/// The finding of a table, or a record, whose last line may be cut.
+/// Returns the finding of a table, or a record, whose last line may be cut.
 pub(crate) fn may_be_cut(file: &str, severity: Severity) -> Finding {
     let (message, remedy) = match severity {
         Severity::Error => (

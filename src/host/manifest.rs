@@ -46,7 +46,7 @@ impl Manifest {
         self.digests.extend(digests);
     }
 
-    /// The files of a command.
+    /// Returns the files of a command.
     pub(crate) fn names_of(&self, command: &str) -> BTreeSet<String> {
         let own = self.entries.iter().filter(|e| e.0 == command);
         own.map(|e| e.1.clone()).collect()

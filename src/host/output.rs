@@ -43,7 +43,7 @@ impl Output {
         })
     }
 
-    /// The folder.
+    /// Returns the folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
@@ -58,7 +58,7 @@ impl Output {
         self.tables.insert(table.to_owned(), columns.collect());
     }
 
-    /// Units of the columns of every table declared.
+    /// Returns the units of the columns of every declared table.
     pub fn tables(&self) -> &Tables {
         &self.tables
     }
@@ -110,7 +110,7 @@ impl Output {
         self.folder.join(half_written::name_of_part(name, n))
     }
 
-    /// A fault for a file of this folder that could not be written on.
+    /// Returns the fault of a file in this folder whose writing failed.
     pub fn fault(&self, name: &str, e: &std::io::Error) -> Fault {
         unwritable_file_fault(&self.folder.join(name), e)
     }

@@ -110,8 +110,8 @@ pub struct MotionRecord<'a> {
     pub channels: Vec<MotionChannel<'a>>,
     /// Acceleration of gravity in the unit of the samples.
     pub gravity: f64,
-    /// Returns the share of the motion that the vehicle does not explain (0 to 1), with a source for each channel. Parameters keep their natural
-    /// signs. `None` if there is nothing to compare.
+    /// Function that returns the share of the motion that the vehicle does not explain (0 to 1), with a source for each channel. Parameters keep
+    /// their natural signs. `None` if there is nothing to compare.
     pub unexplained: Box<dyn Fn(&[ChannelSource]) -> Option<f64> + Sync + 'a>,
 }
 

@@ -31,7 +31,7 @@ impl<'a> Collector<'a> {
         }
     }
 
-    /// Line of a value.
+    /// Returns the line of a value.
     pub(super) fn line<T>(&self, at: &SpannedValue<T>) -> u32 {
         let start = at.span().start;
         self.ends.partition_point(|end| *end < start) as u32 + 1
@@ -70,12 +70,12 @@ impl<'a> Collector<'a> {
         value.as_ref().map(|v| v.value().clone())
     }
 
-    /// A named file.
+    /// Returns a named file.
     pub(super) fn named_file(&self, value: &S<String>, key: &str) -> Option<NamedFile> {
         value.as_ref().map(|v| self.named_at(v, key))
     }
 
-    /// A named file.
+    /// Returns a named file.
     pub(super) fn named_at(&self, v: &SpannedValue<String>, key: &str) -> NamedFile {
         NamedFile {
             given: v.value().clone(),
@@ -142,7 +142,7 @@ impl<'a> Collector<'a> {
         None
     }
 
-    /// A number of 0 or more.
+    /// Returns a number of 0 or more.
     pub(super) fn at_least_zero(&mut self, value: &S<f64>, key: &str) -> Option<f64> {
         self.number(value, key, "0 or more", |x| x >= 0.0)
     }
@@ -168,12 +168,12 @@ impl<'a> Collector<'a> {
         }
     }
 
-    /// A number above 0.
+    /// Returns a number above 0.
     pub(super) fn positive_number(&mut self, value: &S<f64>, key: &str) -> Option<f64> {
         self.number(value, key, "a number above 0", |x| x > 0.0)
     }
 
-    /// A count of at least 1.
+    /// Returns a count of at least 1.
     pub(super) fn count(&mut self, value: &S<u32>, key: &str) -> Option<usize> {
         let v = value.as_ref()?;
         if *v.value() == 0 {

@@ -71,7 +71,7 @@ impl Inputs<'_> {
 }
 
 impl<'a> Work<'a> {
-    /// A question of a job, whose files count as read.
+    /// Starts the work of a command on a job. The files of the job count as read.
     pub fn of_job(cx: &Context<'a>, job: &Job) -> Self {
         let mut work = Self::new(cx);
         work.inputs = Inputs::resume(cx.files, &job.read);

@@ -102,7 +102,7 @@ pub fn condition(a: &Matrix) -> f64 {
     }
 }
 
-/// Number of singular values above [`RANK_TOLERANCE`] times the largest.
+/// Returns the number of singular values above [`RANK_TOLERANCE`] times the largest.
 pub fn rank(a: &Matrix) -> usize {
     svd(a).map_or(0, |d| {
         let limit = d.s.first().copied().unwrap_or(0.0) * RANK_TOLERANCE;

@@ -25,7 +25,7 @@ impl Precision {
         self.factor.n()
     }
 
-    /// Natural log of the determinant of the covariance.
+    /// Returns the natural log of the determinant of the covariance.
     pub fn log_det(&self) -> f64 {
         self.factor.log_det()
     }

@@ -31,7 +31,7 @@ pub fn log_det(l: &[f64], k: usize) -> f64 {
     2.0 * (0..k).map(|i| l[i * k + i].ln()).sum::<f64>()
 }
 
-/// Inverse of a lower triangular matrix.
+/// Returns the inverse of a lower triangular matrix.
 pub fn inverse_lower(l: &[f64], k: usize) -> Vec<f64> {
     let mut inv = vec![0.0; k * k];
     for j in 0..k {
@@ -89,7 +89,7 @@ pub fn lower_root(g: &[f64], k: usize) -> Vec<f64> {
 /// Relative size under which a pivot of a product of matrices counts as zero; products carry more rounding than sums.
 const ROOT_FLOOR: f64 = 1e-12;
 
-/// Eigenvalues of a symmetric matrix, ascending.
+/// Returns the eigenvalues of a symmetric matrix, ascending.
 pub fn eigenvalues(a: &[f64], k: usize) -> Vec<f64> {
     let matrix = nalgebra::DMatrix::from_row_slice(k, k, a);
     let mut e: Vec<f64> = matrix.symmetric_eigenvalues().iter().copied().collect();

@@ -30,7 +30,7 @@ pub struct Solution {
 /// Singular values below this share of the largest (columns of unit norm) are taken as zero: rounding of sums of 1e5 terms.
 const RANK_TOLERANCE: f64 = 1e-10;
 
-/// Triangular factor of the matrix whose given columns are `values`, by Householder reflections.
+/// Returns the triangular factor of the matrix whose given columns are `values`, by Householder reflections.
 pub fn triangle(columns: &[(usize, &[f64])]) -> Triangle {
     let n = columns.first().map_or(0, |c| c.1.len());
     let a = DMatrix::from_fn(n, columns.len(), |i, j| columns[j].1[i]);
@@ -45,7 +45,7 @@ pub fn triangle(columns: &[(usize, &[f64])]) -> Triangle {
 }
 
 impl Triangle {
-    /// Norm of A x over the original rows, for x over all columns of the problem.
+    /// Returns the norm of A x over the original rows, for x over all columns of the problem.
     pub fn norm(&self, x: &[f64]) -> f64 {
         let dot = |row: &Vec<f64>| {
             row.iter()

@@ -52,7 +52,7 @@ pub(crate) fn no_gauge_column(
     Fault::with_line(file, 1, "gauge", wrong, remedy)
 }
 
-/// The fault of a record that can't be read.
+/// Returns the fault of a record that can't be read.
 pub(crate) fn record_fault(file: &str, e: &SeriesError) -> Fault {
     let (wrong, remedy) = e.parts();
     match e {

@@ -293,12 +293,12 @@ impl Record {
         })
     }
 
-    /// Number of the first sample of a piece.
+    /// Returns the number of the first sample of a piece.
     pub fn first_of(&self, piece: usize) -> usize {
         self.inner.span(piece).0
     }
 
-    /// Time of a sample, s.
+    /// Returns the time of a sample, s.
     pub fn time_s(&self, sample: usize) -> f64 {
         self.clock.time_s(sample)
     }
@@ -308,7 +308,7 @@ impl Record {
         &self.clock
     }
 
-    /// Time of the first sample and between samples, s.
+    /// Returns the time of the first sample and between samples, s.
     pub fn first_and_step(&self) -> (f64, f64) {
         let clock = self.clock();
         (clock.start_s, 1.0 / clock.rate_hz)
@@ -371,7 +371,7 @@ impl Record {
         read.map_err(|e| record_fault(&self.file, &e))
     }
 
-    /// Times, s, and readings of a piece, strain.
+    /// Returns the times, s, and readings of a piece, strain.
     pub fn piece(&self, i: usize) -> Result<(Vec<f64>, Vec<f64>), Fault> {
         let mut values = Vec::new();
         self.each_strain_block(i, |strain| values.extend_from_slice(strain))?;

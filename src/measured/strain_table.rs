@@ -26,7 +26,7 @@ pub struct StrainTable {
 }
 
 impl StrainTable {
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn n_rows(&self) -> usize {
         match &self.rows {
             StrainRows::Runs(r) => r.len(),
@@ -42,7 +42,7 @@ impl StrainTable {
         }
     }
 
-    /// Readings of row `i`.
+    /// Returns the readings of row `i`.
     pub fn row(&self, i: usize) -> &[f64] {
         let w = self.gauges.len();
         self.microstrain.get(i * w..(i + 1) * w).unwrap_or(&[])

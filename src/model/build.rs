@@ -273,7 +273,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Location of a grid.
+    /// Returns the location of a grid.
     pub(super) fn x(&self, g: GridIx) -> Vec3 {
         self.model
             .grids
@@ -293,7 +293,7 @@ impl Builder<'_> {
 }
 
 impl Model {
-    /// Axes of a grid's displacement frame at the grid, by rows: `components = axes * basic`.
+    /// Returns the axes of a grid's displacement frame at the grid, by rows: `components = axes * basic`.
     pub fn cd_axes(&self, g: GridIx) -> Mat3 {
         let Some(grid) = self.grids.get(g.us()) else {
             return Mat3::identity();
@@ -303,7 +303,7 @@ impl Model {
             .map_or_else(Mat3::identity, |f| f.axes_at(grid.x))
     }
 
-    /// The grid of that id.
+    /// Returns the grid of that id.
     pub fn grid_ix(&self, id: u32) -> Option<GridIx> {
         self.grids
             .binary_search_by_key(&id, |g| g.id)
@@ -311,7 +311,7 @@ impl Model {
             .map(|i| GridIx(i as u32))
     }
 
-    /// The shell of that id.
+    /// Returns the shell of that id.
     pub fn shell_ix(&self, id: u32) -> Option<ShellIx> {
         self.shells
             .binary_search_by_key(&id, |s| s.id)
@@ -319,7 +319,7 @@ impl Model {
             .map(|i| ShellIx(i as u32))
     }
 
-    /// The CBAR or CBEAM of that id.
+    /// Returns the CBAR or CBEAM of that id.
     pub fn beam_ix(&self, id: u32) -> Option<BeamIx> {
         self.beams
             .binary_search_by_key(&id, |s| s.id)
@@ -327,7 +327,7 @@ impl Model {
             .map(|i| BeamIx(i as u32))
     }
 
-    /// The coordinate system of that id.
+    /// Returns the coordinate system of that id.
     pub fn frame_ix(&self, id: u32) -> Option<FrameIx> {
         self.frames
             .iter()
@@ -335,7 +335,7 @@ impl Model {
             .map(|i| FrameIx(i as u32))
     }
 
-    /// Number of elements: those with stiffness, masses and rigid elements.
+    /// Returns the number of elements: those with stiffness, masses and rigid elements.
     pub fn n_elements(&self) -> usize {
         self.elements().count() + self.masses.len() + self.scalar_masses.len() + self.rigids.len()
     }

@@ -16,7 +16,7 @@ pub(crate) enum ElementRef {
 }
 
 impl Model {
-    /// Every element with stiffness, kind by kind.
+    /// Returns every element with stiffness, kind by kind.
     pub(crate) fn elements(&self) -> impl Iterator<Item = ElementRef> + use<> {
         (0..self.shells.len())
             .map(ElementRef::Shell)
@@ -105,7 +105,7 @@ impl Beam {
 }
 
 impl Joint {
-    /// Grids of both ends, ascending.
+    /// Returns the grids of both ends, ascending.
     pub(crate) fn all_grids(&self) -> Vec<GridIx> {
         let motion = self.ends.iter().flat_map(|e| &e.motion);
         let mut grids: Vec<GridIx> = motion.map(|m| m.0).collect();

@@ -12,7 +12,7 @@ const NOTHING_LEFT: f64 = 1e-9;
 type Terms = Vec<(GridIx, u8, f64)>;
 
 impl Builder<'_> {
-    /// Returns the equations of rigid bushes. It must run after everything else that makes dofs dependent or holds dofs.
+    /// Adds the equations of rigid bushes. It must run after everything else that makes dofs dependent or holds dofs.
     pub(super) fn rigid_bushes(&mut self) {
         let [mut taken, in_sets] = self.constrained_dofs();
         for i in 0..self.model.bushes.len() {

@@ -14,7 +14,7 @@ pub(super) struct SumOrder {
     pub circles: Vec<Vec<u32>>,
 }
 
-/// The order of sums: `names` holds for each sum the sets that it names, sums or not.
+/// Returns the order of sums: `names` holds for each sum the sets that it names, sums or not.
 ///
 /// # Reference
 /// Kahn, Topological sorting of large networks, Communications of the ACM 5 (1962): linear in the number of names.

@@ -67,7 +67,7 @@ impl Carriers {
         ((self.axis + 1) % 3, (self.axis + 2) % 3)
     }
 
-    /// The point at this place in plan and this height.
+    /// Returns the point at this place in plan and this height.
     pub fn point(&self, plan: [f64; 2], height: f64) -> Vec3 {
         let (b, c) = self.plan();
         let mut x = Vec3::zeros();

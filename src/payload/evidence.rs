@@ -134,7 +134,7 @@ impl WeighedRun {
 }
 
 impl PayloadModel {
-    /// Strain by gauge per unit weight at a shift, on the floor (`true` answer of the standing structure) or by the payload alone.
+    /// Returns the strain by gauge per unit weight at a shift, on the floor (`true` answer of the standing structure) or by the payload alone.
     pub fn unit_strain(&self, shift: [f64; 2], support: Support) -> Vec<f64> {
         let p = [1.0, shift[0], shift[1]];
         let direct = |g: usize| (0..3).map(|k| self.payload[(g, k)] * p[k]).sum::<f64>();

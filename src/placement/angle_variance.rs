@@ -30,7 +30,7 @@ pub fn of_slope(h: &Form) -> Trig {
     [0.5 * (mm + gg), 0.0, 0.0, 0.5 * (gg - mm), -(xg - yg)]
 }
 
-/// Value at the angle whose double has these cosines and sines (`[cos u, sin u, cos 2u, sin 2u]`).
+/// Returns the value at the angle whose double has these cosines and sines (`[cos u, sin u, cos 2u, sin 2u]`).
 pub fn value(p: &Trig, cs: &[f64; 4]) -> f64 {
     p[0] + p[1] * cs[0] + p[2] * cs[1] + p[3] * cs[2] + p[4] * cs[3]
 }

@@ -136,12 +136,12 @@ impl Candidates {
         self
     }
 
-    /// Number of columns.
+    /// Returns the number of columns.
     pub fn n_loads(&self) -> usize {
         self.k
     }
 
-    /// Number of places.
+    /// Returns the number of places.
     pub fn n_places(&self) -> usize {
         self.n
     }
@@ -154,7 +154,7 @@ impl Candidates {
         }
     }
 
-    /// The angles at a place.
+    /// Returns the angles at a place.
     pub fn angles(&self) -> &Angles {
         &self.angles
     }
@@ -164,12 +164,12 @@ impl Candidates {
         &self.positions
     }
 
-    /// Components a load has in the blocks: 1 for rows, 3 for tensors.
+    /// Returns the components a load has in the blocks: 1 for rows, 3 for tensors.
     pub fn components(&self) -> usize {
         if self.angles == Angles::Fixed { 1 } else { 3 }
     }
 
-    /// Blocks of [`LANES`] places, each `n_loads x components x LANES`.
+    /// Returns the blocks of [`LANES`] places, each `n_loads x components x LANES`.
     pub fn blocks(&self) -> &[f64] {
         &self.blocks
     }
@@ -180,7 +180,7 @@ impl Candidates {
         std::array::from_fn(|c| self.blocks[at + c * LANES])
     }
 
-    /// Variance of a reading at a place as a function of the angle.
+    /// Returns the variance of a reading at a place as a function of the angle.
     pub fn variance(&self, place: usize) -> Trig {
         let mut v = [0.0; 5];
         if let Some(form) = self.slopes.get(place) {
@@ -217,7 +217,7 @@ impl Candidates {
         !self.slopes.is_empty() || !self.scatter.forms.is_empty()
     }
 
-    /// Standard deviation of a gauge's reading.
+    /// Returns the standard deviation of a gauge's reading.
     pub fn sd(&self, choice: Choice) -> f64 {
         angle_variance::value(
             &self.variance(choice.place as usize),
@@ -263,7 +263,7 @@ impl Candidates {
             .collect()
     }
 
-    /// A smaller problem: these places only (indices ascending), positions and scatter kept.
+    /// Returns a smaller problem: these places only (indices ascending), positions and scatter kept.
     pub fn subset(&self, places: &[u32]) -> Self {
         let kc = self.k * self.components();
         let blocks = fill_blocks(places.len(), kc, &|i: usize, out: &mut [f64]| {

@@ -14,7 +14,7 @@ pub fn free_edges(model: &Model) -> Vec<Segment> {
     by_edge(model, |shells| shells.len() == 1)
 }
 
-/// Free edges that are no rims of holes.
+/// Returns the free edges that are not rims of holes.
 pub fn borders(model: &Model) -> Vec<Segment> {
     split(model).0
 }
@@ -159,7 +159,7 @@ fn by_edge(model: &Model, taken: impl Fn(&[ShellIx]) -> bool) -> Vec<Segment> {
         .collect()
 }
 
-/// Grids that rigid elements, RBE3, bushes, welds, fasteners and gaps hold.
+/// Returns the grids that rigid elements, RBE3, bushes, welds, fasteners and gaps hold.
 pub fn attachments(model: &Model) -> Vec<Segment> {
     let mut grids: Vec<u32> = Vec::new();
     for r in &model.rigids {

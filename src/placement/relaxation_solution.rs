@@ -21,7 +21,7 @@ pub struct Active {
 }
 
 impl Active {
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.group.len()
     }
@@ -31,7 +31,7 @@ impl Active {
         self.group.is_empty()
     }
 
-    /// Row `i`.
+    /// Returns row `i`.
     pub fn row(&self, i: usize) -> &[f64] {
         &self.rows[i * self.k..(i + 1) * self.k]
     }
@@ -55,7 +55,7 @@ pub struct RelaxationSolution {
 }
 
 impl RelaxationSolution {
-    /// The criterion at the relaxed solution.
+    /// Returns the criterion at the relaxed solution.
     pub fn value(&self) -> f64 {
         self.point.value
     }

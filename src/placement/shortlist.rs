@@ -16,7 +16,7 @@ pub(super) const LIST: usize = 700;
 /// A layout with its criterion.
 pub(super) type ScoredLayout = (Vec<Choice>, f64);
 
-/// The better of two.
+/// Returns the better of two.
 pub(super) fn better_of(a: Option<ScoredLayout>, b: Option<ScoredLayout>) -> Option<ScoredLayout> {
     match (a, b) {
         (Some(a), Some(b)) => Some(if b.1 > a.1 { b } else { a }),

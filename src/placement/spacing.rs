@@ -3,7 +3,7 @@
 use super::variance_scan::CandidateVariance;
 use std::collections::HashMap;
 
-/// Distance of two places.
+/// Returns the distance of two places.
 pub fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
 }

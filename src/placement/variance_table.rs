@@ -118,12 +118,12 @@ impl Table {
         self.cross.copy_from_slice(&other.cross);
     }
 
-    /// Cross variance of row `i` with the gauge in `slot`.
+    /// Returns the cross variance of row `i` with the gauge in `slot`.
     pub fn cross_variance(&self, slot: usize, i: usize) -> f64 {
         self.cross[slot * self.d.len() + i]
     }
 
-    /// Factor on the determinant when row `i` takes the place of row `j` in `slot`.
+    /// Returns the factor on the determinant if row `i` replaces row `j` in `slot`.
     pub fn ratio(&self, slot: usize, i: usize, j: usize) -> f64 {
         let cross = self.cross_variance(slot, i);
         (1.0 + self.d[i]) * (1.0 - self.d[j]) + cross * cross

@@ -56,7 +56,7 @@ pub(super) fn recover(
     (runs, findings)
 }
 
-/// The finding on a calibration whose intervals no run tested.
+/// Returns the finding on a calibration whose intervals no run tested.
 pub fn report_untested_intervals() -> Finding {
     Finding::new(
         Severity::Error,

@@ -22,7 +22,7 @@ impl ErrorModel {
         (self.noise * self.noise * noise_factor).max(f64::MIN_POSITIVE)
     }
 
-    /// Variance of the noise of gauge `g` of S.
+    /// Returns the variance of the noise of gauge `g` of S.
     pub fn noise_of(&self, s: &Sensitivity, g: usize, noise_factor: f64) -> f64 {
         let own = s.noise.as_ref().map_or(1.0, |n| n.variance(g));
         self.noise_variance(noise_factor) * own

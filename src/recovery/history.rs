@@ -110,7 +110,7 @@ impl Filter {
             .collect();
     }
 
-    /// Loads of samples (`n_gauges` readings each, times `to_strain`), appended to `out` and to `sums`.
+    /// Computes the loads of samples (`n_gauges` readings each, times `to_strain`), and adds them to `out` and `sums`.
     pub fn apply(&self, samples: &[f64], to_strain: f64, out: &mut SampleLoads, sums: &mut Sums) {
         let missing = self.recover(samples, to_strain, out, Some(sums));
         sums.missing.merge(&missing);
@@ -302,7 +302,7 @@ impl Filter {
         doubt.map_or(0.0, |d| d.of_motion(sample, &gain.used, &gain.weights(l)))
     }
 
-    /// Half width of the 95 % interval over sigma.
+    /// Returns the half width of the 95 % interval divided by sigma.
     pub fn coverage_factor(&self) -> f64 {
         self.widening.coverage_factor
     }
@@ -325,17 +325,17 @@ impl Filter {
         own.hypot(from + to)
     }
 
-    /// The estimate from all gauges.
+    /// Returns the estimate from all gauges.
     pub fn gain_of_all_gauges(&self) -> &Gain {
         &self.whole
     }
 
-    /// Number of loads.
+    /// Returns the number of loads.
     pub fn n_loads(&self) -> usize {
         self.whole.n_loads()
     }
 
-    /// Number of gauges.
+    /// Returns the number of gauges.
     pub fn n_gauges(&self) -> usize {
         self.zero.len()
     }

@@ -154,7 +154,7 @@ pub fn check_planned(s: &Sensitivity, sigma: &[f64]) -> Option<Finding> {
     )
 }
 
-/// The finding on a load many times larger than `expected` in some state.
+/// Returns the finding on a load many times larger than `expected` in some state.
 pub fn beyond_expected(
     load: &str,
     expected: Option<f64>,

@@ -149,7 +149,7 @@ impl Projection {
         Self { share, ..self }
     }
 
-    /// Share of independent runs in the runs.
+    /// Returns the share of independent runs in the runs.
     pub fn share(&self) -> f64 {
         self.share
     }

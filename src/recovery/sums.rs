@@ -38,13 +38,13 @@ impl Sums {
         }
     }
 
-    /// Samples in which load `l` is known.
+    /// Returns the samples in which load `l` is known.
     pub fn known_samples(&self, l: usize) -> u64 {
         let in_gaps = self.missing.known_in_gaps.get(l);
         self.missing.whole + in_gaps.copied().unwrap_or(0)
     }
 
-    /// Samples in which gauge `g` read.
+    /// Returns the number of samples in which gauge `g` has a reading.
     pub fn read(&self, g: usize) -> u64 {
         self.missing.whole + self.read_in_gaps.get(g).copied().unwrap_or(0)
     }

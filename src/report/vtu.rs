@@ -211,7 +211,7 @@ fn mesh(model: &Model) -> (AppendedArrays, Cells) {
     (a, cells)
 }
 
-/// The document up to the points.
+/// Returns the document up to the points.
 pub(super) fn begin(points: usize, cells: usize) -> AppendedArrays {
     let xml = format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \

@@ -30,7 +30,7 @@ pub struct Band {
 }
 
 impl Band {
-    /// Gain at a frequency, 0 to 1.
+    /// Returns the gain at a frequency, 0 to 1.
     pub fn gain(&self, f_hz: f64) -> f64 {
         let low = if self.low_hz > 0.0 {
             let r = f_hz / self.low_hz;
@@ -45,7 +45,7 @@ impl Band {
         low / (1.0 + h8)
     }
 
-    /// Seconds at either end of a record that carry the start and stop of the filter.
+    /// Returns the time at either end of a record that contains the end effect of the filter, s.
     pub fn settling_s(&self) -> f64 {
         if self.low_hz > 0.0 {
             2.0 / self.low_hz

@@ -61,7 +61,7 @@ impl WindowedTransform {
         &self.window
     }
 
-    /// Number of the first bin in the band.
+    /// Returns the number of the first bin in the band.
     pub fn first_bin(&self) -> usize {
         self.first
     }
@@ -71,7 +71,7 @@ impl WindowedTransform {
         self.step_hz
     }
 
-    /// Transform at any frequency f, Hz, of a signal at `rate_hz`: sum of x w exp(-2 pi i f t).
+    /// Returns the transform at any frequency f, Hz, of a signal at `rate_hz`: sum of x w exp(-2 pi i f t).
     pub fn transform_at(&self, x: &[f64], rate_hz: f64, f_hz: f64) -> Complex64 {
         let turn = Complex64::from_polar(1.0, -2.0 * PI * f_hz / rate_hz);
         let mut now = Complex64::new(1.0, 0.0);

@@ -68,7 +68,7 @@ pub fn relief_of_job(job: &Job, model: &Model) -> Result<Option<Finding>, Faults
         .as_ref()
         .map_or(SupportChoice::Deck, |m| m.support);
     let support = support_of_job(job, model)?;
-    // A job whose deck has no PARAM,INREL has a free structure, as the reference of its keys states.
+    // Without PARAM,INREL in the deck, the structure of a job is free. The reference of the key `support` documents this.
     let limited = |f: &Finding| f.code == "tied-to-ground" || support.by_springs > 0;
     Ok(relief_finding(model, support, wanted).filter(limited))
 }

@@ -12,7 +12,7 @@ pub struct MassClosure {
     pub identified: f64,
     /// Standard deviation of the identified mass.
     pub sigma: f64,
-    /// Mean wheel force over gravity.
+    /// Mean wheel force divided by gravity.
     pub weighed: f64,
     /// Identified mass / weighed mass. The ratio is 1 if dynamics and statics agree.
     pub ratio: f64,
@@ -69,7 +69,7 @@ pub(super) fn is_static(weighed: f64, identified: f64) -> bool {
     weighed > 0.05 * identified && identified > 0.0
 }
 
-/// Parameters of the two sides of a vehicle that differ by more than wear would explain.
+/// Returns the parameters of the two sides of a vehicle that differ by more than wear would explain.
 ///
 /// Pairs are names that differ by `_other`, or by `l` against `r` before the axle letter.
 pub fn check_sides(parameters: &[Parameter], values: &[f64], sigmas: &[f64]) -> Vec<Finding> {

@@ -88,7 +88,7 @@ pub fn spread(equations: &[Equation], fit: &Fit, rate_hz: f64, memory_s: f64) ->
     }
 }
 
-/// Sum of parameter times column, less target.
+/// Returns the sum of parameter times column, minus the target.
 pub fn residual(e: &Equation, values: &[f64]) -> Vec<f64> {
     let mut r: Vec<f64> = e.target.iter().map(|t| -t).collect();
     for (i, column) in &e.columns {

@@ -18,7 +18,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// The functions 1, x, y that apply, at a place.
+    /// Returns the functions 1, x, y that apply, at a place.
     pub fn functions(self, x: f64, y: f64) -> Vec<f64> {
         match self {
             Self::Heave | Self::Witness => vec![1.0],
@@ -38,12 +38,12 @@ impl Shape {
         }
     }
 
-    /// Number of motions.
+    /// Returns the number of motions.
     pub fn n(self) -> usize {
         self.letters().len()
     }
 
-    /// Number of inertia parameters: the upper triangle of its inertia.
+    /// Returns the number of inertia parameters: the upper triangle of its inertia.
     pub fn n_inertias(self) -> usize {
         match self {
             Self::Witness => 0,
@@ -149,7 +149,7 @@ pub struct MassStep {
 }
 
 impl MassStep {
-    /// Share of the change that is done at a time.
+    /// Returns the share of the change that has occurred at a time.
     pub fn share_at(&self, t_s: f64) -> f64 {
         share_done(self.at_s, self.over_s, t_s)
     }
@@ -167,7 +167,7 @@ pub struct Parameter {
 }
 
 impl Vehicle {
-    /// All parameters: inertias body by body (upper triangle by rows), then coefficients link by link, then mass changes.
+    /// Returns all parameters: inertias body by body (upper triangle by rows), then coefficients link by link, then mass changes.
     pub fn parameters(&self) -> Vec<Parameter> {
         let mut out = Vec::new();
         for body in self.bodies.iter().filter(|b| b.shape != Shape::Witness) {
@@ -232,7 +232,7 @@ impl Vehicle {
         b.is_some_and(|b| b.shape == Shape::Witness)
     }
 
-    /// Indices of the masses of bodies, witnesses left out.
+    /// Returns the indices of the masses of bodies, witnesses left out.
     pub fn masses(&self, bodies: &[usize]) -> Vec<usize> {
         let own = bodies.iter().filter(|&&b| !self.is_witness(b));
         own.map(|&b| self.inertia_index(b, 0, 0)).collect()
@@ -248,7 +248,7 @@ impl Vehicle {
         !grounded && self.steps.iter().all(|s| !bodies.contains(&s.body))
     }
 
-    /// Index of the parameter M(i, j) of a body that is no witness.
+    /// Returns the index of the parameter M(i, j) of a body that is not a witness.
     pub fn inertia_index(&self, body: usize, i: usize, j: usize) -> usize {
         let before: usize = self
             .bodies
@@ -261,7 +261,7 @@ impl Vehicle {
         before + i * n - i * (i + 1) / 2 + i + (j - i)
     }
 
-    /// Index of the parameter of a term of a link.
+    /// Returns the index of the parameter of a term of a link.
     pub fn term_index(&self, link: usize, term: usize) -> usize {
         let inertias: usize = self.bodies.iter().map(|b| b.shape.n_inertias()).sum();
         inertias
@@ -274,12 +274,12 @@ impl Vehicle {
             + term
     }
 
-    /// Index of the parameter of a mass change.
+    /// Returns the index of the parameter of a mass change.
     pub fn step_index(&self, step: usize) -> usize {
         self.term_index(self.links.len(), 0) + step
     }
 
-    /// Functions of a point's body at the point.
+    /// Returns the functions of a point's body at the point.
     pub fn functions(&self, p: &Point) -> Vec<f64> {
         self.bodies
             .get(p.body)
@@ -307,7 +307,7 @@ impl Vehicle {
             .collect()
     }
 
-    /// The part of the vehicle made of the given bodies.
+    /// Returns the part of the vehicle made of the given bodies.
     pub fn part(&self, bodies: &[usize]) -> Self {
         let to = |p: &Point| {
             bodies

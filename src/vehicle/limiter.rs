@@ -70,7 +70,7 @@ impl Limiter {
         })
     }
 
-    /// Samples of a spectrum in the band, so many times integrated.
+    /// Returns the samples of a spectrum in the band, integrated the given number of times.
     pub fn samples_in_band(&mut self, s: &Spectrum, times: i32) -> Vec<f64> {
         /// Width of the omitted band about a line, one sd of its bell: mains wander by less, and its echo dies within a second.
         const WIDTH_HZ: f64 = 0.15;

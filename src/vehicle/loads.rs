@@ -76,7 +76,7 @@ pub fn needed_forces(
         .collect()
 }
 
-/// Residuals of the equations of bodies without wheels.
+/// Returns the residuals of the equations of bodies without wheels.
 pub fn sprung_residuals(
     vehicle: &Vehicle,
     values: &[f64],

@@ -38,7 +38,7 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Number of samples.
+    /// Returns the number of samples.
     pub fn n_samples(&self) -> usize {
         self.sensors.first().map_or(0, Vec::len)
     }
@@ -73,7 +73,7 @@ impl Motion {
         }
     }
 
-    /// The motion of the part of the vehicle made of the given bodies, in the order of [`Vehicle::part`].
+    /// Returns the motion of the part of the vehicle made of the given bodies, in the order of [`Vehicle::part`].
     pub fn part(&self, vehicle: &Vehicle, bodies: &[usize]) -> Self {
         let kept = |flags: Vec<bool>| {
             (0..flags.len())

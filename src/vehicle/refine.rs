@@ -143,7 +143,7 @@ fn in_band(x: &[f64], rate_hz: f64, band: Band, trim: usize) -> Vec<f64> {
 }
 
 impl Comparison {
-    /// Simulated less measured of each compared sensor, in band and trimmed.
+    /// Returns the simulated minus the measured signal of each compared sensor, in the band and trimmed.
     ///
     /// # Errors
     /// [`SimulationError`].

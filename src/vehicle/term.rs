@@ -37,7 +37,7 @@ pub struct UnitNames {
 }
 
 impl UnitNames {
-    /// The names of a system of units.
+    /// Returns the names of a system of units.
     pub fn from_system(system: UnitSystem) -> Self {
         let name = |d: Dimension| system.unit(d).name.to_owned();
         Self {
@@ -47,7 +47,7 @@ impl UnitNames {
         }
     }
 
-    /// The unit of a speed.
+    /// Returns the unit of a speed.
     pub fn speed(&self) -> String {
         format!("{}/s", self.length)
     }
@@ -148,7 +148,7 @@ pub enum Term {
 }
 
 impl Term {
-    /// Prefix of the coefficient's name.
+    /// Returns the prefix of the coefficient's name.
     pub fn symbol(&self) -> &'static str {
         match self {
             Self::Stiffness => "k",

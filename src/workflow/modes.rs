@@ -248,7 +248,7 @@ fn compute_modes(
 }
 
 impl Modes {
-    /// The modes as cases without loads, for pictures.
+    /// Returns the modes as cases without loads, for pictures.
     pub fn cases(&self) -> Vec<LoadCase> {
         let all = self.solution.strain.cases.iter();
         all.map(|c| LoadCase {

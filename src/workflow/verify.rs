@@ -236,7 +236,7 @@ fn names(folder: &Path) -> Result<BTreeSet<String>, Fault> {
 }
 
 impl ResultProvenance {
-    /// The result files among the inputs of a command on deck and results.
+    /// Returns the result files among the inputs of a command on deck and results.
     pub fn results(&self) -> Vec<&str> {
         let is_result = |p: &&str| {
             let name = p.to_ascii_lowercase();

@@ -32,12 +32,12 @@ pub(super) struct Step {
     pub seconds: f64,
 }
 
-/// A lower bound in percent, never rounded up.
+/// Returns a lower bound in percent, never rounded up.
 pub(super) fn percent_at_least(bound: f64) -> String {
     percent((1000.0 * bound).floor() / 1000.0)
 }
 
-/// A share in percent.
+/// Returns a share in percent.
 pub(super) fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
 }

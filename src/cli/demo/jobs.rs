@@ -130,7 +130,7 @@ pub(super) fn reconcile() -> String {
         )
 }
 
-/// Size and place of the payload.
+/// Returns the size and place of the payload.
 pub(super) fn payload(strain: &str) -> String {
     HEAD.to_owned()
         + &wheel_loads()

@@ -26,7 +26,7 @@ pub(super) struct InstalledGauge {
 }
 
 impl InstalledGauge {
-    /// The gauges of a placement's result.
+    /// Returns the gauges of a placement's result.
     pub(super) fn read_gauges(result: &Value) -> Vec<Self> {
         let number = |v: &Value| v.as_f64().unwrap_or(f64::NAN);
         result["gauges"]
@@ -115,7 +115,7 @@ impl SimulatedMeasurements {
         figure
     }
 
-    /// Root mean square over the runs of the relative error of the recovered payload.
+    /// Returns the root mean square over the runs of the relative error of the recovered payload.
     pub(super) fn payload_error_of(&self, result: &Value) -> f64 {
         let (mut off, mut n) = (0.0, 0.0);
         for p in result["payload"].as_array().into_iter().flatten() {

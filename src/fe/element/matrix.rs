@@ -11,7 +11,7 @@ pub(crate) struct ElementMatrix {
 }
 
 impl ElementMatrix {
-    /// A zero matrix.
+    /// Returns a zero matrix.
     pub(crate) fn zeros(grids: Vec<GridIx>) -> Self {
         let n = 6 * grids.len();
         Self {
@@ -28,7 +28,7 @@ impl ElementMatrix {
         }
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub(crate) fn n(&self) -> usize {
         6 * self.grids.len()
     }

@@ -56,7 +56,7 @@ pub(super) fn rod_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, Re
     Ok(k)
 }
 
-/// Mass of rod `i`, before WTMASS.
+/// Returns the mass of rod `i`, before WTMASS.
 pub(crate) fn rod_mass(model: &Model, i: usize) -> f64 {
     let rod = &model.rods[i];
     let length = (model.grids[rod.grids[1].us()].x - model.grids[rod.grids[0].us()].x).norm();

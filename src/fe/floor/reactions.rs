@@ -177,17 +177,17 @@ impl Floor {
         })
     }
 
-    /// The contacts, in the order of [`Self::reactions`].
+    /// Returns the contacts, in the order of [`Self::reactions`].
     pub fn contacts(&self) -> &[GridIx] {
         &self.contacts
     }
 
-    /// Locations of the contacts, basic frame.
+    /// Returns the locations of the contacts, basic frame.
     pub fn positions(&self) -> &[Vec3] {
         &self.x
     }
 
-    /// The axis that points up: 0 x, 1 y, 2 z.
+    /// Returns the axis that points up: 0 x, 1 y, 2 z.
     pub fn axis(&self) -> usize {
         self.axis
     }

@@ -89,7 +89,7 @@ impl FloorSolution {
             .unwrap_or_else(|| vec![f64::NAN; self.floor.contacts().len()])
     }
 
-    /// Reactions to the structure's own weight.
+    /// Returns the reactions to the structure's own weight.
     pub fn under_weight(&self, model: &Model, gravity: f64) -> Vec<f64> {
         self.floor.reactions(&self.floor.weight(model, gravity))
     }

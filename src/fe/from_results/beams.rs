@@ -91,7 +91,7 @@ impl<'m> BeamCollector<'m> {
         }
     }
 
-    /// The field, elements and stations ascending.
+    /// Returns the field with ascending elements and stations.
     pub(super) fn finish(self) -> BeamField {
         let (elements, mut stations): (Vec<_>, Vec<Vec<Station>>) =
             self.stations.into_iter().unzip();

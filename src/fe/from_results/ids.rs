@@ -12,7 +12,7 @@ impl<'a, T, F: Fn(&T) -> u32> Ids<'a, T, F> {
         Self { list, id, next: 0 }
     }
 
-    /// The index of `wanted` in the list.
+    /// Returns the index of `wanted` in the list.
     pub(super) fn find(&mut self, wanted: u32) -> Option<usize> {
         let here = self.next;
         let found = match self.list.get(here) {

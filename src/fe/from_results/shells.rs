@@ -170,7 +170,7 @@ impl<'m> ShellCollector<'m> {
         }
     }
 
-    /// The field, elements ascending.
+    /// Returns the field with ascending elements.
     pub(super) fn finish(self) -> ShellField {
         let mut order: Vec<usize> = (0..self.elements.len()).collect();
         let sorted = self.elements.is_sorted();

@@ -12,7 +12,7 @@ use sha2::{Digest, Sha256};
 
 const MARK: &[u8] = b"strainbridge solution 2\n";
 
-/// A solution as bytes.
+/// Returns a solution as bytes.
 pub(super) fn encode(solved: &DisplacementSolution, Key(hash): &Key) -> Vec<u8> {
     let fields = &solved.displacements;
     let numbers = fields.first().map_or(0, |f| 6 * f.len()) * fields.len();

@@ -24,7 +24,7 @@ const ROLES: [(&str, Role); 3] = [
 ];
 const POINTS: [(&str, u8); 4] = [("C", 0), ("D", 1), ("E", 2), ("F", 3)];
 
-/// Wirings by their names.
+/// Returns the wirings by their names.
 pub(super) fn bridges() -> [(&'static str, Bridge); 4] {
     Bridge::ALL.map(|b| (b.name(), b))
 }

@@ -56,7 +56,7 @@ pub(super) fn units(
     out
 }
 
-/// Quantities of which a unit is stated.
+/// Returns the quantities of which a unit is stated.
 pub(super) fn stated_quantities(raw: Option<&RawUnits>) -> Vec<Quantity> {
     let Some(raw) = raw else { return Vec::new() };
     let all = [

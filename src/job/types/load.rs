@@ -35,7 +35,7 @@ impl Component {
         (self as usize) < 3
     }
 
-    /// Force or moment.
+    /// Returns force or moment.
     pub fn quantity(self) -> Quantity {
         if self.is_force() {
             Quantity::Force
@@ -109,7 +109,7 @@ impl JobLoad {
         self.subcase.unwrap_or(self.number)
     }
 
-    /// Force or moment; `None` for a load set.
+    /// Returns force or moment. `None` for a load set.
     pub fn quantity(&self) -> Option<Quantity> {
         match self.acts {
             LoadActs::AtGrid { component, .. } => Some(component.quantity()),

@@ -31,7 +31,7 @@ pub struct DenseTerm {
 }
 
 impl BlockMatrix {
-    /// A zero matrix with a block wherever the graph has an edge.
+    /// Returns a zero matrix with a block wherever the graph has an edge.
     pub fn zeros(symbolic: &Symbolic, graph: &BlockGraph) -> Self {
         let n = graph.n();
         let size = |g: u32| symbolic.start[g as usize + 1] - symbolic.start[g as usize];
@@ -152,7 +152,7 @@ impl BlockMatrix {
         self.values[self.value_start[self.column[group]] + i * m + i] += value;
     }
 
-    /// The diagonal in elimination order.
+    /// Returns the diagonal in elimination order.
     pub(super) fn diagonal(&self, symbolic: &Symbolic) -> Vec<f64> {
         let mut d = Vec::with_capacity(symbolic.n_unknowns());
         for g in 0..symbolic.order.len() {
@@ -163,7 +163,7 @@ impl BlockMatrix {
         d
     }
 
-    /// The diagonal in the caller's numbering.
+    /// Returns the diagonal in the caller's numbering.
     pub fn diagonal_values(&self, symbolic: &Symbolic) -> Vec<f64> {
         let d = self.diagonal(symbolic);
         let mut out = vec![0.0; d.len()];
@@ -175,7 +175,7 @@ impl BlockMatrix {
         out
     }
 
-    /// The product with a vector, both in the caller's numbering.
+    /// Returns the product with a vector, both in the caller's numbering.
     pub fn times(&self, symbolic: &Symbolic, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
         for g in 0..symbolic.order.len() {
@@ -226,7 +226,7 @@ impl BlockMatrix {
 }
 
 impl BlockMatrix {
-    /// The diagonal block of a group (caller's numbering), row by row.
+    /// Returns the diagonal block of a group (caller's numbering), row by row.
     pub fn diagonal_block(&self, symbolic: &Symbolic, group: usize) -> &[f64] {
         let g = symbolic.position[group] as usize;
         let b = self.column[g];

@@ -121,7 +121,7 @@ impl Branches {
         bins.into_iter().map(|b| b.1).collect()
     }
 
-    /// Indices into `list`.
+    /// Returns the indices into `list`.
     pub(super) fn heaviest_first(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.list.len()).collect();
         order.sort_by(|&a, &b| self.list[b].weight.total_cmp(&self.list[a].weight));

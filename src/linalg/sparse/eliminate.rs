@@ -25,7 +25,7 @@ pub(super) enum Tiles {
     Shared,
 }
 
-/// The factor of the first `w` columns, of which `panel` holds all rows.
+/// Factors the first `w` columns in place. `panel` contains all rows of these columns.
 ///
 /// # Errors
 /// The column whose pivot is not positive.

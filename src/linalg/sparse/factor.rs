@@ -49,7 +49,7 @@ pub struct Factor<'a> {
 }
 
 impl<'a> Factor<'a> {
-    /// The factor of a symmetric positive (semi)definite matrix, which is scaled in place and kept.
+    /// Returns the factor of a symmetric positive (semi)definite matrix, which is scaled in place and kept.
     ///
     /// # Errors
     /// An entry that is not a number, or a factor that memory doesn't hold.

@@ -59,7 +59,7 @@ impl Supernodes {
         &self.rows[self.row_start[s]..self.row_start[s + 1]]
     }
 
-    /// Unknowns of the rows below.
+    /// Returns the unknowns of the rows below.
     pub(super) fn n_below(&self, s: usize) -> usize {
         self.below[s] as usize
     }
@@ -69,7 +69,7 @@ impl Supernodes {
         self.value_start[s.start]..self.value_start[s.end]
     }
 
-    /// Values of the factor, explicit zeros of merged supernodes included.
+    /// Returns the values of the factor, explicit zeros of merged supernodes included.
     pub(super) fn n_values(&self) -> usize {
         self.value_start.last().copied().unwrap_or(0)
     }

@@ -57,33 +57,33 @@ impl Symbolic {
         self.method
     }
 
-    /// Entries of the factor, explicit zeros of merged supernodes included.
+    /// Returns the entries of the factor, explicit zeros of merged supernodes included.
     pub fn factor_nonzeros(&self) -> usize {
         self.nodes.n_values()
     }
 
-    /// Number of unknowns.
+    /// Returns the number of unknowns.
     pub fn n_unknowns(&self) -> usize {
         self.old_start.last().copied().unwrap_or(0)
     }
 
-    /// First unknown of each group in the caller's numbering, and the total.
+    /// Returns the first unknown of each group in the caller's numbering, and the total.
     pub fn unknown_start(&self) -> &[usize] {
         &self.old_start
     }
 
-    /// Unknowns of a supernode's own, elimination order.
+    /// Returns the unknowns of a supernode's own, elimination order.
     pub(super) fn unknowns(&self, s: usize) -> std::ops::Range<usize> {
         let groups = self.nodes.groups(s);
         self.start[groups.start]..self.start[groups.end]
     }
 
-    /// Unknowns of a group, elimination order.
+    /// Returns the unknowns of a group, elimination order.
     pub(super) fn of_group(&self, g: u32) -> std::ops::Range<usize> {
         self.start[g as usize]..self.start[g as usize + 1]
     }
 
-    /// The unknown, caller's numbering, at a place of the elimination order.
+    /// Returns the unknown, caller's numbering, at a place of the elimination order.
     pub(super) fn old_unknown(&self, new: usize) -> usize {
         let g = self.start.partition_point(|&s| s <= new) - 1;
         self.old_start[self.order[g] as usize] + new - self.start[g]

@@ -44,7 +44,7 @@ pub(super) struct ConnectorGeometry {
     pub(super) placed: Placement,
 }
 
-/// Angle between two sheets of these normals, degrees, whichever way the normals point.
+/// Returns the angle between two sheets of these normals, degrees, whichever way the normals point.
 pub(super) fn between_deg(a: Vec3, b: Vec3) -> f64 {
     a.dot(&b).abs().min(1.0).acos().to_degrees()
 }

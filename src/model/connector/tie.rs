@@ -78,7 +78,7 @@ pub(super) fn by_points(x: Vec3, points: &[(Patch, Foot)]) -> Option<JointEnd> {
     })
 }
 
-/// The equations that make grid `g` follow an end with a rigid arm, all in displacement frames, the dependent term first.
+/// Returns the equations that make grid `g` follow an end with a rigid arm, all in displacement frames, the dependent term first.
 pub(super) fn equations(model: &Model, g: GridIx, end: &JointEnd) -> Vec<Vec<(GridIx, u8, f64)>> {
     let x = model.grids.get(g.us()).map_or(end.x, |g| g.x);
     let mut arm = Matrix6::identity();

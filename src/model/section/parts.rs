@@ -22,17 +22,17 @@ impl Shape {
 /// Share of a rectangle that carries its transverse shear.
 pub(super) const RECTANGLE_SHEAR: f64 = 5.0 / 6.0;
 
-/// A rectangle between two heights and two widths.
+/// Returns a rectangle between two heights and two widths.
 pub(super) fn rectangle(y: [f64; 2], z: [f64; 2]) -> Rectangle {
     Rectangle { y, z }
 }
 
-/// Torsion constant of thin open walls: sum of length times thickness cubed over three.
+/// Returns the torsion constant of thin open walls: sum of length times thickness cubed over three.
 pub(super) fn open_torsion(walls: &[(f64, f64)]) -> f64 {
     walls.iter().map(|(b, t)| b * t * t * t / 3.0).sum()
 }
 
-/// Torsion constant of a rectangle (Roark, table 20, case 4).
+/// Returns the torsion constant of a rectangle (Roark, table 20, case 4).
 pub(super) fn rectangle_torsion(w: f64, h: f64) -> f64 {
     let (long, short) = if w > h { (w, h) } else { (h, w) };
     let r = short / long;

@@ -51,7 +51,7 @@ pub enum JointCard {
 }
 
 impl JointCard {
-    /// The name of the card.
+    /// Returns the name of the card.
     pub fn name(self) -> &'static str {
         match self {
             Self::Cweld => "CWELD",

@@ -28,7 +28,7 @@ pub struct TemperatureSet {
 }
 
 impl TemperatureSet {
-    /// Temperature of each of the `n` grids of the model.
+    /// Returns the temperature of each of the `n` grids of the model.
     pub fn by_grid(&self, n: usize) -> Vec<f64> {
         let mut all = vec![self.default.unwrap_or(0.0); n];
         for (g, t) in &self.grids {

@@ -52,7 +52,7 @@ impl Bundles {
         self.cost.is_empty()
     }
 
-    /// Rows of a bundle.
+    /// Returns the rows of a bundle.
     pub fn rows_of(&self, u: usize) -> impl Iterator<Item = &[f64]> {
         let (a, b) = (self.start[u] as usize, self.start[u + 1] as usize);
         self.rows[a * self.k..b * self.k].chunks_exact(self.k)

@@ -235,7 +235,7 @@ impl Design {
         out
     }
 
-    /// Samples of a channel within the band.
+    /// Returns the samples of a channel within the band.
     pub fn signal(&self, channel: &str) -> Option<&[f64]> {
         self.motion.signal(&self.vehicle, channel)
     }

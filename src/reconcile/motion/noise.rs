@@ -117,7 +117,7 @@ pub fn log_determinant(
 }
 
 impl Whitener {
-    /// Factors of covariances.
+    /// Creates the whitener from covariances, one for each bin.
     pub fn from_covariance(covariance: &[Vec<Complex64>], n: usize) -> Self {
         Self {
             n,

@@ -190,7 +190,7 @@ impl Kernel {
     }
 }
 
-/// The transform of `length` samples.
+/// Returns the transform of `length` samples.
 pub(super) fn spectrum(length: usize, sample: impl Fn(usize) -> f64) -> Spectrum {
     let plan = forward(length);
     let mut input = plan.make_input_vec();

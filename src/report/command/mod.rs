@@ -110,7 +110,7 @@ pub fn finish<A: Answer>(outcome: &Outcome<A>, mut out: Output) -> Result<String
     Ok(json)
 }
 
-/// The text of `result.json` of an outcome that is not written.
+/// Returns the text of `result.json` of an outcome that is not written.
 ///
 /// # Errors
 /// An answer without a JSON form, which is a mistake of the program.

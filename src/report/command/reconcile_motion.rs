@@ -51,7 +51,7 @@ fn gap_unit(column: &str) -> String {
     .to_owned()
 }
 
-/// The page.
+/// Returns the page.
 pub(super) fn motion_page(outcome: &Outcome<Reconciliation>, found: &MotionPart) -> Page {
     let curves = match &found.identified {
         Some((id, moved)) => restoring_curves(id, moved),

@@ -8,7 +8,7 @@ use std::io::Write;
 /// Places whose histories are written.
 const MOST_HISTORIES: usize = 40;
 
-/// Returns a table with a row for each state: strain (microstrain), stress, and von Mises stress with its 95 % interval, at every listed place.
+/// Writes a table with a row for each state: strain (microstrain), stress, and von Mises stress with its 95 % interval, at every listed place.
 pub(super) fn histories(
     w: &mut dyn Write,
     rows: &[ResponseRow],

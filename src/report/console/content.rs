@@ -25,7 +25,7 @@ pub struct ConsoleTable {
 }
 
 impl ConsoleTable {
-    /// A table with these columns.
+    /// Creates a table with these columns.
     pub fn new(title: impl Into<String>, head: &[&str], rows: Vec<Vec<String>>) -> Self {
         Self {
             title: title.into(),

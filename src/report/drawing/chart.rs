@@ -52,7 +52,7 @@ const BAND: &str = "rgba(214,137,16,.16)";
 /// Widest group of bars, mm.
 const WIDEST: f64 = 20.0;
 
-/// The choices of a figure that are meant for paper, each a picture.
+/// Returns the choices of a figure that are meant for paper, each a picture.
 pub(in crate::report) fn pictures(figure: &Figure) -> Vec<Picture> {
     let shown = figure.choices.iter().take(figure.on_paper);
     shown

@@ -84,7 +84,7 @@ impl Picture {
         self.shapes.iter().any(is_face)
     }
 
-    /// A line from `a` to `b`.
+    /// Adds a line from `a` to `b`.
     pub(in crate::report) fn line(&mut self, a: [f64; 2], b: [f64; 2], colour: &str, pen: f64) {
         self.strokes(vec![vec![a, b]], colour, pen);
     }

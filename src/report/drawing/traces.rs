@@ -39,7 +39,7 @@ pub(in crate::report) struct Series {
 }
 
 impl Series {
-    /// Number of points.
+    /// Returns the number of points.
     pub(in crate::report) fn len(&self) -> usize {
         self.values[0].len().min(self.values[1].len())
     }
@@ -49,12 +49,12 @@ impl Series {
         self.values[k].get(i)?.as_str()
     }
 
-    /// Value on axis `k`.
+    /// Returns the value on axis `k`.
     pub(in crate::report) fn value_at(&self, k: usize, i: usize) -> Option<f64> {
         self.values[k].get(i)?.as_f64()
     }
 
-    /// Interval about a value to the right.
+    /// Returns the interval about a value to the right.
     pub(in crate::report) fn interval_at(&self, i: usize) -> Option<[f64; 2]> {
         let v = self.value_at(0, i)?;
         let [below, above] = &self.errors;

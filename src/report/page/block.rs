@@ -119,7 +119,7 @@ pub struct Section {
 }
 
 impl Section {
-    /// A part with these blocks.
+    /// Creates a part with these blocks.
     pub fn new(title: impl Into<String>, blocks: Vec<Block>) -> Self {
         Self {
             title: title.into(),
@@ -200,7 +200,7 @@ pub struct Card {
 }
 
 impl Card {
-    /// A card with nothing but a picture.
+    /// Returns a card with nothing but a picture.
     pub(in crate::report) fn of_picture(picture: Picture) -> Self {
         Self {
             title: String::new(),

@@ -16,7 +16,7 @@ const MOST_ROWS: usize = 14;
 /// Groups of errors shown open above the picture. Further groups follow below it.
 const OPEN_ERRORS: usize = 2;
 
-/// The first screen as HTML.
+/// Returns the first screen as HTML.
 pub(super) fn first_screen(page: &Page, findings: &FindingsBySeverity) -> Markup {
     let picture = first_picture(page);
     let (class, sign, word) = mark(findings);

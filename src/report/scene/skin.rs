@@ -35,7 +35,7 @@ pub(super) fn skin(model: &Model, fields: usize, finest: Finest) -> Vec<Part> {
     skin_within(model, limit.max(LEAST_TRIANGLES))
 }
 
-/// Faces by property, at most so many triangles in all.
+/// Returns the faces by property, with a limit on the total number of triangles.
 pub(super) fn skin_within(model: &Model, most: usize) -> Vec<Part> {
     let mut parts = merge_small_parts(collect_faces(model));
     let mut order: Vec<usize> = (0..parts.len()).collect();

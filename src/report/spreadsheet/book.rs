@@ -50,7 +50,7 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// A sheet without rows.
+    /// Creates a sheet without rows.
     pub fn new(name: &str, columns: &[&str]) -> Self {
         Self {
             name: name.to_owned(),

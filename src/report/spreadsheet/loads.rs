@@ -49,7 +49,7 @@ pub fn runs_sheet(runs: &[RecoveredRun]) -> Sheet {
     }
 }
 
-/// Sheet `Loads` of a history: a row a load.
+/// Returns the sheet `Loads` of a history, with a row for each load.
 pub fn history_sheet(loads: &[HistoryLoad]) -> Sheet {
     let mut sheet = Sheet::new(
         "Loads",
@@ -66,7 +66,7 @@ pub fn history_sheet(loads: &[HistoryLoad]) -> Sheet {
     sheet
 }
 
-/// Sheet `Gauges`: residual (microstrain rms) and leverage of each.
+/// Returns the sheet `Gauges` with residual (microstrain rms) and leverage of each gauge.
 pub fn residual_sheet(gauges: &[(String, f64, f64)]) -> Sheet {
     let mut sheet = Sheet::new(
         "Gauges",

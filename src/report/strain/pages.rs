@@ -47,7 +47,7 @@ fn sensitivity_section(s: &Sensitivity) -> Section {
     Section::new("Sensitivity", blocks)
 }
 
-/// The page of `sensitivity`.
+/// Returns the page of `sensitivity`.
 pub fn sensitivity_page(
     title: &str,
     s: &Sensitivity,
@@ -169,7 +169,7 @@ pub struct RecoveryPage<'a> {
 /// Maximum number of runs whose loads are drawn. `loads.csv` contains all runs.
 const MOST_RUNS: usize = 200;
 
-/// The page of `recover`.
+/// Returns the page of `recover`.
 pub fn recover_page(
     title: &str,
     scene: Option<&Scene>,

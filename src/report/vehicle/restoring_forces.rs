@@ -71,7 +71,7 @@ pub fn restoring_curves(found: &Identification, motion: &Motion) -> Vec<Curve> {
     out
 }
 
-/// The curves as a section of a page.
+/// Returns the curves as a section of a page.
 pub fn restoring_section(curves: &[Curve], units: &UnitNames) -> Section {
     let stretch = format!("stretch, {}", units.length);
     let force = format!("force, {}", units.force);

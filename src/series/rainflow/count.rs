@@ -21,12 +21,12 @@ pub struct Cycle {
 }
 
 impl Cycle {
-    /// Largest less smallest.
+    /// Returns the range: largest minus smallest value.
     pub fn range(&self) -> f64 {
         (self.to.value - self.from.value).abs()
     }
 
-    /// Middle between both.
+    /// Returns the mean of both values.
     pub fn mean(&self) -> f64 {
         0.5 * (self.to.value + self.from.value)
     }
@@ -183,7 +183,7 @@ impl<T> Rainflow<T> {
         }
     }
 
-    /// The residue: the reversals that are still open and the last sample, in time order.
+    /// Returns the residue: the reversals that are still open and the last sample, in time order.
     pub fn residue(mut self, tag: &mut impl FnMut(Point) -> T) -> Vec<Reversal<T>> {
         if let Some(latest) = self.latest
             && self.open.last().is_none_or(|r| r.point != latest)
@@ -262,7 +262,7 @@ impl Rainflow {
     }
 }
 
-/// The ranges of a residue as half cycles.
+/// Returns the ranges of a residue as half cycles.
 pub fn half_cycles<T>(residue: &[Reversal<T>]) -> impl Iterator<Item = Cycle> {
     residue.windows(2).filter_map(|w| match w {
         [a, b] => Some(Cycle {

@@ -91,7 +91,7 @@ struct Room {
 }
 
 impl Counter {
-    /// A count of load number `load` of `n_loads`, whose samples carry white noise of standard deviation `noise`.
+    /// Creates a count of load number `load` of `n_loads`, whose samples carry white noise of standard deviation `noise`.
     pub fn new(load: usize, n_loads: usize, noise: f64, width: f64, law: Law) -> Self {
         Self {
             load,
@@ -206,7 +206,7 @@ impl Counter {
         }
     }
 
-    /// The tally.
+    /// Returns the tally.
     pub fn finish(self) -> Tally {
         let ClosedCycles {
             width,

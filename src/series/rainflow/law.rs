@@ -38,7 +38,7 @@ pub struct Law {
 }
 
 impl Law {
-    /// A straight line.
+    /// Creates a straight line.
     pub fn from_slope(slope: f64) -> Self {
         Self { slope, knee: None }
     }
@@ -54,7 +54,7 @@ impl Law {
         }
     }
 
-    /// Change of the damage with the range.
+    /// Returns the change of the damage with the range.
     #[inline(always)]
     pub fn derivative(&self, range: f64) -> f64 {
         match self.knee {

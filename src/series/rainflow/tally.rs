@@ -208,7 +208,7 @@ impl Tally {
         sums
     }
 
-    /// Range-pair counts: cycles by range in class widths (class i: ranges whose ends lie i classes apart), residue as half cycles.
+    /// Returns the range-pair counts: cycles by range in class widths (class i: ranges whose ends lie i classes apart), residue as half cycles.
     pub fn range_pairs(&self) -> Vec<(u32, f64)> {
         let mut out: BTreeMap<u32, f64> = BTreeMap::new();
         for (a, b, n) in &self.cycles {
@@ -228,7 +228,7 @@ impl Tally {
         out.into_iter().collect()
     }
 
-    /// Number of cycles. Cycles of the residue count as half cycles.
+    /// Returns the number of cycles. Cycles of the residue count as half cycles.
     pub fn n_cycles(&self) -> f64 {
         let closed: u64 = self.cycles.iter().map(|c| c.2).sum();
         let open = self
@@ -249,7 +249,7 @@ fn reversal(l: &ResidueReversal) -> Reversal<Vec<f64>> {
     }
 }
 
-/// The class of a value.
+/// Returns the class of a value.
 #[inline(always)]
 pub fn class(value: f64, width: f64) -> i32 {
     (value / width).floor() as i32

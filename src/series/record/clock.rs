@@ -89,12 +89,12 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// Span of the record, s.
+    /// Returns the span of the record, s.
     pub fn duration_s(&self) -> f64 {
         self.samples as f64 / self.rate_hz
     }
 
-    /// Time of sample `i`, s.
+    /// Returns the time of sample `i`, s.
     pub fn time_s(&self, i: usize) -> f64 {
         self.start_s + i as f64 / self.rate_hz
     }
@@ -162,7 +162,7 @@ pub(super) fn clock_of(
     }
 }
 
-/// Rows of each piece.
+/// Returns the rows of each piece.
 pub(super) fn counts(reader: &dyn RecordReader) -> Result<Vec<usize>, SeriesError> {
     (0..reader.n_pieces())
         .into_par_iter()

@@ -108,7 +108,7 @@ pub fn name_and_unit(header: &str) -> Column {
 }
 
 impl Column {
-    /// A channel of a format that keeps units apart from names.
+    /// Returns a channel of a format that keeps units apart from names.
     pub fn of_channel(name: &str, unit: &str) -> Self {
         let unit = match unit_of_time_name(name) {
             Some(of_name) if unit.is_empty() => of_name,

@@ -88,7 +88,7 @@ impl Record {
         self.reader.group(column)
     }
 
-    /// Channels of the file that are not among the columns, in file order.
+    /// Returns the channels of the file that are not among the columns, in file order.
     pub fn other_channels(&self) -> &[OtherChannel] {
         self.reader.other_channels()
     }
@@ -104,7 +104,7 @@ impl Record {
         (at(piece), at(piece + 1))
     }
 
-    /// The line in the file of a stored row, counted from 0.
+    /// Returns the line in the file of a stored row, counted from 0.
     pub fn line_of_row(&self, row: usize) -> usize {
         let mut before = 0;
         let spans = self.steps.iter().flat_map(|s| &s.spans);

@@ -190,7 +190,7 @@ fn mdf(_: Bytes, _: &[String]) -> Result<Box<dyn RecordReader>, SeriesError> {
     })
 }
 
-/// A whole record in memory.
+/// Returns a whole record in memory.
 ///
 /// # Errors
 /// Errors of [`open_record`] and [`Record::read`].

@@ -91,12 +91,12 @@ impl SharedRows {
         }
     }
 
-    /// Memory for columns.
+    /// Returns unused memory for columns, or new memory.
     pub fn spare(&self) -> Strips {
         lock_mutex(&self.spare).pop().unwrap_or_default()
     }
 
-    /// Takes it back.
+    /// Takes memory for columns back.
     pub fn take_back(&self, strips: Strips) {
         lock_mutex(&self.spare).push(strips);
     }

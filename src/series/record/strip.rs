@@ -87,7 +87,7 @@ impl Strip {
         }
     }
 
-    /// The rows from number `first` on, times `worth` less `off`.
+    /// Writes the rows from number `first` on to `out`, multiplied by `worth` and with `off` subtracted.
     pub(super) fn write_rows(&self, first: usize, worth: f64, off: f64, out: &mut [f64]) {
         if let Some(singles) = self.singles.get(first..).filter(|s| !s.is_empty()) {
             pulp::Arch::new().dispatch(|| {

@@ -122,7 +122,7 @@ pub fn is_rpc(bytes: &[u8]) -> bool {
     key == "FORMAT" && (value.starts_with("BINARY") || value == "ASCII")
 }
 
-/// Text up to the first zero byte, trimmed: UTF-8, else Latin-1.
+/// Returns the text up to the first zero byte, trimmed: UTF-8, else Latin-1.
 pub(super) fn text(bytes: &[u8]) -> String {
     let bytes = bytes.split(|b| *b == 0).next().unwrap_or_default();
     match std::str::from_utf8(bytes) {
@@ -174,7 +174,7 @@ impl Params {
     }
 }
 
-/// The header.
+/// Returns the header.
 ///
 /// # Errors
 /// A file that is cut off, keys that lack or can't be, another kind of file.

@@ -50,7 +50,7 @@ fn value(b: &[u8], numbers: Numbers, big_endian: bool) -> f64 {
     }
 }
 
-/// The whole record.
+/// Returns the whole record.
 ///
 /// # Errors
 /// Errors of [`read_header`].

@@ -223,7 +223,7 @@ fn in_steel(task: &Task) -> f64 {
     structure.weight().mass * task.gravity
 }
 
-/// The finding on masses that no structure of the model's mass carries.
+/// Returns the finding on masses that no structure of the model's mass carries.
 pub(super) fn far_beyond(
     task: &Task,
     run: &str,

@@ -35,17 +35,17 @@ pub(super) struct Task<'a> {
     pub gravity: f64,
 }
 
-/// Report force per job unit.
+/// Returns the report force per job unit.
 pub(super) fn force(job: &Job) -> f64 {
     factor(job.units, job.report_units.force)
 }
 
-/// Report length per job unit.
+/// Returns the report length per job unit.
 pub(super) fn length(job: &Job) -> f64 {
     factor(job.units, job.report_units.length)
 }
 
-/// Report mass per job unit.
+/// Returns the report mass per job unit.
 pub(super) fn mass(job: &Job) -> f64 {
     factor(job.units, job.report_units.mass)
 }

@@ -12,7 +12,7 @@ const SELDOM: f64 = 0.05;
 /// Half widths by which a check load exceeds any chance deviation: four standard deviations.
 const FAR: f64 = 2.0;
 
-/// Loads of the check runs, and combinations, report units. The interval of the comparison includes the error of the applied load.
+/// Returns the loads of the check runs, and combinations, report units. The interval of the comparison includes the error of the applied load.
 pub(super) fn compare_check_loads(checked: &[CheckedRun], listed: &ListedLoads) -> Vec<CheckLoad> {
     let of_run = |c: &CheckedRun| -> Vec<CheckLoad> {
         let k = c.run.loads.mean.len();

@@ -37,7 +37,7 @@ pub(super) fn tolerance(keys: &CalibrationKeys) -> Option<GlueTolerance> {
 }
 
 impl<'a> Sites<'a> {
-    /// The gauges of a job that has a model.
+    /// Returns the gauges of a job that has a model.
     ///
     /// # Errors
     /// S that is given: gauges can't be moved in a table. Ids that the deck lacks.
@@ -83,7 +83,7 @@ impl<'a> Sites<'a> {
         })
     }
 
-    /// Row of S of a gauge that sits elsewhere: along, across (job units of length), angle (radians).
+    /// Returns the row of S of a gauge with an offset from its nominal position: along, across (job units of length), angle (radians).
     pub fn row(&self, gauge: usize, [along, across, angle_rad]: [f64; 3]) -> Option<Vec<f64>> {
         let (gauge, _) = self.gauges.get(gauge)?.as_ref()?.gauge_at_offset(Offset {
             along,

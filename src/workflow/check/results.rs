@@ -43,7 +43,7 @@ struct TableEntry {
 }
 
 impl ResultEntry {
-    /// Path as given.
+    /// Returns the path as given.
     pub(super) fn path(&self) -> &str {
         &self.path
     }

@@ -16,7 +16,7 @@ use std::ops::Range;
 /// A dead part: the gauge (number among the used gauges), its content in this part, and the samples of this part.
 pub(super) type DeadPart = (usize, Gives, Range<usize>);
 
-/// Dead parts by the samples spread over the record, to the sample.
+/// Returns the dead parts, found with samples spread over the record. Their limits are exact to the sample.
 ///
 /// # Errors
 /// What can't be decoded.
@@ -39,7 +39,7 @@ pub(super) fn dead_parts(
         .collect()
 }
 
-/// The readings that are left out.
+/// Returns the readings that are left out.
 pub(super) fn blank_of(dead: &[DeadPart]) -> Vec<(usize, Range<usize>)> {
     let of_one_value = dead.iter().filter(|d| d.1 == Gives::OneValue);
     of_one_value

@@ -234,7 +234,7 @@ impl Kernel {
         (filter, noise)
     }
 
-    /// The columns that a record is read for.
+    /// Returns the columns that a record is read for.
     pub fn wanted_columns(&self) -> Vec<String> {
         let gauges = self.sensitivity.gauges.iter().chain(&self.reserved);
         columns_wanted(&self.corrections, gauges)

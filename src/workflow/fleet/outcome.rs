@@ -294,13 +294,13 @@ impl VehicleLoadAnswer {
 }
 
 impl Fleet {
-    /// Every load of every vehicle.
+    /// Returns every load of every vehicle.
     pub fn rows(&self) -> impl Iterator<Item = (&VehicleAnswer, &VehicleLoadAnswer)> {
         let vehicles = self.vehicles.iter();
         vehicles.flat_map(|v| v.loads.iter().map(move |l| (v, l)))
     }
 
-    /// The answer of merged vehicles.
+    /// Returns the answer of merged vehicles.
     pub(super) fn from_vehicles(
         job: &Job,
         kernel: &Kernel,

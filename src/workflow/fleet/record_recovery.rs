@@ -65,7 +65,7 @@ pub(super) struct RecordRecovery {
     pub zero: Vec<f64>,
     /// Readings that count as missing, because the gauge is dead there: number of the used gauge, and samples.
     pub blank: Vec<(usize, Range<usize>)>,
-    /// S of the used gauges, strain per report unit. It has no columns for sums of loads.
+    /// S of the used gauges, strain per report unit. It is zero for sums of loads.
     pub s: Vec<Vec<f64>>,
     /// Report units per job unit, by load and sum.
     pub factors: Vec<f64>,

@@ -150,7 +150,7 @@ impl KeptDays {
         self.latest_result(path).filter(|f| f.sha256 == sha256)
     }
 
-    /// The day of a file that [`KeptDays::head`] knows.
+    /// Returns the day of a file that [`KeptDays::head`] knows.
     pub fn day(&self, file: &FileHead) -> Option<Day> {
         let bytes = std::fs::read(self.place(&file.path)).ok()?;
         let kept: StoredResult<Day> = self.read(&bytes)?;

@@ -166,7 +166,7 @@ pub(super) struct WithJob<'a> {
 }
 
 impl<'a> WithJob<'a> {
-    /// The files of `inner` and `text` at `path`.
+    /// Returns the files of `inner` and `text` at `path`.
     pub(super) fn new(inner: &'a dyn Files, path: &Path, text: &str) -> Self {
         Self {
             inner,

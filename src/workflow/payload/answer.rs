@@ -112,7 +112,7 @@ impl WeighedPayload {
         }
     }
 
-    /// Half width of the 95 % interval of the weight.
+    /// Returns the half width of the 95 % interval of the weight.
     pub fn half_width(&self) -> f64 {
         match (self.force_low, self.force_high) {
             (Some(low), Some(high)) => (high - low) / 2.0,
@@ -160,7 +160,7 @@ fn accepted_value(r: &WeighedRun, v: f64) -> Option<f64> {
 /// of the answer.
 const CARRIES: f64 = 32.0;
 
-/// The answer.
+/// Returns the answer.
 pub(super) fn report_payload(
     task: &Task,
     parts: Parts,

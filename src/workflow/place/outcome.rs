@@ -182,7 +182,7 @@ impl PlacedGauge {
         self.spot.as_ref().map_or(of_candidates, |s| s.grid_length)
     }
 
-    /// The angle as the technician sees that side.
+    /// Returns the angle as the technician sees that side.
     pub(super) fn seen_deg(gauge: &Gauge) -> f64 {
         let deg = gauge.angle_rad.to_degrees();
         match gauge.surface {

@@ -105,7 +105,7 @@ pub(super) fn kinds(
         .collect()
 }
 
-/// The angles of a job.
+/// Returns the angles of a job.
 pub(crate) fn angles(step: AngleStep) -> Angles {
     match step {
         AngleStep::Continuous => Angles::Continuous,
@@ -116,7 +116,7 @@ pub(crate) fn angles(step: AngleStep) -> Angles {
     }
 }
 
-/// Loads in the order of the candidates' columns: nuisance loads first.
+/// Returns the loads in the order of the candidates' columns: nuisance loads first.
 pub(crate) fn column_order(job: &Job) -> Vec<usize> {
     let mut order: Vec<usize> = (0..job.loads.len()).collect();
     order.sort_by_key(|&l| job.loads[l].role == LoadRole::Wanted);

@@ -17,7 +17,7 @@ use crate::sensitivity::{LoadCaseOf, Sensitivity};
 use crate::strain_chain::{Fields, lay_gauges, left_in_reading, without_strain};
 use crate::units::MICROSTRAIN;
 
-/// The task.
+/// Task of `place`: the job with its model and its candidates.
 pub(super) struct Task<'a> {
     pub job: &'a Job,
     pub fields: &'a Fields,
@@ -54,7 +54,7 @@ impl<'a> Task<'a> {
             .unzip()
     }
 
-    /// Mesh errors in the candidates' order.
+    /// Returns the mesh errors in the candidates' order.
     pub fn errors_nuisance_first(&self) -> Vec<LoadCaseOf<'a>> {
         let order = self.order.iter();
         order.filter_map(|&l| self.errors.get(l).cloned()).collect()
@@ -212,7 +212,7 @@ impl<'a> Task<'a> {
         l
     }
 
-    /// The refusal of a placement as a fault of the job.
+    /// Returns the refusal of a placement as a fault of the job.
     pub fn refusal(&self, e: &PlaceError) -> Fault {
         let (mut wrong, mut remedy) = e.parts();
         let too_few = !matches!(e, PlaceError::Singular { .. });

@@ -151,7 +151,7 @@ fn is_corrected(job: &Job, frame: &StrainFrame, gauge: usize) -> bool {
     name.is_some_and(|name| job.corrections.iter().any(|c| is_of(c, name)))
 }
 
-/// A correction of a job.
+/// Returns a correction of a job.
 pub(super) fn entry(c: &ReadingCorrection) -> Value {
     let mut t = Table::new();
     t.insert("gauge".into(), Value::String(c.gauge.clone()));

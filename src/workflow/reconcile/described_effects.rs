@@ -24,7 +24,7 @@ pub(super) fn factor_at(source: &EffectSource, size: f64) -> Option<f64> {
     }
 }
 
-/// The hypotheses of `[[reconcile.effect]]`, in job order.
+/// Returns the hypotheses of `[[reconcile.effect]]`, in job order.
 pub(super) fn effects(job: &Job) -> &[DescribedEffect] {
     job.reconcile
         .as_ref()
@@ -144,7 +144,7 @@ impl DeckFrame {
         Ok(out)
     }
 
-    /// Change of the influence matrix by an edit of the deck at a size.
+    /// Returns the change of the influence matrix by an edit of the deck at a size.
     pub(super) fn described_change(
         &self,
         job: &Job,

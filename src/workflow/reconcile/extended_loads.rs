@@ -33,7 +33,7 @@ const RECORDED_MASS_REL: f64 = 0.02;
 /// Error of a recorded payload place, m, one standard deviation.
 const RECORDED_PLACE_M: f64 = 0.05;
 
-/// Side loads of the effects, by the grids of the job's wheels.
+/// Returns the side loads of the effects, by the grids of the job's wheels.
 pub(super) fn side_loads(job: &Job, effects: &[NamedEffect]) -> Vec<SideLoad> {
     let mut out = Vec::new();
     for e in effects {

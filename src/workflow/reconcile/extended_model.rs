@@ -42,7 +42,7 @@ pub struct ExtendedModel {
 }
 
 impl ExtendedModel {
-    /// A job named `name` of this text, in which no file changes.
+    /// Creates a job named `name` of this text, in which no file changes.
     pub(super) fn from_job_text(name: &'static str, job_text: String) -> Self {
         Self {
             name,

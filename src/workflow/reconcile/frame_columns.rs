@@ -58,7 +58,7 @@ impl FrameColumns {
         loads.filter(|(_, l)| l.wanted).map(|(k, _)| k)
     }
 
-    /// Name and column of each wanted load, in the order of S.
+    /// Returns the name and column of each wanted load, in the order of S.
     pub(super) fn wanted_columns(&self) -> Vec<(String, Vec<f64>)> {
         let one = |k: usize| (self.sensitivity.loads[k].name.clone(), self.column(k));
         self.wanted_loads().map(one).collect()

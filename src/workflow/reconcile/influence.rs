@@ -14,7 +14,7 @@ use crate::stop::Stop;
 use crate::strain_chain::built_in_solver::support_of_job;
 use crate::units::MICROSTRAIN;
 
-/// Influence of the columns, `n_gauges x n_columns`, zero for columns without a load.
+/// Returns the influence of the columns, `n_gauges x n_columns`, zero for columns without a load.
 pub(super) fn influence(
     job: &Job,
     model: &Model,
@@ -58,7 +58,7 @@ pub(super) fn readings(
     out
 }
 
-/// The model under these loads.
+/// Returns the model under these loads.
 ///
 /// # Errors
 /// Faults of the solver.
@@ -123,7 +123,7 @@ pub(super) fn small_changes(
     Ok(changes.map(|all| all.into_iter().map(in_microstrain).collect()))
 }
 
-/// Displacements of the model under these loads and for these readings.
+/// Returns the displacements of the model under these loads and for these readings.
 ///
 /// # Errors
 /// Faults of the solver.

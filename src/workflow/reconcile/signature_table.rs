@@ -89,7 +89,7 @@ impl SignatureTable {
         self.table.column(&[name]).is_some()
     }
 
-    /// Column `name` times `factor`, by gauge.
+    /// Returns the column `name` times `factor`, by gauge.
     pub(super) fn column(&self, name: &str, factor: f64) -> Result<Vec<f64>, Faults> {
         let Some(c) = self.table.column(&[name]) else {
             let found = self.table.header.join(", ");

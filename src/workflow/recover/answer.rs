@@ -161,7 +161,7 @@ pub struct RecoveredLoad {
 }
 
 impl RecoveredLoad {
-    /// Half width of the 95 % interval.
+    /// Returns the half width of the 95 % interval.
     pub fn half_width(&self) -> f64 {
         (self.high - self.low) / 2.0
     }

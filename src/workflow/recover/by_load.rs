@@ -23,12 +23,12 @@ pub struct LoadSpan {
 }
 
 impl LoadSpan {
-    /// Half width over the size of the load.
+    /// Returns the half width divided by the size of the load.
     pub fn share(&self) -> f64 {
         self.half / self.size
     }
 
-    /// Largest value by magnitude, with its sign.
+    /// Returns the largest value by magnitude, with its sign.
     pub fn peak(&self) -> f64 {
         match self.smallest.abs() > self.largest.abs() {
             true => self.smallest,

@@ -65,7 +65,7 @@ pub(super) fn check_band(names: &[String], content: &[Option<f64>], up_to_hz: f6
     beyond.collect()
 }
 
-/// A warning for each load whose content reaches a third of the first mode of `structure`.
+/// Returns a warning for each load whose content reaches a third of the first mode of `structure`.
 pub(super) fn check_content(
     names: &[String],
     content: &[Option<f64>],

@@ -43,7 +43,7 @@ pub struct LoadDamage {
     pub count: Damage,
 }
 
-/// Cycles of every load.
+/// Returns the cycles of every load.
 pub(super) fn damage(
     head: &RecordHead,
     sums: &Sums,

@@ -63,7 +63,7 @@ pub(super) fn findings(job: &Job, head: &RecordHead, sums: &Sums) -> Vec<Finding
     out
 }
 
-/// The channels of `loads.rsp`.
+/// Returns the channels of `loads.rsp`.
 pub fn rpc_targets(head: &RecordHead, sums: &Sums) -> Vec<Target> {
     let loads = head.names.iter().zip(&head.units).enumerate();
     loads

@@ -15,7 +15,7 @@ pub struct ListedLoads {
     pub sums: Vec<Vec<(usize, f64)>>,
 }
 
-/// Loads of S and combinations of the job.
+/// Returns the loads of S and combinations of the job.
 ///
 /// # Errors
 /// Combinations of loads that S lacks, of forces with moments, or that bear a load's name.

@@ -131,7 +131,7 @@ pub(super) fn parts<'a>(job: &'a Job, clock: &Clock) -> Result<Vec<Part<'a>>, Fa
     Ok(out)
 }
 
-/// Statistics and damage of every load in every section of the record.
+/// Returns the statistics and damage of every load in every section of the record.
 pub(super) fn count_all(counting: CycleCountInput, parts: &[Part]) -> Vec<SectionLoad> {
     let counted = parts.iter();
     counted
@@ -139,7 +139,7 @@ pub(super) fn count_all(counting: CycleCountInput, parts: &[Part]) -> Vec<Sectio
         .collect()
 }
 
-/// Statistics and damage of every load in some samples of a record.
+/// Returns the statistics and damage of every load in some samples of a record.
 pub(super) fn count(
     counting: CycleCountInput,
     section: &RecordSection,

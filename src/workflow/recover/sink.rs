@@ -99,7 +99,7 @@ pub struct RecordHead {
 }
 
 impl RecordHead {
-    /// Number of loads, including combinations.
+    /// Returns the number of loads, including combinations.
     pub fn n_loads(&self) -> usize {
         self.names.len()
     }

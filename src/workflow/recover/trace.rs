@@ -71,12 +71,12 @@ impl Spans {
         }
     }
 
-    /// The spans in order of time.
+    /// Returns the spans in order of time.
     pub fn list(&self) -> &[Span] {
         &self.list
     }
 
-    /// Time of the first and the last sample; NaN without samples.
+    /// Returns the time of the first and the last sample; NaN without samples.
     pub(super) fn time(&self) -> [f64; 2] {
         match (self.list.first(), self.list.last()) {
             (Some(first), Some(last)) => [first.time[0], last.time[1]],

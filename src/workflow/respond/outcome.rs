@@ -114,7 +114,7 @@ pub struct Element {
 }
 
 impl Element {
-    /// Half width of the 95 % interval.
+    /// Returns the half width of the 95 % interval.
     pub fn half_width(&self) -> f64 {
         NORMAL_95 * self.sigma
     }

@@ -26,7 +26,7 @@ pub(super) struct States {
     pub is_history: bool,
 }
 
-/// The states of the job.
+/// Returns the states of the job.
 ///
 /// # Errors
 /// Neither loads nor measured strain; tables that can't be read.

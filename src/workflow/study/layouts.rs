@@ -31,7 +31,7 @@ pub(super) struct LayoutOf {
     pub members: Vec<Vec<usize>>,
 }
 
-/// Every layout and count that the job asks for and the pool allows.
+/// Returns every layout and count that the job asks for and the pool allows.
 ///
 /// # Errors
 /// No pool at all, candidates that can't be used.

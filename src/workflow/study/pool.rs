@@ -162,7 +162,7 @@ fn pool_on_model(
     Ok(pool)
 }
 
-/// The pool gauge of a specification on the model, with its place.
+/// Returns the pool gauge of a specification on the model, with its place.
 pub(super) fn on_model(
     fields: &Fields,
     job: &Job,

@@ -24,7 +24,7 @@ pub(super) struct LocalBeam<'a> {
     pub(super) k: [f64; 2],
 }
 
-/// Properties between stations, linear in x.
+/// Returns the properties between stations, linear in x.
 pub(crate) fn section_at(sections: &[(f64, Section)], xi: f64) -> Section {
     let last = sections.last().map(|s| s.1).unwrap_or_default();
     let Some(i) = sections.windows(2).position(|w| xi <= w[1].0) else {
@@ -61,7 +61,7 @@ fn largest_of(s: &Section, l2: f64) -> f64 {
         .max(f64::MIN_POSITIVE)
 }
 
-/// Compliance of a section for N, My, Mz about the reference line: strain of the line, curvatures d(theta_y)/dx, d(theta_z)/dx.
+/// Returns the compliance of a section for N, My, Mz about the reference line: strain of the line, curvatures d(theta_y)/dx, d(theta_z)/dx.
 ///
 /// Strain at (y, z) is e0 + z ky - y kz.
 pub(super) fn compliance(s: &Section, e: f64, length: f64) -> Matrix3<f64> {

@@ -20,7 +20,7 @@ fn refuse(beam: &Beam, reason: String, remedy: &str) -> Refusal {
     }
 }
 
-/// Length between the offset ends.
+/// Returns the length between the offset ends.
 pub(super) fn length(model: &Model, beam: &Beam) -> f64 {
     let end = |i: usize| model.grids[beam.grids[i].us()].x + beam.offsets[i];
     (end(1) - end(0)).norm()
@@ -166,7 +166,7 @@ pub(crate) fn beam_end_forces(
     Ok(all)
 }
 
-/// Stiffness of beam `i`, basic frame.
+/// Returns the stiffness of beam `i`, basic frame.
 ///
 /// # Errors
 /// Lengths, materials and sections that make no beam.

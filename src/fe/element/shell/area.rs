@@ -11,7 +11,7 @@ pub(crate) struct CornerProducts {
     pub(crate) volume: [[f64; 4]; 4],
 }
 
-/// Integrals over the mid-surface through three or four corners.
+/// Returns the integrals over the mid-surface through three or four corners.
 pub(crate) fn corner_products(x: &[Vec3], thickness: &[f64; 4]) -> CornerProducts {
     let mut out = CornerProducts::default();
     let mut add = |h: [f64; 4], hr: [f64; 4], hs: [f64; 4], weight: f64| {

@@ -33,7 +33,7 @@ fn coefficients(m: &Material) -> Option<[f64; 3]> {
     }
 }
 
-/// Strain given in axes that lie at `angle` from x, seen in x and y.
+/// Transforms a strain from axes at `angle` from x to the axes x and y.
 pub(super) fn turn_strain([e1, e2, g]: [f64; 3], angle: f64) -> [f64; 3] {
     let (s, c) = angle.sin_cos();
     [

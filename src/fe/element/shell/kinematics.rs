@@ -81,7 +81,7 @@ impl TangentFrame {
         })
     }
 
-    /// Rows xx, yy, xy from covariant rows rr, ss, 2 rs.
+    /// Returns the rows xx, yy, xy from covariant rows rr, ss, 2 rs.
     pub(super) fn strain<const M: usize>(&self, [rr, ss, rs]: &[Row<M>; 3]) -> [Row<M>; 3] {
         let (rx, sx, ry, sy) = (self.rx, self.sx, self.ry, self.sy);
         let mut out = [[0.0; M]; 3];
@@ -93,7 +93,7 @@ impl TangentFrame {
         out
     }
 
-    /// Rows xz, yz from covariant rows r, s.
+    /// Returns the rows xz, yz from covariant rows r, s.
     pub(super) fn shear<const M: usize>(&self, r: &Row<M>, s: &Row<M>) -> [Row<M>; 2] {
         let mut out = [[0.0; M]; 2];
         for i in 0..M {
@@ -110,7 +110,7 @@ fn add_vector<const M: usize>(row: &mut Row<M>, at: usize, v: &Vec3) {
     row[at + 2] += v.z;
 }
 
-/// Mid-surface strains rr, ss, 2 rs.
+/// Returns the mid-surface strains rr, ss, 2 rs.
 pub(super) fn membrane<const N: usize, const M: usize>(
     t: &Tangents,
     shape: &Shape<N>,
@@ -151,7 +151,7 @@ pub(super) fn add_bending_sides<const N: usize, const M: usize>(
     }
 }
 
-/// Coefficients of z in the strains rr, ss, 2 rs.
+/// Returns the coefficients of z in the strains rr, ss, 2 rs.
 pub(super) fn curvature<const N: usize, const M: usize>(
     t: &Tangents,
     shape: &Shape<N>,
@@ -171,7 +171,7 @@ pub(super) fn curvature<const N: usize, const M: usize>(
     rows
 }
 
-/// Transverse shear strains r, s.
+/// Returns the transverse shear strains r, s.
 pub(super) fn shear<const N: usize, const M: usize>(
     t: &Tangents,
     shape: &Shape<N>,

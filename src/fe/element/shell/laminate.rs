@@ -76,7 +76,7 @@ pub(super) fn place_plies(
         .collect()
 }
 
-/// The law of a laminate, scaled as a shell law is.
+/// Returns the law of a laminate, with the scaling of a shell law.
 pub(super) fn law(plies: &[LaminatePly], lamination: Lamination) -> Option<ShellLaw> {
     let (bottom, top) = (plies.first()?.z[0], plies.last()?.z[1]);
     let t = top - bottom;

@@ -31,7 +31,7 @@ pub(crate) struct ManyShell {
 }
 
 impl ManyRows {
-    /// Mechanical strain at both surfaces, less the thermal strain.
+    /// Returns the mechanical strain at both surfaces, less the thermal strain.
     pub(crate) fn surfaces(&self, z: [f64; 2], u: &[f64], free: &[[f64; 3]; 2]) -> [[f64; 3]; 2] {
         let dot = |rows: &[Vec<f64>; 3], constant: [f64; 3]| -> [f64; 3] {
             std::array::from_fn(|c| {
@@ -194,7 +194,7 @@ impl ParentShell<'_> {
     }
 }
 
-/// Matrices of a shell with mid-side grids; `material_angle_rad` from the output x axis of its corners.
+/// Returns the matrices of a shell with mid-side grids; `material_angle_rad` from the output x axis of its corners.
 ///
 /// # Errors
 /// Parts that make no quadrilateral.

@@ -38,7 +38,7 @@ fn refuse(shell: &Shell, reason: &str, remedy: &str) -> Refusal {
     )
 }
 
-/// Angle of the material x axis from the output x axis, radians.
+/// Returns the angle of the material x axis from the output x axis, radians.
 pub(crate) fn material_angle(model: &Model, shell: &Shell) -> Option<f64> {
     let n = shell.shape.n_corners();
     let x: Vec<Vec3> = shell.grids[..n]
@@ -50,7 +50,7 @@ pub(crate) fn material_angle(model: &Model, shell: &Shell) -> Option<f64> {
     Some(side.y.atan2(side.x) + shell.material_angle_rad)
 }
 
-/// Matrices of shell `i`.
+/// Returns the matrices of shell `i`.
 ///
 /// # Errors
 /// Shapes, thicknesses and properties that make no element.
@@ -134,7 +134,7 @@ pub(crate) fn shell_matrices(
     }
 }
 
-/// Stiffness of shell `i`.
+/// Returns the stiffness of shell `i`.
 ///
 /// # Errors
 /// As `shell_matrices`.
@@ -246,7 +246,7 @@ pub(crate) fn shell_mass(model: &Model, i: usize) -> [[f64; 4]; 4] {
     })
 }
 
-/// Mechanical strain at both surfaces from rows and displacements, less the thermal strain: bottom (Z1), top (Z2).
+/// Returns the mechanical strain at both surfaces from rows and displacements, less the thermal strain: bottom (Z1), top (Z2).
 pub(crate) fn surfaces<const M: usize>(
     rows: &StrainRows<M>,
     z: [f64; 2],

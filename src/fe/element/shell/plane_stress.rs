@@ -43,7 +43,7 @@ pub(super) fn plane_strain_matrix(m: &Material) -> Option<[[f64; 3]; 3]> {
     ])
 }
 
-/// Transverse shear moduli in material axes.
+/// Returns the transverse shear moduli in material axes.
 pub(super) fn transverse_shear(m: &Material) -> Option<[[f64; 2]; 2]> {
     Some(match m.kind {
         MaterialKind::Isotropic { g, .. } => [[g, 0.0], [0.0, g]],
@@ -81,7 +81,7 @@ pub(super) fn rotate(g: &[[f64; 3]; 3], angle: f64) -> [[f64; 3]; 3] {
     out
 }
 
-/// Transverse shear moduli in axes turned by `angle`.
+/// Returns the transverse shear moduli in axes turned by `angle`.
 pub(super) fn rotate_shear(g: &[[f64; 2]; 2], angle: f64) -> [[f64; 2]; 2] {
     let (s, c) = angle.sin_cos();
     let t = [[c, s], [-s, c]];

@@ -83,7 +83,7 @@ impl Point {
     }
 }
 
-/// Stiffness and strain of a four-node shell.
+/// Returns the stiffness and strain of a four-node shell.
 ///
 /// # Reference
 /// Dvorkin and Bathe, Eng. Comput. 1 (1984) 77; Taylor, Beresford and Wilson, IJNME 10 (1976) 1211.

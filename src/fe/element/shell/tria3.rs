@@ -28,7 +28,7 @@ pub(super) fn tria_points() -> [(Shape<3>, f64); 7] {
     RADON.map(|(r, s, w)| (shape(r, s), w))
 }
 
-/// Stiffness and strain of a three-node shell. The rotation has a cubic bubble whose two amplitudes are eliminated.
+/// Returns the stiffness and strain of a three-node shell. The rotation has a cubic bubble whose two amplitudes are eliminated.
 ///
 /// # Reference
 /// Lee, Lee and Bathe, The MITC3+ shell element and its performance, Computers and Structures 138 (2014) 12.

@@ -85,7 +85,7 @@ impl SolidInput {
         j
     }
 
-    /// Strain columns at a point.
+    /// Returns the strain columns at a point.
     pub(super) fn strain_columns_at(
         &self,
         point: &TablePoint,
@@ -126,7 +126,7 @@ impl SolidInput {
         })
     }
 
-    /// Stiffness for a law; `strain` is the thermal strain at the point with these functions, if any.
+    /// Returns the stiffness for a law; `strain` is the thermal strain at the point with these functions, if any.
     pub(super) fn form(
         &self,
         law: &Matrix6<f64>,
@@ -176,7 +176,7 @@ impl SolidInput {
         })
     }
 
-    /// Integral of products of shape functions, row by row over the grids. The folded part of a shape counts as negative.
+    /// Returns the integral of products of shape functions, row by row over the grids. The folded part of a shape counts as negative.
     pub(super) fn products(&self) -> Vec<f64> {
         let n = self.x.len();
         let mut out = vec![0.0; n * n];

@@ -7,7 +7,7 @@ use crate::report::page::KeyNumber;
 use crate::units::{half_width, number, percent, plus_minus};
 use crate::workflow::recover::{LoadSpan, RecoveredLoad, RecoveredLoads, RecoveredRuns, States};
 
-/// Largest load, residual, gauges, least certain load.
+/// Returns the largest load, residual, gauges, least certain load.
 pub(super) fn key_numbers(outcome: &Outcome<RecoveredLoads>) -> Vec<KeyNumber> {
     let spans = outcome.spans();
     let known = || spans.iter().filter(|s| s.share().is_finite());
@@ -167,7 +167,7 @@ fn of_record(spans: &[LoadSpan]) -> ConsoleTable {
 /// Runs whose loads are in a table of the page; all are in `loads.csv`.
 const MOST_ROWS: usize = 600;
 
-/// A row a run and load, for the table next to the figure, and whether some are left out.
+/// Returns a row for each run and load, for the table next to the figure, and whether some are left out.
 pub(super) fn by_run(
     outcome: &Outcome<RecoveredLoads>,
     runs: &RecoveredRuns,

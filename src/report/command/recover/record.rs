@@ -129,7 +129,7 @@ fn of_history(l: &crate::workflow::recover::RecordLoad) -> HistoryLoad {
     }
 }
 
-/// The page.
+/// Returns the page.
 pub(super) fn page(outcome: &Outcome<RecoveredLoads>, record: &RecoveredRecord) -> Page {
     let (job, file) = (&outcome.job, &record.head.file);
     let row = |name: &str, value: String| (name.to_owned(), value);

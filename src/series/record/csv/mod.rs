@@ -26,7 +26,7 @@ use text::Encoding;
 /// Bytes of a piece.
 const PIECE: usize = 4 << 20;
 
-/// A table as a record.
+/// A text table that is read as a record.
 pub struct Csv {
     bytes: Bytes,
     layout: Layout,
@@ -39,7 +39,7 @@ pub struct Csv {
 }
 
 impl Csv {
-    /// The table in a file.
+    /// Returns the table in a file.
     ///
     /// # Errors
     /// No header, a header without rows, a time column in a unit that is not a unit of time.

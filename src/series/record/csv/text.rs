@@ -74,7 +74,7 @@ impl Encoding {
         }
     }
 
-    /// Bytes of an end of line.
+    /// Returns the bytes of an end of line.
     pub fn unit(self) -> usize {
         match self {
             Self::Bytes => 1,
@@ -123,7 +123,7 @@ impl Encoding {
         }
     }
 
-    /// Pieces of about `size` bytes that end with whole lines.
+    /// Returns the pieces of about `size` bytes that end with whole lines.
     pub fn pieces(self, bytes: &[u8], start: usize, size: usize) -> Vec<(usize, usize)> {
         let mut out = Vec::new();
         let mut from = start;
@@ -171,7 +171,7 @@ pub fn skip_empty(text: &[u8], at: usize) -> Option<usize> {
     Some(memchr::memchr(b'\n', rest).map_or(text.len(), |n| at + n + 1))
 }
 
-/// Length of the field at the beginning of `rest`, quotes included.
+/// Returns the length of the field at the beginning of `rest`, quotes included.
 pub fn field_end(rest: &[u8], delimiter: u8) -> usize {
     let mut from = 0;
     if let Some(open) = rest.iter().position(|b| *b != b' ')

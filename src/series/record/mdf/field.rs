@@ -4,7 +4,7 @@ use crate::series::record::time_unit::single_rounding_s;
 use falcon_mdf::blocks::{ChannelType, DataType};
 use falcon_mdf::{Channel, ChannelGroup, Conversion};
 
-/// Channels that hold numbers and are not the group's clock.
+/// Returns the channels that hold numbers and are not the group's clock.
 pub(super) fn values(g: &ChannelGroup) -> impl Iterator<Item = &Channel> {
     let channels = g.channels.iter();
     channels.filter(|c| !c.is_master() && c.is_numeric() && !c.is_array())

@@ -140,7 +140,7 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// Samples `from .. to`, as stored.
+    /// Writes the samples `from .. to`, as stored, to `slots`.
     pub fn decode<'a>(
         &self,
         file: &[u8],

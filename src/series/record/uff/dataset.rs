@@ -21,7 +21,7 @@ pub struct Binary {
 }
 
 impl Binary {
-    /// Number `i`.
+    /// Returns number `i` of the data set.
     pub fn value(&self, file: &[u8], i: usize) -> f64 {
         let size = if self.double { 8 } else { 4 };
         match file.get(self.at + i * size..self.at + (i + 1) * size) {
