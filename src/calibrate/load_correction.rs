@@ -10,7 +10,7 @@ pub(super) struct CorrectedLoads {
     pub phi: Vec<f64>,
     /// `S (f - f0)` without the free directions. The readings plus this shift belong to the loads `phi`.
     pub shift: Vec<f64>,
-    /// `S D S'` by rows: strain that the loads' own error makes.
+    /// `S D S'` by rows: covariance of the strain from the errors of the loads.
     pub spread: Vec<f64>,
     /// Degrees of freedom, counted in readings, that the correction takes.
     pub freedom: f64,

@@ -17,14 +17,14 @@ pub(super) struct Equation {
     pub covariance: Vec<f64>,
 }
 
-/// Mean and covariance of S with columns times load scales: strain.
+/// Mean and covariance of S. Its columns are multiplied by the scales of the loads, so that entries are strain.
 #[derive(Clone, Debug)]
 pub(super) struct Posterior {
     pub n: usize,
     pub k: usize,
-    /// Entry (g, l) at `g k + l`.
+    /// Mean. Entry (g, l) is at `g k + l`.
     pub mean: Vec<f64>,
-    /// `(n k) x (n k)` by rows.
+    /// Covariance, `(n k) x (n k)` by rows.
     pub covariance: Vec<f64>,
 }
 

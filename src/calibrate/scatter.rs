@@ -39,7 +39,7 @@ const SIGNIFICANT: f64 = 1e-3;
 const FEWEST: f64 = 0.9;
 
 impl Scatter {
-    /// Returns zero scatter, with readings that have noise alone.
+    /// Returns zero scatter. The readings then contain only noise.
     pub fn none(n: usize) -> Self {
         Self {
             covariance: vec![0.0; n * n],

@@ -19,7 +19,7 @@ const ROUNDS: usize = 4;
 pub(super) struct State {
     /// Runs used, by number.
     pub used: Vec<usize>,
-    /// Size of each load: columns are S times these.
+    /// Size of each load. The columns of the fit are the columns of S times these sizes.
     pub scales: Vec<f64>,
     /// Prior of the rows.
     pub prior: Vec<RowPrior>,
@@ -37,7 +37,7 @@ pub(super) struct State {
     pub q2_used: Vec<f64>,
     /// Number of repeats of each used run, including the run itself.
     pub repeats: Vec<usize>,
-    /// Runs' worth of freedom that the fit took from each gauge.
+    /// Degrees of freedom, counted in runs, that the fit took from each gauge.
     pub fitted: f64,
     /// Estimated error of the model in each gauge's row; empty without a model.
     pub row_errors: Vec<RowError>,

@@ -65,7 +65,7 @@ pub struct OffDrawing {
     pub along: Matrix,
     /// Change per length across the axis of the gauge.
     pub across: Matrix,
-    /// Length over which rows change evenly: about an element.
+    /// Length over which rows change linearly. It is about the size of an element.
     pub reach: f64,
 }
 
@@ -83,11 +83,11 @@ pub enum MoveKind {
 /// The change that a move makes: `row(move) = values - change at + change move`, where `values` and `change` belong to the move `at`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Move {
-    /// Which.
+    /// Kind of move.
     pub kind: MoveKind,
-    /// `n x k`, strain per job unit and unit of the move.
+    /// Change of the rows, `n x k`, strain per job unit and unit of the move.
     pub change: Matrix,
-    /// 1 sd.
+    /// Stated standard deviation of the move.
     pub sd: f64,
     /// Size of the move of each gauge at which `values` and `change` apply.
     pub at: Vec<f64>,
@@ -211,9 +211,9 @@ pub struct Coverage {
 /// Error of the model as determined from the runs: 1 sd, relative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelError {
-    /// Common to a gauge.
+    /// Error that is common to a gauge.
     pub common: f64,
-    /// Entry by entry.
+    /// Separate error of each entry.
     pub entry: f64,
 }
 

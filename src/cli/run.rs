@@ -58,7 +58,7 @@ impl Run {
         self.job_into(path, &self.folder(path), ask)
     }
 
-    /// Asks a question of a job, writes the outcome into `folder`.
+    /// Runs a computation on a job and writes the outcome into `folder`.
     pub fn job_into<A>(
         &self,
         path: &Path,
@@ -85,7 +85,7 @@ impl Run {
         self.ask_into(&self.folder(first), ask)
     }
 
-    /// Asks a question, writes the outcome into `folder`.
+    /// Runs a computation and writes the outcome into `folder`.
     pub fn ask_into<A>(
         &self,
         folder: &Path,

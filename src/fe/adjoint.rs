@@ -23,7 +23,7 @@ use rayon::prelude::*;
 /// A part of a reading: `coefficient . (exx, eyy, gxy)` of a shell, in the frame of its strain output.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrainTerm {
-    /// Which.
+    /// Shell of the term.
     pub shell: ShellIx,
     /// Side.
     pub surface: Surface,

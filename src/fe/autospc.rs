@@ -139,7 +139,7 @@ fn describe_unknowns(
     format!("grid/dof {}", list_few(&names))
 }
 
-/// That directions were held.
+/// Returns the finding that springs hold directions without stiffness.
 pub(super) fn autospc_finding(
     model: &Model,
     assembled: &AssembledStiffness,

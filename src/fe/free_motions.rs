@@ -44,7 +44,7 @@ pub(super) struct RigidStructure<'a> {
     pub(super) reduction: &'a Reduction,
     /// Grids that belong to the structure, scalar points left out.
     pub(super) touched: &'a [bool],
-    /// Point about which the motions turn.
+    /// Point about which the motions rotate.
     pub(super) centre: Vec3,
     /// Largest distance of a grid from the centre.
     pub(super) size: f64,
@@ -206,7 +206,7 @@ fn add(resisted: &mut Matrix6<f64>, row: Vector6<f64>) {
 pub(super) struct HeldMotions {
     /// Motions that nothing resists.
     pub(super) free: usize,
-    /// Motions that springs to ground resist, and no constraint of a grid.
+    /// Motions that springs to ground resist, but no constraint of a grid.
     pub(super) by_springs: usize,
 }
 

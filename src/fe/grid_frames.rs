@@ -39,7 +39,7 @@ pub(super) fn grid_axes(model: &Model) -> Vec<Option<Mat3>> {
     model.grids.iter().map(axes).collect()
 }
 
-/// Six components from the grid's displacement frame to basic.
+/// Transforms six components from the grid's displacement frame to basic.
 pub(crate) fn to_basic(axes: &Option<Mat3>, u: [f64; 6]) -> [f64; 6] {
     match axes {
         None => u,
@@ -47,7 +47,7 @@ pub(crate) fn to_basic(axes: &Option<Mat3>, u: [f64; 6]) -> [f64; 6] {
     }
 }
 
-/// Six components from basic to the grid's displacement frame.
+/// Transforms six components from basic to the grid's displacement frame.
 pub(super) fn to_local(axes: &Option<Mat3>, u: [f64; 6]) -> [f64; 6] {
     match axes {
         None => u,

@@ -138,7 +138,7 @@ impl Mass {
         }
     }
 
-    /// M u.
+    /// Returns `M u`.
     pub(crate) fn times(&self, u: &[[f64; 6]]) -> Vec<[f64; 6]> {
         let mut f: Vec<[f64; 6]> = self
             .point
@@ -216,7 +216,7 @@ impl Mass {
         }
     }
 
-    /// R' M R about a point.
+    /// Returns `R' M R` about a point.
     pub(crate) fn rigid_mass_matrix(&self, x: &[Vec3], centre: &Vec3) -> Matrix6<f64> {
         let mut matrix = Matrix6::zeros();
         for mode in 0..6 {

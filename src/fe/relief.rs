@@ -219,7 +219,7 @@ impl RigidBody {
         x
     }
 
-    /// Takes the free motions out of a displacement field so that R'M u = 0.
+    /// Removes the free motions from a displacement field, so that R'M u = 0.
     pub(crate) fn take_out(&self, mass: &Mass, u: &mut [[f64; 6]]) {
         let momentum = self.resultant(&mass.times(u));
         let generalized = self.basis.transpose() * DVector::from_column_slice(&momentum);

@@ -10,7 +10,7 @@ use std::sync::Arc;
 pub struct Solution {
     /// Results of each load case.
     pub cases: Vec<CaseResult>,
-    /// Source of the results: the solver's name, or the file's.
+    /// Source of the results: name of the solver or of the file.
     pub source: String,
     /// Findings on the results.
     pub findings: Vec<Finding>,

@@ -62,7 +62,7 @@ pub fn solve_unit_loads(
     solve_unit_loads_on(model, Support::without_spc(model), loads, options)
 }
 
-/// Solves unit loads on a structure held like this, subcases numbered 1 .. n.
+/// Solves unit loads on a structure with this support. Subcases are numbered 1 .. n.
 ///
 /// # Errors
 /// Returns every error of [`FeError`].

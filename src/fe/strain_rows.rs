@@ -239,7 +239,7 @@ pub fn without_normal_strain(model: &Model, cases: &[CaseResult]) -> Vec<u32> {
         .collect()
 }
 
-/// xx, yy, zz, xy, yz, zx of a symmetric tensor.
+/// Returns xx, yy, zz, xy, yz, zx of a symmetric tensor.
 pub fn components(e: &Mat3) -> [f64; 6] {
     [
         e[(0, 0)],

@@ -13,7 +13,7 @@ pub enum Surface {
 }
 
 impl Surface {
-    /// Both, bottom first.
+    /// Both surfaces, bottom first.
     pub const BOTH: [Surface; 2] = [Surface::Bottom, Surface::Top];
 
     /// Returns the name in files and reports.
@@ -24,7 +24,7 @@ impl Surface {
         }
     }
 
-    /// 0 bottom, 1 top.
+    /// Returns 0 for bottom and 1 for top.
     pub fn ix(self) -> usize {
         match self {
             Self::Bottom => 0,

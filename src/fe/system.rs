@@ -273,7 +273,7 @@ impl System {
         }
     }
 
-    /// T' (f - K u0) at the unknowns, from forces at all grids in the basic frame.
+    /// Computes `T' (f - K u0)` at the unknowns, from forces at all grids in the basic frame.
     ///
     /// # Errors
     /// Elements that can't be formed.

@@ -105,13 +105,13 @@ pub(super) fn system_of(
     Ok(shared.then_some(system))
 }
 
-/// The structure that variants differ from, solved.
+/// Solution of the structure from which the variants differ.
 pub(super) struct Base<'a> {
     pub(super) model: &'a Model,
     pub(super) prepared: &'a PreparedModel<'a>,
     pub(super) system: &'a System,
     pub(super) factor: Factor<'a>,
-    /// Balanced loads at the unknowns, a column a case.
+    /// Balanced loads at the unknowns, one column for each case.
     pub(super) forces: Vec<f64>,
     /// Displacements at the unknowns.
     pub(super) moved: Vec<f64>,
@@ -284,7 +284,7 @@ impl<'a> Base<'a> {
         Ok(None)
     }
 
-    /// D u of columns of unknowns.
+    /// Returns the product `D u` for columns of unknowns.
     pub(super) fn product(&self, change: &[ElementMatrix], u: &[f64]) -> Result<Vec<f64>, FeError> {
         let n = self.system.symbolic.n_unknowns();
         let mut out = vec![0.0; u.len()];

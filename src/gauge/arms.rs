@@ -35,7 +35,7 @@ pub enum Spot {
     },
 }
 
-/// `coefficient . (exx, eyy, gxy)` at a spot, in the output frame of that spot; a beam's arm counts the first alone.
+/// `coefficient . (exx, eyy, gxy)` at a spot, in the output frame of that spot; an arm on a beam uses only the first component.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arm {
     /// Place of the arm.

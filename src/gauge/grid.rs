@@ -26,7 +26,7 @@ pub(super) fn laid_onto(d: Vec3, z: Vec3) -> Option<Vec3> {
     }
 }
 
-/// `d`, normal to `z`, turned right-handed about `z`.
+/// Returns `d`, which is normal to `z`, rotated right-handed about `z`.
 pub(super) fn rotate_about(d: Vec3, z: Vec3, angle: f64) -> Vec3 {
     d * angle.cos() + z.cross(&d) * angle.sin()
 }

@@ -148,7 +148,7 @@ pub struct GaugeSpec {
     pub angle_rad: f64,
     /// Wiring.
     pub bridge: Bridge,
-    /// Divides the signed sum.
+    /// Number that divides the signed sum.
     pub bridge_factor: f64,
     /// Length of the grid along its axis. 0 means a point.
     pub grid_length: f64,

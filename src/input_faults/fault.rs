@@ -43,7 +43,7 @@ pub enum InputFault {
 pub struct Inputs {
     /// Strain by run and gauge.
     pub strain: Vec<Vec<f64>>,
-    /// S, strain per unit of load, a row a gauge.
+    /// S, strain per unit of load, with a row for each gauge.
     pub rows: Matrix,
 }
 
@@ -52,7 +52,7 @@ pub struct Inputs {
 pub struct AlternativeRows {
     /// [`InputFault::OtherSide`] or [`InputFault::Radians`] of a gauge.
     pub fault: fn(Channels) -> InputFault,
-    /// S with every gauge so installed.
+    /// S with every gauge in this installation.
     pub rows: Matrix,
     /// Whether this is possible for a gauge.
     pub applies: Vec<bool>,

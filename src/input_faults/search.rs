@@ -21,7 +21,7 @@ pub trait Misfit: Sync {
 /// A fit of inputs.
 #[derive(Clone, Debug, Default)]
 pub struct InputFit {
-    /// Sum of squares that is left, in units of the errors.
+    /// Sum of squares of the residual, in units of the errors.
     pub chi2: f64,
     /// Degrees of freedom of the sum of squares.
     pub dof: usize,

@@ -9,7 +9,7 @@ use crate::host::fault::{Fault, FaultList, Faults};
 /// Correction that converts the readings of a channel to strain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Channel {
-    /// Subtracted first, microstrain.
+    /// Offset that is subtracted first, microstrain.
     pub offset: f64,
     /// Divisor of the reading after subtraction of the offset.
     pub factor: f64,

@@ -37,7 +37,7 @@ impl<'a> Collector<'a> {
         self.ends.partition_point(|end| *end < start) as u32 + 1
     }
 
-    /// Notes a fault at a value.
+    /// Adds a fault at a value.
     pub(super) fn fault<T>(
         &mut self,
         at: &SpannedValue<T>,

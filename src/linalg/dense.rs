@@ -18,7 +18,7 @@ pub struct Svd {
     pub v: Matrix,
 }
 
-/// Relative size below which a singular value counts as zero: what single-precision result files distinguish from rounding.
+/// Relative size below which a singular value counts as zero. Single-precision result files do not distinguish smaller values from rounding.
 pub const RANK_TOLERANCE: f64 = 1e-6;
 
 /// Returns the thin singular value decomposition `a = u diag(s) v'`, `s` descending. `None` if an entry of `a` is not finite.

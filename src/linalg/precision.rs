@@ -20,7 +20,7 @@ impl Precision {
         })
     }
 
-    /// Order.
+    /// Returns the order of the matrix.
     pub fn n(&self) -> usize {
         self.factor.n()
     }
@@ -42,7 +42,7 @@ impl Precision {
         self.inverse.get_or_init(|| self.factor.inverse())
     }
 
-    /// `P x`.
+    /// Returns `P x`.
     pub fn apply(&self, x: &[f64]) -> Vec<f64> {
         self.factor.solve(x)
     }

@@ -331,7 +331,7 @@ impl Record {
         self.columns.len()
     }
 
-    /// Hands the readings of a piece on, strain, a block at a time.
+    /// Passes the readings of a piece on, strain, block by block.
     ///
     /// # Errors
     /// A piece that can't be read.

@@ -23,7 +23,7 @@ pub(crate) enum RecordedLoads {
     Record(Box<LoadRecord>),
 }
 
-/// A record of loads, in memory: four bytes a number.
+/// A record of loads in memory, with four bytes for each number.
 pub(crate) struct LoadRecord {
     /// File, as the job names it.
     pub file: String,

@@ -154,7 +154,7 @@ pub const PAYLOAD: [(&str, Quantity); 4] = [
     ("payload_y", Quantity::Length),
 ];
 
-/// Column of the runs file that marks the runs to recover and compare, which are not calibrated with.
+/// Column of the runs file that marks check runs: runs that are recovered and compared, but not calibrated with.
 pub const CHECK: &str = "check";
 
 /// Returns the names that a column of the runs file may have for any command, except the names of a given S.

@@ -48,7 +48,7 @@ impl StrainTable {
         self.microstrain.get(i * w..(i + 1) * w).unwrap_or(&[])
     }
 
-    /// Drops the columns of these gauges.
+    /// Removes the columns of these gauges.
     pub(crate) fn leave_out(&mut self, gauges: &[String]) {
         let kept: Vec<bool> = self.gauges.iter().map(|g| !gauges.contains(g)).collect();
         if kept.iter().all(|k| *k) {

@@ -7,7 +7,7 @@ use crate::host::work::cancelled_fault;
 use crate::job::{Job, JobLoad, LoadActs};
 use crate::model::{GridIx, Model, Vec3};
 
-/// Vertical loads of a job that are no payload.
+/// Vertical loads of a job that are not the payload.
 pub struct Wheels {
     /// Axis along which the wheel forces act: 0 x, 1 y, 2 z.
     pub axis: usize,
@@ -111,7 +111,7 @@ fn basic_axis(model: &Model, grid: u32, dof: usize, cid: u32) -> Option<usize> {
     (0..3).find(|axis| direction[*axis] > ALIGNED)
 }
 
-/// A floor that can't be had, as faults of the job's model.
+/// Returns the faults of the job's model if the floor cannot be computed.
 pub fn floor_fault(job: &Job, e: &FloorError) -> Faults {
     if matches!(e, FloorError::Solver(FeError::Stopped)) {
         return cancelled_fault().into();

@@ -21,7 +21,7 @@ use crate::units::MICROSTRAIN;
 
 /// A strain table after subtraction of its zero.
 pub(crate) struct ZeroedTable {
-    /// A reading without a zero is not a number.
+    /// Table of net readings. A reading without a zero is NaN.
     pub table: StrainTable,
     /// Noise variance of each row's readings, relative to the noise variance of a single reading.
     pub noise_factor: Vec<f64>,
@@ -219,7 +219,7 @@ pub(crate) fn zero_of(
 
 /// The zero that belongs to each row of a table.
 pub(crate) struct RowZeros {
-    /// Microstrain by row and column of the table.
+    /// Zero of each row and column of the table, microstrain.
     pub zero: Vec<Vec<f64>>,
     /// Noise variance of each row's readings minus zero, relative to the noise variance of a single reading.
     pub noise_factor: Vec<f64>,
@@ -356,7 +356,7 @@ fn zero_rows(
     Ok(at)
 }
 
-/// A record has no runs.
+/// Refuses `zero_runs` for a record, which has no runs.
 ///
 /// # Errors
 /// `zero_runs` of a job whose strain is a record.

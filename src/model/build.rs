@@ -28,8 +28,8 @@ pub(super) struct Builder<'a> {
 impl Model {
     /// Builds the model of the cards, and lists every fault.
     ///
-    /// Elements whose grids are missing are left out; a shell whose property is missing stays in the mesh without stiffness. A
-    /// model with a fault of weight [`super::FaultWeight::Error`] is good for looking at, not for solving.
+    /// Elements whose grids are missing are left out; a shell whose property is missing stays in the mesh without stiffness. A model with a fault of
+    /// weight [`super::FaultWeight::Error`] can be shown, but not solved.
     pub fn from_cards(cards: &Cards) -> (Model, Vec<ModelFault>) {
         let (structure, loads) = super::unsupported_cards::of_records(cards);
         let (mut model, faults) = Self::build(cards, &[], &loads);

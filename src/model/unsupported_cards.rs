@@ -45,7 +45,7 @@ pub(super) fn of_deck(deck: &Deck) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard
     (structure, loads)
 }
 
-/// Returns what [`of_deck`] does, of the geometry blocks of an OP2.
+/// Returns the unsupported cards like [`of_deck`], for the geometry blocks of an OP2.
 pub(super) fn of_records(cards: &Cards) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard>) {
     let (loads, structure): (Vec<_>, Vec<_>) = cards.unread.iter().partition(|e| e.is_load);
     let unsupported = |entries: Vec<&PlacedCard<UnreadEntry>>| {

@@ -21,24 +21,24 @@ pub struct BallastSpec {
 pub struct BallastMass {
     /// Weight.
     pub weight: f64,
-    /// 95 % range.
+    /// Weight interval of 95 %.
     pub weight_range: [f64; 2],
     /// Place in plan.
     pub at: [f64; 2],
-    /// 95 % ranges.
+    /// Intervals of 95 % of the place.
     pub at_range: [[f64; 2]; 2],
 }
 
-/// The answer.
+/// Result of the search for masses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BallastFit {
     /// Masses, front first.
     pub masses: Vec<BallastMass>,
     /// Reactions with these masses, from the table of unit reactions.
     pub reactions: Vec<f64>,
-    /// Sum of squares of the misfit over sigma.
+    /// Sum of squares of the misfit, divided by the variances.
     pub chi2: f64,
-    /// Combinations of the `3 n` numbers that the data fix.
+    /// Number of combinations of the `3 n` unknowns that the data determine.
     pub fixed: usize,
 }
 

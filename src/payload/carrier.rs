@@ -62,7 +62,7 @@ impl Carriers {
         }))
     }
 
-    /// The plan axes: for z up, x and y.
+    /// Returns the plan axes. If z points up, they are x and y.
     pub fn plan(&self) -> (usize, usize) {
         ((self.axis + 1) % 3, (self.axis + 2) % 3)
     }

@@ -55,7 +55,7 @@ pub enum Place {
 pub struct WeighSpec {
     /// Place.
     pub place: Place,
-    /// Model uncertainty: of each influence coefficient and of the whole, 1 sd, a fraction.
+    /// Model uncertainty of each influence coefficient, and of all coefficients together, 1 sd, a fraction.
     pub model_rel: f64,
     /// Standard deviation of a measured wheel force.
     pub reaction_sigma: f64,
@@ -65,7 +65,7 @@ pub struct WeighSpec {
     pub region: Option<[[f64; 2]; 2]>,
 }
 
-/// Why an answer is refused.
+/// Reason why an answer is refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refusal {
     /// The payload would have to pull the structure up.

@@ -18,12 +18,12 @@ const STEPS: [usize; 2] = [8, 60];
 /// Weight of a doubted gauge at a start.
 const DOUBTED: f64 = 1e-6;
 
-/// All runs and what became of the gauges.
+/// Result of all runs, with the state of the gauges.
 #[derive(Clone, Debug)]
 pub struct Location {
     /// Result for each run.
     pub runs: Vec<PayloadFit>,
-    /// Probability that a gauge is as good as stated.
+    /// Probability that each gauge is as good as stated.
     pub good: Vec<f64>,
 }
 

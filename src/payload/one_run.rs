@@ -23,7 +23,7 @@ pub struct PayloadFit {
 }
 
 impl PayloadFit {
-    /// Before the first answer.
+    /// Returns zeros, for the time before the first answer.
     pub(super) fn zeros() -> Self {
         Self {
             p: [0.0; 3],

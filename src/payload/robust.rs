@@ -49,13 +49,13 @@ pub struct GaugeVerdict {
 /// The answer for all runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobustPayload {
-    /// A value a run.
+    /// Value of each run.
     pub runs: Vec<RunPayload>,
-    /// A verdict a gauge, in the order given.
+    /// Verdict on each gauge, in the given order.
     pub gauges: Vec<GaugeVerdict>,
 }
 
-/// Noise levels a gauge may have, log-spaced.
+/// Number of noise levels of a gauge, log-spaced.
 pub(super) const N_LEVELS: usize = 25;
 /// Largest factor on stated noise. A gauge with this factor contributes nothing.
 pub(super) const LARGEST_FACTOR: f64 = 1.0e4;

@@ -20,7 +20,7 @@ pub struct Weighing {
     pub runs: Vec<WeighedRun>,
     /// Result for each gauge. Empty without strain.
     pub gauges: Vec<GaugeVerdict>,
-    /// Runs whose strain no payload makes by a calibrated S.
+    /// Findings on runs whose strain no payload explains with a calibrated S.
     pub unlike: Vec<Finding>,
 }
 

@@ -9,7 +9,7 @@ pub type Trig = [f64; 5];
 /// Symmetric 3 x 3 forms as `[xx, yy, gg, xy, xg, yg]` over (exx, eyy, gxy).
 pub type Form = [f64; 6];
 
-/// `c(t)' G c(t)`.
+/// Returns the form `c(t)' G c(t)`.
 pub fn of_row(g: &Form) -> Trig {
     let [xx, yy, gg, xy, xg, yg] = *g;
     let pp = xx + yy + 2.0 * xy;
@@ -23,7 +23,7 @@ pub fn of_row(g: &Form) -> Trig {
     ]
 }
 
-/// `c'(t)' H c'(t)`, with `c'` the derivative by the angle `t` in radians.
+/// Returns the form `c'(t)' H c'(t)`, with `c'` the derivative by the angle `t` in radians.
 pub fn of_slope(h: &Form) -> Trig {
     let [xx, yy, gg, xy, xg, yg] = *h;
     let mm = xx + yy - 2.0 * xy;
@@ -35,7 +35,7 @@ pub fn value(p: &Trig, cs: &[f64; 4]) -> f64 {
     p[0] + p[1] * cs[0] + p[2] * cs[1] + p[3] * cs[2] + p[4] * cs[3]
 }
 
-/// `[cos u, sin u, cos 2u, sin 2u]` of the angle `t`.
+/// Returns `[cos u, sin u, cos 2u, sin 2u]` of the angle `t`, with `u = 2 t`.
 pub fn phases(t: f64) -> [f64; 4] {
     let (s, c) = (2.0 * t).sin_cos();
     [c, s, c * c - s * s, 2.0 * s * c]

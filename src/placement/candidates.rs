@@ -3,7 +3,7 @@
 use super::angle_variance::{self, Form, Trig};
 use rayon::prelude::*;
 
-/// Places handled together by the scan.
+/// Number of places that the scan computes together.
 pub const LANES: usize = 8;
 
 /// Angles a gauge may have at a place.
@@ -74,7 +74,7 @@ pub struct Candidates {
 }
 
 impl Candidates {
-    /// Candidates with fixed rows: `fill(place, row)` writes the row of a place (strain per unit of each column).
+    /// Creates candidates with fixed rows. `fill(place, row)` writes the row of a place (strain per unit of each column).
     pub fn from_rows(
         k: usize,
         n: usize,

@@ -43,7 +43,7 @@ impl Groups {
 /// The relaxation solved over all candidates.
 #[derive(Clone, Debug)]
 pub struct Columns {
-    /// Rows that took part.
+    /// Rows that took part in the solution.
     pub active: Active,
     /// Candidates of these rows.
     pub choices: Vec<Choice>,

@@ -18,14 +18,14 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-/// A layout of small condition number.
+/// A layout with a small condition number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionedLayout {
     /// The gauges, by place and angle.
     pub gauges: Vec<Choice>,
     /// Condition number of `S` of the layout, including the gauges that stay.
     pub condition: f64,
-    /// The least condition number of any layout the search met.
+    /// Least condition number of all tried layouts.
     pub least: f64,
 }
 

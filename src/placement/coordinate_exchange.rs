@@ -242,7 +242,7 @@ impl CoordinateExchange {
         true
     }
 
-    /// Puts random rows in place of `count` gauges.
+    /// Replaces `count` gauges by random rows.
     pub fn perturb<E: Fn(usize, usize) -> bool>(
         &mut self,
         list: &List<E>,

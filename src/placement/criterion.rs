@@ -120,7 +120,7 @@ impl Criterion {
 }
 
 impl Point {
-    /// `G`.
+    /// Returns the slope `G`.
     pub fn slope(&self, k: usize) -> Vec<f64> {
         spd::gram_of_lower(&self.root, k)
     }

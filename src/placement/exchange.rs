@@ -14,7 +14,7 @@ use rayon::prelude::*;
 /// Effort of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// Independent starts.
+    /// Number of independent starts.
     pub starts: usize,
     /// Perturbations of the best layout (a few gauges replaced at random, then exchange) for each start.
     pub perturbations: usize,

@@ -22,9 +22,9 @@ pub struct Layout {
     pub gauges: Vec<Choice>,
     /// Value of the criterion. For D it is `log det` of the information matrix, for Ds this value less `log det` of the nuisance block.
     pub log_det: f64,
-    /// No layout that keeps the rules has a larger criterion.
+    /// Upper bound of the criterion of all permitted layouts.
     pub upper_bound: f64,
-    /// `exp((log_det - upper_bound) / degree)`: at least this share of the best possible.
+    /// Lower bound on the efficiency, relative to the best layout: `exp((log_det - upper_bound) / degree)`.
     pub efficiency_bound: f64,
     /// Whether no permitted layout is better.
     pub proved: bool,

@@ -26,7 +26,7 @@ impl Active {
         self.group.len()
     }
 
-    /// True without rows.
+    /// Returns whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.group.is_empty()
     }

@@ -10,7 +10,7 @@ use super::variance_scan::{CandidateVariance, Report, price};
 use crate::linalg::spd;
 use std::collections::{HashMap, HashSet};
 
-/// Rows an exchange looks at.
+/// Number of rows for an exchange.
 pub(super) const LIST: usize = 700;
 
 /// A layout with its criterion.

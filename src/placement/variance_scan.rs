@@ -25,8 +25,8 @@ pub enum Report {
 /// Number of blocks in a task: fixed, so that results do not depend on the number of threads.
 const CHUNK: usize = 512;
 
-/// Returns the candidates with `d >= threshold`, by place and angle, of each 4,096 places the `keep` largest. `linv` is the inverse of the
-/// lower Cholesky factor of `M`, by rows.
+/// Returns the candidates with `d >= threshold`, by place and angle. Of each 4,096 places, it returns the `keep` largest. `linv` is the inverse of
+/// the lower Cholesky factor of `M`, by rows.
 pub fn price(
     c: &Candidates,
     linv: &[f64],

@@ -42,7 +42,7 @@ impl PackedRows {
         self.n
     }
 
-    /// `a_i' u` of every row.
+    /// Computes `a_i' u` of every row.
     pub fn products(&self, u: &[f64], out: &mut [f64]) {
         self.arch.dispatch(|| {
             let blocks = self.blocks.chunks_exact(WIDE * self.k);
@@ -52,7 +52,7 @@ impl PackedRows {
         });
     }
 
-    /// `a_i' G a_i` of every row.
+    /// Computes `a_i' G a_i` of every row.
     pub fn variances(&self, g: &[f64], out: &mut [f64]) {
         self.arch.dispatch(|| {
             let blocks = self.blocks.chunks_exact(WIDE * self.k);
@@ -167,7 +167,7 @@ impl Table {
         })
     }
 
-    /// Brings itself up to date for row `i` in place of the gauge in `slot` of `chosen`.
+    /// Updates the table after row `i` has replaced the gauge in `slot` of `chosen`.
     pub fn swap(
         &mut self,
         active: &Active,

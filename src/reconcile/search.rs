@@ -57,9 +57,9 @@ pub trait Scorer {
 pub struct Breadth {
     /// Largest number of effects in a set.
     pub largest: usize,
-    /// Sets kept from level to level.
+    /// Number of sets that are kept from level to level.
     pub beam: usize,
-    /// Additions tried exactly for each.
+    /// Number of additions to each set that are fitted exactly.
     pub tries: usize,
     /// Log evidence by which a set must exceed the same set without one of its effects.
     pub decisive: f64,

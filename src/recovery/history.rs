@@ -88,7 +88,7 @@ impl Filter {
         self.others = RwLock::new(HashMap::new());
     }
 
-    /// Lists sums of loads (loads and factors) after the loads.
+    /// Adds sums of loads (loads and factors) after the loads.
     pub fn combine(&mut self, sums: &[Vec<(usize, f64)>]) {
         self.whole = Arc::new(self.whole.with_sums(sums));
         self.sums = sums.to_vec();

@@ -18,7 +18,7 @@ pub(super) struct Samples<'a> {
     pub s: &'a [f64],
     /// Zero reading to subtract, strain by gauge.
     pub zero: &'a [f64],
-    /// Readings, `n` a sample.
+    /// Readings, `n` for each sample.
     pub samples: &'a [f64],
     /// Factor from readings to strain.
     pub to_strain: f64,

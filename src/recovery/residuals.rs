@@ -64,7 +64,7 @@ pub(super) struct PatternTest<'a> {
     pub joint: Joint,
 }
 
-/// The part of readings that a set of loads can't make.
+/// Part of readings that no loads can cause.
 pub(super) struct Projection {
     /// `m x n_used`; orthonormal rows times one over the typical sd of each reading.
     t: Matrix,
@@ -181,12 +181,12 @@ impl Projection {
             .collect()
     }
 
-    /// Dimensions.
+    /// Returns the number of dimensions.
     pub fn m(&self) -> usize {
         self.t.nrows()
     }
 
-    /// `T y`.
+    /// Returns `T y`.
     pub fn project_strain(&self, pattern: &Pattern, strain: &[f64]) -> Vec<f64> {
         (0..self.m())
             .map(|a| {

@@ -49,7 +49,8 @@ pub(super) fn patterns(n: usize, readings: &[Readings]) -> Vec<Pattern> {
     list
 }
 
-/// Computes the loads of every run: weights depend on typical loads through the model's error, so solution and weights alternate.
+/// Computes the loads of every run. The weights depend on typical loads through the model error, so the solution and the weights are computed
+/// alternately.
 pub(super) fn solve(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> RunEstimates {
     solve_beyond(s, readings, errors, &[])
 }

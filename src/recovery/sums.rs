@@ -24,7 +24,7 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Nothing yet, for `n` gauges and `k` loads.
+    /// Creates empty sums for `n` gauges and `k` loads.
     pub fn new(n: usize, k: usize) -> Self {
         Self {
             missing: MissingReadings::new(k),

@@ -11,7 +11,7 @@ use crate::estimate::student_95;
 pub struct SampledSignals<'a> {
     /// Time of the first sample, s.
     pub start_s: f64,
-    /// Samples a second.
+    /// Samples per second.
     pub rate_hz: f64,
     /// The signals.
     pub signals: &'a [Vec<f32>],

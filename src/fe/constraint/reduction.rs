@@ -100,7 +100,7 @@ impl Reduction {
         out
     }
 
-    /// Holds at zero what SPC and SPCD move.
+    /// Sets the displacements that SPC and SPCD enforce to zero.
     pub(crate) fn forget_enforced(&mut self) {
         self.enforced.clear();
         self.rows.iter_mut().for_each(|r| r.constant = 0.0);

@@ -33,7 +33,7 @@ impl ElementMatrix {
         6 * self.grids.len()
     }
 
-    /// K u, `u` by grid of this element.
+    /// Returns `K u`. `u` is by grid of this element.
     pub(crate) fn times(&self, u: &[f64]) -> Vec<f64> {
         self.values
             .chunks_exact(self.n().max(1))

@@ -206,7 +206,7 @@ impl Floor {
         all.iter().take(n).copied().collect()
     }
 
-    /// A force and a moment at a point as a load, `lift` the displacement of the contacts on the free structure.
+    /// Creates a load from a force and a moment at a point. `lift` is the displacement of the contacts on the free structure.
     pub fn load(&self, at: Vec3, force: Vec3, moment: Vec3, lift: Vec<f64>) -> FloorLoad {
         let m = moment + (at - self.centre).cross(&force);
         let (b, c) = ((self.axis + 1) % 3, (self.axis + 2) % 3);

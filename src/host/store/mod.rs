@@ -50,7 +50,7 @@ pub(crate) fn read_solution(
         .ok_or_else(|| "the stored solution is damaged".to_owned())
 }
 
-/// Keeps a solution.
+/// Stores a solution.
 ///
 /// # Errors
 /// Reason why the solution cannot be kept.

@@ -36,7 +36,7 @@ fn find_choice<T: Copy>(word: &str, choices: &[(&str, T)]) -> Option<T> {
         .map(|c| c.1)
 }
 
-/// `top` or `bottom`.
+/// Returns the surface of the name `top` or `bottom`.
 pub(crate) fn surface_from(word: &str) -> Option<Surface> {
     find_choice(word, &SURFACES)
 }
@@ -50,7 +50,7 @@ pub(crate) fn bridge_from(name: &str) -> Option<Bridge> {
     }
 }
 
-/// `rectangular` or `delta`.
+/// Returns the rosette of the name `rectangular` or `delta`.
 pub(crate) fn rosette_from(word: &str) -> Option<Rosette> {
     find_choice(word, &ROSETTES)
 }
@@ -60,7 +60,7 @@ pub(crate) fn role_from(word: &str) -> Option<Role> {
     find_choice(word, &ROLES)
 }
 
-/// C, D, E, F as 0 to 3.
+/// Returns the recovery point C, D, E or F as 0 to 3.
 pub(crate) fn point_from(word: &str) -> Option<u8> {
     find_choice(word, &POINTS)
 }

@@ -17,7 +17,7 @@ pub struct CalibrationKeys {
     pub runs: Option<Vec<String>>,
     /// Columns of the runs file; runs with equal values in these columns are repeats.
     pub repeats: Vec<String>,
-    /// Column of the runs file that the scale may depend on.
+    /// Column of the runs file on which the scale may depend.
     pub depends_on: Option<String>,
     /// Stated relative error of the model's S, 1 sd: entry by entry, and common to a gauge.
     pub model_uncertainty_rel: f64,

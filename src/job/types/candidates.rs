@@ -39,7 +39,7 @@ pub struct Candidates {
     pub exclude_properties: Option<PropertyIds>,
     /// Elements left out.
     pub exclude_elements: Option<Ids>,
-    /// Elements of which each gets a gauge.
+    /// Elements that must have a gauge each.
     pub wanted_elements: Option<Ids>,
     /// A TOML file with lists of properties and elements, or a table of named spots.
     pub file: Option<NamedFile>,
@@ -55,7 +55,7 @@ pub struct Candidates {
     pub line: u32,
 }
 
-/// A named place with a fixed direction that a gauge may be chosen for.
+/// A named place with a fixed direction, at which a gauge may be placed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedSpot {
     /// Gauge as installed at the spot.

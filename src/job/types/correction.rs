@@ -16,7 +16,7 @@ pub struct StrainCorrection {
     pub exchanged_with: Option<String>,
     /// Rotation of the gauge from its stated angle, degrees.
     pub angle_deg: Option<f64>,
-    /// The channel is taken for silent.
+    /// Whether the channel is ignored.
     pub ignore: bool,
     /// Leg of a rosette whose correction the job states for the rosette as a whole.
     pub of_rosette: bool,

@@ -3,7 +3,7 @@
 /// `[dynamic]`: records of a structure that vibrates in its elastic modes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dynamic {
-    /// Loads are wanted up to here, Hz.
+    /// Highest frequency of the wanted loads, Hz.
     pub up_to_hz: f64,
     /// Damping of the modes.
     pub damping: Damping,

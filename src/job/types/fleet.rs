@@ -11,9 +11,9 @@ pub struct Fleet {
     pub knee_range: Option<f64>,
     /// Power below the knee. It is infinite if cycles below the knee cause no damage.
     pub slope_below_knee: f64,
-    /// Day whose damage an hour is 1.
+    /// Day whose damage per hour is 1 in comparisons.
     pub reference: Option<ReferenceDay>,
-    /// Damage that is aimed at, by load.
+    /// Target damage of each load.
     pub target: Vec<TargetDamage>,
     /// Kinds of days that a mission consists of. Their shares sum to 1.
     pub mission: Vec<MissionKind>,
@@ -34,7 +34,7 @@ pub struct ReferenceDay {
     pub line: u32,
 }
 
-/// The damage that a load is to do.
+/// Target damage of a load.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TargetDamage {
     /// The load.

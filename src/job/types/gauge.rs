@@ -45,7 +45,7 @@ pub struct JobGauge {
     pub angle_deg: f64,
     /// Wiring.
     pub bridge: Bridge,
-    /// The sum of signed arm strains is divided by this.
+    /// Number that divides the sum of signed arm strains.
     pub bridge_factor: f64,
     /// Length over which strain is averaged. 0 means the strain at the point.
     pub grid_length: f64,

@@ -17,7 +17,7 @@ pub enum Component {
 }
 
 impl Component {
-    /// All, in dof order.
+    /// All components in dof order.
     pub const ALL: [Component; 6] = [Self::FX, Self::FY, Self::FZ, Self::MX, Self::MY, Self::MZ];
 
     /// Returns the name in a job.
@@ -25,12 +25,12 @@ impl Component {
         ["FX", "FY", "FZ", "MX", "MY", "MZ"][self as usize]
     }
 
-    /// 0 to 5.
+    /// Returns the dof, 0 to 5.
     pub fn dof(self) -> usize {
         self as usize
     }
 
-    /// A force, not a moment.
+    /// Returns whether the component is a force and not a moment.
     pub fn is_force(self) -> bool {
         (self as usize) < 3
     }

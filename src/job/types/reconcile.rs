@@ -15,7 +15,7 @@ pub enum ReconcilePath {
 /// `[reconcile]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reconcile {
-    /// Static or dynamic.
+    /// Path of the comparison: strain of static runs, or motion.
     pub path: ReconcilePath,
     /// Zone to property ids.
     pub zones: BTreeMap<String, PropertyIds>,
@@ -23,7 +23,7 @@ pub struct Reconcile {
     pub places: BTreeMap<String, u32>,
     /// Apparent strain per degree by bridge name.
     pub thermal_microstrain_per_degc: BTreeMap<String, f64>,
-    /// Temperature set of the deck whose pattern `thermal_gradient` has.
+    /// Temperature set of the deck with the pattern of `thermal_gradient`.
     pub temperature_set: Option<u32>,
     /// Effect ids; `None`: all.
     pub effects: Option<Vec<String>>,

@@ -12,7 +12,7 @@ pub struct Runs {
     pub file: NamedFile,
     /// Section of the job that names the file: `runs`, `compare` or `respond`.
     pub section: &'static str,
-    /// Load name or `payload_force`, `payload_mass`, `payload_x`, `payload_y` to the column's name.
+    /// Column of each load, and of `payload_force`, `payload_mass`, `payload_x`, `payload_y`.
     pub columns: BTreeMap<String, String>,
     /// Units of the file. The default is the report units.
     pub units: ReportUnits,
@@ -20,7 +20,7 @@ pub struct Runs {
     pub stated_units: Vec<Quantity>,
     /// 1 sd by quantity, in the file's units.
     pub noise: RunNoise,
-    /// Measured or computed.
+    /// Whether wheel forces were measured or computed.
     pub wheel_forces: WheelForces,
     /// Usual change of a computed wheel force by ground that is not flat, 1 sd, in the file's unit of force.
     pub ground: Option<f64>,

@@ -7,9 +7,9 @@ use std::collections::BTreeMap;
 /// `[sensitivity]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GivenSensitivity {
-    /// A row a gauge, a column a load.
+    /// File with a row for each gauge and a column for each load.
     pub file: NamedFile,
-    /// Microstrain per these units.
+    /// Units of load to which the microstrain refers.
     pub per: ReportUnits,
     /// Name and column of each load, in job order. If the list is empty, every column is a load with the name of the column.
     pub columns: Vec<(String, String)>,
@@ -36,7 +36,7 @@ pub struct Signatures {
     pub payload: Option<NamedFile>,
     pub unaccounted_mass: Option<NamedFile>,
     pub gauge_angle: Option<NamedFile>,
-    /// Zone to file.
+    /// File of each zone.
     pub rail_stiffness: BTreeMap<String, NamedFile>,
 }
 

@@ -49,7 +49,7 @@ pub struct Vehicle {
 /// Known faults of a channel of the records, one of each kind; [`crate::vehicle::adjustment::Adjustment`] combines several.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChannelCorrection {
-    /// Reading over truth.
+    /// Reading divided by true value.
     pub gain: f64,
     /// Delay of the channel, s.
     pub delay_s: f64,

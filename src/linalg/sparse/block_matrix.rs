@@ -4,7 +4,7 @@ use super::graph::BlockGraph;
 use super::symbolic::Symbolic;
 use rayon::prelude::*;
 
-/// Groups of a task.
+/// Number of groups of a task.
 pub(super) const GROUPS: usize = 4096;
 
 /// Lower triangle of a symmetric matrix by block columns. Each block is stored by columns. Diagonal blocks are stored in full.

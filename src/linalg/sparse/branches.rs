@@ -23,23 +23,23 @@ pub(super) struct Branch {
     pub(super) weight: f64,
 }
 
-/// The tree in two parts.
+/// Tree in two parts: branches, and the top above them.
 #[derive(Debug, Default)]
 pub(super) struct Branches {
-    /// Ascending.
+    /// Branches, ascending.
     pub(super) list: Vec<Branch>,
     /// Supernodes above the branches, ascending.
     pub(super) top: Vec<usize>,
     /// First position of each group among the unknowns of the top. `OUTSIDE` for other groups.
     pub(super) in_top: Vec<u32>,
-    /// Unknowns of the top.
+    /// Number of unknowns of the top.
     pub(super) n_top: usize,
 }
 
 pub(super) const OUTSIDE: u32 = u32::MAX;
 
 impl Branches {
-    /// `start` is the first unknown of each group.
+    /// Divides the tree of supernodes. `start` is the first unknown of each group.
     pub(super) fn from_supernodes(nodes: &Supernodes, start: &[usize]) -> Self {
         let n = nodes.len();
         let groups = |s: &Range<usize>| nodes.first[s.start] as usize..nodes.first[s.end] as usize;

@@ -53,7 +53,7 @@ impl Spare {
     }
 }
 
-/// A supernode eliminated.
+/// Result of the elimination of a supernode.
 #[derive(Debug)]
 pub(super) struct EliminatedSupernode {
     pub(super) update: Update,

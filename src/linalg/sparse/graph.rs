@@ -1,6 +1,6 @@
 //! The graph of groups of unknowns: who shares an entry of the matrix with whom.
 
-/// No vertex: a root has no parent, and a vertex that no walk has reached has no component.
+/// Mark for no vertex: a root has no parent, and a vertex that no search has reached has no component.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// An undirected graph, both directions stored, no loops, neighbours ascending.

@@ -3,7 +3,7 @@
 use faer::prelude::ReborrowMut;
 use faer::{MatMut, MatRef};
 
-/// Unknowns of a block at most.
+/// Largest number of unknowns of a block.
 pub(super) const MOST: usize = 6;
 /// Rows handled at a time.
 const ROWS: usize = 8;

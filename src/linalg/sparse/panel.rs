@@ -11,7 +11,7 @@ pub(super) struct Panel<'a> {
     pub(super) values: &'a [f64],
     /// Rows of the supernode, then the rows below.
     pub(super) rows: usize,
-    /// Columns, as many as own rows.
+    /// Number of columns, equal to the number of the supernode's rows.
     pub(super) own: usize,
 }
 

@@ -38,7 +38,7 @@ impl Rows<'_> {
 }
 
 impl Factor<'_> {
-    /// Replaces `k` right-hand sides of L L' by solutions.
+    /// Replaces `k` right-hand sides of `L L'` by solutions.
     pub(super) fn substitute(&self, y: &mut [f64], k: usize) {
         let branches = &self.symbolic.branches;
         let mut above = self.take_top_rows(y, k);

@@ -17,9 +17,9 @@ const ZEROS: [(usize, f64); 4] = [(24, 0.6), (48, 0.3), (96, 0.12), (usize::MAX,
 /// Supernodes in elimination order: children before parents, subtrees contiguous.
 #[derive(Debug, Default)]
 pub(super) struct Supernodes {
-    /// First group of each, and the total.
+    /// First group of each supernode, and the total.
     pub(super) first: Vec<u32>,
-    /// Parent of each.
+    /// Parent of each supernode.
     pub(super) parent: Vec<u32>,
     /// First of the rows of each, and the total.
     row_start: Vec<usize>,
@@ -49,7 +49,7 @@ impl Supernodes {
         self.parent.len()
     }
 
-    /// Own groups.
+    /// Returns the groups of supernode `s`.
     pub(super) fn groups(&self, s: usize) -> Range<usize> {
         self.first[s] as usize..self.first[s + 1] as usize
     }

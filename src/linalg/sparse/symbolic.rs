@@ -10,9 +10,9 @@ use super::supernodes::Supernodes;
 /// The symbolic factor.
 #[derive(Debug)]
 pub struct Symbolic {
-    /// New to old group.
+    /// Old group of each new group.
     pub(super) order: Vec<u32>,
-    /// Old to new group.
+    /// New group of each old group.
     pub(super) position: Vec<u32>,
     /// First unknown by new group, and the total.
     pub(super) start: Vec<usize>,

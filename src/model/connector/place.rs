@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 /// Largest number of halvings of the diameter until the auxiliary points find the patch (NREDIA of SWLDPRM, which allows up to 4).
 const HALVINGS: u8 = 4;
 
-/// Shells that an end may pierce.
+/// Shells that an end of a connector may pierce.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Where {
     /// A shell, by index.

@@ -38,7 +38,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Pressure on shells, or on faces of solids.
+    /// Adds the pressure of a PLOAD4 on shells, or on faces of solids.
     pub(super) fn pload4(&mut self, p: &PlacedCard<Pload4>) -> Vec<Load> {
         let name = format!("PLOAD4 {}", p.sid);
         if !(p.sorl.is_empty() || p.sorl == "SURF") {

@@ -40,7 +40,7 @@ pub(super) fn bar(w: f64, h: f64) -> Option<Shape> {
     )
 }
 
-/// Width, height, thickness of top, bottom, right, left wall.
+/// Computes a box from width, height, and thickness of top, bottom, right and left wall.
 pub(super) fn box1([w, h, top, bottom, right, left]: [f64; 6]) -> Option<Shape> {
     if !(w > left + right && h > top + bottom) {
         return None;
@@ -87,7 +87,8 @@ pub(super) fn cross(free: f64, standing: f64, h: f64, lying: f64) -> Option<Shap
     )
 }
 
-/// Width of a pointed side, overall width, height. Torsion as the rectangle of the mean width.
+/// Computes a hexagon from the width of a pointed side, overall width and height. The torsion constant is the constant of the rectangle of mean
+/// width.
 pub(super) fn hexagon(point: f64, w: f64, h: f64) -> Option<Shape> {
     if !(w > 2.0 * point) {
         return None;

@@ -39,7 +39,7 @@ pub(super) fn rectangle_torsion(w: f64, h: f64) -> f64 {
     long * short.powi(3) * (1.0 / 3.0 - 0.21 * r * (1.0 - r.powi(4) / 12.0))
 }
 
-/// Puts a section together: recovery points and neutral axis from the shear centre.
+/// Completes a section: recovery points and neutral axis from the shear centre.
 pub(super) fn finish(
     a: Area,
     centre: [f64; 2],
@@ -69,7 +69,7 @@ pub(super) fn finish(
     })
 }
 
-/// Corners: C upper right, D lower right, E lower left, F upper left.
+/// Returns the corners: C upper right, D lower right, E lower left, F upper left.
 pub(super) fn corners(y: [f64; 2], z: [f64; 2]) -> [[f64; 2]; 4] {
     [[y[1], z[1]], [y[0], z[1]], [y[0], z[0]], [y[1], z[0]]]
 }

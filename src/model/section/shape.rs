@@ -15,7 +15,7 @@ use super::open::{
 };
 use super::parts::Shape;
 
-/// Why dimensions give no section.
+/// Reason why dimensions give no section.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) enum SectionFault {
     Unknown,

@@ -22,7 +22,7 @@ pub struct TemperatureSet {
     pub grids: Vec<(GridIx, f64)>,
     /// Temperatures of single elements by id (TEMPP1, TEMPRB): they take precedence over the temperatures of their grids.
     pub elements: std::collections::HashMap<u32, ElementTemperature>,
-    /// Cards of this set that ask for more than is carried.
+    /// Cards of this set that are not fully supported.
     pub unsupported: Vec<(String, Place)>,
     pub at: Place,
 }

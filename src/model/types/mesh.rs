@@ -70,7 +70,7 @@ pub struct Shell {
 pub struct Beam {
     /// Element id.
     pub id: u32,
-    /// A CBEAM.
+    /// Whether the element is a CBEAM.
     pub is_beam: bool,
     /// Ends A, B.
     pub grids: [GridIx; 2],
@@ -208,7 +208,7 @@ pub struct ScalarMass {
 /// SNORM: the normal that shells share at a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridNormal {
-    /// Grid.
+    /// Grid of the normal.
     pub grid: GridIx,
     /// Unit vector, basic frame. The sign of the vector has no effect.
     pub n: Vec3,

@@ -55,7 +55,7 @@ pub struct Model {
     pub rigids: Vec<RigidElement>,
     /// MPC sets.
     pub mpcs: Vec<MpcSet>,
-    /// The set that holds under unit loads: [`nastran::bdf::CaseControl::mpc_of_structure`].
+    /// MPC set that is active under unit loads: [`nastran::bdf::CaseControl::mpc_of_structure`].
     pub mpc: Option<u32>,
     /// SPC sets that the subcases of the deck's case control select, ascending, each once. Empty for a model without a deck.
     pub selected_spcs: Vec<u32>,

@@ -7,10 +7,10 @@ use crate::placement::layout::PlaceError;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Bundles chosen.
+/// A layout of chosen bundles.
 #[derive(Clone, Debug)]
 pub struct BundleLayout {
-    /// Which, ascending.
+    /// Chosen bundles, ascending.
     pub bundles: Vec<usize>,
     /// The criterion.
     pub log_det: f64,

@@ -47,7 +47,7 @@ impl Bundles {
         self.cost.len()
     }
 
-    /// True without bundles.
+    /// Returns whether there are no bundles.
     pub fn is_empty(&self) -> bool {
         self.cost.is_empty()
     }
@@ -58,12 +58,12 @@ impl Bundles {
         self.rows[a * self.k..b * self.k].chunks_exact(self.k)
     }
 
-    /// `m += weight R_u' R_u`.
+    /// Computes `m += weight R_u' R_u`.
     pub(super) fn add_to(&self, m: &mut [f64], u: usize, weight: f64) {
         self.rows_of(u).for_each(|r| spd::add_outer(m, r, weight));
     }
 
-    /// `tr(R_u G R_u')`, `G` the slope of the criterion.
+    /// Returns `tr(R_u G R_u')`, with `G` the slope of the criterion.
     pub(super) fn price(&self, u: usize, slope: &[f64], work: &mut [f64]) -> f64 {
         self.rows_of(u)
             .map(|r| {

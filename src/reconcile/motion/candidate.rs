@@ -7,7 +7,7 @@ use super::change::Change;
 pub struct Candidate {
     /// Id with place, such as `accel_gain:a_body`.
     pub id: String,
-    /// Place alone.
+    /// Place without the id.
     pub place: Option<String>,
     /// Possible forms; the data determine which one applies.
     pub shapes: Vec<Change>,

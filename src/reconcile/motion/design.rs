@@ -11,7 +11,7 @@ use crate::vehicle::motion::{Motion, Treatment, VehicleError, motion};
 use crate::vehicle::treatment::SlowStretch;
 use rustfft::num_complex::Complex64;
 
-/// Transform of a signal within the band, a value a bin.
+/// Transform of a signal within the band, with a value for each bin.
 pub type Bins = Vec<Complex64>;
 
 /// One equation of a compared body.
@@ -40,7 +40,7 @@ pub struct BinChannel {
     pub noise: Option<f64>,
     /// Gain by which the readings were divided.
     pub gain: f64,
-    /// Low-passes that were corrected: the noise grows as the readings do.
+    /// Corrected low-pass filters. Their correction amplifies the noise like the readings.
     pub lags: Vec<Lag>,
 }
 

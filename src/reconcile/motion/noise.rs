@@ -15,7 +15,7 @@ pub struct Background {
     pub power: Vec<Vec<f64>>,
 }
 
-/// Bands over which background is taken as even.
+/// Number of bands in which the background is assumed to be constant.
 pub const BANDS: usize = 10;
 
 /// Returns the band of a frequency. Bands are even in the logarithm of frequency.

@@ -11,7 +11,7 @@ use crate::vehicle::adjustment::Adjustment;
 pub struct MotionEffect {
     /// Id with place.
     pub id: String,
-    /// Place alone.
+    /// Place without the id.
     pub place: Option<String>,
     /// Change of the vehicle or of a channel.
     pub change: Change,

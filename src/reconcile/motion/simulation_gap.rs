@@ -35,7 +35,7 @@ pub struct SimulatedChannel {
     pub after: f64,
 }
 
-/// Both models after simulation.
+/// Gaps of both models, computed by simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulatedGap {
     /// Result for each simulated sensor.

@@ -31,8 +31,8 @@ pub(super) struct Block {
 pub(super) type Spectrum = Vec<Complex<f64>>;
 
 impl Kernel {
-    /// The readings `from` of the samples `span`, a channel each, put at rest and handed to `sink` in blocks. Samples nearer than the reach to an
-    /// end of `span` are left out.
+    /// Computes quasi-static readings from the readings `from` of the samples `span`, one channel for each gauge, and passes them to `sink` in
+    /// blocks. Samples nearer than the reach to an end of `span` are left out.
     pub fn apply(&self, from: &[&[f64]], span: &Range<usize>, mut sink: impl FnMut(&Block)) {
         let hop = self.length - 2 * self.reach;
         let firsts: Vec<usize> = (span.start + self.reach..span.end.saturating_sub(self.reach))
@@ -92,7 +92,7 @@ impl Kernel {
         }
     }
 
-    /// `G eps` by load.
+    /// Returns `G eps` by load.
     pub fn loads_of(&self, spectra: &[Spectrum]) -> Vec<Spectrum> {
         let of_load = |l: usize| -> Spectrum {
             let bins = self.bins.iter().enumerate();

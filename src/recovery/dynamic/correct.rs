@@ -11,7 +11,7 @@ use std::ops::Range;
 
 /// Sets of gauges that read: samples of any further set are blank.
 const MOST_SETS: usize = 8;
-/// Numbers that the filters of all sets may hold: 256 MB.
+/// Largest count of numbers in the filters of all sets: 256 MB.
 pub(super) const MOST_NUMBERS: usize = 32_000_000;
 
 /// Quasi-static readings of a record, with their errors.
@@ -19,14 +19,14 @@ pub(super) const MOST_NUMBERS: usize = 32_000_000;
 pub struct AtRest {
     /// Every sample of each gauge. NaN if nothing is known.
     pub readings: Vec<Vec<f64>>,
-    /// Samples of which something was read.
+    /// Samples with at least one reading.
     pub read: usize,
     /// Samples with a known quasi-static reading.
     pub known: usize,
     /// Samples without a known gauge although the gauges that read determine the loads. They are at the ends of stretches,
     /// and in stretches that are too short.
     pub blank: usize,
-    /// Samples to either side that a quasi-static sample depends on, if all gauges read.
+    /// Number of samples on either side on which a quasi-static sample depends, if all gauges read.
     pub reach: usize,
     /// Variance of the noise of a quasi-static reading over the variance of a reading's noise, mean of the gauges, if all gauges read.
     pub noise_share: f64,
@@ -124,7 +124,7 @@ pub fn readings_at_rest(
     })
 }
 
-/// Samples over which errors are taken together: a period of the highest frequency wanted.
+/// Returns the number of samples over which errors are averaged: a period of the highest wanted frequency.
 pub fn window(dynamics: &Dynamics, rate_hz: f64) -> usize {
     ((rate_hz / dynamics.up_to_hz) as usize).max(1)
 }

@@ -22,11 +22,11 @@ const WORTH_ITS_TIME: f64 = 1e-3;
 /// Frequencies whose noise is added up together.
 const TOGETHER: usize = 256;
 
-/// `T(w) = B (1 - Psi a C G)`, `n x n`, a matrix a frequency.
+/// Filter `T(w) = B (1 - Psi a C G)`, with an `n x n` matrix for each frequency.
 pub(super) struct Kernel {
     /// Samples of a transform.
     pub length: usize,
-    /// Samples to either side that a sample at rest hangs on.
+    /// Number of samples on either side on which a quasi-static sample depends.
     pub reach: usize,
     pub bins: Vec<Bin>,
     /// Static displacement of each uncertain mode by a unit of each load, `C`.
@@ -41,9 +41,9 @@ pub(super) struct Kernel {
 
 /// Filter at one frequency.
 pub(super) struct Bin {
-    /// B.
+    /// Factor `B` of the band.
     pub band: f64,
-    /// G, `k x n`.
+    /// Gain `G`, `k x n`.
     pub gain: ComplexMatrix,
     /// Strain that motion adds to the strain of unit loads, B Psi a C, `n x k`.
     pub added: ComplexMatrix,

@@ -45,7 +45,7 @@ pub(super) struct Shapes {
 }
 
 impl Products {
-    /// Sums over the samples `part`. `columns` are by gauge the courses of the derivatives and of the residual.
+    /// Computes the sums over the samples `part`. `columns` contains by gauge the time histories of the derivatives and of the residual.
     pub fn new(
         loads: &[Vec<f64>],
         columns: &[Vec<Vec<f64>>],
@@ -165,7 +165,7 @@ impl Normal {
         Some(normal)
     }
 
-    /// Returns the parameters' change that minimises the linearised residual, the shortest of all.
+    /// Returns the shortest change of the parameters that minimises the linearised residual.
     pub fn step(&self) -> Vector {
         // The matrix is scaled to a diagonal of 1. Combinations of parameters without effect on the residual get no step.
         let n = self.right.len();

@@ -2,7 +2,7 @@
 
 /// Limits of the estimate of modes.
 pub struct EstimateRules {
-    /// Steps of the method of Gauss and Newton at most: from twice a frequency or damping off, five suffice.
+    /// Largest number of steps of the method of Gauss and Newton. From twice a frequency or damping, five steps are sufficient.
     pub steps: usize,
     /// A step below this share of every standard deviation ends the search.
     pub converged: f64,
@@ -15,7 +15,7 @@ pub struct EstimateRules {
     /// Least standard deviation of the strain of a mode at a gauge, as a share of this strain. It is the error of a mesh that was not fitted to
     /// measured shapes.
     pub shape_sd: f64,
-    /// Blocks of the record that are used, evenly spaced: with more, the errors of the strain of the modes dominate.
+    /// Number of blocks of the record that are used, evenly spaced. With more blocks, the errors of the strain of the modes dominate.
     pub blocks: usize,
     /// Parts of the record whose gradients are compared: their scatter is then known to a tenth.
     pub parts: usize,
@@ -29,7 +29,7 @@ pub struct EstimateRules {
     pub contradicted_sd: f64,
     /// Share of the mean square of the vibration in the residual that the modes may leave: a third of its amplitude.
     pub unexplained: f64,
-    /// Mean square of the residual over that of the noise from which on the residual is vibration.
+    /// Mean square of the residual, divided by the mean square of the noise, from which the residual counts as vibration.
     pub over_noise: f64,
 }
 

@@ -10,7 +10,7 @@ pub struct ElasticMode {
     pub hz: f64,
     /// Strain at every gauge of S for a generalised coordinate of 1. The shape has unit generalised mass.
     pub strain: Vec<f64>,
-    /// Work of a unit of every load of S on that shape.
+    /// Work of a unit of every load of S on the shape.
     pub work: Vec<f64>,
     /// Damping, share of critical.
     pub damping: f64,

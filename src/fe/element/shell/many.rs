@@ -13,7 +13,7 @@ use super::types::{BadShape, Heat, Parts, ShellInput, ShellLaw, ShellMatrices, S
 use crate::linalg::{DMatrix, DVector};
 use crate::model::{GridIx, Mat3, Model, Shell, ShellProperty, Vec3, face_edges, face_functions};
 
-/// Strain at a place: rows over the element's unknowns and what temperature adds by moving the centre.
+/// Strain at a place: rows over the element's unknowns, and the contribution of temperature through the motion of the centre.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ManyRows {
     pub(crate) membrane: [Vec<f64>; 3],
@@ -21,7 +21,7 @@ pub(crate) struct ManyRows {
     constant: [[f64; 3]; 2],
 }
 
-/// Stiffness (row by row), strain and thermal load over six unknowns a grid.
+/// Stiffness (row by row), strain and thermal load over six unknowns for each grid.
 #[derive(Clone, Debug)]
 pub(crate) struct ManyShell {
     pub(crate) stiffness: Vec<f64>,
@@ -304,7 +304,7 @@ const GAUSS: [(f64, f64); 3] = [
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
 
-/// Calls with functions (corners, then mid-side grids), area vector and thickness at the points of a rule on the surface.
+/// Calls `f` with functions (corners, then mid-side grids), area vector and thickness at the points of a rule on the surface.
 pub(super) fn over_surface(
     model: &Model,
     shell: &Shell,
@@ -331,7 +331,7 @@ pub(crate) fn linear_part(n: usize, functions: &[[f64; 4]], sides: &[usize], c: 
     functions[c][0] + halves.sum::<f64>()
 }
 
-/// Calls with functions and area vector at the points of a rule on a face of `n` corners with mid-side grids on `sides`.
+/// Calls `f` with functions and area vector at the points of a rule on a face of `n` corners with mid-side grids on `sides`.
 pub(crate) fn over_face(
     n: usize,
     x: &[Vec3],

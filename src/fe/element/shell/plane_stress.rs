@@ -5,7 +5,7 @@ use crate::model::{Material, MaterialKind};
 /// Factor on the elastic shear stiffness that makes a shell without MID3 rigid in transverse shear.
 pub(super) const RIGID_SHEAR: f64 = 1e3;
 
-/// G11 G12 G13 / G22 G23 / G33 of plane stress.
+/// Returns G11 G12 G13 / G22 G23 / G33 of plane stress.
 pub(super) fn plane_stress(m: &Material) -> Option<[[f64; 3]; 3]> {
     Some(match m.kind {
         MaterialKind::Isotropic { e, g, nu, .. } => {
@@ -30,7 +30,7 @@ pub(super) fn plane_stress(m: &Material) -> Option<[[f64; 3]; 3]> {
     })
 }
 
-/// Likewise of plane strain.
+/// Returns G11 G12 G13 / G22 G23 / G33 of plane strain.
 pub(super) fn plane_strain_matrix(m: &Material) -> Option<[[f64; 3]; 3]> {
     let MaterialKind::Isotropic { e, g, nu, .. } = m.kind else {
         return None;
@@ -60,7 +60,7 @@ pub(super) fn transverse_shear(m: &Material) -> Option<[[f64; 2]; 2]> {
     })
 }
 
-/// T' G T with T the strain transformation to axes turned by `angle`.
+/// Returns `T' G T`, with T the strain transformation to axes turned by `angle`.
 pub(super) fn rotate(g: &[[f64; 3]; 3], angle: f64) -> [[f64; 3]; 3] {
     let (s, c) = angle.sin_cos();
     let t = [

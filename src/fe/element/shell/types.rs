@@ -85,7 +85,7 @@ pub(crate) struct BadShape;
 pub(crate) struct Expansion {
     /// Membrane force per length: of a unit rise of temperature, and of a unit gradient dT/dz.
     pub(crate) force: [[f64; 3]; 2],
-    /// Moment per length (integral of z sigma), likewise.
+    /// Moment per length (integral of z sigma) in the same two cases.
     pub(crate) moment: [[f64; 3]; 2],
     /// Free strain per unit rise at the surfaces Z1 and Z2: exx, eyy, gxy (engineering shear).
     pub(crate) surface: [[f64; 3]; 2],
@@ -97,7 +97,7 @@ pub(crate) struct Expansion {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Heat {
     pub(crate) expansion: Expansion,
-    /// Rise of the reference plane at the corners.
+    /// Temperature rise of the reference plane at the corners.
     pub(crate) rise: [f64; 4],
     /// dT/dz along the element normal.
     pub(crate) gradient: f64,

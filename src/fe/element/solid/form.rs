@@ -19,7 +19,7 @@ pub(super) struct SolidInput {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct DegenerateShape;
 
-/// Strain columns at a point: three a grid, then three a mode.
+/// Strain columns at a point: three for each grid, then three for each mode.
 pub(super) struct StrainColumns {
     /// Weight times volume per parameter volume.
     pub(super) volume: f64,
@@ -32,7 +32,7 @@ pub(super) struct CondensedSolid {
     pub(super) stiffness: DMatrix<f64>,
     /// Modes by translations.
     pub(super) share: DMatrix<f64>,
-    /// Forces that a thermal strain by point puts on translations, modes taken out.
+    /// Forces on the translations that a thermal strain at the points causes. The modes are eliminated.
     pub(super) force: Vec<f64>,
     /// Amounts of the modes under the thermal strain alone.
     pub(super) amount: Vec<f64>,
