@@ -53,7 +53,7 @@ pub struct NamedEffect {
 pub struct AlternativeExplanation {
     /// Ids with places.
     pub ids: Vec<String>,
-    /// Log evidence of the identified set less the log evidence of this explanation.
+    /// Log evidence of the identified set minus the log evidence of this explanation.
     pub evidence_difference: f64,
     /// Gap on held-out runs with this explanation.
     pub gap_after: f64,
@@ -190,7 +190,7 @@ pub struct DetectionLimit {
 pub struct Misfit {
     /// Gauge or run.
     pub name: String,
-    /// Chi-square over the number of readings: 1 at the floor.
+    /// Chi-square divided by the number of readings. It is 1 at the floor.
     pub reduced_chi2: f64,
     /// Chi-square as a standard normal deviate.
     pub deviate: f64,

@@ -59,8 +59,8 @@ struct Evidence {
     effective: f64,
 }
 
-/// Returns findings on rank, redundancy and the size of the residuals. `beyond` are errors of the readings beyond noise, by run, or empty; `share`
-/// is the share of independent runs in the runs.
+/// Returns findings on rank, redundancy and the size of the residuals. `beyond` contains errors of the readings beyond noise, by run, or is empty.
+/// `share` is the share of independent runs.
 pub(super) fn check(
     s: &Sensitivity,
     readings: &[Readings],

@@ -8,9 +8,9 @@ use std::collections::HashMap;
 /// Loads at one instant or of one run, in the order of the response's columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadState {
-    /// Run, or time.
+    /// Name of the run, or time.
     pub label: String,
-    /// Values, job units.
+    /// Loads, job units.
     pub values: Vec<f64>,
     /// Uncertainty of the loads.
     pub spread: Spread,

@@ -12,7 +12,7 @@ pub struct Load {
     pub name: String,
     /// Expected size of the load, 1 sd, job units; `None` if it is not stated.
     pub expected: Option<f64>,
-    /// Asked for, or present but not asked for.
+    /// Whether the load is wanted as a result. Otherwise it is a nuisance load.
     pub wanted: bool,
     /// Force or moment, if known. Sizes of loads are compared within a kind.
     pub quantity: Option<Quantity>,

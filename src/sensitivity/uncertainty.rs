@@ -312,7 +312,7 @@ impl Uncertainty {
     }
 }
 
-/// Variance of filtered readings as a function of the loads `f`, a part for each row of the filter.
+/// Variance of filtered readings as a function of the loads `f`, with a part for each row of the filter.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LoadForms {
     /// `k x k` matrix `B` by rows a row of the filter: `f' B f`.

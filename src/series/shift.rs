@@ -53,7 +53,7 @@ pub enum NoShift {
 /// Rules of the search for a shift.
 #[derive(Clone, Copy, Debug)]
 pub struct ShiftRules {
-    /// Bins of the coarse search at most: the transforms then take some megabytes for each signal.
+    /// Largest number of bins of the coarse search. The transforms then need some megabytes for each signal.
     pub most_bins: usize,
     /// Least overlap, as a share of the shorter recording. Short overlaps correlate by chance.
     pub overlap: f64,

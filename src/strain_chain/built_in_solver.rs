@@ -256,7 +256,7 @@ pub(super) fn cases_kept(
 
 /// Elastic modes of the structure of a deck.
 pub struct ElasticModes {
-    /// Ascending, cycles per unit of time.
+    /// Frequencies, ascending, cycles per unit of time.
     pub hz: Vec<f64>,
     /// Shapes of unit generalised mass, basic frame: translation and rotation by grid index.
     pub shapes: Vec<Vec<[f64; 6]>>,

@@ -191,7 +191,7 @@ pub fn has_covariance(job: &Job) -> bool {
 pub struct Conditioning {
     /// Rank.
     pub rank: usize,
-    /// S in strain per job unit.
+    /// Condition number of S in strain per job unit.
     pub condition_number: Option<f64>,
     /// Condition number of S with its columns multiplied by `expected`, or else normalised.
     pub condition_number_scaled: Option<f64>,

@@ -43,7 +43,7 @@ pub struct Lag {
 }
 
 impl Lag {
-    /// Returns truth over reading at an angular frequency.
+    /// Returns the ratio of the true value to the reading at an angular frequency.
     pub fn inverse_response(&self, w: f64) -> Complex64 {
         let x = w * self.time_s;
         match self.order {
@@ -72,7 +72,7 @@ impl Adjustment {
         }
     }
 
-    /// Both at once.
+    /// Adds the corrections of `other` to these corrections.
     pub fn join(&mut self, other: &Self) {
         self.gain *= other.gain;
         self.delay_s += other.delay_s;
@@ -111,7 +111,7 @@ impl Adjustment {
         self.delay_s + lags + self.moving_lateness(t_s, start_s)
     }
 
-    /// Truth over reading at an angular frequency, but for what changes with time.
+    /// Returns the ratio of the true value to the reading at an angular frequency, without corrections that change with time.
     pub fn inverse_response(&self, w: f64) -> Complex64 {
         let delayed = Complex64::from_polar(1.0 / self.gain.abs(), w * self.delay_s);
         delayed * self.gain.signum() * self.lags_undone(w)

@@ -28,7 +28,7 @@ pub struct ChassisForce {
 pub struct SpringForce {
     /// The link.
     pub link: String,
-    /// Samples.
+    /// Samples of the force.
     pub force: Vec<f64>,
     /// Half width of the 95 % interval of `force`. It includes the uncertainty of the parameters and the residual of the body's balance.
     pub half: Vec<f64>,

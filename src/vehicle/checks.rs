@@ -8,13 +8,13 @@ use serde::Serialize;
 /// Comparison of identified mass and weighed mass.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MassClosure {
-    /// Sprung and unsprung mass identified.
+    /// Identified sum of sprung and unsprung mass.
     pub identified: f64,
     /// Standard deviation of the identified mass.
     pub sigma: f64,
     /// Mean wheel force divided by gravity.
     pub weighed: f64,
-    /// Identified mass / weighed mass. The ratio is 1 if dynamics and statics agree.
+    /// Identified mass divided by weighed mass. The ratio is 1 if dynamics and statics agree.
     pub ratio: f64,
 }
 

@@ -60,9 +60,9 @@ pub struct Estimate {
 pub struct ChannelFit {
     /// Channel.
     pub channel: String,
-    /// RMS of measured less predicted over RMS of measured, in band.
+    /// RMS of measured minus predicted signal, divided by the RMS of the measured signal, in the band.
     pub relative_rms: f64,
-    /// RMS of measured less predicted over RMS of measured, in band, on the fitted data.
+    /// RMS of measured minus predicted signal, divided by the RMS of the measured signal, in the band, on the fitted data.
     pub relative_rms_fitted: f64,
     /// Part of `relative_rms` from declared noise and tolerances, over the RMS of measured on its data; `None` if no noise is declared.
     pub floor: Option<f64>,

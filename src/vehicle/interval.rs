@@ -11,9 +11,9 @@ pub struct Spread {
     pub covariance: Vec<Vec<f64>>,
     /// Factor on sigma for 95 % (Student t with blocks - 1 degrees of freedom).
     pub coverage_factor: f64,
-    /// Blocks used.
+    /// Number of blocks.
     pub n_blocks: usize,
-    /// Independent samples that the residual of each equation is worth.
+    /// Number of independent samples to which the residual of each equation is equivalent.
     pub effective_samples: Vec<f64>,
 }
 

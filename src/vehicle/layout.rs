@@ -59,9 +59,9 @@ pub struct Body {
     pub name: String,
     /// Motions of the body.
     pub shape: Shape,
-    /// Coordinate x of a body without pitch (an axle).
+    /// Coordinate x of a body without pitch (an axle), along the vehicle.
     pub x: f64,
-    /// Coordinate y of a body without roll, across.
+    /// Coordinate y of a body without roll, across the vehicle.
     pub y: f64,
     /// Whether springs carry the body.
     pub sprung: bool,
@@ -72,9 +72,9 @@ pub struct Body {
 pub struct Point {
     /// Index of the body.
     pub body: usize,
-    /// Coordinate along.
+    /// Coordinate along the vehicle.
     pub x: f64,
-    /// Coordinate across.
+    /// Coordinate across the vehicle.
     pub y: f64,
 }
 
@@ -140,7 +140,7 @@ pub struct Vehicle {
 pub struct MassStep {
     /// Body.
     pub body: usize,
-    /// When the change begins, s of the record's time.
+    /// Begin of the change, s of the record's time.
     pub at_s: f64,
     /// Duration of the change, s.
     pub over_s: f64,
@@ -214,7 +214,7 @@ impl Vehicle {
         !self.steps.is_empty() || terms.any(Term::is_of_time)
     }
 
-    /// Lets every change of a mass or spring happen at once at a time: `f64::MIN` for done, `f64::MAX` for not begun.
+    /// Sets every change of a mass or spring to a single time: `f64::MIN` for a completed change, `f64::MAX` for a change that has not begun.
     pub fn settle_changes(&mut self, time_s: f64) {
         for s in &mut self.steps {
             (s.at_s, s.over_s) = (time_s, 0.0);

@@ -25,7 +25,7 @@ pub(super) struct PartAnswer {
     pub motion: Motion,
 }
 
-/// Puts the answer of a part into the whole.
+/// Adds the answer of a part to the answer of the vehicle.
 pub(super) fn collect(
     task: &IdentifyTask,
     answer: &mut Identification,

@@ -27,7 +27,7 @@ pub struct Refinement {
     pub constant: Vec<f64>,
     /// RMS of measured minus simulated signal of each compared sensor, before and after, in the unit of the sensor.
     pub error_rms: Vec<(String, f64, f64)>,
-    /// The minimum in the free parameters (then constants, then offsets), of residuals over each sensor's RMS.
+    /// Minimum in the free parameters (then constants, then offsets). The residuals are divided by the RMS of each sensor.
     pub minimum: Minimum,
 }
 
@@ -173,7 +173,7 @@ impl Comparison {
             .collect())
     }
 
-    /// Returns this comparison with `steps` integration steps a sample.
+    /// Returns this comparison with `steps` integration steps for each sample.
     pub fn with_steps(mut self, steps: usize) -> Self {
         self.drive.steps = steps;
         self

@@ -32,7 +32,7 @@ pub struct SimulatedMotion {
     pub acceleration: Vec<Vec<Vec<f64>>>,
 }
 
-/// Why a simulation gave nothing.
+/// Reason why a simulation gave no result.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SimulationError {
     /// A body without usable inertia.

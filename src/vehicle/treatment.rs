@@ -131,6 +131,6 @@ impl Treatment {
 pub struct SlowStretch {
     /// Index of the link.
     pub link: usize,
-    /// Stretch, mean force taken as rest.
+    /// Stretch of the link. The mean force defines the rest position.
     pub stretch: Vec<f64>,
 }

@@ -23,9 +23,9 @@ use std::path::Path;
 /// One elastic mode.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModeRow {
-    /// 1, 2 ..
+    /// Number of the mode, from 1 on.
     pub mode: usize,
-    /// Cycles per unit of time.
+    /// Frequency, cycles per unit of time.
     pub hz: f64,
     /// Generalised mass of the written shape: 1 except for rounding.
     pub generalised_mass: f64,
@@ -49,7 +49,7 @@ fn or_null<S: Serializer>(x: &f64, s: S) -> Result<S::Ok, S::Error> {
 /// Elastic modes of a structure.
 #[derive(Serialize)]
 pub struct Modes {
-    /// Ascending.
+    /// Modes with ascending frequency.
     pub modes: Vec<ModeRow>,
     /// Description of the support of the structure.
     pub support: String,
@@ -61,7 +61,7 @@ pub struct Modes {
     pub model_units: StatedUnits,
     /// Mass of the model, WTMASS applied.
     pub mass: Option<f64>,
-    /// Unknowns.
+    /// Number of unknowns.
     pub dofs: usize,
     /// Shapes and their strain.
     #[serde(skip)]

@@ -25,7 +25,7 @@ pub struct ComputedSensitivity {
     pub conditioning: Conditioning,
     /// Number of gauges.
     pub gauges: usize,
-    /// Names of the loads, a column each.
+    /// Names of the loads, one for each column.
     pub loads: Vec<String>,
     /// Report unit of each load.
     pub report_units_of_loads: Vec<String>,

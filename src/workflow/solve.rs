@@ -33,9 +33,9 @@ use std::path::{Path, PathBuf};
 pub struct SolvedCases {
     /// Grids of the model.
     pub grids: usize,
-    /// Unknowns.
+    /// Number of unknowns.
     pub dofs: usize,
-    /// Entries of the factor.
+    /// Number of entries of the factor.
     pub factor_nonzeros: usize,
     /// Ordering of the unknowns.
     pub ordering: Option<OrderingMethod>,
@@ -82,7 +82,7 @@ pub struct SolvedCases {
 pub struct MassAndCentre {
     /// Mass, the deck's units.
     pub mass: f64,
-    /// Centre.
+    /// Centre of gravity.
     pub cg: [f64; 3],
 }
 

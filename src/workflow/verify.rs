@@ -44,7 +44,7 @@ impl Answer for Recomputation {
 /// Difference between a result folder and its recomputation.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Difference {
-    /// Input as given, or file of the folder.
+    /// Input as stated in the result, or file of the folder.
     pub file: String,
     /// Key of result.json, or line of a table; empty for a file as a whole.
     pub at: String,

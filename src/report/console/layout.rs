@@ -8,7 +8,7 @@ use super::wrap::wrap_lines;
 /// Room for the lines of a command.
 #[derive(Clone, Copy, Debug)]
 pub struct Room {
-    /// Columns.
+    /// Number of columns.
     pub width: usize,
     /// Number of lines. `None` means no limit.
     pub lines: Option<usize>,

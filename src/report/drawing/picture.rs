@@ -74,7 +74,7 @@ pub(in crate::report) const INK: &str = "#1c2530";
 /// Width of a drawing, mm. It equals the text width of A4 with margins of 18 mm.
 pub(in crate::report) const UPRIGHT: f64 = 174.0;
 
-/// Characters of a name in a drawing.
+/// Largest number of characters of a name in a drawing.
 pub(in crate::report) const LONGEST: usize = 40;
 
 impl Picture {

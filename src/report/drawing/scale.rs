@@ -1,6 +1,6 @@
 //! An axis on paper: from values to millimetres, with ticks at round numbers.
 
-/// Linear, or by powers of ten.
+/// Scale of an axis: linear, or logarithmic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::report) struct Scale {
     /// Ends of the values; of their logarithms where `by_powers`.
@@ -76,7 +76,7 @@ impl Scale {
     }
 }
 
-/// 1, 2 or 5 times a power of ten, at least `x`.
+/// Returns the smallest of 1, 2 or 5 times a power of ten that is at least `x`.
 pub(in crate::report) fn round_step(x: f64) -> f64 {
     let power = 10f64.powf(x.abs().max(1e-300).log10().floor());
     let steps = [1.0, 2.0, 5.0, 10.0].map(|s| s * power);

@@ -20,8 +20,8 @@ pub struct GaugePoints {
     pub points: [Vec<(f64, f64)>; 2],
 }
 
-/// Measured (up) against predicted (right) strain about the line of equality: all gauges, then each, the largest residual first.
-/// `kinds` names the two kinds of points, `runs` the points of each kind.
+/// Draws measured (up) against predicted (right) strain about the line of equality: all gauges, then each gauge, the largest residual first. `kinds`
+/// names the two kinds of points, `runs` the points of each kind.
 pub fn agreement(gauges: &[GaugePoints], kinds: [&str; 2], runs: [&[String]; 2]) -> Figure {
     let mut order: Vec<&GaugePoints> = gauges.iter().collect();
     order.sort_by(|a, b| b.residual.total_cmp(&a.residual));

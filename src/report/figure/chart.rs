@@ -14,9 +14,9 @@ pub struct Figure {
     pub choices: Vec<(String, Vec<Value>)>,
     /// Axes. With `equal`, both axes have the same range and length. `band` is a shaded range of the x axis, with its name.
     pub layout: Value,
-    /// Pixels.
+    /// Height in pixels.
     pub height: usize,
-    /// Choices drawn on paper, from the first.
+    /// Number of choices drawn on paper, from the first.
     pub on_paper: usize,
 }
 

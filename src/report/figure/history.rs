@@ -13,7 +13,7 @@ pub struct LoadTrace {
     pub unit: String,
     /// First and last time of each span, s.
     pub times: Vec<[f64; 2]>,
-    /// Half of the 95 % interval of a sample.
+    /// Half width of the 95 % interval of a sample.
     pub half: f64,
     /// Smallest, mean and largest value of each span. NaN if nothing was measured.
     pub spans: Vec<[f64; 3]>,

@@ -13,9 +13,9 @@ const COLOURS: [&str; 3] = ["#9aa7b5", "#1f618d", "#c0392b"];
 pub struct Line<'a> {
     /// Name.
     pub name: &'a str,
-    /// Right.
+    /// Values along the horizontal axis.
     pub x: &'a [f64],
-    /// Up.
+    /// Values along the vertical axis.
     pub y: &'a [f64],
 }
 

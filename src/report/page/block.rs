@@ -16,7 +16,7 @@ pub struct Page {
     pub title: String,
     /// Sentence that states the result.
     pub summary: String,
-    /// Kind of report.
+    /// Text that states the kind of report.
     pub lead: String,
     /// Findings in any order. The page shows the worst first.
     pub findings: Vec<Finding>,

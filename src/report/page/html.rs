@@ -12,7 +12,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 const STYLE: &str = include_str!("page.css");
 
 impl Page {
-    /// `report.html`: works from the file, without a network.
+    /// Returns `report.html`, which works from the file, without a network.
     pub fn to_html(&self) -> String {
         let findings = FindingsBySeverity::from_findings(&self.findings);
         let sections = html! {

@@ -82,7 +82,7 @@ fn codes_in_words(groups: &[Vec<&Finding>]) -> String {
     words.join(", ")
 }
 
-/// Notes, and the conditions that the command tested and did not find.
+/// Returns the notes, and the conditions that the command tested and did not find.
 pub(super) fn notes_and_tests(page: &Page, findings: &FindingsBySeverity) -> Markup {
     let passed = passed_conditions(page.first.command, &page.findings);
     let notes = groups_of(&findings.notes);

@@ -8,7 +8,7 @@ use typst::text::Font;
 /// Families used: text, and hashes and lines of one width.
 const FAMILIES: [&str; 2] = ["Libertinus Serif", "DejaVu Sans Mono"];
 
-/// Both families in the styles that the crate `typst-assets` has.
+/// Returns both font families in the styles that the crate `typst-assets` has.
 pub(super) fn fonts() -> &'static [Font] {
     static FONTS: OnceLock<Vec<Font>> = OnceLock::new();
     FONTS.get_or_init(|| {

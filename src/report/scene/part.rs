@@ -41,7 +41,7 @@ pub(super) struct PartMesh {
     pub vertex_of: Vec<u32>,
     /// Grid of the part that each vertex represents.
     pub vertices: Vec<u32>,
-    /// Corners, indices into `vertices`.
+    /// Corners of the triangles, as indices into `vertices`.
     pub triangles: Vec<[u32; 3]>,
     /// Whether every face of the part is drawn unchanged.
     pub whole: bool,

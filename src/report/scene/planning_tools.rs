@@ -19,7 +19,7 @@ pub(super) fn script_data(pointing: &PickTargets) -> Value {
     }
 }
 
-/// Tools above the picture.
+/// Returns the tools above the picture.
 pub(super) fn tools(pointing: &PickTargets, gauges: usize) -> Markup {
     let faces = matches!(pointing, PickTargets::Places(_));
     if *pointing == PickTargets::Nothing || !faces && gauges == 0 {

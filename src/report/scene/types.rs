@@ -134,7 +134,7 @@ pub struct Field<'a> {
     pub unit: String,
     /// Strain, or numbers by element.
     pub values: FieldValues<'a>,
-    /// Number shown per value.
+    /// Factor from a value to the shown number.
     pub scale: f64,
 }
 
@@ -154,7 +154,7 @@ impl FieldValues<'_> {
     }
 }
 
-/// Force or moment.
+/// Kind of a load: force or moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Twist {
     /// Force.
@@ -168,9 +168,9 @@ pub enum Twist {
 pub struct Arrow {
     /// Place where the load acts, basic frame.
     pub at: Vec3,
-    /// Unit vector.
+    /// Unit vector of the load.
     pub along: Vec3,
-    /// Kind.
+    /// Kind of the load.
     pub twist: Twist,
     /// Size with sign. Lengths of arrows are comparable within a kind.
     pub value: f64,

@@ -9,7 +9,7 @@ use crate::report::figure::{Ends, GaugePoints, IntervalRow, agreement, gap_by_ch
 use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::report::scene::{Scene, scene_section};
 
-/// Heading over what was added to the model.
+/// Heading over the changes of the model.
 pub const ADDED: &str = "What was added";
 
 /// Strain of the runs predicted by the model, without and with the effects.

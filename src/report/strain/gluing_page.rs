@@ -16,7 +16,7 @@ const AROUND: f64 = 5.0;
 /// Minimum cosine between two normals: the element then faces the same way as the element of the gauge.
 const SAME_FACE: f64 = 0.7;
 
-/// `gluing_sheet.html`: the model with all gauges, then a card each. The sketch looks at the gauge from outside.
+/// Returns `gluing_sheet.html`: the model with all gauges, then a card for each gauge. The sketch shows the gauge from outside.
 pub fn gluing_page(title: &str, placed: &[PlacedGauge], scene: &Scene) -> Page {
     let model = scene.model;
     let overview = Card {

@@ -160,7 +160,7 @@ pub struct RecoveryPage<'a> {
     pub by_gauge: &'a [(String, f64, f64)],
     /// First table.
     pub numbers: &'a [(String, String)],
-    /// Loads of static runs, a row a run and load: run, load, low, value, high, share of the typical size.
+    /// Table of the loads of static runs, with a row for each run and load: run, load, low, value, high, share of the typical size.
     pub table: Vec<Vec<String>>,
     /// Whether the table lacks runs.
     pub is_cut: bool,

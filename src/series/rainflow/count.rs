@@ -12,11 +12,11 @@ pub struct Point {
 /// A counted cycle (`count` 1) or half cycle (0.5).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cycle {
-    /// The reversal that came first.
+    /// First reversal of the cycle.
     pub from: Point,
     /// Value of the second reversal of the cycle.
     pub to: Point,
-    /// 1 or 0.5.
+    /// Count of the cycle: 1, or 0.5 for a half cycle.
     pub count: f64,
 }
 
@@ -112,7 +112,7 @@ impl<T> Default for Rainflow<T> {
 }
 
 impl<T> Rainflow<T> {
-    /// Takes the next sample. A value that is not finite is passed over.
+    /// Takes the next sample. A value that is not finite is ignored.
     #[inline(always)]
     pub(super) fn push_tagged(&mut self, point: Point, listener: &mut impl Listener<T>) {
         if !point.value.is_finite() {
@@ -254,7 +254,7 @@ impl Rainflow {
         self.push_tagged(point, &mut FunctionListener(|_| (), closed));
     }
 
-    /// Counts the residue by ASTM E1049: the last sample is a reversal, and every open range half a cycle.
+    /// Counts the residue by ASTM E1049. The last sample counts as a reversal, and every open range as half a cycle.
     pub fn finish(self, counted: &mut impl FnMut(Cycle)) {
         for cycle in half_cycles(&self.residue(&mut |_| ())) {
             counted(cycle);

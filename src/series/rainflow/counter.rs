@@ -122,7 +122,7 @@ impl Counter {
         }
     }
 
-    /// Takes the next samples, all loads of each, row by row, and the marks of these (`Marks`).
+    /// Takes the next samples row by row, each with all loads, and the marks of these samples (`Marks`).
     pub fn push(&mut self, rows: &[f64], marks: &[u64]) {
         let k = self.carried.len();
         if self.load < k {

@@ -27,14 +27,14 @@ impl Key for (i32, i32) {
     }
 }
 
-/// Number of occurrences of each class. A load stays in a few classes for a while, which the small table finds fast.
+/// Number of occurrences of each class. A load stays in a few classes for some time. The small table finds these classes fast.
 pub(super) struct Counts<K> {
     lately: Vec<Option<(K, u64)>>,
     all: BTreeMap<K, u64>,
 }
 
 impl<K: Key> Counts<K> {
-    /// Nothing yet.
+    /// Creates empty counts.
     pub(super) fn new() -> Self {
         Self {
             lately: vec![None; PLACES],
@@ -58,7 +58,7 @@ impl<K: Key> Counts<K> {
         }
     }
 
-    /// Classes in order, with how often each was met.
+    /// Returns the classes in order, with the number of occurrences of each class.
     pub(super) fn sort_classes(mut self) -> BTreeMap<K, u64> {
         for (k, n) in self.lately.into_iter().flatten() {
             *self.all.entry(k).or_insert(0) += n;

@@ -25,7 +25,7 @@ pub struct Damage {
     pub slope: f64,
     /// Cycles by range, `BINS` of equal width up to [`Damage::limit`].
     pub bins: Vec<Bin>,
-    /// The largest range that bins reach to.
+    /// Largest range of the bins.
     pub limit: f64,
     /// Cycles counted.
     pub cycles: f64,

@@ -9,13 +9,13 @@ use serde::Serialize;
 /// does not average out. The scatter of noise averages out. The bias of noise does not (noise widens every range), and is subtracted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DamageInterval {
-    /// Damage, the bias of noise subtracted.
+    /// Damage after subtraction of the bias of noise.
     pub value: f64,
     /// Lower end of the 95 % interval.
     pub low: f64,
     /// Upper end of the 95 % interval.
     pub high: f64,
-    /// Damage as counted.
+    /// Damage as counted, with the bias of noise.
     pub counted: f64,
     /// Mean damage that noise added to [`Self::counted`].
     pub noise_bias: f64,
@@ -32,7 +32,7 @@ pub struct DamageInterval {
 pub struct DamageParts {
     /// Damage after subtraction of the bias of noise. It is negative if noise causes all of the damage.
     pub value: f64,
-    /// Damage as counted.
+    /// Damage as counted, with the bias of noise.
     pub counted: f64,
     /// Change of the damage with the scale error of each load.
     pub by_load: Vec<f64>,

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Bend of an S-N line: the range at the bend, and the slope below it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Knee {
-    /// Range at the bend: smaller ranges do less damage than the power gives.
+    /// Range at the bend. Smaller ranges cause less damage than the power gives.
     pub range: f64,
     /// Power below the knee. Infinite if cycles below the knee cause no damage.
     #[serde(deserialize_with = "super::nullable_numbers::number_or_infinity")]

@@ -34,7 +34,7 @@ pub struct ResidueReversal {
 /// Sums over closed cycles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sums {
-    /// Damage, by [`NOISE`].
+    /// Damage of each history of [`NOISE`].
     pub damage: [f64; 3],
     /// Change of the damage with each scale error: `sum of d'(R) sign(dF) dF_m`, by load m.
     #[serde(deserialize_with = "super::nullable_numbers::numbers")]
@@ -48,7 +48,7 @@ pub struct Sums {
 pub struct Tally {
     /// Width of a class, in the unit of the load. Class i reaches from i to i + 1 widths.
     pub width: f64,
-    /// Harm of a cycle.
+    /// Law of the damage of a cycle.
     pub law: Law,
     /// Closed cycles by class of their first and second reversal, in order.
     pub cycles: Vec<(i32, i32, u64)>,
@@ -62,7 +62,7 @@ pub struct Tally {
     pub samples: usize,
     /// Samples without a value.
     pub missing: usize,
-    /// Reversals that no cycle has closed, by [`NOISE`].
+    /// Reversals that no cycle has closed, for each history of [`NOISE`].
     pub residues: [Vec<ResidueReversal>; 3],
     /// Sums over closed cycles.
     pub sums: Sums,
@@ -190,7 +190,7 @@ impl Tally {
         Some(all)
     }
 
-    /// Sums over closed cycles and, as half cycles, the ranges of the residue.
+    /// Returns the sums over closed cycles and over the ranges of the residue, which count as half cycles.
     pub fn sums_with_residue(&self) -> Sums {
         let mut sums = self.sums.clone();
         for (level, residue) in self.residues.iter().enumerate() {

@@ -256,7 +256,7 @@ fn read_storage(buffer: Buffer<'_>, kind: u8, details: usize) -> Option<ColumnSt
     })
 }
 
-/// RFC 4648, section 4.
+/// Decodes base64 (RFC 4648, section 4).
 pub(super) fn from_base64(text: &str) -> Option<Vec<u8>> {
     let digit = |c: u8| match c {
         b'A'..=b'Z' => Some(c - b'A'),

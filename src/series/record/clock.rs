@@ -30,9 +30,9 @@ pub enum Evenness {
 /// Change of the logger's rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateChange {
-    /// When, s.
+    /// Time of the change, s.
     pub at_s: f64,
-    /// Samples a second before and after.
+    /// Samples per second before and after the change.
     pub rates_hz: [f64; 2],
 }
 
@@ -61,22 +61,22 @@ impl RateChange {
     }
 }
 
-/// When samples were taken.
+/// Times of the samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clock {
     /// Time of the first sample, s. It is 0 for a file with absolute times.
     pub start_s: f64,
-    /// Samples a second.
+    /// Samples per second.
     pub rate_hz: f64,
     /// Number of samples on even steps, including missing samples.
     pub samples: usize,
     /// Rows in the file.
     pub rows: usize,
-    /// Even or resampled.
+    /// Whether the samples are even or resampled.
     pub evenness: Evenness,
     /// First change of the rate. The record then has the fastest rate, or a rate in between if the rates differ by less than a half.
     pub change: Option<RateChange>,
-    /// Samples missing in gaps.
+    /// Number of samples that are missing in gaps.
     pub missing: usize,
     /// The first thousand gaps.
     pub gaps: Vec<Gap>,

@@ -48,7 +48,7 @@ impl EvenStepReader {
         })
     }
 
-    /// RPC III.
+    /// Opens an RPC III file.
     pub(super) fn rpc(bytes: Bytes) -> Result<Self, SeriesError> {
         let header = rpc::read_header((*bytes).as_ref())?;
         let channels = header.channels.iter();

@@ -101,7 +101,7 @@ impl SharedRows {
         lock_mutex(&self.spare).push(strips);
     }
 
-    /// Runs with memory for decoding.
+    /// Calls a function with memory for decoding.
     pub fn with_buffers<T>(&self, run: impl FnOnce(&mut Buffers) -> T) -> T {
         let mut buffers = lock_mutex(&self.buffers).pop().unwrap_or_default();
         let out = run(&mut buffers);

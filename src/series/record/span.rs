@@ -53,7 +53,7 @@ impl Stretch {
 pub(super) struct Scale {
     /// Typical step, s. With several rates, it is the step of the fastest rate.
     pub typical: f64,
-    /// The longest step of any rate, s: a step half as long again is a gap.
+    /// Longest step of any rate, s. A step that is half as long again is a gap.
     pub longest: f64,
     /// The mean of [`WINDOW`] steps in the first rows, s.
     pub usual: f64,
@@ -95,28 +95,28 @@ impl Scale {
 pub struct Gap {
     /// Number of stored rows before the gap.
     pub after_row: usize,
-    /// Time of the last sample before, s.
+    /// Time of the last sample before the gap, s.
     pub from_s: f64,
-    /// Time of the first sample after, s.
+    /// Time of the first sample after the gap, s.
     pub to_s: f64,
-    /// Samples of even steps that fall in between.
+    /// Number of samples on even steps that are missing in the gap.
     pub missing: usize,
 }
 
 /// Steps, gaps and rates of the times of a piece.
 #[derive(Clone, Debug)]
 pub(super) struct Span {
-    /// Rows.
+    /// Number of rows.
     pub rows: usize,
     /// Time of the first row, s.
     pub first: f64,
     /// Time of the last row, s.
     pub last: f64,
-    /// The first gaps within.
+    /// First gaps within the piece.
     pub gaps: Vec<Gap>,
     /// Number of gaps.
     pub n_gaps: usize,
-    /// Samples missing in the gaps.
+    /// Number of samples that are missing in the gaps.
     pub missing: f64,
     /// Sum and number of the steps that are not gaps.
     pub steps: (f64, usize),
@@ -174,7 +174,7 @@ fn lower_quantile(mut numbers: Vec<f64>, part: usize) -> Option<f64> {
     fits.then(|| *numbers.select_nth_unstable_by(at, f64::total_cmp).1)
 }
 
-/// A time that can't be.
+/// An impossible time.
 pub(super) enum TimeFault {
     Missing,
     Back { time_s: f64, before_s: f64 },
@@ -196,7 +196,7 @@ impl TimeFault {
     }
 }
 
-/// Steps seen so far.
+/// Analysis of the steps seen so far.
 pub(super) struct Walk {
     scale: Scale,
     pub gaps: Vec<Gap>,

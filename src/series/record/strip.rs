@@ -140,7 +140,7 @@ fn numbers<T: DataType, O: Clone>(
     Ok(())
 }
 
-/// Decodes texts into `out` up to number `end`, blank for a null.
+/// Decodes texts into `out` up to number `end`. A null becomes a blank.
 pub(super) fn texts(
     reader: &mut ColumnReaderImpl<ByteArrayType>,
     most: i16,

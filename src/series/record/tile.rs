@@ -17,7 +17,7 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    /// Nothing yet.
+    /// Creates an empty tile.
     pub(super) fn new() -> Self {
         Self {
             values: vec![f64::NAN; WIDE * BLOCK],
@@ -46,7 +46,7 @@ impl Tile {
         self.values.get_mut(at..at + rows).unwrap_or_default()
     }
 
-    /// Copies the stored columns into `values`, which has `k` numbers a row.
+    /// Copies the stored columns into `values`, which has `k` numbers in each row.
     pub(super) fn lay_out(&mut self, values: &mut [f64], k: usize) {
         let from = &self.values;
         let rows = values.chunks_exact_mut(k.max(1)).take(self.rows);

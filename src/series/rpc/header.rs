@@ -17,7 +17,7 @@ const MOST_BLOCKS: usize = 1024;
 pub struct RpcChannel {
     /// Name `DESC.CHAN_n`. It is `n` if the file has none.
     pub name: String,
-    /// `UNITS.CHAN_n`.
+    /// Unit `UNITS.CHAN_n`.
     pub unit: String,
     /// Value of one count. It is 1 for reals.
     pub scale: f64,
@@ -46,7 +46,7 @@ pub struct Header {
     pub channels: Vec<RpcChannel>,
     /// Time between samples, s.
     pub dt: f64,
-    /// Samples of each channel.
+    /// Number of samples of each channel.
     pub samples: usize,
     pub(super) per_group: usize,
     pub(super) start: usize,

@@ -87,10 +87,10 @@ pub struct HungMass {
     pub conm2: u32,
 }
 
-/// A wheel's reaction.
+/// Reaction of a wheel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Reaction {
-    /// Load.
+    /// Name of the load.
     pub name: String,
     /// Measured reaction.
     pub measured: f64,

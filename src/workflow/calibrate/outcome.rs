@@ -87,7 +87,7 @@ pub struct CalibrationSummary {
     pub residuals: Vec<LoadResidual>,
     /// Check runs: loads applied and recovered, which S was not calibrated with.
     pub checks: Vec<CheckLoad>,
-    /// The next known load worth applying.
+    /// Next known load that would improve the result most.
     pub next_run: Option<NextRunSummary>,
     /// Relative error of the model, as estimated from the runs.
     pub model_error: Option<ModelErrorSummary>,
@@ -108,7 +108,7 @@ pub struct CalibratedGauge {
     pub name: String,
     /// Distance from the model in prior sigmas.
     pub shift: f64,
-    /// Calibrated row along the model's.
+    /// Size of the calibrated row along the model's row.
     pub scale: f64,
     /// `none`, `gain`, `angle`, `place`, `sign`, `dead`, `exchanged`, `undetermined`.
     pub looks_like: &'static str,
@@ -167,7 +167,7 @@ pub struct CoverageSummary {
     pub factor: f64,
 }
 
-/// A load worth applying.
+/// A load that would improve the result.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NextRunSummary {
     /// Loads, report units.
@@ -176,9 +176,9 @@ pub struct NextRunSummary {
     pub information: f64,
     /// Load that gains most, with its standard deviation before and after the run, report units.
     pub load: String,
-    /// Before.
+    /// Standard deviation before the run.
     pub sigma_before: f64,
-    /// After.
+    /// Standard deviation after the run.
     pub sigma_after: f64,
     /// Unit of both.
     pub unit: String,
@@ -187,9 +187,9 @@ pub struct NextRunSummary {
 /// Relative error of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ModelErrorSummary {
-    /// Common to a gauge.
+    /// Error that is common to a gauge.
     pub common_rel: f64,
-    /// Entry by entry.
+    /// Separate error of each entry.
     pub entry_rel: f64,
 }
 
@@ -254,7 +254,7 @@ pub struct HeldOutSummary {
     pub recommended: &'static str,
 }
 
-/// Recovered less known load over the calibration runs, percent of full scale: the largest known load.
+/// Recovered minus known load over the calibration runs, percent of full scale, which is the largest known load.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LoadResidual {
     /// Load.
@@ -271,7 +271,7 @@ pub struct LoadResidual {
     pub left_out_rms_percent: Option<f64>,
     /// Largest value over left-out runs.
     pub left_out_max_percent: Option<f64>,
-    /// Run.
+    /// Run with this residual.
     pub left_out_max_run: Option<String>,
 }
 

@@ -188,7 +188,7 @@ pub(super) fn dependence(
     })
 }
 
-/// `calibration` of `result.json`.
+/// Returns `calibration` of `result.json`.
 pub(super) fn words(
     task: &Task,
     found: &Calibration,

@@ -21,7 +21,7 @@ pub struct CheckedFiles {
     /// All faults. With a fault, the exit code is the code of bad input.
     #[serde(serialize_with = "as_lines")]
     pub faults: FaultList,
-    /// Next command of a user with the last job.
+    /// Next command for the user, with the last job.
     #[serde(skip)]
     pub(super) next: Option<String>,
     /// Descriptions of the jobs.

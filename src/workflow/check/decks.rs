@@ -192,7 +192,7 @@ impl DeckEntry {
         }
     }
 
-    /// Takes the units that a job states.
+    /// Applies the units that a job states.
     pub(super) fn state_units(&mut self, job: &Job) {
         self.shown = Some(ShownUnits {
             system: job.units,

@@ -144,7 +144,7 @@ impl RecordEntry {
     }
 }
 
-/// Looks into a record or a table.
+/// Reads the description of a record or a table.
 ///
 /// # Errors
 /// Faults of the file.

@@ -10,7 +10,7 @@ use crate::series::rainflow::{DamageParts, Ratio, SharedErrors};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The day whose damage an hour is 1.
+/// The day whose damage per hour is 1.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReferenceAnswer {
     /// Vehicle of the reference day.
@@ -98,7 +98,7 @@ impl Reference {
     }
 }
 
-/// References that the job compares damage with.
+/// References of the job for comparisons of damage.
 pub(super) struct DamageReferences {
     pub reference: Option<Reference>,
     pub mission: Option<MissionSums>,
@@ -159,7 +159,7 @@ impl DamageReferences {
     }
 }
 
-/// Targets name loads of the job.
+/// Checks that targets name loads of the job.
 ///
 /// # Errors
 /// A load that the job lacks.

@@ -27,7 +27,7 @@ pub struct LoadDay {
 pub struct GaugeDay {
     /// Name of the gauge.
     pub name: String,
-    /// Mean reading less the job's zero, microstrain.
+    /// Mean reading minus the job's zero, microstrain.
     #[serde(deserialize_with = "number")]
     pub mean: f64,
     /// Standard deviation of the readings, microstrain.
@@ -91,9 +91,9 @@ mod with_chances {
 /// Result of a record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Day {
-    /// Samples a second.
+    /// Samples per second.
     pub rate_hz: f64,
-    /// Time of the samples that give a load, hours.
+    /// Duration of the samples that give a load, hours.
     pub hours: f64,
     /// Samples missing in gaps.
     pub missing: usize,
@@ -142,9 +142,9 @@ pub struct FileResult {
 /// Result of a record without its loads and gauges, which are large.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct DayHead {
-    /// Samples a second.
+    /// Samples per second.
     pub rate_hz: f64,
-    /// Time of the samples that give a load, hours.
+    /// Duration of the samples that give a load, hours.
     pub hours: f64,
     /// Samples missing in gaps.
     pub missing: usize,

@@ -46,9 +46,9 @@ pub struct GaugeHistory {
 pub struct DeadPart {
     /// The day.
     pub day: String,
-    /// Hours from the record's first sample.
+    /// Begin of the part, in hours from the record's first sample.
     pub from: f64,
-    /// Hours from the record's first sample.
+    /// End of the part, in hours from the record's first sample.
     pub to: f64,
 }
 

@@ -34,7 +34,7 @@ pub struct Health {
 }
 
 impl Health {
-    /// Nothing yet, for S by rows.
+    /// Creates empty sums for S by rows.
     pub fn new(s: &[Vec<f64>]) -> Self {
         let k = s.first().map_or(0, Vec::len);
         let column = |l: usize| s.iter().filter_map(move |row| row.get(l).copied());

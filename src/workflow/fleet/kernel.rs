@@ -57,13 +57,13 @@ pub struct Kernel {
     pub zero: Vec<f64>,
     /// Stated errors.
     pub errors: ErrorModel,
-    /// Noise variance of a reading less zero, in units of the variance of a single reading.
+    /// Noise variance of a reading minus zero, in units of the variance of a single reading.
     pub noise_factor: f64,
     /// Range of each load of S in its calibration, job units. `None` if the job states none.
     pub ranges: Vec<Option<[f64; 2]>>,
     /// Loads of S, then sums of loads, whose cycles are counted, with their units.
     pub listed: ListedLoads,
-    /// Harm of a cycle.
+    /// Law of the damage of a cycle.
     pub law: Law,
     /// Width of a class, by load and sum, report units.
     pub widths: Vec<f64>,

@@ -75,11 +75,11 @@ pub struct VehicleLoad {
     pub unit: String,
     /// Hours of all days in which the load is known.
     pub hours: f64,
-    /// All days.
+    /// Tally of all days.
     pub tally: Tally,
     /// Damage with its interval.
     pub damage: DamageInterval,
-    /// Damage divided by the damage of the reference day, an hour of each.
+    /// Damage per hour divided by the damage per hour of the reference day.
     pub to_reference: Option<Ratio>,
     /// Samples with the largest and the smallest value.
     pub extremes: [Option<SampleOf>; 2],
@@ -106,7 +106,7 @@ pub struct Vehicle {
     pub doubtful: Vec<bool>,
     /// Whether the record of a day has a finding whose cause makes gains and zeros of that day invalid.
     pub misread: Vec<bool>,
-    /// Readings of each gauge, a day each, in order.
+    /// Readings of each gauge, with an entry for each day, in order.
     pub gauges: Vec<(String, Vec<GaugeDay>)>,
 }
 

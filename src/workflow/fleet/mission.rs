@@ -27,7 +27,7 @@ pub struct MissionLoad {
     pub sigma_bias: f64,
     /// Standard deviation from the scatter between days of one kind, which is not part of the interval; `None` if a kind has one day.
     pub sigma_days: Option<f64>,
-    /// Damage an hour of each kind.
+    /// Damage per hour of each kind.
     pub by_kind: Vec<f64>,
     /// Upper bound of the damage of cycles that close between days, which `damage` leaves out.
     pub between_days_at_most: f64,
@@ -188,7 +188,7 @@ impl MissionSums {
         Ok(())
     }
 
-    /// Kinds of which no record is.
+    /// Returns the kinds without a record.
     pub fn without_records(&self) -> impl Iterator<Item = &MissionKind> {
         let none = self.kinds.iter().filter(|k| k.files == 0);
         none.map(|k| &k.key)

@@ -56,11 +56,11 @@ pub struct VehicleLoadAnswer {
     pub sigma_noise: f64,
     /// Standard deviation of the noise bias that was subtracted.
     pub sigma_bias: f64,
-    /// Damage per hour over the damage per hour of all vehicles together.
+    /// Damage per hour, divided by the damage per hour of all vehicles together.
     pub relative: f64,
-    /// Damage per hour over the damage per hour of the reference day.
+    /// Damage per hour, divided by the damage per hour of the reference day.
     pub to_reference: Option<Ratio>,
-    /// Damage over the damage of the target.
+    /// Damage divided by the target damage.
     pub to_target: Option<Ratio>,
     /// Damage of each day separately.
     pub by_day: Vec<f64>,
@@ -69,13 +69,13 @@ pub struct VehicleLoadAnswer {
     /// Width of a class.
     #[serde(skip)]
     pub width: f64,
-    /// Cycles by range in class widths.
+    /// Number of cycles by range, in class widths.
     #[serde(skip)]
     pub range_pairs: Vec<(u32, f64)>,
     /// Cycles by class of both reversals.
     #[serde(skip)]
     pub from_to: Vec<(i32, i32, u64)>,
-    /// Rises through the lower border of each class.
+    /// Number of rises through the lower border of each class.
     #[serde(skip)]
     pub levels: Vec<(i32, u64)>,
 }
@@ -121,7 +121,7 @@ pub struct FileAnswer {
     pub message: String,
     /// Hours of it.
     pub hours: Option<f64>,
-    /// Samples a second.
+    /// Samples per second.
     pub rate_hz: Option<f64>,
     /// Samples missing in gaps.
     pub missing: Option<usize>,

@@ -11,8 +11,8 @@ const SETS: usize = 16;
 /// Factor on the size of a load that makes noise negligible.
 const FAR: f64 = 1e6;
 
-/// Returns the standard deviation of the noise in a sample by load, report unit, as root mean square over the record. In dead parts, the noise is
-/// that with the remaining gauges.
+/// Returns the standard deviation of the noise in a sample by load, report unit, as root mean square over the record. In dead parts, it is the noise
+/// with the remaining gauges.
 pub(super) fn noise_of(r: &RecordRecovery) -> Vec<f64> {
     let zeros = vec![0.0; r.factors.len()];
     let all = r.filter.sigma(&zeros);

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Folder of the kept results within the output folder.
+/// Folder of the stored results within the output folder.
 pub const FOLDER: &str = "days";
 /// Number of the form of a stored result, raised when its meaning changes.
 const FORM: u32 = 10;
@@ -91,7 +91,7 @@ fn verify_digest(bytes: &[u8]) -> Option<&[u8]> {
     (own == hex(&hash.finalize()).as_bytes()).then_some(bytes)
 }
 
-/// SHA-256, hexadecimal.
+/// Returns the SHA-256, hexadecimal.
 pub fn digest(parts: &[&str]) -> String {
     let mut hash = Sha256::new();
     for part in parts {

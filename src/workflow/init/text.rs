@@ -49,7 +49,7 @@ pub(super) fn usual_spacing(deck: &DeckModel) -> f64 {
 }
 
 impl JobPlan<'_> {
-    /// job.toml.
+    /// Returns the text of job.toml.
     pub(super) fn text(&self) -> String {
         [
             self.head(),

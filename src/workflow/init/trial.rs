@@ -19,7 +19,7 @@ const MOST_TRIALS: usize = 24;
 
 /// Result of the trials.
 pub(super) struct Verdict {
-    /// job.toml.
+    /// Text of job.toml.
     pub text: String,
     /// Names of the loads in `text`.
     pub loads: Vec<String>,

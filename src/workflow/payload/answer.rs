@@ -19,7 +19,7 @@ pub struct WeighedPayloads {
     pub payload: Vec<WeighedPayload>,
     /// Payload of each run from each gauge alone.
     pub by_gauge: Vec<SingleGauge>,
-    /// Net reading of each gauge in each run: reading less zero.
+    /// Net reading of each gauge in each run: reading minus zero.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub net: Vec<NetReading>,
     /// Rank and condition numbers of S, if strain is used and S is from the model.

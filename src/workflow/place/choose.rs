@@ -62,7 +62,7 @@ pub(super) fn choose(
     })
 }
 
-/// Chooses gauges by the spec.
+/// Chooses gauges once, as `spec` states.
 pub(super) fn choose_once(
     task: &Task,
     kinds: &[Kind],

@@ -6,7 +6,7 @@ use crate::job::JobGauge;
 use crate::placement::PlaceError;
 use crate::placement::sites::Site;
 
-/// A channel chosen.
+/// A chosen channel.
 pub(super) struct Channel {
     /// Gauge on the model.
     pub gauge: Gauge,
@@ -28,7 +28,7 @@ pub(super) struct Channel {
     pub misfit: Option<Fault>,
 }
 
-/// A layout chosen.
+/// A chosen layout.
 pub(super) struct ChosenLayout {
     pub channels: Vec<Channel>,
     pub log_det: f64,

@@ -25,9 +25,9 @@ pub struct CertifiedLayout {
     pub criterion: &'static str,
     /// ln det(S'S), rows over their standard deviations.
     pub log_det: f64,
-    /// No layout of these candidates has more.
+    /// Upper bound of `log_det` of all layouts of these candidates.
     pub upper_bound: f64,
-    /// Certified: at least this share of the best possible, 0 to 1.
+    /// Certified lower bound on the efficiency, relative to the best possible layout, 0 to 1.
     pub efficiency_bound: f64,
     /// Whether the layout is proved to be the best.
     pub proved: bool,
@@ -49,7 +49,7 @@ pub struct CertifiedLayout {
     pub least_condition_number_scaled: Option<f64>,
     /// One standard deviation of each load, report units.
     pub load_sigma: Vec<LoadSigma>,
-    /// The gauge whose loss costs most.
+    /// Gauge whose loss reduces the efficiency most.
     pub worst_loss: WorstLoss,
     /// Gauges kept for validation.
     pub reserved: Vec<ReservedGauge>,
@@ -126,9 +126,9 @@ impl CertifiedLayout {
 /// Number of candidates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Candidates {
-    /// Surfaces of elements.
+    /// Number of surfaces of elements.
     pub places: usize,
-    /// Rows: places times angles and wirings.
+    /// Number of rows: places times angles and wirings.
     pub rows: usize,
 }
 
@@ -222,7 +222,7 @@ pub struct ReservedGauge {
     pub prediction_sd_microstrain: f64,
 }
 
-/// The layout that the job has.
+/// Evaluation of the installed layout.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct InstalledLayout {
     /// Number of gauges.
@@ -240,15 +240,15 @@ pub struct InstalledLayout {
 pub struct InstalledQuality {
     /// ln det(S'S) with noise alone.
     pub log_det: Option<f64>,
-    /// No layout of as many gauges has more.
+    /// Upper bound of `log_det` of all layouts with the same number of gauges.
     pub upper_bound: Option<f64>,
-    /// S in strain per job unit.
+    /// Condition number of S in strain per job unit.
     pub condition_number: Option<f64>,
     /// Condition number of S with its columns multiplied by `expected`, or else normalised.
     pub condition_number_scaled: Option<f64>,
     /// One standard deviation of each load, report units.
     pub load_sigma: Vec<LoadSigma>,
-    /// The gauge whose loss costs most.
+    /// Gauge whose loss reduces the efficiency most.
     pub worst_loss: WorstLoss,
 }
 

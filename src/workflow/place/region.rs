@@ -51,7 +51,7 @@ impl StrictRule {
 /// Whether a shell, with its id, its property and its centre, follows a rule.
 type Follows<'a> = &'a dyn Fn(&Shell, u32, Vec3) -> bool;
 
-/// [`allowed_sites`] with the rule that excludes the most.
+/// Returns [`allowed_sites`] and the rule that excludes most shells.
 pub(super) fn allowed_sites_and_rule(
     job: &Job,
     fields: &Fields,

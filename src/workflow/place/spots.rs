@@ -25,7 +25,7 @@ pub(super) struct Leg {
     pub strain: Vec<f64>,
     /// Standard deviation of the reading, microstrain.
     pub sd: f64,
-    /// Change of the reading with the angle, microstrain a radian, rms over the expected loads.
+    /// Change of the reading with the angle, microstrain per radian, rms over the expected loads.
     pub turn: f64,
     /// Angle of the first grid, radians from the element x axis.
     pub angle: f64,

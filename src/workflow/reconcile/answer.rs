@@ -91,7 +91,7 @@ impl Reconciliation {
 pub struct EffectFound {
     /// Id with place.
     pub id: String,
-    /// Place alone.
+    /// Place without the id.
     #[serde(rename = "where")]
     pub place: Option<String>,
     /// Size of the effect; `None` for a cause.
@@ -278,7 +278,7 @@ pub struct WheelMisfit {
     pub after: Option<f64>,
 }
 
-/// Simulation of what was named.
+/// Simulation of the named effects.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Simulation {
@@ -327,7 +327,7 @@ pub struct SimulatedRow {
     pub after: f64,
 }
 
-/// A parameter by both ways.
+/// A parameter, estimated by regression and by simulation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SimulatedParameter {
     /// Name.

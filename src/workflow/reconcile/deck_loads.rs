@@ -179,7 +179,7 @@ fn grid_of(job: &Job, model: &Model, id: u32) -> Result<GridIx, Faults> {
     model.grid_ix(id).ok_or_else(wrong)
 }
 
-/// `size` kN or kN m at a grid, in the deck's units.
+/// Returns the unit load of `size` kN or kN m at a grid, in the deck's units.
 pub(super) fn unit(job: &Job, grid: GridIx, component: Component, size: f64) -> UnitLoad {
     let v = Vec3::from(component.vector(size * KILO / job.units.si(component.quantity())));
     let (force, moment) = if component.is_force() {

@@ -15,12 +15,12 @@ use crate::reconcile::effect::{Extension, Nuisance};
 use std::collections::HashMap;
 use toml::{Table, Value};
 
-/// Apparent strain below which a degree is nothing, microstrain.
+/// Apparent strain per degree below which temperature has no effect, microstrain.
 pub(super) const NOTHING: f64 = 0.02;
 
 /// The model with temperature sets of one degree, and the unit loads that use them.
 pub(super) struct UnitTemperatureModel {
-    /// The deck's model, synthetic sets added.
+    /// Model of the deck, with added temperature sets.
     pub(super) model: Model,
     /// Strain for one degree everywhere, if materials expand differently.
     pub(super) even: Option<UnitLoad>,

@@ -95,7 +95,7 @@ fn grid_of_wheel(job: &Job, wheel: &str) -> Option<u32> {
     })
 }
 
-/// `[[load]]` entries of the side loads and of the payload, `role = "nuisance"`.
+/// Returns the `[[load]]` entries of the side loads and of the payload, `role = "nuisance"`.
 pub(super) fn entries(job: &Job, frame: &StrainFrame, side: &[SideLoad]) -> Vec<Value> {
     let entry = |name: &str, grid: u32, component: Component, size: f64| {
         let mut t = Table::new();
@@ -139,7 +139,7 @@ pub(super) fn entries(job: &Job, frame: &StrainFrame, side: &[SideLoad]) -> Vec<
     out
 }
 
-/// FORCE and MOMENT cards of load set `sid` with the sizes that were found.
+/// Returns the FORCE and MOMENT cards of load set `sid` with the sizes that were found.
 pub(super) fn cards(job: &Job, sid: u32, side: &[SideLoad]) -> String {
     let mut out = String::new();
     for s in side {

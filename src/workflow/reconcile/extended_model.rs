@@ -9,13 +9,13 @@ use std::path::Path;
 
 /// File name of the deck with effects.
 pub const DECK: &str = "deck_extended.bdf";
-/// Readings, corrected.
+/// File name of the corrected readings.
 pub const STRAIN: &str = "strain_extended.csv";
 /// File name of S with effects.
 pub const SENSITIVITY: &str = "sensitivity_extended.csv";
-/// Signature of the payload.
+/// File name of the signature of the payload.
 pub const PAYLOAD: &str = "payload_extended.csv";
-/// Recorded loads and payload of each run.
+/// File name of the recorded loads and payload of each run.
 pub const RUNS: &str = "runs_extended.csv";
 
 /// Job with the named effects, and the content of its files. `result.json` contains its path.
@@ -75,11 +75,11 @@ impl Serialize for ExtendedModel {
 pub struct ReadingCorrection {
     /// Gauge.
     pub gauge: String,
-    /// Reading over strain, sign included.
+    /// Reading divided by strain, with sign.
     pub factor: f64,
     /// Reading without strain, microstrain.
     pub offset_microstrain: f64,
-    /// Gauge that this gauge's channel is exchanged with.
+    /// Gauge whose channel is exchanged with the channel of this gauge.
     pub exchanged_with: Option<String>,
     /// Rotation of the gauge, degrees.
     pub angle_deg: f64,

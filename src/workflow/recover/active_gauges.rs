@@ -15,7 +15,7 @@ use crate::series::constant_columns::{ColumnContents, Gives};
 pub(super) struct ActiveGaugeRecord {
     pub record: Record,
     pub sensitivity: Sensitivity,
-    /// Subtracted from readings, strain by gauge.
+    /// Zero that is subtracted from readings, strain by gauge.
     pub zero: Vec<f64>,
 }
 

@@ -34,7 +34,7 @@ pub struct RecoveredLoads {
     /// Rank and condition numbers of S.
     #[serde(flatten)]
     pub conditioning: Conditioning,
-    /// Loads of what was measured.
+    /// Recovered loads of the runs or of the record.
     #[serde(flatten)]
     pub states: States,
     /// Changes of the readings by `[conditioning]`, by step and gauge.
@@ -127,7 +127,7 @@ pub struct RecoveredRuns {
     pub gauges: Vec<GaugeResidual>,
     /// Agreement of each run.
     pub runs: Vec<RunFit>,
-    /// Readings of the runs, zero, reference and known payload taken into account.
+    /// Readings of the runs, with zero, reference and known payload taken into account.
     #[serde(skip)]
     pub readings: Vec<Readings>,
     /// The estimates, job units.
@@ -136,7 +136,7 @@ pub struct RecoveredRuns {
     /// Loads, then combinations.
     #[serde(skip)]
     pub names: Vec<String>,
-    /// Units of both.
+    /// Units of loads and combinations.
     #[serde(skip)]
     pub units: Vec<LoadUnits>,
 }
@@ -167,7 +167,7 @@ impl RecoveredLoad {
     }
 }
 
-/// A gauge over all runs, or over a record.
+/// Residual of a gauge over all runs, or over a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GaugeResidual {
     /// Gauge.
@@ -183,7 +183,7 @@ pub struct GaugeResidual {
 pub struct RunFit {
     /// Run.
     pub run: String,
-    /// Sum of squares over stated errors.
+    /// Sum of squares of the residuals, relative to the stated errors.
     pub chi2: f64,
     /// Degrees of freedom.
     pub degrees_of_freedom: usize,
@@ -202,13 +202,13 @@ pub struct RecoveredRecord {
     pub gauges: Vec<GaugeResidual>,
     /// Number of samples, including samples with gaps.
     pub samples: u64,
-    /// Samples in which some gauge gave nothing.
+    /// Number of samples in which a gauge has no reading.
     pub gaps: u64,
     /// Time from the first to the last sample.
     pub duration_s: f64,
-    /// Steps between samples over the duration.
+    /// Number of steps between samples, divided by the duration.
     pub sample_rate_hz: Option<f64>,
-    /// Every how many samples `loads.csv` has a row.
+    /// `loads.csv` has a row for every n-th sample, with this n.
     pub csv_every: usize,
     /// Frequency content of the loads compared with the first elastic mode, if this mode is known.
     #[serde(flatten)]
@@ -219,7 +219,7 @@ pub struct RecoveredRecord {
     /// Cycles and pseudo-damage by load, if requested or if the record is short.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub damage: Option<Vec<LoadDamage>>,
-    /// S of the gauges that read.
+    /// S of the active gauges.
     #[serde(skip)]
     pub sensitivity: Sensitivity,
     /// Names, units, estimate, clock.

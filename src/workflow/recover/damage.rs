@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::ops::Range;
 
-/// Samples read at a time.
+/// Number of samples that are read at a time.
 pub(super) const PIECE: usize = 16_384;
 
 /// Cycles of a load, report unit.

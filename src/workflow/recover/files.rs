@@ -14,7 +14,7 @@ const MOST_SAMPLES: usize = 200_000;
 /// Samples of a history up to which tables of Nastran are written by default; these contain a pair of numbers per sample as text.
 const MOST_ROWS: usize = 20_000;
 
-/// Files that are made of a history of about so many samples.
+/// Returns the files that are written of a history with about this number of samples.
 ///
 /// # Errors
 /// A file asked for that this build can't write.

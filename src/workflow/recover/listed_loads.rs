@@ -9,7 +9,7 @@ use crate::strain_chain::{LoadUnits, load_units};
 pub struct ListedLoads {
     /// Loads, then combinations.
     pub names: Vec<String>,
-    /// Units of both.
+    /// Units of loads and combinations.
     pub units: Vec<LoadUnits>,
     /// Columns of S and their factors, one list per combination.
     pub sums: Vec<Vec<(usize, f64)>>,

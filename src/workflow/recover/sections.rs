@@ -37,7 +37,7 @@ pub struct SectionLoad {
     pub mean: f64,
     /// Largest sample.
     pub max: f64,
-    /// Pseudo-damage of the section once.
+    /// Pseudo-damage of the section, counted once.
     pub damage: f64,
     /// Lower end of its 95 % interval.
     pub damage_low: f64,

@@ -80,7 +80,7 @@ pub struct RecordHead {
     pub file: String,
     /// Loads, then combinations.
     pub names: Vec<String>,
-    /// Units of both.
+    /// Units of loads and combinations.
     pub units: Vec<LoadUnits>,
     /// The estimate of every sample.
     pub filter: Filter,
@@ -88,7 +88,7 @@ pub struct RecordHead {
     pub first_s: f64,
     /// Time between samples, s.
     pub step_s: f64,
-    /// Every how many samples `loads.csv` has a row.
+    /// `loads.csv` has a row for every n-th sample, with this n.
     pub stride: usize,
     /// Files to make from the history.
     pub files: Vec<LoadFile>,
@@ -131,7 +131,7 @@ impl RecordHead {
     }
 }
 
-/// Some samples on end.
+/// Some consecutive samples.
 #[derive(Clone, Debug)]
 pub struct Block {
     /// Number of the first sample in the record.

@@ -5,7 +5,7 @@ use super::sink::Block;
 /// Largest number of spans, an even number. At this number two neighbours are merged. It is twice the number of points on a wide screen.
 const MOST: usize = 4000;
 
-/// Spans of equally many samples so far.
+/// Spans so far, each with the same number of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spans {
     k: usize,
@@ -17,7 +17,7 @@ pub struct Spans {
 /// Consecutive samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Span {
-    /// Time of the first and the last, s.
+    /// Time of the first and the last sample, s.
     pub time: [f64; 2],
     samples: usize,
     /// By load: smallest, sum, largest, count.

@@ -22,7 +22,7 @@ const CONTRADICTED: f64 = 3.0;
 pub struct ValidationGauge {
     /// Gauge.
     pub name: String,
-    /// Runs or samples that were compared.
+    /// Number of runs or samples that were compared.
     pub n: u64,
     /// Root mean square of reading minus prediction. `None` if nothing was compared.
     pub rms_microstrain: Option<f64>,

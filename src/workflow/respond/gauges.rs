@@ -35,10 +35,10 @@ pub struct GaugeCheck {
     pub correlation: Option<f64>,
 }
 
-/// All gauges.
+/// Comparison of all gauges.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Check {
-    /// A row a gauge with readings.
+    /// A row for each gauge with readings.
     pub rows: Vec<GaugeCheck>,
     /// Gauges of S.
     pub gauges: Vec<String>,

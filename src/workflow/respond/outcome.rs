@@ -13,7 +13,7 @@ use serde::Serialize;
 /// Stress from loads.
 #[derive(Serialize)]
 pub struct StressResponse {
-    /// The elements asked for, or the hottest, the hottest first.
+    /// Requested elements, or the elements with the highest stress, the highest first.
     pub elements: Vec<Element>,
     /// Elements with a higher stress than all elements that share a grid with them.
     pub hot_spots: Vec<Element>,
@@ -24,7 +24,7 @@ pub struct StressResponse {
     pub states: usize,
     /// Unit of the stresses.
     pub stress_unit: &'static str,
-    /// Predicted against measured strain at the gauges.
+    /// Comparison of predicted with measured strain at the gauges.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gauges: Vec<GaugeCheck>,
     /// All elements.
@@ -69,7 +69,7 @@ pub struct Field {
     pub rows: Vec<ResponseRow>,
     /// The largest von Mises stress of each row.
     pub peaks: Vec<Peak>,
-    /// Rows asked for, or the hottest.
+    /// Requested rows, or the rows with the highest stress.
     pub order: Vec<usize>,
     /// Rows with a higher stress than all rows of elements that share a grid with them, the highest first.
     pub spots: Vec<usize>,
@@ -103,7 +103,7 @@ pub struct Element {
     pub surface: String,
     /// Largest von Mises stress over the states.
     pub max_von_mises: f64,
-    /// The state.
+    /// State with this stress.
     pub at: Option<String>,
     /// Standard deviation of the largest von Mises stress, from the uncertainty of the loads.
     pub sigma: f64,

@@ -25,7 +25,7 @@ pub(super) struct LayoutOf {
     pub name: String,
     /// Number of gauges.
     pub gauges: usize,
-    /// Gauges that `members` index.
+    /// Pool of gauges, to which the indices in `members` refer.
     pub pool: Pool,
     /// One layout, or many random ones.
     pub members: Vec<Vec<usize>>,

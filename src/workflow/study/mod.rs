@@ -33,7 +33,7 @@ struct Line {
 /// Recovery repeated under stated errors.
 #[derive(Serialize)]
 pub struct LayoutStudy {
-    /// A row a layout, number of gauges and error.
+    /// A row for each layout, number of gauges and error.
     pub study: Vec<StudiedLayout>,
     /// Gauges of each layout. Random layouts have no list.
     pub layouts: Vec<LayoutGauges>,
@@ -88,7 +88,7 @@ pub struct StudiedLayout {
     pub names: Vec<String>,
     /// Kind and size of the error.
     pub error: String,
-    /// S in strain per job unit.
+    /// Condition number of S in strain per job unit.
     pub condition_number: Option<f64>,
     /// Mean over the wanted loads of `relative_rms`.
     pub mean_relative_rms: Option<f64>,

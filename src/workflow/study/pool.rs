@@ -42,7 +42,7 @@ impl Pool {
 
 /// Gauges, loads and model for the layouts.
 pub(super) struct StudyInputs {
-    /// Columns.
+    /// Loads: the columns of S.
     pub loads: Vec<Load>,
     /// The job's gauges; empty without.
     pub pool: Pool,

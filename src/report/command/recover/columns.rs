@@ -21,7 +21,7 @@ pub(super) fn columns_with_units(
     columns(key[0], names).into_iter().zip(units).collect()
 }
 
-/// Name, residual in microstrain, and leverage.
+/// Returns name, residual in microstrain, and leverage of each gauge.
 pub(super) fn by_gauge(gauges: &[GaugeResidual]) -> Vec<(String, f64, f64)> {
     let row = |g: &GaugeResidual| (g.name.clone(), g.residual_rms_microstrain, g.leverage);
     gauges.iter().map(row).collect()

@@ -19,7 +19,7 @@ pub struct RecordFolder {
 }
 
 impl RecordFolder {
-    /// Into this folder.
+    /// Creates the writer for this folder.
     pub fn new(folder: &Path) -> Self {
         Self {
             tables: None,

@@ -46,7 +46,7 @@ pub struct Layout {
     pub encoding: Encoding,
     /// Delimiter of fields.
     pub delimiter: u8,
-    /// The mark between whole and fraction.
+    /// The mark between the whole part and the fraction of a number.
     pub mark: DecimalMark,
     /// Name and unit of each field.
     pub columns: Vec<Column>,
@@ -54,7 +54,7 @@ pub struct Layout {
     pub time: Option<(usize, TimeKind)>,
     /// Whether the unit of time is stated.
     pub unit_stated: bool,
-    /// Half of the last digit that times are written with, s.
+    /// Half of the last digit of the written times, s.
     pub rounding_s: f64,
     /// First byte of the first row.
     pub start: usize,

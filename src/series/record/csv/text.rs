@@ -114,7 +114,7 @@ impl Encoding {
         }
     }
 
-    /// Ends of lines.
+    /// Returns the ends of lines.
     pub fn lines(self, bytes: &[u8]) -> usize {
         match self {
             Self::Bytes => memchr::memchr_iter(b'\n', bytes).count(),

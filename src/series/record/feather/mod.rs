@@ -41,7 +41,7 @@ pub struct Feather {
 }
 
 impl Feather {
-    /// Returns the table in a file. Columns of numbers alone are channels; a null is NaN. [`TypedChannels::from_columns`] determines the column of
+    /// Returns the table in a file. Only columns of numbers are channels. A null is NaN. [`TypedChannels::from_columns`] determines the column of
     /// time.
     ///
     /// # Errors

@@ -13,7 +13,7 @@ use crate::host::words::format_number;
 use crate::units::percent;
 use serde::Serialize;
 
-/// Recovered against recorded loads.
+/// Comparison of recovered with recorded loads.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Comparison {
     /// Result for each load.
@@ -37,14 +37,14 @@ pub struct ComparisonShift {
     pub correlation: Option<f64>,
 }
 
-/// A load, recovered less recorded, report unit.
+/// Comparison of a load, recovered minus recorded, report unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LoadComparison {
     /// Load or combination.
     pub load: String,
     /// Report unit.
     pub unit: String,
-    /// Runs or samples that are compared.
+    /// Number of runs or samples that are compared.
     pub n: u64,
     /// Mean difference.
     pub bias: f64,
