@@ -149,7 +149,7 @@ pub(super) fn recover_left_out(
     })
 }
 
-/// A run recovered by S, its readings less the common zero.
+/// A run recovered by S, its readings minus the common zero.
 fn recover_run(task: &Task, run: &KnownRun, s: &Sensitivity, zero: &[f64]) -> RunEstimate {
     let readings = Readings {
         run: run.run.clone(),

@@ -23,7 +23,7 @@ const STEP: f64 = 0.5;
 /// row at this offset, strain per job unit; a gauge for which it is `None` keeps its nominal position.
 ///
 /// # Errors
-/// As [`calibrate`].
+/// The errors of [`calibrate`].
 pub fn calibrate_installed_gauges(
     task: &Task,
     tolerance: GlueTolerance,

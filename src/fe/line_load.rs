@@ -99,7 +99,7 @@ impl<'a> BeamLoads<'a> {
     }
 }
 
-/// Returns the acceleration of coupled mass in a case: GRAV, ACCEL, ACCEL1, RFORCE, less the acceleration of inertia relief.
+/// Returns the acceleration of coupled mass in a case: GRAV, ACCEL, ACCEL1, RFORCE, minus the acceleration of inertia relief.
 /// `None` if mass is lumped, or nothing accelerates it.
 fn acceleration(
     model: &Model,

@@ -231,8 +231,8 @@ impl<'a> Base<'a> {
         all.map_err(|r| FeError::Refused(vec![r]))
     }
 
-    /// Returns the displacements at the unknowns under `forces`, a column a case. `None` if they do not converge in [`MOST_STEPS`], or the variant
-    /// has a motion without support.
+    /// Returns the displacements at the unknowns under `forces`, a column for each case. `None` if they do not converge in [`MOST_STEPS`], or the
+    /// variant has a motion without support.
     fn iterate_to_convergence(
         &self,
         change: &[ElementMatrix],

@@ -10,7 +10,7 @@ use crate::model::{BeamIx, ShellIx, Vec3};
 pub enum Spot {
     /// A shell's surface, at its centre or a corner.
     Shell {
-        /// Which.
+        /// Shell of the place.
         shell: ShellIx,
         /// Side.
         surface: Surface,
@@ -19,7 +19,7 @@ pub enum Spot {
     },
     /// A recovery point of a bar or beam.
     Beam {
-        /// Which.
+        /// Bar or beam of the place.
         beam: BeamIx,
         /// 0 to 3: C D E F.
         point: usize,
@@ -28,7 +28,7 @@ pub enum Spot {
     },
     /// The neutral axis of a bar or beam, where bending strains nothing.
     BeamAxis {
-        /// Which.
+        /// Bar or beam of the place.
         beam: BeamIx,
         /// x/xb.
         station: f64,

@@ -41,7 +41,7 @@ fn find_off_axis_part(spec: &GaugeSpec, axis: &Vec3) -> Option<&'static str> {
 /// Builds the gauge at a recovery point.
 ///
 /// A bending bridge pairs the point with the point across the neutral axis, whose bending strain has the opposite sign. It reads twice (half
-/// bridge) or four times (full bridge) the strain of the point less the strain of the neutral axis.
+/// bridge) or four times (full bridge) the strain of the point minus the strain of the neutral axis.
 ///
 /// # Errors
 /// A beam that is not there; a gauge that reads across its axis; a grid longer than the bars along it.

@@ -254,7 +254,7 @@ impl Output {
     /// Renames every file to its name and keeps earlier files of the command: for a command that writes its folder in several calls.
     ///
     /// # Errors
-    /// As [`Output::commit`].
+    /// The errors of [`Output::commit`].
     pub fn commit_with_earlier_files(mut self, command: &str) -> Result<(), Faults> {
         let _held = hold(&self.folder);
         self.check_spared(&[])?;

@@ -159,7 +159,7 @@ fn fill_from_file(file: &File, mut from: u64, mut out: &mut [u8]) -> std::io::Re
 /// Opens a file. Its bytes are in memory unless its format is [read in parts](is_read_in_parts).
 ///
 /// # Errors
-/// As [`load`].
+/// The errors of [`load`].
 pub fn open(path: &Path) -> std::io::Result<OpenedFile> {
     // The check precedes the opening, because opening a pipe waits for its writer.
     check_kind(&std::fs::metadata(path)?)?;

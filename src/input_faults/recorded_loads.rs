@@ -114,7 +114,7 @@ impl RecordedRuns<'_> {
         n as f64 * self.noise.powi(2)
     }
 
-    /// Returns gauge, run and reading less the model of each reading, with a factor for each load.
+    /// Returns gauge, run and reading minus the model of each reading, with a factor for each load.
     fn differences(&self, factor: &[f64]) -> Vec<(usize, usize, f64)> {
         let readings = self.gauges().flat_map(|g| self.runs().map(move |r| (g, r)));
         let each = readings.filter_map(|(g, r)| Some((g, r, self.reading_at(g, r)?)));

@@ -1,4 +1,4 @@
-//! The gauge file: a row a gauge, columns as the keys of `[[gauge]]`.
+//! The gauge file. It has a row for each gauge, and the keys of `[[gauge]]` as columns.
 //!
 //! `direction` is `dir_x`, `dir_y`, `dir_z`; `position` is `x`, `y`, `z` in job units, or `x_m`, `y_m`, `z_m` in metres. `super::gauge_table`
 //! finds the columns: a finding names those that nothing reads, and one that looks like a column that the table lacks is a fault.

@@ -40,7 +40,7 @@ impl MeasuredStrain {
     }
 }
 
-/// Whether a strain file is a record, a row a sample, rather than runs.
+/// Returns whether a strain file is a record, with a row for each sample, and not a table of runs.
 pub(super) fn is_record(bytes: &FileBytes) -> bool {
     is_format(bytes) || Layout::detect(bytes).is_ok_and(|l| l.is_record())
 }

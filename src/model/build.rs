@@ -37,7 +37,7 @@ impl Model {
         (model, faults)
     }
 
-    /// Builds the model of a deck and lists every fault. PARAMs of case control override those of bulk data, and properties keep their names.
+    /// Builds the model of a deck and lists every fault. PARAMs of case control override PARAMs of bulk data, and properties keep their names.
     ///
     /// A model with a fault of weight [`super::FaultWeight::Error`] can be shown, but not solved.
     ///

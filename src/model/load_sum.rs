@@ -1,4 +1,4 @@
-//! LOAD combinations written out: every one a sum of sets of primitive loads.
+//! Expanded LOAD combinations: each is a sum of sets of primitive loads.
 
 use super::build::Builder;
 use super::fault::FaultKind;

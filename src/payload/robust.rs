@@ -82,9 +82,9 @@ pub(super) const SIGN_SIGMAS: f64 = 3.0;
 /// Model, gauge i, run j: `p_ij ~ N(F_j, (tau F_j)^2 + (m_i s_ij)^2)`. If the noise `s_ij` is stated, `m_i` is 1 for a good gauge and log-uniform
 /// above 1 for a bad one. If it is not, `m_i s_ij` is one unknown level for each gauge, log-uniform over six decades. The level belongs to the gauge,
 /// so a gauge that disagrees in one run loses its weight in all runs. `F_j` is uniform. The joint mode is found by coordinate ascent from every
-/// gauge's own estimates. The search ends at `largest` above, and at zero less the noise of an empty structure (`doubt`). The interval of each run is
-/// from its posterior around this mode, with the other runs at their modes. It is not cut at zero: `cut_at_zero` gives the interval of a payload of
-/// zero or more.
+/// gauge's own estimates. The search ends at `largest` above, and at zero minus the noise of an empty structure (`doubt`). The interval of each run
+/// is from its posterior around this mode, with the other runs at their modes. It is not cut at zero: `cut_at_zero` gives the interval of a payload
+/// of zero or more.
 ///
 /// Units: the units of the estimates. Returns `None` if a run has no finite, possible estimate. Leave out runs whose gauges give a payload
 /// significantly below zero, or no payload: they would reduce the weight of every gauge.

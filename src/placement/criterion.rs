@@ -3,7 +3,7 @@
 //! | criterion | value | slope `G` |
 //! |---|---|---|
 //! | D | `ln det M` | `M^-1` |
-//! | Ds | `ln det M - ln det M_nn` | `M^-1` less the inverse of the nuisance block |
+//! | Ds | `ln det M - ln det M_nn` | `M^-1` minus the inverse of the nuisance block |
 //! | linear | `-k ln tr(L M^-1)` | `k M^-1 L M^-1 / tr(L M^-1)` |
 //!
 //! For all three criteria, a layout `S` with information `M_S = P + sum a a'` satisfies `value(M_S) <= value(M) + q ln((tr(G P) + sum a' G a) / q)`,

@@ -1,6 +1,6 @@
 //! Variances of all rows of a list under an inverse, and their cross variances with a layout, brought up to date gauge by gauge.
 //!
-//! Rows lie in blocks of [`WIDE`], a column after the other, so that products of all rows with a vector run in vector registers.
+//! Rows are in blocks of [`WIDE`], one column after the other, so that products of all rows with a vector run in vector registers.
 
 use super::relaxation_solution::Active;
 use crate::linalg::spd;

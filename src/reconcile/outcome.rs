@@ -225,7 +225,7 @@ pub struct Outcome {
     pub replaced: Vec<NamedEffect>,
     /// Alternative explanations, nearest first.
     pub rivals: Vec<AlternativeExplanation>,
-    /// Log evidence of the identified set (or best attempt) less the log evidence without effects.
+    /// Log evidence of the identified set (or best attempt) minus the log evidence without effects.
     pub evidence: f64,
     /// Number of resampled run sets, out of 100, whose best set contains every effect of the identified set (or best attempt).
     pub wins: usize,

@@ -35,7 +35,7 @@ pub struct DeadGaugeSpan {
     pub within: [usize; 2],
 }
 
-/// Returns the dead parts of gauges from samples spread over a record: number of the sample, strain less zero by gauge (NaN for no reading).
+/// Returns the dead parts of gauges from samples spread over a record: number of the sample, strain minus zero by gauge (NaN for no reading).
 pub fn check(
     s: &Sensitivity,
     samples: &[(usize, &[f64])],

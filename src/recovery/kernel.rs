@@ -66,7 +66,7 @@ impl pulp::WithSimd for Samples<'_> {
 }
 
 impl Samples<'_> {
-    /// Converts the readings of a block to strain less zero, contiguous by gauge; NaN for a value that is too large to be strain.
+    /// Converts the readings of a block to strain minus zero, contiguous by gauge; NaN for a value that is too large to be strain.
     #[inline(always)]
     fn by_gauge(&self, block: &[f64], y: &mut [f64]) {
         /// Samples taken together.

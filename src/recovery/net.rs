@@ -1,9 +1,9 @@
-//! Net readings: a run's mean less the unloaded run's mean, with the noise of both, and whether a gauge gives a signal.
+//! Net readings: a run's mean minus the unloaded run's mean, with the noise of both, and whether a gauge gives a signal.
 
 /// A net reading, strain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Net {
-    /// Mean of the run less mean of the zero, strain.
+    /// Mean of the run minus mean of the zero, strain.
     pub value: f64,
     /// Standard deviation of the value, strain.
     pub sigma: f64,

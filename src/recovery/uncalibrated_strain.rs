@@ -141,7 +141,7 @@ fn estimate_with_least_excess(with: &dyn Fn(f64) -> (RunEstimate, f64)) -> (RunE
     with(high)
 }
 
-/// The three gauges with the largest residual over its sd, with reading less prediction.
+/// The three gauges with the largest residual over its sd, with reading minus prediction.
 fn list_worst_gauges(gauges: &[String], run: &RunEstimate) -> String {
     let mut order: Vec<(f64, usize)> = (0..gauges.len())
         .filter(|&g| run.residual[g].is_finite() && run.sd[g] > 0.0)

@@ -11,7 +11,7 @@ use crate::sensitivity::LoadCaseOf;
 pub enum Place {
     /// Centre of a shell's surface.
     Shell {
-        /// Which.
+        /// Shell of the place.
         shell: ShellIx,
         /// Side.
         surface: Surface,

@@ -133,7 +133,7 @@ impl SampledSignals<'_> {
         self.signals.first().map_or(0, Vec::len)
     }
 
-    /// Means over bins of `width_s`, less the mean of all; zero in bins without samples.
+    /// Means over bins of `width_s`, minus the mean of all; zero in bins without samples.
     fn bins(&self, s: usize, width_s: f64, n: usize) -> Vec<f64> {
         let (mut sums, mut counts) = (vec![0.0; n], vec![0_u32; n]);
         let per_sample = 1.0 / (self.rate_hz * width_s);

@@ -64,7 +64,7 @@ fn live_acceleration(seed: u64) -> Vec<f64> {
         .collect()
 }
 
-/// x less its least-squares line.
+/// x minus its least-squares line.
 fn without_line(x: &[f64]) -> Vec<f64> {
     let (offset, slope) = line(x);
     let flat = |(i, v): (usize, &f64)| v - offset - slope * i as f64;

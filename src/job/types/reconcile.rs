@@ -57,7 +57,7 @@ pub struct DescribedEffect {
 /// Change of the model by a described effect of size one.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EffectSource {
-    /// A table: the change of S, a row a gauge, a column a load.
+    /// A table of the change of S, with a row for each gauge and a column for each load.
     Signature(NamedFile),
     /// The thickness of a shell property times a factor.
     Thickness {

@@ -7,7 +7,7 @@ use faer::sparse::linalg::amd;
 use feral_metis::{CscPattern, MetisOptions, metis_order_full};
 use serde::Serialize;
 
-/// Which ordering was kept.
+/// Ordering that was kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum OrderingMethod {

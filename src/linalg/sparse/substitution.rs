@@ -8,7 +8,7 @@ use super::panel::Panel;
 use super::symbolic::Symbolic;
 use rayon::prelude::*;
 
-/// Which triangle is solved with.
+/// Triangle of the substitution.
 #[derive(Clone, Copy, PartialEq)]
 enum Way {
     Forward,

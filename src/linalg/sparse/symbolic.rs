@@ -52,7 +52,7 @@ impl Symbolic {
         })
     }
 
-    /// Which ordering was kept.
+    /// Returns the ordering that was kept.
     pub fn method(&self) -> OrderingMethod {
         self.method
     }

@@ -18,7 +18,7 @@ pub struct RigidElement {
 pub enum RigidKind {
     /// RBE2, RBAR and RBE1: dependent dofs follow the rigid motion given by the independent ones.
     Body {
-        /// Which of the three.
+        /// Card of the element.
         card: &'static str,
         /// Independent dofs, six in all.
         independent: Vec<(GridIx, Dofs)>,

@@ -77,7 +77,7 @@ pub enum Load {
     Moment(GridIx, Vec3),
     /// Pressure on shells along their normal (corner values).
     ShellPressure {
-        /// Which shells.
+        /// Shells with this load.
         shells: Vec<ShellIx>,
         /// Pressure at the corners.
         pressure: [f64; 4],
@@ -111,7 +111,7 @@ pub enum Load {
     },
     /// Force or moment along a CBAR or CBEAM (PLOAD1).
     Line {
-        /// Which one.
+        /// Element with this load.
         beam: BeamIx,
         /// Share of the length, offsets included, where it begins and ends; equal: concentrated there.
         span: [f64; 2],

@@ -105,7 +105,7 @@ fn reserved_gauges_leave_the_largest_determinant_and_know_how_well_they_are_pred
         let got = reserve(&rows, &[0.0; 9], 3, 2).unwrap();
         let out: Vec<usize> = got.iter().map(|g| g.0).collect();
         assert!(value(&out) >= best - 1e-9);
-        // The variance of reading less prediction: 1 + a' (A_rest' A_rest)^-1 a, here by a solve.
+        // The variance of reading minus prediction: 1 + a' (A_rest' A_rest)^-1 a, here by a solve.
         let a = crate::linalg::Matrix::from_fn(7, 3, |r, c| rest(&out)[r][c]);
         for (i, sd) in &got {
             let row = crate::linalg::Vector::from_column_slice(&rows[*i]);

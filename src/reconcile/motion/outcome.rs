@@ -51,7 +51,7 @@ pub struct MotionOutcome {
     pub corrections: Vec<Adjustment>,
     /// Other explanations, nearest first.
     pub rivals: Vec<AlternativeExplanation>,
-    /// Log evidence of the best set less the log evidence without effects.
+    /// Log evidence of the best set minus the log evidence without effects.
     pub evidence: f64,
     /// Log evidence needed to name an effect.
     pub decisive: f64,

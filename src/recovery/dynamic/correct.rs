@@ -195,7 +195,7 @@ impl Squares {
         told
     }
 
-    /// Returns the mean squares of the motion errors of the loads, and of the loads less their means.
+    /// Returns the mean squares of the motion errors of the loads, and of the loads minus their means.
     fn means(&self) -> (Vec<f64>, Vec<f64>) {
         let load = self.load.iter().zip(&self.sum);
         let load = load.map(|(q, s)| (q / self.told - (s / self.told).powi(2)).max(0.0));

@@ -52,7 +52,7 @@ pub struct EstimatedModes {
     pub dynamics: Dynamics,
     /// Deviation of frequency and of damping by mode; `None` for a parameter that was not estimated.
     pub deviations: Vec<[Option<Deviation>; 2]>,
-    /// Mean square of the residual that the modes do not explain, over the mean square without any mode, both less noise.
+    /// Mean square of the residual that the modes do not explain, over the mean square without any mode, both minus noise.
     pub unexplained: f64,
     /// Mean square of the residual with the modes, over the mean square of noise.
     pub over_noise: f64,

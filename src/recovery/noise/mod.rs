@@ -244,7 +244,7 @@ impl Parts {
         Some(Self { used, z, t, with })
     }
 
-    /// Returns the residuals less their parts along the columns [`Self::with`], `runs x m`, and the number of these columns.
+    /// Returns the residuals minus their parts along the columns [`Self::with`], `runs x m`, and the number of these columns.
     fn of_noise(&self) -> Option<(Matrix, usize)> {
         let basis = dense::svd(&dense::unit_columns(&self.with))?;
         let kept = basis.s.iter().filter(|v| **v > dense::RANK_TOLERANCE);

@@ -8,7 +8,7 @@ use crate::series::{binary, rpc};
 /// Samples a piece.
 const PIECE: usize = 16_384;
 
-/// Which of both it is.
+/// Format of the record.
 enum Header {
     Binary(binary::Header),
     Rpc(rpc::Header),

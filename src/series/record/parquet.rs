@@ -1,4 +1,4 @@
-//! Parquet: a column a channel, a row a sample; read by parts of row groups, column by column, a page at a time.
+//! Parquet with a column for each channel and a row for each sample. It is read by parts of row groups, column by column, page by page.
 
 use super::arrow::notes;
 use super::column::{Column, is_time};

@@ -10,7 +10,7 @@ pub(super) type Strips = Vec<Strip>;
 
 /// Rows being decoded, or decoded.
 pub(super) struct Rows {
-    /// Which rows these are.
+    /// Number of the rows.
     unit: usize,
     picks: Vec<Pick>,
     state: Mutex<State>,

@@ -36,7 +36,7 @@ pub struct Reconciliation {
     pub rivals: Vec<AlternativeSummary>,
     /// Difference between model and measurement on data that were not fitted.
     pub gap: GapFound,
-    /// Log evidence of the named set (or best attempt) less the log evidence of no effect.
+    /// Log evidence of the named set (or best attempt) minus the log evidence of no effect.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub evidence: Option<f64>,
     /// Squared residual over the allowed variance, per reading.
@@ -136,7 +136,7 @@ pub struct AlternativeSummary {
     /// Places, joined by ` + `; `None` for causes.
     #[serde(rename = "where")]
     pub place: Option<String>,
-    /// Log evidence of the named set less the log evidence of this explanation.
+    /// Log evidence of the named set minus the log evidence of this explanation.
     pub evidence_difference: f64,
     /// Gap with this explanation.
     pub gap_after: f64,

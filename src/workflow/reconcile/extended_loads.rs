@@ -66,7 +66,7 @@ pub(super) fn side_loads(job: &Job, effects: &[NamedEffect]) -> Vec<SideLoad> {
     out
 }
 
-/// Returns the sizes of side loads as text, one a component.
+/// Returns the sizes of side loads as text, one for each component.
 pub(super) fn sizes_by_component(sizes: &[f64]) -> String {
     let word = |(c, size): (&Component, &f64)| {
         let unit = match c.is_force() {

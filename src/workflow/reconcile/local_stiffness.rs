@@ -219,7 +219,7 @@ fn keep_distinct_places(all: Vec<TrialRegion>, n: usize) -> Vec<TrialRegion> {
     out
 }
 
-/// Readings less prediction over the runs that are fitted, each over its own standard deviation.
+/// Readings minus prediction over the runs that are fitted, each over its own standard deviation.
 struct Residual {
     /// Run, gauge, residual, weight.
     entries: Vec<(usize, usize, f64, f64)>,

@@ -114,7 +114,7 @@ fn quantisation_finding(head: &RecordHead, sums: &Sums) -> Finding {
     )
 }
 
-/// Which files were not written because the record is long.
+/// Returns the finding on files that were not written because the record is long.
 fn left_out(job: &Job, head: &RecordHead, sums: &Sums) -> Option<Finding> {
     let left: Vec<&str> = LoadFile::ALL
         .iter()

@@ -109,7 +109,7 @@ impl<'a> PredictedGauge<'a> {
         self.s.iter().zip(f).map(|(s, f)| s * f).sum()
     }
 
-    /// Expected variance of reading less prediction, strain^2.
+    /// Expected variance of reading minus prediction, strain^2.
     fn variance(&self, gain: &Gain, f: &[f64], noise_factor: f64) -> f64 {
         let own = self.uncertainty.as_ref();
         let of_row: f64 = own.map_or(0.0, |u| u.strain_covariance(1, f).iter().sum());

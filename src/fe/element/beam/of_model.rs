@@ -135,7 +135,7 @@ fn form_stiffness_and_forces(
 /// the first component.
 ///
 /// # Errors
-/// As `beam_stiffness`.
+/// The errors of `beam_stiffness`.
 pub(crate) fn beam_end_forces(
     model: &Model,
     i: usize,
@@ -254,7 +254,7 @@ pub(crate) struct BeamForces {
 /// Returns the forces on end B of beam `i` from displacements (basic). They include the forces that balance the loads between the ends.
 ///
 /// # Errors
-/// As `beam_stiffness`.
+/// The errors of `beam_stiffness`.
 pub(crate) fn beam_forces(
     model: &Model,
     i: usize,
@@ -300,7 +300,7 @@ pub(crate) fn strain_at(
 /// Returns modulus and length of beam `i`.
 ///
 /// # Errors
-/// As `beam_stiffness`.
+/// The errors of `beam_stiffness`.
 pub(crate) fn modulus_and_length(model: &Model, i: usize) -> Result<(f64, f64), Refusal> {
     let (local, _) = build_local_beam(model, &model.beams[i])?;
     Ok((local.e, local.length))

@@ -31,7 +31,7 @@ pub(crate) struct ManyShell {
 }
 
 impl ManyRows {
-    /// Returns the mechanical strain at both surfaces, less the thermal strain.
+    /// Returns the mechanical strain at both surfaces, minus the thermal strain.
     pub(crate) fn surfaces(&self, z: [f64; 2], u: &[f64], free: &[[f64; 3]; 2]) -> [[f64; 3]; 2] {
         let dot = |rows: &[Vec<f64>; 3], constant: [f64; 3]| -> [f64; 3] {
             std::array::from_fn(|c| {

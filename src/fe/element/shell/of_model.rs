@@ -137,7 +137,7 @@ pub(crate) fn shell_matrices(
 /// Returns the stiffness of shell `i`.
 ///
 /// # Errors
-/// As `shell_matrices`.
+/// The errors of `shell_matrices`.
 pub(crate) fn shell_stiffness(
     prepared: &PreparedModel<'_>,
     i: usize,
@@ -172,7 +172,7 @@ pub(crate) fn shell_heat(model: &Model, i: usize, t: &Temperatures) -> Option<He
 /// Returns the forces of the thermal strain of shell `i`, six a grid, basic frame.
 ///
 /// # Errors
-/// As `shell_matrices`.
+/// The errors of `shell_matrices`.
 pub(crate) fn shell_thermal_force(
     prepared: &PreparedModel<'_>,
     i: usize,
@@ -246,7 +246,7 @@ pub(crate) fn shell_mass(model: &Model, i: usize) -> [[f64; 4]; 4] {
     })
 }
 
-/// Returns the mechanical strain at both surfaces from rows and displacements, less the thermal strain: bottom (Z1), top (Z2).
+/// Returns the mechanical strain at both surfaces from rows and displacements, minus the thermal strain: bottom (Z1), top (Z2).
 pub(crate) fn surfaces<const M: usize>(
     rows: &StrainRows<M>,
     z: [f64; 2],

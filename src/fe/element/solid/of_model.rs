@@ -151,7 +151,7 @@ pub(crate) fn solid_thermal_force(
 /// temperature rise is by grid of the solid (empty: none).
 ///
 /// # Errors
-/// As `solid_stiffness`.
+/// The errors of `solid_stiffness`.
 pub(crate) fn solid_strain(
     model: &Model,
     i: usize,

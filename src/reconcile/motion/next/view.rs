@@ -107,7 +107,7 @@ impl View {
 
 /// Forms the equations of motion of a further drive.
 ///
-/// The motion is the present one with the same filter at every channel, less the channel errors that explain its residual under one explanation
+/// The motion is the present one with the same filter at every channel, minus the channel errors that explain its residual under one explanation
 /// ([`super::alternative_misfit`]). It obeys that explanation to first order in the difference of two explanations. The residual of the other
 /// explanation is the difference of the forces of both at that motion.
 fn form_drive_equations(

@@ -33,7 +33,7 @@ pub(super) fn console(outcome: &Outcome<RecoveredLoads>) -> Console {
     }
 }
 
-/// A row a run, a column a load.
+/// Returns a table with a row for each run and a column for each load.
 fn by_run(runs: &RecoveredRuns, spans: &[LoadSpan]) -> ConsoleTable {
     let mut units: Vec<&str> = spans.iter().map(|s| s.unit.as_str()).collect();
     units.dedup();

@@ -66,7 +66,7 @@ impl Csv {
         })
     }
 
-    /// Which field goes where: for each field of a row, the places among the picks.
+    /// Destinations of the fields: for each field of a row, the indices among the picks.
     fn places(&self, picks: &[Pick]) -> Vec<Vec<usize>> {
         let mut places = vec![Vec::new(); self.layout.columns.len()];
         for (j, pick) in picks.iter().enumerate() {

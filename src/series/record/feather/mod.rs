@@ -1,4 +1,5 @@
-//! Feather: a column a channel, a row a sample, in batches of rows; the file format of Arrow, plain or compressed by LZ4 or Zstandard.
+//! Feather with a column for each channel and a row for each sample, in batches of rows. It is the file format of Arrow, plain or compressed by LZ4
+//! or Zstandard.
 
 mod batch;
 #[cfg(test)]
