@@ -63,7 +63,7 @@ pub struct ChannelCorrection {
     pub line_hz: Option<f64>,
 }
 
-/// `mass_change` of `[vehicle]`, by the name of the body; on a vehicle it is a [`crate::vehicle::layout::MassStep`].
+/// Key `mass_change` of `[vehicle]`, which names the body. [`crate::vehicle::layout::MassStep`] is the corresponding change of a vehicle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MassChange {
     /// Body, such as `b`.

@@ -60,7 +60,7 @@ pub(super) fn scales(
         .collect();
     (0..k)
         .map(|l| {
-            // Samples that do not determine the load add no damage of it.
+            // Samples that do not determine the load add no damage of this load.
             let told = others.iter().filter(|o| o.0.is_seen(l));
             let n = told.clone().map(|o| o.1).sum::<f64>() + whole as f64;
             let entry = |i: usize| {
