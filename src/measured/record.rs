@@ -331,7 +331,7 @@ impl Record {
         self.columns.len()
     }
 
-    /// Passes the readings of a piece on, strain, block by block.
+    /// Passes the readings of a piece, as strain, to `sink`, block by block.
     ///
     /// # Errors
     /// A piece that can't be read.

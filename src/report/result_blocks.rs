@@ -373,7 +373,7 @@ fn beams(model: &Model, case: &CaseResult, is_beam: bool) -> Rows {
                     .extend([*xi, s[0], s[1], s[2], s[3], largest, smallest, 0.0, 0.0]);
             }
         } else if let (Some((_, a)), Some((_, b))) = (stations.first(), stations.last()) {
-            // A row holds the axial strain once, for end A; readers add it to the bending strain of both ends.
+            // A row contains the axial strain once, for end A; readers add this strain to the bending strain of both ends.
             let axial = axial.first().copied().unwrap_or(f64::NAN);
             let (bend_a, bend_b) = (a.map(|s| s - axial), b.map(|s| s - axial));
             let ((amax, amin), (bmax, bmin)) = (extremes(a), extremes(b));

@@ -87,7 +87,7 @@ fn key_of(block: &Block) -> Option<Key> {
         Quantity::Displacement => block.table.clone(),
         _ => return None,
     };
-    // One number for element types of the same card with and without corners.
+    // Element types of the same card, with and without corners, get the same number.
     let element = match block.element.map_or(0, |e| e.0) {
         144 => 33,
         228 => 82,

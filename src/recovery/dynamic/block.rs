@@ -22,8 +22,9 @@ pub(super) struct Block {
     /// Both quarters of the time history of each error, by error and by gauge that reads, at these samples, strain. The mean of their squares is the
     /// size of the error.
     pub errors: Vec<Vec<[Vec<f64>; 2]>>,
-    /// For each load at these samples: the load, and the error of its quasi-static recovery.
+    /// Error of the quasi-static recovery of each load, at the samples with computed errors.
     pub motion: Vec<Vec<f64>>,
+    /// Each load, at the same samples.
     pub loads: Vec<Vec<f64>>,
 }
 
@@ -160,7 +161,7 @@ impl Kernel {
         out
     }
 
-    /// By load: what loads recovered as if at rest are off by.
+    /// Returns the error of quasi-static recovery, for each load.
     fn motion_of(&self, loads: &[Spectrum]) -> Vec<Spectrum> {
         let (k, n) = self.at_rest.shape();
         let of_load = |l: usize| -> Spectrum {
@@ -177,7 +178,7 @@ impl Kernel {
         (0..k).map(of_load).collect()
     }
 
-    /// By load: the static gain on readings at rest.
+    /// Returns the loads that the static gain computes from quasi-static readings.
     fn at_rest_of(&self, at_rest: &[Spectrum]) -> Vec<Spectrum> {
         let of_load = |l: usize| -> Spectrum {
             let row = self.at_rest.row(l);

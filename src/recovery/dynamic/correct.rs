@@ -40,9 +40,9 @@ pub struct AtRest {
 
 /// Stretches of a record with the same active gauges.
 pub(super) struct Stretches {
-    /// Gauges that read, all of them first, then by how long they do.
+    /// Sets of active gauges. The set of all gauges is the first, the others are sorted by the duration of their samples.
     sets: Vec<Vec<usize>>,
-    /// Set and samples; those without any reading are left out.
+    /// Index of the set, and samples. Samples without any reading are left out.
     list: Vec<(usize, Range<usize>)>,
 }
 

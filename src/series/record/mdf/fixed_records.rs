@@ -193,7 +193,7 @@ impl Group {
             return Cow::Borrowed(records);
         }
         let shifted = records.get(self.skip..).unwrap_or_default();
-        // Pad the last record to its full size, so that the length is a multiple of it.
+        // Pad the last record to its full size, so that the length is a multiple of this size.
         let mut out = shifted.to_vec();
         out.resize(records.len(), 0);
         Cow::Owned(out)
