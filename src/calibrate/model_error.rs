@@ -31,7 +31,7 @@ pub(super) struct ErrorEvidence {
     stated: ModelError,
     /// Normal equations of each gauge's row from the runs.
     pub normals: Vec<NormalEquations>,
-    /// By run, gauge by gauge.
+    /// Data of each gauge, for each run.
     by_run: Vec<ByGauge>,
     tried: Vec<ErrorHypothesis>,
 }

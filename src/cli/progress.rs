@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// How much of a stage is done.
+/// Finished part of a stage.
 #[derive(Default)]
 struct Meter {
     done: AtomicU64,
@@ -39,7 +39,7 @@ impl Meter {
     }
 }
 
-/// How long work may take before a progress line appears.
+/// Time after which a progress line appears.
 const PATIENCE: Duration = Duration::from_secs(1);
 /// Period at which the remaining time is updated.
 const TICK: Duration = Duration::from_millis(250);

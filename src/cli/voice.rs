@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
 
-/// How much is printed.
+/// Amount of printed text.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Level {
     /// Faults, and findings of severity error.

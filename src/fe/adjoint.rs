@@ -37,9 +37,9 @@ pub struct StrainTerm {
 #[derive(Debug)]
 pub struct Adjoint<'a> {
     prepared: PreparedModel<'a>,
-    /// By load; empty for temperatures, whose forces are the elements' own and change with them.
+    /// Forces of each load. Empty for temperatures, because their forces come from the elements and change with these.
     loads: Vec<Vec<[f64; 6]>>,
-    /// By reading.
+    /// Forces of each reading.
     readings: Vec<Vec<[f64; 6]>>,
 }
 

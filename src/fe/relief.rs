@@ -71,7 +71,7 @@ impl RigidBody {
     /// to ground leave no motion free.
     ///
     /// # Errors
-    /// Free motions, and no mass to balance loads along them.
+    /// Free motions without mass, so that no inertia balances the loads along them.
     pub(crate) fn new(
         model: &Model,
         axes: &[Option<Mat3>],

@@ -69,7 +69,7 @@ pub(super) fn follow_grids(
 /// the body is unknown. `field` is the result of [`carry_to_grids`].
 ///
 /// # Errors
-/// Such a load, with its point.
+/// The load on such a point, with the point.
 pub(super) fn check_free_points(
     model: &Model,
     reduction: &Reduction,

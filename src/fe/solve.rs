@@ -337,7 +337,7 @@ pub(super) struct CaseForces {
 /// Returns the loads of a case, balanced by the inertia of `body` if there is one.
 ///
 /// # Errors
-/// Loads on nothing; numbers beyond all bounds; sets that the deck lacks.
+/// Loads at dofs that no element holds; numbers that are too large; sets that the deck lacks.
 pub(super) fn form_case_loads(
     prepared: &PreparedModel<'_>,
     mass: &Mass,

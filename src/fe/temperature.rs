@@ -15,11 +15,11 @@ type LineRise = ([f64; 2], [[f64; 2]; 2]);
 /// Temperatures of a load case.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Temperatures {
-    /// By grid.
+    /// Temperature of each grid.
     at: Vec<f64>,
-    /// By grid, where TEMPERATURE(INITIAL) is given: thermal strain counts from these, not from TREF.
+    /// Temperature of each grid in TEMPERATURE(INITIAL), if given. Thermal strain is then relative to these temperatures, not to TREF.
     initial: Option<Vec<f64>>,
-    /// By element id: TEMPP1 and TEMPRB.
+    /// TEMPP1 and TEMPRB, by element id.
     elements: HashMap<u32, ElementTemperature>,
 }
 

@@ -44,7 +44,7 @@ fn find_off_axis_part(spec: &GaugeSpec, axis: &Vec3) -> Option<&'static str> {
 /// bridge) or four times (full bridge) the strain of the point minus the strain of the neutral axis.
 ///
 /// # Errors
-/// A beam that is not there; a gauge that reads across its axis; a grid longer than the bars along it.
+/// A missing beam; a gauge across the axis of its beam; a grid that is longer than the bars along it.
 pub(super) fn on_beam(
     model: &Model,
     spec: &GaugeSpec,

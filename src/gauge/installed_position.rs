@@ -133,7 +133,7 @@ impl<'m> NominalGauge<'m> {
         step: f64,
         read: impl Fn(&Gauge) -> Option<Vec<f64>>,
     ) -> Option<Vec<f64>> {
-        // Distance that the gauge reaches along the way, and its reading there.
+        // Distance by which the gauge really moves along `way`, and its reading there.
         let end = |asked: f64| -> Option<(f64, Vec<f64>)> {
             let (gauge, x) = self.gauge_at_offset(way(asked))?;
             let unit = way(1.0);

@@ -186,7 +186,7 @@ impl Output {
     /// Refuses a folder that contains files of `names` that no command wrote. The check precedes all computation.
     ///
     /// # Errors
-    /// A fault for each.
+    /// A fault for each of these files.
     pub fn check_free(folder: &Path, names: &[&str]) -> Result<(), Faults> {
         let targets = names.iter().map(|n| folder.join(n));
         let standing: Vec<PathBuf> = targets.filter(|t| t.exists()).collect();

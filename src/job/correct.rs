@@ -130,7 +130,7 @@ pub(super) fn correct_legs(job: &mut Job, faults: &mut FaultList) {
 /// Refuses corrections of channels that are not among `known`, in a job that does not list its gauges; `place` is where these channels are.
 ///
 /// # Errors
-/// A fault for each such correction.
+/// A fault for each of these corrections.
 pub fn check_channels(job: &Job, known: &[String], place: &str) -> Result<(), Faults> {
     let mut faults = FaultList::new();
     for c in job.corrections.iter().filter(|_| job.gauges.is_empty()) {

@@ -53,7 +53,7 @@ impl Job {
     /// Returns the job with ids instead of the names of properties. `named` contains the names in the deck.
     ///
     /// # Errors
-    /// A fault for each name that no property has, or several.
+    /// A fault for each name that no property or more than one property has.
     pub fn with_property_ids(&self, named: &[(u32, String)]) -> Result<Self, Faults> {
         let mut job = self.clone();
         let lines = [

@@ -21,7 +21,7 @@ impl Job {
     /// of validation gauges. Their columns are known, but no command reads them.
     ///
     /// # Errors
-    /// One fault where every gauge of the job is a validation gauge.
+    /// One fault if every gauge of the job is a validation gauge.
     pub fn without_validation_gauges(&self) -> Result<Self, Faults> {
         let mut job = self.clone();
         job.reserved.extend(self.validation_readings());

@@ -204,7 +204,7 @@ impl<'de> Deserialize<'de> for NumberOrWord {
 pub enum NumberOrNumbers {
     /// One for all.
     One(f64),
-    /// By name, in alphabetical order.
+    /// A number for each name, in alphabetical order.
     ByName(BTreeMap<String, f64>),
 }
 
@@ -239,7 +239,7 @@ impl<'de> Deserialize<'de> for NumberOrNumbers {
 pub enum DampingValue {
     /// One for all modes.
     One(f64),
-    /// By band.
+    /// A damping for each band of frequency.
     Bands(Vec<DampingBand>),
     /// A word.
     Word(String),

@@ -215,7 +215,7 @@ impl Table {
     /// Returns the number in a field. `None` if the field is blank.
     ///
     /// # Errors
-    /// A fault where the field is no finite number.
+    /// A fault if the field is not a finite number.
     pub fn number(&self, row: usize, column: usize) -> Result<Option<f64>, Fault> {
         let Some((line, fields)) = self.rows.get(row) else {
             return Ok(None);
@@ -254,7 +254,7 @@ impl Table {
     /// Returns the standard deviation in a field, converted as in [`Table::size`]. `None` if the field is blank.
     ///
     /// # Errors
-    /// A fault where it is no number, below zero, or more than this quantity can be.
+    /// A fault if it is not a number, is negative, or is larger than possible for this quantity.
     pub fn sd(
         &self,
         row: usize,
@@ -275,7 +275,7 @@ impl Table {
     /// Returns the number in a field, converted from units of `si` SI units of a quantity of loads or payloads. `None` if the field is blank.
     ///
     /// # Errors
-    /// A fault where the field is no finite number, or one that this quantity can't be.
+    /// A fault if the field is not a finite number, or is impossible for this quantity.
     pub fn size(
         &self,
         row: usize,

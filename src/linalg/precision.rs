@@ -37,7 +37,7 @@ impl Precision {
         at.flatten().copied().unwrap_or(0.0)
     }
 
-    /// By rows.
+    /// Returns the inverse, by rows.
     fn inverse(&self) -> &[f64] {
         self.inverse.get_or_init(|| self.factor.inverse())
     }

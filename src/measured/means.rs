@@ -18,7 +18,7 @@ const LARGE: usize = 16 << 20;
 pub enum StrainFile {
     /// Runs, or a record small enough to be a table.
     Table(StrainTable),
-    /// A record.
+    /// A fault if the strain file is a record, not a table of runs.
     Means(StrainMeans),
 }
 

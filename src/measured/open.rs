@@ -23,7 +23,7 @@ impl MeasuredStrain {
     /// Returns the runs.
     ///
     /// # Errors
-    /// A record.
+    /// A fault if the strain file is a record, not a table of runs.
     pub fn into_runs(self) -> Result<StrainTable, Faults> {
         match self {
             Self::Runs(table) => Ok(table),

@@ -20,7 +20,7 @@ pub struct Wheels {
 /// Returns the wheels of the job: forces along the most frequent axis of its forces, at grids other than the payload grid.
 ///
 /// # Errors
-/// Fewer than three, grids that the deck lacks.
+/// Fewer than three wheels, or grids that the deck lacks.
 pub fn wheels_of(job: &Job, model: &Model) -> Result<Wheels, Faults> {
     let payload = job.payload_grid();
     let force = |l: &JobLoad| match l.acts {

@@ -31,7 +31,7 @@ impl ZeroedTable {
     /// Returns the names of the runs.
     ///
     /// # Errors
-    /// A record.
+    /// A fault if the strain file is a record, not a table of runs.
     pub fn runs(&self) -> Result<&[String], Faults> {
         match &self.table.rows {
             StrainRows::Runs(names) => Ok(names),
@@ -408,7 +408,7 @@ fn zero_run_weights(at: &[usize], i: usize) -> ZeroWeights {
     }
 }
 
-/// How zeros move from one row to the next, mean squares over gauges, microstrain^2.
+/// Change of zeros from one row to the next: mean squares over gauges, microstrain^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Drift {
     /// Variance of a walk.

@@ -75,7 +75,7 @@ pub enum Refusal {
     },
     /// The payload is outside the region by this many standard deviations.
     OutsideRegion {
-        /// How far over sigma.
+        /// Distance from the region divided by sigma.
         sigmas: f64,
     },
     /// Strain and wheel forces give different weights.

@@ -44,7 +44,7 @@ pub fn phases(t: f64) -> [f64; 4] {
 /// Samples over half a turn from which the search starts.
 pub const SAMPLES: usize = 16;
 
-/// How far a polynomial can exceed the larger of two neighbouring samples: `h^2/8 max |p''|` in `u`.
+/// Returns by how much a polynomial can exceed the larger of two neighbouring samples: `h^2/8 max |p''|` in `u`.
 fn overshoot(p: &Trig, h: f64) -> f64 {
     h * h / 8.0 * (p[1].hypot(p[2]) + 4.0 * p[3].hypot(p[4]))
 }

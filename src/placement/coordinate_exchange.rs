@@ -70,9 +70,9 @@ pub(super) struct CoordinateExchange {
     full: Table,
     /// Under the inverse of the nuisance block (Ds) or `M^-1 L M^-1` (linear).
     second: Option<Table>,
-    /// By row, how many of the chosen exclude it.
+    /// Number of chosen rows that exclude a row, for each row.
     blocked: Vec<u32>,
-    /// By row, 0 where nothing excludes it, minus infinity otherwise.
+    /// 0 for a row that no chosen row excludes, otherwise minus infinity.
     mask: Vec<f64>,
     swaps: usize,
 }
@@ -217,7 +217,7 @@ impl CoordinateExchange {
         true
     }
 
-    /// How far the variances of the chosen are from `tr(M^-1 (M - P)) = k - tr(M^-1 P)`: rounding that has grown.
+    /// Returns the rounding error: the difference of the variances of the chosen rows from `tr(M^-1 (M - P)) = k - tr(M^-1 P)`.
     fn drift<E>(&self, list: &List<E>, base: &[f64]) -> f64 {
         let sum: f64 = self.rows.iter().map(|&j| self.full.d[j]).sum();
         (sum + spd::trace_of_product(&self.full.inverse, base) - list.active.k as f64).abs()

@@ -30,7 +30,7 @@ pub struct CauseSet {
     /// RMS(reading - prediction) / RMS(reading) over the proof runs, with each channel divided by its own scale. The mean of the fit runs is
     /// subtracted from readings and predictions.
     pub gap: f64,
-    /// By cause, then channel: change of the reading per unit of the cause, and its standard deviation.
+    /// Change of the reading per unit of the cause, with its standard deviation, by cause and then by channel.
     pub slopes: Vec<Vec<(f64, f64)>>,
 }
 

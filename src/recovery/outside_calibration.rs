@@ -75,8 +75,8 @@ impl CalibratedLoad<'_> {
     }
 }
 
-/// Returns the finding on a load that exceeds the range of the calibration in some of `runs`. `values` is the number of tested values of all loads. A
-/// load that exceeds the range only by as much as noise can cause in so many values is within the range.
+/// Returns the finding on a load that exceeds the range of the calibration in some of `runs`. `values` is the number of tested values of all loads.
+/// If noise in so many values can explain the excess, the load counts as within the range.
 pub fn check_load(
     load: &CalibratedLoad,
     runs: &[RunLoad],

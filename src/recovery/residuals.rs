@@ -443,7 +443,7 @@ impl Projection {
 pub(super) struct WhitenedResiduals {
     /// Sum of squares.
     pub chi2: f64,
-    /// By run, over the covariance of noise and nuisance loads.
+    /// Residuals of each run, whitened by the covariance of noise and nuisance loads.
     white: Vec<Vec<f64>>,
     turned: Vec<Block>,
 }

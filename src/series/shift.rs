@@ -314,11 +314,11 @@ struct FineSearch<'a> {
 
 /// Sums of one step.
 struct Sums {
-    /// By block: `sum r f'`.
+    /// `sum r f'` of each block.
     products: Vec<f64>,
     /// `sum m' f'`.
     slopes: f64,
-    /// By signal: number, sum and sum of squares of `fixed - moving`.
+    /// Number, sum and sum of squares of `fixed - moving`, for each signal.
     residuals: Vec<[f64; 3]>,
 }
 

@@ -36,7 +36,7 @@ pub struct Fields {
     /// Solutions from result files, or the solution of the built-in solver.
     pub solutions: Vec<Solution>,
     solved_here: bool,
-    /// By load: solution, case.
+    /// Solution and case of each load.
     of_load: Vec<(usize, usize)>,
     /// Mesh error that was subtracted from `solutions`, by load of the job. `None` if it was not computed.
     pub mesh_error: Option<MeshError>,

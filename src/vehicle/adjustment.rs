@@ -99,7 +99,7 @@ impl Adjustment {
         list.iter().map(kept).collect()
     }
 
-    /// How late the channel reads but for `delay_s`, s, at a time of the record that began at `start_s`.
+    /// Returns the delay of the channel without `delay_s` (s), at a time of the record that began at `start_s`.
     fn moving_lateness(&self, t_s: f64, start_s: f64) -> f64 {
         let slipped = self.slips.iter().filter(|s| t_s >= s.at_s);
         self.clock * (t_s - start_s) + slipped.map(|s| s.by_s).sum::<f64>()

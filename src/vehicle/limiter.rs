@@ -20,7 +20,7 @@ pub(super) struct Limiter {
 
 impl Limiter {
     /// # Errors
-    /// A band that the rate can't hold, a record that is shorter than the band needs.
+    /// A band that is too high for the sample rate, or a record that is too short for the band.
     pub fn new(
         vehicle: &Vehicle,
         record: &Channels,

@@ -124,7 +124,7 @@ pub enum Term {
     BumpStop {
         /// Free travel; 0 means to be found.
         gap: f64,
-        /// Where it acts.
+        /// Side on which the term acts.
         side: Side,
     },
     /// b d'': a mass that only relative acceleration moves, as in axles and bodies that turn. Not simulated.
@@ -142,7 +142,7 @@ pub enum Term {
     StiffnessChange {
         /// When the change begins, s of the record's time.
         at_s: f64,
-        /// How long it takes, s; 0: at once.
+        /// Duration of the change, s. 0 means at once.
         over_s: f64,
     },
 }

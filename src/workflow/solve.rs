@@ -109,7 +109,7 @@ impl Answer for SolvedCases {
 struct Task {
     read: DeckModel,
     cases: Vec<LoadCase>,
-    /// Where strain is wanted.
+    /// Places at which strain is computed.
     corners: Corners,
     /// Combinations of the load cases.
     combined: Vec<CombinedSubcase>,

@@ -57,7 +57,7 @@ pub(super) struct SimulatedMeasurements {
     pub runs_csv: String,
     /// The effect that was hidden.
     pub hidden: String,
-    /// By run: wheel loads, kN, and payload, kN.
+    /// Name, wheel loads (kN) and payload (kN) of each run.
     truth: Vec<(String, Vec<f64>, f64)>,
 }
 

@@ -14,7 +14,8 @@ pub struct StrainDifference {
     pub factor: f64,
     /// Cosine of the angle between both fields. It is 1 if the fields differ only by a positive factor.
     pub cosine: f64,
-    /// Share of each shell in both fields that is strained at least half as much as the mean of all shells.
+    /// Shells of both fields that are strained at least half as much as the mean of all shells. The number is the sum of the
+    /// differences of a shell divided by the sum of its larger values, as in `share`.
     pub of_shells: Vec<(ShellIx, f64)>,
 }
 

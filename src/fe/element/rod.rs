@@ -15,7 +15,7 @@ fn name(rod: &Rod) -> &'static str {
 /// Returns the stiffness of rod `i`, basic frame: EA/L along the axis, GJ/L about the axis.
 ///
 /// # Errors
-/// No length; a material that is no MAT1.
+/// A rod without length, or a material that is not MAT1.
 pub(super) fn rod_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, Refusal> {
     let rod = &model.rods[i];
     let refuse = |reason: String, remedy: &str| Refusal {

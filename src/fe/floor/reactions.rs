@@ -44,7 +44,7 @@ pub struct FloorLoad {
 pub enum FloorError {
     /// Contacts on a line.
     OnALine {
-        /// How many.
+        /// Number of contacts.
         contacts: usize,
     },
     /// A case without displacements.

@@ -202,7 +202,7 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// Where the rows of a child are in this front; no run crosses from its own rows to those below.
+    /// Returns the places of the rows of a child in this front. No run of rows contains both own rows of the front and rows below.
     fn runs(&self, child: usize) -> Vec<Run> {
         let mut runs: Vec<Run> = Vec::new();
         let groups = self.symbolic.nodes.groups(self.node);

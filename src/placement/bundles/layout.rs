@@ -23,7 +23,7 @@ pub struct BundleLayout {
 /// Returns the best layout found within the budget, with its bound.
 ///
 /// # Errors
-/// Where no layout within the budget separates the loads, or nothing fits.
+/// An error if no layout within the budget separates the loads, or if there is no bundle.
 pub fn place_bundles(bundles: &Bundles, spec: &BundleSpec) -> Result<BundleLayout, PlaceError> {
     let k = bundles.k;
     let singular = || PlaceError::Singular {

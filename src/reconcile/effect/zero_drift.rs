@@ -7,7 +7,7 @@ use crate::reconcile::strain::{Part, StrainFrame};
 /// Way in which the zero changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ZeroDrift {
-    /// By the same amount in all runs.
+    /// Drift by an equal amount in all runs.
     Step,
     /// Creep in proportion to the number of the run. The size is the drift at the last run.
     Creep,

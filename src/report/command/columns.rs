@@ -6,7 +6,7 @@ use crate::host::output::Output;
 /// States the units of a written table, column by column. An empty unit stands for a name or a plain number.
 ///
 /// # Errors
-/// Where the table can't be read back.
+/// A fault if the written table cannot be read back.
 pub(super) fn declare_written(
     out: &mut Output,
     table: &str,

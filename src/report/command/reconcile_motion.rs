@@ -156,7 +156,7 @@ fn verdict_section(outcome: &Outcome<Reconciliation>, found: &MotionPart) -> Sec
     Section::new("Verdict", vec![Block::Stressed(verdict, words)])
 }
 
-/// By equation: in which band, when and at which size of the motion the gap is largest, before and after.
+/// Returns the section with the place of the largest gap of each equation: band, time and size of the motion, before and after.
 fn where_section(found: &MotionPart) -> Section {
     let stretch = |s: &Option<Stretch>| match s {
         Some(s) => format!("{:.2} to {:.2}: {:.2}", s.from, s.to, 100.0 * s.gap),

@@ -31,7 +31,7 @@ pub enum PdfError {
 /// Returns the bytes of `report.pdf` in A4. The same page and origin give the same bytes.
 ///
 /// # Errors
-/// Only where the template is wrong.
+/// An error only if the template is wrong.
 pub fn write_pdf(page: &Page, origin: &Origin) -> Result<Vec<u8>, PdfError> {
     let paper = Paper::new(content(page, origin).to_string())?;
     let laid: PagedDocument = typst::compile(&paper)

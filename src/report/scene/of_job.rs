@@ -102,7 +102,7 @@ pub fn fields_of<'a>(job: &Job, fields: &'a Fields) -> Vec<Field<'a>> {
         .collect()
 }
 
-/// Where load `name` acts, its unit vector in the basic frame, its kind; `None` for a load set.
+/// Returns the place of load `name`, its unit vector in the basic frame and its kind. `None` for a load set.
 fn locate_load(job: &Job, model: &Model, name: &str) -> Option<(Vec3, Vec3, Twist)> {
     let load = job.loads.iter().find(|l| l.name == name)?;
     let LoadActs::AtGrid {

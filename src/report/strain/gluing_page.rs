@@ -105,7 +105,7 @@ fn format_tenths(v: f64) -> String {
     format!("{:.1}", (v * 10.0).round() / 10.0 + 0.0)
 }
 
-/// How one looks at a gauge from outside: to the right, and up.
+/// Directions to the right and up, for a view of the gauge from outside.
 struct View {
     right: Vec3,
     up: Vec3,

@@ -81,7 +81,7 @@ fn share(log_x: f64) -> f64 {
     begin / first
 }
 
-/// Where the steps have a ratio, by halving.
+/// Returns the sharpness at which the steps have this ratio, found by bisection.
 fn sharpness(ratio: f64) -> f64 {
     let [mut low, mut high] = ENDS;
     for _ in 0..50 {

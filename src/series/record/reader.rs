@@ -93,9 +93,9 @@ pub trait RecordReader: Send + Sync {
     fn other_channels(&self) -> &[OtherChannel] {
         &[]
     }
-    /// Where its times come from.
+    /// Returns the source of the times.
     fn times(&self) -> Times;
-    /// How many pieces it is read in.
+    /// Returns the number of pieces in which the record is read.
     fn n_pieces(&self) -> usize;
     /// Decodes the picks of a piece, a block at a time.
     ///

@@ -10,7 +10,7 @@ pub(super) struct Tile {
     values: Vec<f64>,
     /// Place of the first in a row.
     first: usize,
-    /// How many there are.
+    /// Number of columns.
     n: usize,
     /// Rows of each.
     rows: usize,

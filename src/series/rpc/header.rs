@@ -177,7 +177,7 @@ impl Params {
 /// Returns the header.
 ///
 /// # Errors
-/// A file that is cut off, keys that lack or can't be, another kind of file.
+/// A file that is cut off, missing or impossible keys, or another kind of file.
 pub fn read_header(bytes: &[u8]) -> Result<Header, RpcError> {
     let record = |i: usize| {
         let from = i.checked_mul(RECORD)?;

@@ -15,7 +15,7 @@ const G: f64 = 9.81;
 
 pub(super) struct Axle {
     pub x: f64,
-    /// Where its springs bear on the frame.
+    /// Place at which the springs support the frame.
     pub seat: f64,
     pub mass: f64,
     pub roll_inertia: f64,

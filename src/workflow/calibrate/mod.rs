@@ -355,10 +355,10 @@ fn stated_alone(job: &Job, table: &StrainTable) -> Sensitivity {
     }
 }
 
-/// That known loads are changes from zero, and that the strain file has a gauge.
+/// Checks that known loads are changes from zero, and that the strain file has a column of a gauge.
 ///
 /// # Errors
-/// Another reference; no column named after a gauge.
+/// A file of another reference, or a file without a column for any gauge.
 fn check_readings(
     job: &Job,
     measured: &Measured,

@@ -28,7 +28,7 @@ pub struct ReferenceAnswer {
 /// The reference, with its damage.
 pub(super) struct Reference {
     pub answer: ReferenceAnswer,
-    /// By load, with the hours in which it is known.
+    /// Damage of each load, with the hours in which the load is known.
     loads: BTreeMap<String, (DamageParts, f64)>,
     /// Gauges that read.
     gauges: BTreeSet<String>,

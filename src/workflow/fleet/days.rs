@@ -14,12 +14,12 @@ enum DayMonthOrder {
 /// Order of the days of a fleet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DayOrder {
-    /// By numbers, from left to right.
+    /// Compares the numbers in the names, from left to right.
     #[default]
     Numbers,
-    /// By dates with the day before the month.
+    /// Compares dates with the day before the month.
     DayFirst,
-    /// By dates with the month before the day.
+    /// Compares dates with the month before the day.
     MonthFirst,
 }
 
@@ -120,7 +120,7 @@ fn fits(d: &Date) -> [bool; 2] {
     [is(a, b), is(b, a) && !d.is_told]
 }
 
-/// By year, month and day, then by the names.
+/// Compares names by year, month and day, then by their text.
 fn by_date(first: DayMonthOrder, a: &str, b: &str) -> Ordering {
     let key = |name: &str| match date(name) {
         Some(d) => {

@@ -19,7 +19,7 @@ pub(super) type DeadPart = (usize, Gives, Range<usize>);
 /// Returns the dead parts, found with samples spread over the record. Their limits are exact to the sample.
 ///
 /// # Errors
-/// What can't be decoded.
+/// A fault if a piece of the record cannot be decoded.
 pub(super) fn dead_parts(
     record: &Record,
     r: &RecordRecovery,

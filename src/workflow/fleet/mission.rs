@@ -169,7 +169,7 @@ impl MissionSums {
     /// Adds a day to its kind of days.
     ///
     /// # Errors
-    /// A day of two kinds.
+    /// A fault if the day belongs to two kinds of days.
     pub fn add(&mut self, job: &str, file: &FileHead, day: &Day) -> Result<(), Faults> {
         let mut kinds = self.kinds.iter_mut().filter(|k| k.holds(file));
         let Some(first) = kinds.next() else {

@@ -104,7 +104,7 @@ impl RecordRecovery {
     /// Returns a decoded and recovered piece of the record, with the marks of its samples.
     ///
     /// # Errors
-    /// What can't be decoded.
+    /// An error if the piece cannot be decoded.
     pub fn part(&self, record: &Record, piece: usize, marks: &Marks) -> Result<Part, SeriesError> {
         let (n, k) = (self.used.len(), self.factors.len());
         let (begin, end) = record.span(piece);

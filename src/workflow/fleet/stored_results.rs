@@ -104,7 +104,7 @@ pub fn digest(parts: &[&str]) -> String {
 /// SHA-256 by path, as `sha256sum` lists them: the digest, a blank, a blank or an asterisk, the path.
 ///
 /// # Errors
-/// The first line without this form.
+/// The first line that does not have this form.
 pub fn digests_of(text: &str) -> Result<BTreeMap<String, String>, String> {
     let line = |(i, line): (usize, &str)| {
         // A backslash in a name is doubled, and the line then starts with a backslash.

@@ -212,7 +212,7 @@ fn named_zones(model: &Model) -> BTreeMap<String, BTreeSet<u32>> {
 /// Path of the proposed job.
 ///
 /// # Errors
-/// A job that is there already.
+/// A fault if this file already exists.
 fn free_target(folder: &Path, cx: &Context) -> Result<PathBuf, Fault> {
     let target = folder.join(JOB);
     if cx.files.load(&target).is_ok() {

@@ -33,7 +33,7 @@ pub(super) struct Parts {
 /// Returns the model in report units. It also sets the nominal place, the wheels and their reactions to the empty structure.
 ///
 /// # Errors
-/// Faults of deck, gauges, tables; no payload grid.
+/// Faults of deck, gauges and tables, or a payload without a grid.
 pub(super) fn model_of(
     work: &mut Work,
     task: &mut Task,
@@ -101,7 +101,7 @@ fn payload_grid(task: &Task, model: &Model) -> Result<(GridIx, u32), Faults> {
         .ok_or_else(|| fault(format!("the deck has no grid {id}")))
 }
 
-/// Where the payload acts: its grid and the axis of its weight.
+/// Place of the payload: its grid and the axis of its weight.
 #[derive(Clone, Copy)]
 struct Place {
     grid: GridIx,

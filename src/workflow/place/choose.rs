@@ -38,7 +38,7 @@ pub(super) fn is_plain(task: &Task) -> bool {
 /// Chooses gauges. If they can't separate the loads, it chooses again with prior information on the sizes of the loads, and adds a finding.
 ///
 /// # Errors
-/// No layout fits the job.
+/// A fault if no layout fits the job.
 pub(super) fn choose(
     work: &mut Work,
     task: &Task,

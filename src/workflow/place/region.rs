@@ -169,7 +169,7 @@ pub(super) fn allowed_sites_and_rule(
 /// Refuses ids of properties, elements and reference grids that the model lacks: a misspelt exclusion would leave its place open for gauges.
 ///
 /// # Errors
-/// A fault for each such id.
+/// A fault for each id that the deck lacks.
 fn check_ids(job: &Job, model: &Model) -> Result<(), Faults> {
     let rule = &job.candidates;
     let shells = model.shell_properties.iter().map(|p| p.id);

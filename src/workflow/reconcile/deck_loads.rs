@@ -41,7 +41,7 @@ pub(super) struct SignatureLoads {
 
 impl SignatureLoads {
     /// # Errors
-    /// Loads that no model can be put under, grids that the deck lacks.
+    /// Loads that cannot be applied to a model, or grids that the deck lacks.
     pub(super) fn from_job(job: &Job, heated: &UnitTemperatureModel) -> Result<Self, Faults> {
         let model = &heated.model;
         let JobLoads {

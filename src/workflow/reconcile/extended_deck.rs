@@ -175,7 +175,7 @@ impl DeckFrame {
     /// the model accelerates with the model. `None` if the grid does not exist.
     ///
     /// # Errors
-    /// What stops the solver.
+    /// The faults that stop the solver.
     pub(super) fn weight_gains(
         &self,
         job: &Job,

@@ -12,7 +12,7 @@ use crate::units::{KILO, MICROSTRAIN};
 pub(super) struct FrameColumns {
     sensitivity: Sensitivity,
     rows: Vec<usize>,
-    /// By load: kN or kN m in a job unit, over microstrain.
+    /// Scale of each load: kN or kN m in a job unit, divided by microstrain.
     scales: Vec<f64>,
 }
 

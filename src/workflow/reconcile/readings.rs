@@ -89,7 +89,7 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
 /// Tests, as `recover` does, whether readings can be strain in their stated unit. Impossible readings become missing readings.
 ///
 /// # Errors
-/// One fault where no reading is left.
+/// One fault if no reading is left.
 fn test_readings(
     work: &mut Work,
     measured: &Measured,

@@ -12,7 +12,7 @@ pub(super) struct RefinedGaugeModel {
 
 impl RefinedGaugeModel {
     /// # Errors
-    /// Why no finer mesh was made.
+    /// The reason why no finer mesh was made.
     pub(super) fn refine_model(model: &Model, laid: [&Vec<Gauge>; 3]) -> Result<Self, String> {
         let refined = refined_mesh(model, laid.first().map(|g| g.as_slice()))?;
         let lost = || "a gauge is not on the refined mesh".to_owned();

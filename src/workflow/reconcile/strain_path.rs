@@ -165,7 +165,7 @@ pub(super) fn look(job: &Job, work: &mut Work) -> Result<(), Faults> {
 /// Searches the effects and returns the verdict on the frame.
 ///
 /// # Errors
-/// One fault where the work is stopped: the search was cut short then.
+/// One fault if the work is stopped before the search is complete.
 fn search_effects(
     work: &mut Work,
     frame: &StrainFrame,

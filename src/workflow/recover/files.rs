@@ -17,7 +17,7 @@ const MOST_ROWS: usize = 20_000;
 /// Returns the files that are written of a history with about this number of samples.
 ///
 /// # Errors
-/// A file asked for that this build can't write.
+/// A fault for each requested file that this build cannot write.
 pub(super) fn select_load_files(job: &Job, samples: usize) -> Result<Vec<LoadFile>, Faults> {
     let Some(files) = &job.recover.files else {
         let list = LoadFile::ALL.iter().map(|f| f.1);

@@ -167,7 +167,7 @@ fn payload_of(job: &Job, row: &RunRow, origin: [f64; 2]) -> Option<(f64, f64, f6
     ))
 }
 
-/// By gauge of S: strain per kg, per kg m along x, y, and per kg m^2.
+/// Returns strain per kg, per kg m along x and y, and per kg m^2, for each gauge of S.
 fn signature(
     work: &mut Work,
     task: &Task,

@@ -14,7 +14,7 @@ use crate::measured::{self, MeasuredStrain};
 /// Recovers and counts the loads of every section with a separate file. Only the loads of one file at a time are in memory.
 ///
 /// # Errors
-/// Files that can't be read, or have runs.
+/// Files that can't be read, or that contain runs.
 pub(super) fn count_files(work: &mut Work, task: &Task) -> Result<Vec<SectionLoad>, Faults> {
     let mut out = Vec::new();
     for section in &task.job.sections {

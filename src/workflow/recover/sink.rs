@@ -10,34 +10,34 @@ use std::sync::Arc;
 
 /// Receiver of the loads of a record during recovery.
 pub trait RecordSink {
-    /// Before the first block.
+    /// Starts the loads of a record. It is called before the first block.
     ///
     /// # Errors
-    /// Where they can't be taken, a file that can't be begun.
+    /// A fault if a file cannot be created.
     fn begin(&mut self, head: &Arc<RecordHead>) -> Result<(), Fault>;
 
-    /// The next blocks, in order of time.
+    /// Receives the next blocks, in order of time.
     ///
     /// # Errors
-    /// Where they can't be taken; the record is read no further.
+    /// A fault if the blocks cannot be stored. The rest of the record is then not read.
     fn take(&mut self, blocks: Vec<Block>) -> Result<(), Fault>;
 
-    /// After the last block: how many samples there were.
+    /// Completes the loads of the record. It is called after the last block, with the number of samples.
     ///
     /// # Errors
-    /// What was left to be done and failed.
+    /// A fault if a file cannot be completed.
     fn end(&mut self, samples: u64) -> Result<(), Fault>;
 
     /// Returns the recorded samples, to be read again. It is called after the last block, and only if [`RecordHead::is_read_again`].
     ///
     /// # Errors
-    /// If the samples can't be read.
+    /// A fault if the samples cannot be read.
     fn samples(&self) -> Result<Box<dyn Samples + '_>, Fault>;
 }
 
 /// Samples of a record, read in any order.
 pub trait Samples: Sync {
-    /// How many.
+    /// Returns the number of samples.
     fn n_samples(&self) -> usize;
 
     /// Appends the loads `columns` of samples `from .. to`, report units, rounded to single precision. A load that is not known is NaN.

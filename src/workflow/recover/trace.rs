@@ -20,7 +20,7 @@ pub struct Span {
     /// Time of the first and the last sample, s.
     pub time: [f64; 2],
     samples: usize,
-    /// By load: smallest, sum, largest, count.
+    /// Smallest value, sum, largest value and count, for each load.
     loads: Vec<[f64; 4]>,
 }
 

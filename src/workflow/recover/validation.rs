@@ -229,7 +229,7 @@ impl<'a> Channels<'a> {
         )
     }
 
-    /// Compares the predictions with a piece of the record. `loads` contains `width` numbers a sample, which begin with the loads of S.
+    /// Compares the predictions with a piece of the record. `loads` contains `width` numbers for each sample. The loads of S come first.
     ///
     /// # Errors
     /// A piece that can't be read.

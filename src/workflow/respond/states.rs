@@ -124,7 +124,7 @@ pub(super) fn from_table(work: &mut Work, job: &Job, named: &NamedFile) -> Resul
 /// Adds the findings on the states of a file. `exact` are loads without an interval, and `blank` is the number of rows that lack a load.
 ///
 /// # Errors
-/// A file without a state.
+/// A fault if the file contains no state.
 fn finish(
     work: &mut Work,
     job: &Job,

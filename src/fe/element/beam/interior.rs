@@ -80,7 +80,7 @@ impl Interior {
         self.loads.is_empty() && self.thermal.is_none()
     }
 
-    /// Where sections, loads and so section forces change their law.
+    /// Returns the places at which a section or a load begins or ends. Section forces are smooth between these places.
     fn breaks(&self, beam: &LocalBeam<'_>) -> Vec<f64> {
         let mut all: Vec<f64> = beam.sections.iter().map(|s| s.0).collect();
         all.extend(self.loads.iter().flat_map(|l| l.span));

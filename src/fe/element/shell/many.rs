@@ -197,7 +197,7 @@ impl ParentShell<'_> {
 /// Returns the matrices of a shell with mid-side grids; `material_angle_rad` from the output x axis of its corners.
 ///
 /// # Errors
-/// Parts that make no quadrilateral.
+/// Parts that do not form a quadrilateral.
 pub(super) fn many_shell(
     model: &Model,
     shell: &Shell,

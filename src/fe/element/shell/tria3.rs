@@ -34,7 +34,7 @@ pub(super) fn tria_points() -> [(Shape<3>, f64); 7] {
 /// Lee, Lee and Bathe, The MITC3+ shell element and its performance, Computers and Structures 138 (2014) 12.
 ///
 /// # Errors
-/// The corners lie on a line.
+/// An error if the corners lie on a line.
 pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, BadShape> {
     let frame = output_frame(&input.x).ok_or(BadShape)?;
     let (x_axis, normal) = (frame.row(0).transpose(), frame.row(2).transpose());

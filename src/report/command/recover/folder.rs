@@ -31,7 +31,7 @@ impl RecordFolder {
     /// Returns the folder with the files written so far.
     ///
     /// # Errors
-    /// A fault where it can't be created.
+    /// A fault if it cannot be created.
     pub fn into_output(self) -> Result<Output, Fault> {
         match self.out {
             Some(out) => Ok(out),

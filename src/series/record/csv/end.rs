@@ -111,7 +111,7 @@ fn exponent(field: &[u8]) -> Option<usize> {
     is_number.then_some(field.len() - at - 1)
 }
 
-/// Where the last line begins; it and some lines before it, the last first.
+/// Returns the begin of the last line, and the last lines of the text in reverse order.
 fn last_lines(bytes: &[u8]) -> (usize, Vec<Vec<u8>>) {
     let (encoding, begin) = Encoding::detect(bytes);
     let last = last_line(encoding, bytes, bytes.len());
@@ -137,7 +137,7 @@ fn delimiter_of(line: &[u8]) -> u8 {
     [b';', b'\t'].into_iter().find(divides).unwrap_or(b',')
 }
 
-/// Where the line begins that ends before `end`.
+/// Returns the begin of the line that ends before `end`.
 fn last_line(encoding: Encoding, bytes: &[u8], end: usize) -> usize {
     let unit = encoding.unit();
     let begin = Encoding::detect(bytes).1;

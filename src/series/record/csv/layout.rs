@@ -62,7 +62,7 @@ pub struct Layout {
 
 /// A line of the beginning.
 struct Line {
-    /// Where it begins and ends in the file.
+    /// Begin and end of the piece in the file.
     from: usize,
     to: usize,
     text: Vec<u8>,

@@ -34,7 +34,7 @@ pub struct Csv {
     columns: Vec<Column>,
     /// Field of each column.
     fields: Vec<usize>,
-    /// Where the last line begins, if it was left out.
+    /// Begin of the last line, if this line was left out.
     left_out: Option<usize>,
 }
 

@@ -10,7 +10,7 @@ pub(super) fn values(g: &ChannelGroup) -> impl Iterator<Item = &Channel> {
     channels.filter(|c| !c.is_master() && c.is_numeric() && !c.is_array())
 }
 
-/// How the bits of a number are meant.
+/// Type of a number, from which its bits are decoded.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Unsigned,

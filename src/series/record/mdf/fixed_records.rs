@@ -120,7 +120,7 @@ impl Group {
         if self.samples != other.samples || self.time.is_none() || other.time.is_none() {
             return false;
         }
-        // Each piece has a megabyte of times.
+        // The times of each piece take one megabyte.
         const ROWS: usize = 131_072;
         let mut from = 0;
         while from < self.samples {

@@ -161,7 +161,7 @@ impl Tdms {
 /// Splits channels into those over time and those over something else, such as frequency.
 ///
 /// # Errors
-/// Wanted channels that are not over time, or no channel that is.
+/// Wanted channels that are not sampled over time, or a file without any channel over time.
 fn over_time(
     all: Vec<Channel>,
     wanted: &[String],

@@ -180,7 +180,7 @@ impl LoadRecordPair<'_> {
         Fault::with_line(&*job.file, compare.line, "compare.shift_s", wrong, remedy)
     }
 
-    /// By recorded load: sums of the differences, and the root mean square difference between curve and line through recorded samples.
+    /// Returns, for each recorded load, sums of the differences, and the rms difference between curve and line through recorded samples.
     fn differences(&self, range: &Range<usize>) -> Vec<(Differences, f64)> {
         let pieces: Vec<usize> = range.clone().step_by(PIECE).collect();
         let of_pieces: Vec<Vec<(Differences, f64)>> = pieces
