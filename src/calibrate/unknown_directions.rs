@@ -80,7 +80,7 @@ impl UnknownDirections {
 }
 
 impl FreeDirections<'_> {
-    /// Nothing.
+    /// No free direction.
     pub const NONE: FreeDirections<'static> = FreeDirections {
         directions: &[],
         variance: 0.0,

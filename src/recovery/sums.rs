@@ -7,13 +7,13 @@ use super::missing_readings::MissingReadings;
 pub struct Sums {
     /// Counts of samples and gaps. In a sample with a missing reading, only the loads that the other gauges determine are known.
     pub missing: MissingReadings,
-    /// Smallest of each load.
+    /// Smallest value of each load.
     pub min: Vec<f64>,
-    /// Largest of each load.
+    /// Largest value of each load.
     pub max: Vec<f64>,
-    /// Sum of each load.
+    /// Sum of the values of each load.
     pub sum: Vec<f64>,
-    /// Sum of squares of each load.
+    /// Sum of the squared values of each load.
     pub sum_of_squares: Vec<f64>,
     /// Sum of squared residuals by gauge, strain^2.
     pub residual: Vec<f64>,

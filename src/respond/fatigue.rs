@@ -15,7 +15,7 @@ pub struct PlaceDamage {
     pub value: f64,
     /// Lower end of the 95 % interval.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub high: f64,
     /// Direction normal to the plane, from the x axis of the stress, degree.
     pub angle_deg: f64,

@@ -18,7 +18,7 @@ pub enum Place {
     },
     /// Recovery point 0 to 3 (C D E F) of a bar or beam, at a share of its length.
     Beam {
-        /// Which.
+        /// The beam.
         beam: BeamIx,
         /// Point.
         point: usize,

@@ -45,7 +45,7 @@ pub enum SimulationError {
         "the simulated motion diverged at {at_s:.3} s: a parameter has the wrong sign or the steps are too long"
     )]
     Diverged {
-        /// When.
+        /// Time at which the motion diverges, s.
         at_s: f64,
     },
     /// A term that the simulation has no equation for.

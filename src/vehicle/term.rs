@@ -76,7 +76,7 @@ impl UnitNames {
 /// Direction of stretch in which an end stop acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Both.
+    /// Both sides.
     Both,
     /// Body and wheel approach.
     Compression,

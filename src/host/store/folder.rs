@@ -4,9 +4,9 @@ use super::{Key, SolutionStore};
 use crate::host::half_written;
 use std::path::{Path, PathBuf};
 
-/// Solutions kept in one folder; those not used for longest go first.
+/// Largest number of solutions in one folder. The solution that was not used for the longest time is removed first.
 const KEPT: usize = 64;
-/// Their bytes.
+/// Largest number of bytes of these solutions.
 const MOST_BYTES: u64 = 4 << 30;
 
 /// Folder that stores solutions of the built-in solver as `<key>.solution`. It removes the oldest solutions above a fixed number and size.

@@ -3,7 +3,7 @@
 use crate::gauge::Bridge;
 use crate::placement::Loss;
 
-/// Gauges of the job that stay.
+/// Gauges of the job that remain in the layout.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Keep {
     /// No gauge: the layout is new.

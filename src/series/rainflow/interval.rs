@@ -59,7 +59,7 @@ const OFF: f64 = 0.15;
 /// A number with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Ratio {
-    /// The number.
+    /// Value of the ratio.
     pub value: f64,
     /// Lower end of the 95 % interval.
     pub low: f64,

@@ -13,7 +13,7 @@ pub const NOISE: [f64; 3] = [1.0, 2.0, 3.0];
 /// Extreme value of a history, and its sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Extreme {
-    /// The value.
+    /// Extreme value.
     pub value: f64,
     /// Sample of the extreme value.
     pub at: usize,

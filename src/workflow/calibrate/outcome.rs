@@ -288,7 +288,7 @@ pub struct CheckLoad {
     pub recovered: f64,
     /// Lower end of the 95 % interval of the difference, around `recovered`. It includes the error of the applied load.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub high: f64,
     /// Unit.
     pub unit: String,

@@ -17,7 +17,7 @@ pub struct MissionLoad {
     pub damage: f64,
     /// Lower end of the 95 % interval from errors of measurement.
     pub damage_low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub damage_high: f64,
     /// Standard deviation from the error of S, which is common to all days.
     pub sigma_s: f64,

@@ -44,7 +44,7 @@ pub struct VehicleLoadAnswer {
     pub damage: f64,
     /// Lower end of its 95 % interval.
     pub damage_low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub damage_high: f64,
     /// Damage as counted.
     pub damage_counted: f64,

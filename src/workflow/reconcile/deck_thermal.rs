@@ -26,7 +26,7 @@ pub(super) struct UnitTemperatureModel {
     pub(super) even: Option<UnitLoad>,
     /// Strain for a temperature pattern with one degree between the coldest and the warmest place of the deck's set.
     pub(super) pattern: Option<UnitLoad>,
-    /// That pattern.
+    /// Temperatures of this pattern at the grids.
     shape: Option<TemperatureSet>,
 }
 

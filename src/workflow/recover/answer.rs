@@ -154,7 +154,7 @@ pub struct RecoveredLoad {
     pub sigma: f64,
     /// Lower end of the 95 % interval.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub high: f64,
     /// Report unit.
     pub unit: String,

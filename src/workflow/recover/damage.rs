@@ -30,13 +30,13 @@ pub struct LoadDamage {
     pub damage: f64,
     /// Lower end of its 95 % interval.
     pub damage_low: Option<f64>,
-    /// Upper end.
+    /// Upper end of this interval.
     pub damage_high: Option<f64>,
     /// Range of a single cycle with the same damage.
     pub one_cycle_range: Option<f64>,
     /// Lower end of its 95 % interval.
     pub one_cycle_range_low: Option<f64>,
-    /// Upper end.
+    /// Upper end of this interval.
     pub one_cycle_range_high: Option<f64>,
     /// Cycles by range.
     #[serde(skip)]

@@ -41,7 +41,7 @@ pub struct SectionLoad {
     pub damage: f64,
     /// Lower end of its 95 % interval.
     pub damage_low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub damage_high: f64,
 }
 
@@ -58,7 +58,7 @@ pub struct DutyLoad {
     pub damage: f64,
     /// Lower end of its 95 % interval.
     pub damage_low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub damage_high: f64,
 }
 

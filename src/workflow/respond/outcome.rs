@@ -88,7 +88,7 @@ pub struct ElementFatigue {
     pub damage: f64,
     /// Lower end of its 95 % interval.
     pub damage_low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub damage_high: f64,
     /// Direction normal to that plane, from the x axis of the element.
     pub angle_deg: f64,
@@ -109,7 +109,7 @@ pub struct Element {
     pub sigma: f64,
     /// Lower end of its 95 % interval.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub high: f64,
 }
 

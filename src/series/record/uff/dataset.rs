@@ -64,7 +64,7 @@ pub struct Dataset {
     pub unit_stated: bool,
     /// Number of samples.
     pub samples: usize,
-    /// The numbers.
+    /// Samples of the time history.
     pub data: Samples,
 }
 

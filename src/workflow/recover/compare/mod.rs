@@ -56,7 +56,7 @@ pub struct LoadComparison {
     pub damage_ratio: Option<f64>,
     /// Lower end of its 95 % interval.
     pub damage_ratio_low: Option<f64>,
-    /// Upper end.
+    /// Upper end of this interval.
     pub damage_ratio_high: Option<f64>,
     /// Recorded and recovered load of some of the runs or samples.
     #[serde(skip)]
