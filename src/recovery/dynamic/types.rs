@@ -27,7 +27,7 @@ pub struct Dynamics {
     pub modes: Vec<ElasticMode>,
     /// Frequency from which on further modes exist, Hz; their dynamic response is part of the uncertainty. `None` without further modes.
     pub further_hz: Option<f64>,
-    /// Damping of those further modes, share of critical.
+    /// Damping of the modes from `further_hz` on, as a share of critical damping.
     pub further_damping: f64,
     /// Highest frequency of the wanted loads, Hz.
     pub up_to_hz: f64,

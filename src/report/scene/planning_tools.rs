@@ -54,7 +54,7 @@ pub(super) fn tools(pointing: &PickTargets, gauges: usize) -> Markup {
     }
 }
 
-/// Returns the properties to pick, and the lines to copy, below the picture.
+/// Returns the part of the page below the picture: the properties to pick, and the lines to copy.
 pub(super) fn result(pointing: &PickTargets) -> Markup {
     let written = |kind: &str, about: Markup| {
         html! {

@@ -181,8 +181,8 @@ pub(super) fn off_drawing(
             );
             Some(b.iter().zip(&a).map(|(b, a)| b - a).collect())
         };
-        // The reading at the angle x is c + a cos(2x) + b sin(2x). The difference of the readings at +45 and -45 degrees is exactly the derivative 2
-        // b.
+        // The reading at the angle x is c + a cos(2x) + b sin(2x). The difference of the readings at +45 and -45 degrees is exactly 2b, which
+        // is the derivative at 0.
         let turns = [between(-FRAC_PI_4, FRAC_PI_4), between(0.0, FRAC_PI_2)];
         let [Some(turned), Some(crossed)] = turns else {
             continue;

@@ -134,7 +134,7 @@ impl CycleCountInput<'_> {
                 .zip(&head.units)
                 .map(|((a, b), u)| (b - a) / u.factor)
                 .collect();
-            // The error of the change is computed with the gauges at the begin and at the end. The larger error is used.
+            // The error of the change is computed twice, with the active gauges at the begin and with those at the end. The larger error is used.
             let by_end = [cycle.from, cycle.to].map(|point| {
                 let gain = head.estimate_at(point.at);
                 let ends = [cycle.from.at, cycle.to.at];
