@@ -406,7 +406,7 @@ pub struct InitArguments {
 }
 
 impl InitArguments {
-    /// Returns the deck, if one is given.
+    /// Returns the path of the deck. It is empty if no deck is given.
     pub(super) fn main(&self) -> &Path {
         self.deck.as_deref().unwrap_or(Path::new(""))
     }

@@ -119,7 +119,7 @@ pub(super) fn place_at(
     let z = shell_normal(model, best.shell)?;
     let off = x - best.point;
     let flat = (off - z * off.dot(&z)).norm();
-    // On a smooth surface the point is off along the normal. At an edge it is off along the surface.
+    // On a smooth surface, the offset of the point is along the normal. At an edge, the offset is along the surface.
     let at_edge = flat * flat > (1.0 - SMOOTH * SMOOTH) * off.norm_squared();
     Some(Landing {
         foot: best,

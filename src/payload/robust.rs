@@ -29,7 +29,7 @@ pub struct RunPayload {
     pub value: f64,
     /// Posterior standard deviation.
     pub sigma: f64,
-    /// 2.5 % and 97.5 % points.
+    /// Ends of the 95 % interval: the 2.5 % and 97.5 % points of the posterior distribution.
     pub interval: [f64; 2],
 }
 

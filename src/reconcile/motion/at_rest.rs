@@ -60,8 +60,8 @@ pub fn rest_row(frame: &MotionFrame, design: &Design, values: &[f64]) -> Option<
     }
     let weight: f64 = masses.iter().map(|&(i, g)| g * value(i)).sum();
     let force: f64 = forces.iter().map(|f| f.1).sum();
-    // A force that was zeroed reads less than the weight. A force that stays well above zero was not zeroed. Masses near zero together with such a
-    // force are from a wrong fit. Masses and springs of zero also satisfy the equations of a body without outside force.
+    // A force that was zeroed reads less than the weight. A force that stays well above zero was not zeroed. If the
+    // identified mass is near zero and the force is not, the fit is wrong: masses and springs of zero also satisfy the equations of a free body.
     let ratio = weight / force;
     let astray = force > 0.0 && ratio < STATIC.start && stays_above_nothing(frame, v);
     if !(STATIC.contains(&ratio) || astray) {

@@ -27,7 +27,7 @@ pub struct EstimateRules {
     /// Standard deviations by which a mode may differ from its stated frequency or damping. If the stated values are right, 3 in 1,000 modes differ
     /// by more.
     pub contradicted_sd: f64,
-    /// Share of the mean square of the vibration in the residual that the modes may leave: a third of its amplitude.
+    /// Largest share of the mean square of the vibration that may remain in the residual. It corresponds to a third of the amplitude.
     pub unexplained: f64,
     /// Mean square of the residual, divided by the mean square of the noise, from which the residual counts as vibration.
     pub over_noise: f64,

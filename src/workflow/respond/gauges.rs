@@ -51,7 +51,7 @@ pub struct Check {
 /// Compares predicted and measured strain, if the job has gauges and measured strain whose rows are the states.
 ///
 /// # Errors
-/// Unreadable strain.
+/// A strain file that can't be read.
 pub(super) fn check(
     work: &mut Work,
     job: &Job,

@@ -339,7 +339,7 @@ fn header_of(fields: &[Vec<&[u8]>], mark: DecimalMark) -> Result<usize, SeriesEr
                 || decode_field(n).eq_ignore_ascii_case("run")
         })
     };
-    // Names may be numbers (`time,14,15`). A column of time identifies the header if rows of about its length follow.
+    // Names may be numbers (`time,14,15`). A line with a column of time is the header if the next line has about as many fields.
     let followed = fields.windows(2).position(|w| match w {
         [a, b] => a.len() > 1 && named(a) && a.len().abs_diff(b.len()) <= 1,
         _ => false,
