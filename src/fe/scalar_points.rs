@@ -43,7 +43,7 @@ pub(super) fn carry_to_grids(
     }
 }
 
-/// Gives scalar points that follow grids the displacement that follows from these grids. Basic frame.
+/// Sets the displacement of each scalar point that depends on grids, from the displacement of these grids (basic frame).
 pub(super) fn follow_grids(
     prepared: &PreparedModel<'_>,
     reduction: &Reduction,

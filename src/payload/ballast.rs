@@ -21,11 +21,11 @@ pub struct BallastSpec {
 pub struct BallastMass {
     /// Weight.
     pub weight: f64,
-    /// Weight interval of 95 %.
+    /// 95 % interval of the weight.
     pub weight_range: [f64; 2],
     /// Place in plan.
     pub at: [f64; 2],
-    /// Intervals of 95 % of the place.
+    /// 95 % intervals of the place.
     pub at_range: [[f64; 2]; 2],
 }
 

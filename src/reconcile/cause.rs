@@ -27,7 +27,7 @@ pub struct CauseSet {
     pub names: Vec<String>,
     /// Log evidence over the fit runs.
     pub log_evidence: f64,
-    /// RMS(reading - prediction) / RMS(reading) over the proof runs, with each channel divided by its own scale. The mean of the fit runs is
+    /// RMS(reading - prediction) / RMS(reading) over the held-out runs, with each channel divided by its own scale. The mean of the fit runs is
     /// subtracted from readings and predictions.
     pub gap: f64,
     /// Change of the reading per unit of the cause, with its standard deviation, by cause and then by channel.

@@ -132,10 +132,10 @@ pub fn channel_floors(
         .collect())
 }
 
-/// Share of a channel's reading that noise leaves, from which nothing is read at all.
+/// Noise divided by the reading of a channel, from which on the channel gives no information.
 const DROWNED: f64 = 1.0;
 
-/// Returns an error if a channel reads less than the stated noise explains. `share` is a share of its reading.
+/// Returns an error if a channel reads less than the stated noise explains. `share` is noise divided by the reading.
 pub fn check_noise(channel: &str, share: f64, on: &str) -> Option<Finding> {
     (share >= DROWNED).then(|| {
         let message = format!(

@@ -55,7 +55,7 @@ impl InstalledGauge {
 pub(super) struct SimulatedMeasurements {
     pub strain_csv: String,
     pub runs_csv: String,
-    /// The effect that was hidden.
+    /// Effect that the demo hides in the readings.
     pub hidden: String,
     /// Name, wheel loads (kN) and payload (kN) of each run.
     truth: Vec<(String, Vec<f64>, f64)>,

@@ -11,7 +11,7 @@ pub struct Candidate {
     pub place: Option<String>,
     /// Possible forms; the data determine which one applies.
     pub shapes: Vec<Change>,
-    /// Log prior odds against a plain effect.
+    /// Logarithm of the prior odds of a plain effect to this candidate. It is subtracted from the evidence of the candidate.
     pub handicap: f64,
     /// Sign that the first parameter must have.
     pub sign: Sign,

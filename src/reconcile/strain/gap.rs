@@ -176,12 +176,12 @@ impl Patterns {
     }
 }
 
-/// Fit runs with a set of active effects, and the covariance that predicts the proof runs from them.
+/// Fit runs with a set of active effects, and the covariance that predicts the held-out runs from them.
 struct ValidationPredictor<'a> {
     frame: &'a StrainFrame,
     members: &'a [Member<'a>],
     unknown: &'a [SizedAmplitudes],
-    /// Readings of the fit runs, then readings of the proof runs.
+    /// Readings of the fit runs, then readings of the held-out runs.
     both: Selection,
     /// Covariance of the residual of `both`, microstrain^2.
     joint: Vec<f64>,
@@ -293,13 +293,13 @@ fn given_fit(told: &ValidationPredictor<'_>, run: &Selection) -> (Vec<f64>, Vec<
     (mean, out)
 }
 
-/// Proof runs given the fit runs, with one model.
+/// Held-out runs given the fit runs, with one model.
 struct Proof<'a> {
     told: &'a ValidationPredictor<'a>,
     patterns: Patterns,
 }
 
-/// One proof run.
+/// One held-out run.
 struct ProofRun<'a> {
     proof: &'a Proof<'a>,
     all: Selection,
@@ -405,7 +405,7 @@ impl ProofRun<'_> {
     }
 }
 
-/// Returns the residuals of the proof runs by the analyst's model and with `members`, and their expected residual.
+/// Returns the residuals of the held-out runs by the analyst's model and with `members`, and their expected residual.
 ///
 /// Each tested reading j is predicted from the readings u of the other half of its run. K i_u is subtracted, with K = J_j V J_u' G_uu^-1. The
 /// innovation i is the residual minus its mean given the fit runs. G is the covariance of i, and J V J' the part of G from the patterns. Given i_u, a
@@ -421,7 +421,7 @@ pub fn proof_residuals(
     verdict_after_removal(finer, members, unknown, &[(anew, before)])?.pop()
 }
 
-/// Returns the residuals of the proof runs by the analyst's model, for each of `anew`. They do not depend on the active effects.
+/// Returns the residuals of the held-out runs by the analyst's model, for each of `anew`. They do not depend on the active effects.
 pub(super) fn proof_residuals_before(
     finer: &StrainFrame,
     anew: &[ReestimatedUnknowns],

@@ -104,7 +104,7 @@ pub struct VehicleAnswer {
     pub misread: Vec<bool>,
 }
 
-/// A file.
+/// Result of one record file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FileAnswer {
     /// Path as given.

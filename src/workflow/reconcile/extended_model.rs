@@ -105,6 +105,6 @@ pub struct ExtendedS {
     pub changed: bool,
     /// Other loads of the job: name, microstrain per unit by gauge.
     pub known: Vec<(String, Vec<f64>)>,
-    /// Loads that were left out: name, microstrain per kN or kN m (or degree) by gauge, usual size in these.
+    /// Loads that were left out: name, microstrain per kN, kN m or degree by gauge, and usual size in the same unit.
     pub left_out: Vec<(String, Vec<f64>, f64)>,
 }

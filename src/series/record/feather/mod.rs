@@ -60,7 +60,7 @@ impl Feather {
         );
         let (leaves, columns) = typed.channels.into_iter().unzip();
         let pieces = batches.iter().enumerate().flat_map(|(b, batch)| {
-            // A compressed batch is decompressed whole.
+            // A compressed batch is decompressed as a whole.
             let step = if batch.codec.is_some() {
                 usize::MAX
             } else {
