@@ -56,7 +56,7 @@ pub(super) fn recover_left_out(
         rows(model, &state.scales, errors.into_iter().enumerate())
     });
     let prior = learnt.as_deref().unwrap_or(&state.prior);
-    // Repeats share an error with this run that new runs do not have, so that they are left out too.
+    // Repeats share an error with this run that new runs do not have. They are therefore left out as well.
     let group: Vec<usize> = (0..state.used.len())
         .filter(|j| task.runs[state.used[*j]].group == run.group)
         .collect();
@@ -73,7 +73,7 @@ pub(super) fn recover_left_out(
     // A single wrong run may be the whole scatter. The residuals of the other runs are then noise, and the run is tested against noise.
     let scatters = state.scatter.dof.is_finite();
     let mut scatter = Scatter::none(posterior.n);
-    // Two rounds, because with a wrong run included the equations gave the other runs too little weight.
+    // Two rounds: if a wrong run is included, the first equations give the other runs too little weight.
     let rounds = match (scatters, affordable) {
         (false, _) => 0,
         (true, false) => 1,

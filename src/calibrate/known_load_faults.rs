@@ -33,7 +33,7 @@ pub(super) fn wrong_loads(task: &Task, used: &[usize], wrongly_wired: Vec<usize>
 }
 
 /// Returns the findings on gauges for which known loads show an offset, another unit, or the same reading in all runs. Without a model there are
-/// none. `shifts` contains the faults that the rows of S show. S includes the effect of these faults, so that no finding is an error.
+/// none. `shifts` contains the faults that the rows of S show. S includes the effect of these faults, so no finding is an error.
 pub(super) fn wrong_gauges(task: &Task, used: &[usize], shifts: &[GaugeShift]) -> Vec<Finding> {
     let Some(model) = &task.model else {
         return Vec::new();

@@ -208,7 +208,7 @@ impl Output {
         let before = written.clone();
         let gone = written.replace(command, &self.names());
         if self.holds(INDEX) {
-            // The page depends on the results of other commands, so that it is not part of the answer.
+            // The page depends on the results of other commands, so it is not part of the answer.
             written.add(&format!("{command} index"), &[INDEX.to_owned()]);
         }
         for (other, kept) in self.keep_answers_of_others(command, &before)? {

@@ -130,7 +130,7 @@ impl SolutionStore for Folder {
     fn read(&self, key: &Key) -> Result<Option<Vec<u8>>, String> {
         match std::fs::read(self.file(key)) {
             Ok(bytes) => {
-                // The file counts as used now, so that it is not among the first to be removed.
+                // The file counts as used now. It is then not among the first files to be removed.
                 let now = std::time::SystemTime::now();
                 let file = std::fs::File::options().write(true).open(self.file(key));
                 let _ = file.and_then(|f| f.set_modified(now));

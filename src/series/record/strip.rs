@@ -182,7 +182,7 @@ where
         if records == 0 {
             return Ok(());
         }
-        // Move each known value to its row, from the last to the first. A value never moves towards the start, so that no unmoved value is
+        // Move each known value to its row, from the last to the first. A value never moves towards the start, so no unmoved value is
         // overwritten.
         let mut known = out.len();
         out.resize(first + records, blank);

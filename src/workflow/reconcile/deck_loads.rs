@@ -307,7 +307,7 @@ fn scale_load(load: &UnitLoad, factor: f64) -> UnitLoad {
     }
 }
 
-/// Has the job a nuisance load of this component at the grid, in the basic frame?
+/// Returns whether the job has a nuisance load of this component at the grid, in the basic frame.
 fn has_nuisance(job: &Job, model: &Model, at: GridIx, component: Component) -> bool {
     job.loads.iter().any(|l| match l.acts {
         LoadActs::AtGrid {

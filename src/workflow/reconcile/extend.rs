@@ -63,7 +63,7 @@ fn out_of_reach(job: &Job, e: &NamedEffect, deck: Option<&DeckFrame>) -> Option<
     }
 }
 
-/// Is the hypothesis an edit of the deck?
+/// Returns whether the hypothesis is an edit of the deck.
 fn is_edit(job: &Job, id: &str) -> bool {
     effect_of(job, id).is_some_and(|e| !matches!(e.source, EffectSource::Signature(_)))
 }

@@ -308,7 +308,7 @@ impl<'a> Tables<'a> {
     }
 }
 
-/// Has the job a nuisance load of this name?
+/// Returns whether the job has a nuisance load of this name.
 fn is_nuisance(job: &Job, name: &str) -> bool {
     job.loads
         .iter()

@@ -7,7 +7,7 @@ use crate::report::page::KeyNumber;
 use crate::units::{half_width, number, percent, plus_minus};
 use crate::workflow::recover::{LoadSpan, RecoveredLoad, RecoveredLoads, RecoveredRuns, States};
 
-/// Returns the largest load, residual, gauges, least certain load.
+/// Returns the key numbers: the largest load, the residual, the number of gauges and the least certain load.
 pub(super) fn key_numbers(outcome: &Outcome<RecoveredLoads>) -> Vec<KeyNumber> {
     let spans = outcome.spans();
     let known = || spans.iter().filter(|s| s.share().is_finite());
