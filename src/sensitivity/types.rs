@@ -118,7 +118,7 @@ impl Sensitivity {
         })
     }
 
-    /// Returns S without the columns whose size is known beforehand ([`Load::prior`]): the loads that the gauges alone must separate.
+    /// Returns S with the columns of the loads that the gauges alone must separate. Loads with a known prior size ([`Load::prior`]) are left out.
     pub fn without_prior_loads(&self) -> Self {
         let free: Vec<usize> = (0..self.loads.len())
             .filter(|&l| self.loads[l].prior().is_none())

@@ -243,7 +243,7 @@ impl Vehicle {
     pub fn rests_on_wheels(&self, bodies: &[usize]) -> bool {
         let own = |l: &&Link| l.ends.iter().any(|e| bodies.contains(&e.1.body));
         let heave = |l: &Link| l.ends.iter().map(|e| e.0).sum::<f64>();
-        // Weights are small whole numbers, so that their sum is exact.
+        // Weights are small whole numbers, so their sum is exact.
         let grounded = self.links.iter().filter(own).any(|l| heave(l) != 0.0);
         !grounded && self.steps.iter().all(|s| !bodies.contains(&s.body))
     }
