@@ -232,7 +232,7 @@ pub struct Calibration {
     pub shifts: Vec<GaugeShift>,
     /// Installed position and gain by gauge; empty if no tolerance is stated.
     pub as_glued: Vec<InstalledPositionEstimate>,
-    /// Scatter between repeats of one loading over the strain, root mean square over gauges; `None` without repeats.
+    /// Scatter between repeats of one loading, divided by the strain: root mean square over gauges. `None` without repeats.
     pub repeat_scatter_rel: Option<f64>,
     /// Noise over the strain, both root mean squares.
     pub noise_rel: f64,

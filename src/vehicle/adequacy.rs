@@ -33,7 +33,7 @@ pub struct DeclaredErrors {
     pub sync_s: f64,
 }
 
-/// Expected misfit of a channel from sensor errors, and the largest misfit of 99 complete models of 100; in the channel's unit.
+/// Expected misfit of a channel from sensor errors, and the misfit that 99 of 100 complete models do not exceed. Both in the channel's unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelFloor {
     /// Channel.
@@ -42,7 +42,7 @@ pub struct ChannelFloor {
     pub expected: f64,
     /// RMS misfit from noise alone.
     pub noise: f64,
-    /// Largest RMS misfit of 99 complete models of 100.
+    /// RMS misfit that 99 of 100 complete models do not exceed.
     pub limit: f64,
 }
 

@@ -8,7 +8,7 @@ use super::preset::COUPLINGS;
 use crate::linalg::tall::left_inverse;
 use crate::series::detrend::rms;
 
-/// Force on one sprung body in the band, about its mean, upwards. The samples are the samples of the motion.
+/// Force on one sprung body in the band, about its mean, upwards. It has one value for each sample of the motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChassisForce {
     /// The body.

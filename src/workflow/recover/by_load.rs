@@ -38,7 +38,7 @@ impl LoadSpan {
 }
 
 impl RecoveredLoads {
-    /// Returns the loads over all runs or samples, combinations among them, in the order of the job.
+    /// Returns the loads over all runs or samples, including combinations, in the order of the job.
     pub fn spans(&self) -> Vec<LoadSpan> {
         let mut spans = match &self.states {
             States::Runs(runs) => of_runs(runs),

@@ -108,7 +108,7 @@ pub fn datasets(bytes: &[u8]) -> Result<Vec<Dataset>, SeriesError> {
                 out.push(set);
             }
         }
-        // To the end of this data set.
+        // Skip the lines up to the end of this data set.
         if !lines.by_ref().any(|l| l.trim_ascii() == b"-1") {
             return Err(read_error("the file is cut off: a data set has no end"));
         }
