@@ -140,7 +140,7 @@ mod tests {
             .with_chance(1e-7);
         let text = serde_json::to_string(&written).unwrap();
         let expected = Finding {
-            // JSON has no infinite numbers, and results have no chances.
+            // JSON has no infinite numbers, and `result.json` does not contain `chance`.
             limit: None,
             chance: None,
             ..written

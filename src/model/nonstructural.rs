@@ -161,7 +161,7 @@ impl Carriers {
                 true => &["PBEAM", "PBEAML"],
                 false => &["PBAR", "PBARL"],
             };
-            // A deck may contain a PBAR and a PBEAM with one id.
+            // A deck may contain a PBAR and a PBEAM with the same id.
             if words.iter().any(|word| is(word, p.id)) {
                 note(words, p.id, Carrier::Beam(i));
             }

@@ -21,7 +21,7 @@ impl Key for i32 {
 impl Key for (i32, i32) {
     #[inline(always)]
     fn number(self) -> u32 {
-        // Loads are seldom more than 37 classes from one reversal to the next.
+        // Successive reversals of a load seldom differ by more than 37 classes.
         let (a, b) = (self.0.cast_unsigned(), self.1.cast_unsigned());
         a.wrapping_mul(37).wrapping_add(b)
     }
