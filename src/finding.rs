@@ -17,7 +17,7 @@ pub type CodeName = &'static str;
 /// A measured fact about a result, its limit, and the remedy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
-    /// How much it matters.
+    /// Severity of the finding.
     pub severity: Severity,
     /// Stable code, such as `loads-not-separable`; [`explain`] has an entry for each.
     #[serde(deserialize_with = "read_code")]
@@ -26,9 +26,9 @@ pub struct Finding {
     pub subject: String,
     /// Sentences with the consequence.
     pub message: String,
-    /// The measured number, if there is one.
+    /// Measured number, if the finding has one.
     pub measured: Option<f64>,
-    /// The limit it is held against.
+    /// Limit that the measured number is compared with.
     pub limit: Option<f64>,
     /// Chance that correct data give a number of this size, if this chance decided the finding.
     #[serde(skip)]
@@ -95,7 +95,7 @@ impl Finding {
     }
 }
 
-/// Names that a finding lists: a reader looks up a few of them, and a record has thousands of times.
+/// Number of names that a finding lists. A reader looks up only a few, and a record may have thousands.
 pub const LISTED: usize = 8;
 
 /// Returns the first names or ids of a list and the number of the others: `P01, P02 and 5 more`, or `none`.
@@ -103,7 +103,7 @@ pub fn list_few(names: &[impl Display]) -> String {
     few_of(names, names.len())
 }
 
-/// Returns the first names of a list of `count` names, of which `names` contains the first ones at least.
+/// Returns the first names of a list with `count` entries in total. `names` contains at least these first entries.
 pub fn few_of(names: &[impl Display], count: usize) -> String {
     let shown: Vec<String> = names.iter().take(LISTED).map(|n| n.to_string()).collect();
     match count.saturating_sub(shown.len()) {
@@ -113,7 +113,7 @@ pub fn few_of(names: &[impl Display], count: usize) -> String {
     }
 }
 
-/// The worst severity of a list.
+/// Returns the worst severity of a list.
 pub fn worst_severity(findings: &[Finding]) -> Option<Severity> {
     findings.iter().map(|f| f.severity).max()
 }

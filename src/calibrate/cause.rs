@@ -33,7 +33,7 @@ struct CauseEvidence {
     other: f64,
 }
 
-/// Returns `Angle` or `Place` if the readings clearly prefer it to a gain, to each other and to any other row.
+/// Returns `Angle` or `Place` if the readings clearly prefer one of them to the other, to a gain and to any other row.
 /// Returns `Gain` if they prefer a gain to angle and place, else `Undetermined`; `None` if the model has no `off_drawing` changes.
 /// `error`: the error of the model as determined from the other gauges.
 pub(super) fn off_drawing(

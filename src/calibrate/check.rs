@@ -5,7 +5,7 @@ use super::types::{Calibration, KnownRun};
 use crate::estimate::LoadEstimate;
 use crate::recovery::{ErrorModel, Readings, recover};
 
-/// A check run, recovered as `recover` recovers it.
+/// Loads of a check run as `recover` computes them, with the applied loads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CheckedRun {
     /// Recovered loads.
@@ -14,7 +14,7 @@ pub struct CheckedRun {
     pub run: KnownRun,
 }
 
-/// Recovers runs by a calibrated S; `noise` of a reading, strain.
+/// Recovers the loads of check runs with a calibrated S. `noise` is the standard deviation of a reading, strain.
 pub fn recover_checks(found: &Calibration, noise: f64, runs: &[KnownRun]) -> Vec<CheckedRun> {
     let errors = ErrorModel {
         noise,
@@ -46,7 +46,7 @@ pub fn recover_checks(found: &Calibration, noise: f64, runs: &[KnownRun]) -> Vec
 }
 
 impl Calibration {
-    /// Recovers the runs that S was calibrated with, by their number in the task.
+    /// Recovers the loads of the runs that S was calibrated with. The runs are stated by their number in the task.
     pub fn recover_used_runs(&self, noise: f64, runs: &[KnownRun]) -> Vec<(usize, CheckedRun)> {
         let used = (0..runs.len()).filter(|r| !self.refused.contains(r));
         let used: Vec<usize> = used.collect();

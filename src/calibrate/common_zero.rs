@@ -13,7 +13,7 @@ use crate::sensitivity::Load;
 const NAME: &str = "common zero";
 
 impl Task {
-    /// Number of loads that the job states.
+    /// Returns the number of loads that the job states.
     pub(super) fn own_loads(&self) -> usize {
         self.loads.len() - usize::from(self.is_extended())
     }
@@ -24,7 +24,7 @@ impl Task {
     }
 }
 
-/// The task with the column of the common zero.
+/// Returns the task with the column of the common zero.
 pub(super) fn add_zero_column(task: &Task) -> Task {
     let mut out = task.clone();
     out.common_zero = CommonZero::Column;
@@ -46,7 +46,7 @@ pub(super) fn add_zero_column(task: &Task) -> Task {
     out
 }
 
-/// The result without that column.
+/// Returns the result without the column of the common zero.
 pub(super) fn remove_zero_column(mut found: Calibration, k: usize) -> Calibration {
     found
         .undetermined
@@ -57,7 +57,7 @@ pub(super) fn remove_zero_column(mut found: Calibration, k: usize) -> Calibratio
 }
 
 impl KnownLoads {
-    /// The first `k` loads.
+    /// Returns the first `k` loads.
     pub(super) fn first_loads(&self, k: usize) -> Self {
         let all = self.mean.len();
         Self {
@@ -69,7 +69,7 @@ impl KnownLoads {
     }
 }
 
-/// Strain without load, by gauge; zeros without a common zero.
+/// Returns the strain without load by gauge. It contains zeros if the task has no common zero.
 pub(super) fn zero_of(task: &Task, posterior: &Posterior) -> Vec<f64> {
     let k = posterior.k;
     match task.is_extended() {
@@ -80,7 +80,7 @@ pub(super) fn zero_of(task: &Task, posterior: &Posterior) -> Vec<f64> {
     }
 }
 
-/// Readings less the common zero.
+/// Returns the readings minus the common zero.
 pub(super) fn less_zero(strain: &[f64], zero: &[f64]) -> Vec<f64> {
     strain.iter().zip(zero).map(|(y, z)| y - z).collect()
 }

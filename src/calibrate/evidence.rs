@@ -12,7 +12,7 @@ pub(super) struct NormalEquations {
 }
 
 impl NormalEquations {
-    /// Sums the normal equations of gauge `g` over the runs with a reading of it.
+    /// Sums the normal equations of gauge `g` over the runs in which the gauge has a reading.
     pub fn from_runs(g: usize, k: usize, runs: &[ByGauge]) -> Self {
         let mut out = Self {
             matrix: vec![0.0; k * k],
@@ -93,7 +93,7 @@ impl<'a> RowEvidence<'a> {
         self.log
     }
 
-    /// First and second order of `L` in the amounts of some directions `t_i`: `t_i' B^-1 W^-1 d`, and `t_i' B^-1 W^-1 A t_j` by rows.
+    /// Returns the first and second order of `L` in the amounts of some directions `t_i`: `t_i' B^-1 W^-1 d`, and `t_i' B^-1 W^-1 A t_j` by rows.
     pub fn orders(&self, directions: &[&[f64]]) -> (Vec<f64>, Vec<f64>) {
         let first = directions.iter().map(|t| spd::dot(t, &self.slope));
         let mut second = Vec::with_capacity(directions.len() * directions.len());

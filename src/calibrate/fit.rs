@@ -13,7 +13,7 @@ use crate::finding::{Finding, Severity};
 /// Largest share of the runs that may be refused. If more contradict each other, the runs are not the cause.
 const MOST_REFUSED: f64 = 0.25;
 
-/// Computes S from runs of known load.
+/// Computes S from runs with known loads.
 ///
 /// # Errors
 /// A sentence if there are no runs, or if numbers are not finite.

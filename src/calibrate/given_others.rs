@@ -4,7 +4,7 @@ use super::posterior::Equation;
 use crate::linalg::precision::Precision;
 use crate::linalg::spd;
 
-/// One run, gauge by gauge.
+/// Loads of one run, with the reading of each gauge and its variance.
 #[derive(Clone, Debug)]
 pub(super) struct ByGauge {
     /// Loads of unit size.

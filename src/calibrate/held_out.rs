@@ -30,8 +30,8 @@ pub(super) fn leave_out(task: &Task, state: &State) -> Vec<LeftOut> {
         .collect()
 }
 
-/// Recovers used run `i` with S from the other runs except `beside`, and compares it with `loads`. Returns `None` if those runs do not determine its
-/// loads.
+/// Recovers the used run `i` and compares the result with `loads`. S comes from the other runs except `beside`. Returns `None` if these runs do not
+/// determine the loads of run `i`.
 pub(super) fn recover_left_out(
     task: &Task,
     state: &State,
@@ -56,7 +56,7 @@ pub(super) fn recover_left_out(
         rows(model, &state.scales, errors.into_iter().enumerate())
     });
     let prior = learnt.as_deref().unwrap_or(&state.prior);
-    // Repeats share an error with this run that new runs do not have, so that they are left out too.
+    // Repeats share an error with this run that new runs do not have. They are therefore left out as well.
     let group: Vec<usize> = (0..state.used.len())
         .filter(|j| task.runs[state.used[*j]].group == run.group)
         .collect();
@@ -73,7 +73,7 @@ pub(super) fn recover_left_out(
     // A single wrong run may be the whole scatter. The residuals of the other runs are then noise, and the run is tested against noise.
     let scatters = state.scatter.dof.is_finite();
     let mut scatter = Scatter::none(posterior.n);
-    // Two rounds, because with a wrong run included the equations gave the other runs too little weight.
+    // Two rounds: if a wrong run is included, the first equations give the other runs too little weight.
     let rounds = match (scatters, affordable) {
         (false, _) => 0,
         (true, false) => 1,
@@ -149,7 +149,7 @@ pub(super) fn recover_left_out(
     })
 }
 
-/// A run recovered by S, its readings less the common zero.
+/// A run recovered by S, its readings minus the common zero.
 fn recover_run(task: &Task, run: &KnownRun, s: &Sensitivity, zero: &[f64]) -> RunEstimate {
     let readings = Readings {
         run: run.run.clone(),
@@ -308,8 +308,8 @@ fn few_runs(scores: &[(f64, f64)], runs: usize, dof: f64) -> f64 {
     ((dof + runs * z2) / (dof + runs)).max(1.0).sqrt()
 }
 
-/// Returns the tally and the factor. The factor is the result of [`few_runs`]. If left-out runs are farther off than expected, in single loads or in
-/// a sum, it is at least the root of the largest ratio.
+/// Returns the tally and the factor on sigma. The factor is the result of [`few_runs`], or more: if left-out runs are farther off than expected, in
+/// single loads or in a sum, it is at least the root of the largest ratio.
 pub(super) fn test_coverage(left_out: &[LeftOut], dof: f64) -> Coverage {
     let suspect = suspects(left_out);
     let kept = || left_out.iter().filter(|l| !suspect.contains(&l.number));
@@ -399,7 +399,7 @@ fn typical_scale(left_out: &[LeftOut]) -> f64 {
         .max(1.0)
 }
 
-/// Returns the number of the run that contradicts the other runs most, if its chance is below `REFUSE`.
+/// Returns the number of the run that contradicts the other runs most, if the probability of its deviation is below `REFUSE`.
 pub(super) fn find_contradicting_run(left_out: &[LeftOut]) -> Option<usize> {
     let scale = typical_scale(left_out);
     let worst = left_out

@@ -7,7 +7,7 @@ use crate::input_faults::identical_columns::{identical_pairs, identical_readings
 /// Different values of two equal columns of loads at least: a truck that is there, and one that is not.
 const DIFFERENT_LOADS: usize = 2;
 
-/// The findings on gauges, and on loads, that are the same in all runs.
+/// Returns findings on gauges with identical readings in all runs, and on loads with identical values in all runs.
 pub(super) fn findings(task: &Task) -> Vec<Finding> {
     let of_gauge = |g: usize| task.runs.iter().map(|r| r.strain[g]).collect();
     let readings: Vec<Vec<f64>> = (0..task.gauges.len()).map(of_gauge).collect();

@@ -14,16 +14,16 @@ pub struct GlueTolerance {
     pub angle_rad: f64,
 }
 
-/// Number of rounds in which rows are computed at the positions that were found.
+/// Number of rounds. Each round computes the rows at the positions that the round before it found.
 const ROUNDS: usize = 4;
-/// Half step of the central differences over the tolerance: within it rows are near to straight.
+/// Half step of the central differences, divided by the tolerance. Within this step, rows change almost linearly.
 const STEP: f64 = 0.5;
 
 /// Computes S from runs of known load with gauges that may differ from their nominal position. `row(gauge, [along, across, angle])` is the model's
-/// row at this offset, strain per job unit; a gauge for which it is `None` keeps its nominal position.
+/// row at this offset, strain per job unit; a gauge without such a row (`None`) keeps its nominal position.
 ///
 /// # Errors
-/// As [`calibrate`].
+/// The errors of [`calibrate`].
 pub fn calibrate_installed_gauges(
     task: &Task,
     tolerance: GlueTolerance,

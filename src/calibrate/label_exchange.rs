@@ -20,11 +20,11 @@ const WORTH_A_LOOK: f64 = 0.1;
 pub(super) struct LabelExchange {
     /// Numbers of the runs.
     pub runs: [usize; 2],
-    /// Residual of the runs (sum of squares) before the exchange of these labels over the residual after it.
+    /// Residual sum of squares of the runs before the exchange of the two labels, divided by the sum after the exchange.
     pub fewer: f64,
     /// Whether each run, recovered from all other runs, certainly contradicts its own label and agrees with the other label.
     pub certain: bool,
-    /// Two other runs whose exchange explains as much.
+    /// Two other runs whose exchange explains the residual equally well.
     pub or: Option<[usize; 2]>,
 }
 
@@ -34,7 +34,7 @@ struct Pair {
     left: f64,
 }
 
-/// Returns the exchange that explains most, if it explains enough.
+/// Returns the exchange that explains most of the residual, if it explains enough.
 pub(super) fn find(task: &Task, state: &State) -> Option<LabelExchange> {
     let (before, pairs) = left_by_pair(task, state)?;
     let best = pairs.iter().min_by(|a, b| a.left.total_cmp(&b.left))?;

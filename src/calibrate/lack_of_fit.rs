@@ -53,11 +53,11 @@ impl Candidate {
     }
 }
 
-/// Terms found, and their effects.
+/// Significant terms, with their effects.
 pub(super) struct LackOfFitTest {
     pub answer: LackOfFit,
     pub findings: Vec<Finding>,
-    /// Covariance of readings that the terms make over the loadings, `n x n` by rows; empty if no term is found.
+    /// Covariance of readings that the significant terms cause over the loadings, `n x n` by rows. It is empty without significant terms.
     pub covariance: Vec<f64>,
 }
 

@@ -4,20 +4,20 @@ use super::types::KnownLoads;
 use super::unknown_directions::{FreeDirections, project_out};
 use crate::linalg::spd;
 
-/// Loads of one run given S: the known loads, corrected by the readings.
+/// Loads of one run under a given S: the known loads, corrected by the readings.
 pub(super) struct CorrectedLoads {
     /// Most probable loads, in loads of unit size.
     pub phi: Vec<f64>,
     /// `S (f - f0)` without the free directions. The readings plus this shift belong to the loads `phi`.
     pub shift: Vec<f64>,
-    /// `S D S'` by rows: strain that the loads' own error makes.
+    /// `S D S'` by rows: covariance of the strain from the errors of the loads.
     pub spread: Vec<f64>,
     /// Degrees of freedom, counted in readings, that the correction takes.
     pub freedom: f64,
 }
 
 /// Returns the loads from their Gaussian prior `known` and the readings `y` with covariance `r` (by rows). `s` contains rows by gauge, for loads of
-/// unit size: `f = f0 + D S' (S D S' + R)^-1 (y - S f0)`. Along `free` directions there is no `f0` to compare with, and `f` replaces it.
+/// unit size: `f = f0 + D S' (S D S' + R)^-1 (y - S f0)`. Along `free` directions the loads are unknown beforehand, and `f` replaces `f0`.
 ///
 /// # Reference
 /// W. A. Fuller, Measurement Error Models (1987), section 2.2.

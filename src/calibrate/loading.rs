@@ -4,17 +4,17 @@ use super::state::State;
 use super::types::Task;
 use std::collections::BTreeMap;
 
-/// A loading: mean of its repeats.
+/// Mean of the runs of one loading (repeats).
 pub(super) struct Loading {
-    /// Loads of unit size, the common zero among them.
+    /// Loads in units of their size. The common zero is one of the loads.
     pub phi: Vec<f64>,
     /// Strain; not a number if a gauge has none.
     pub strain: Vec<f64>,
-    /// Weight by gauge: runs over the variance of one.
+    /// Weight of each gauge: number of runs divided by the variance of one run.
     pub weight: Vec<f64>,
 }
 
-/// Means of repeats by loading.
+/// Returns the means of repeats by loading.
 pub(super) fn loadings(task: &Task, state: &State) -> Vec<Loading> {
     let n = task.gauges.len();
     let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();

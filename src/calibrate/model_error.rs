@@ -31,7 +31,7 @@ pub(super) struct ErrorEvidence {
     stated: ModelError,
     /// Normal equations of each gauge's row from the runs.
     pub normals: Vec<NormalEquations>,
-    /// By run, gauge by gauge.
+    /// Data of each gauge, for each run.
     by_run: Vec<ByGauge>,
     tried: Vec<ErrorHypothesis>,
 }
@@ -275,7 +275,7 @@ impl Table {
             };
             error.entries[floor] = stated * factor(entry);
             let rows = rows(model, scales, (0..n).map(|g| (g, error)));
-            // The common error of a gauge's row adds one direction. Its likelihood costs a few products, because the other terms are known.
+            // The common error of a gauge's row adds one direction. Its likelihood follows from a few products, because the other terms are known.
             let one = |((row, normal), s): ((&RowPrior, &NormalEquations), &Vec<f64>)| {
                 let e = RowEvidence::from_row_prior(&row.mean, &row.covariance, normal)?;
                 let (first, second) = e.orders(&[s.as_slice()]);

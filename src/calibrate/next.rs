@@ -13,16 +13,16 @@ pub struct NextRun {
     pub loads: Vec<f64>,
     /// Information gained on S, natural units: half the log of the ratio of determinants.
     pub information: f64,
-    /// For the load of the list that gains most: its number.
+    /// Number of the load that gains most from this run.
     pub load: usize,
-    /// Standard deviation of that load, recovered at its size in the list, today.
+    /// Present standard deviation of that load, recovered at its size in `loads`.
     pub sigma_before: f64,
-    /// And after such a run.
+    /// Standard deviation of that load after the run.
     pub sigma_after: f64,
 }
 
-/// Returns candidates by information gained, the best first; no candidates if S is not calibrated. `sizes` states the size of each load. Each load
-/// alone and all loads together are tried.
+/// Returns candidates for the next run, sorted by the information that they add, the best first. Without a calibrated S the list is empty. `sizes`
+/// states the size of each load. Each load alone and all loads together are tried.
 ///
 /// # Errors
 /// `sizes` does not contain one finite number for each load.
@@ -171,7 +171,7 @@ fn sigma(s: &Sensitivity, noise: f64, sizes: &[f64], l: usize, covariance: &[f64
         return f64::NAN;
     };
     let size = sizes[l];
-    // Scatter of this loading, in place of scatter of all.
+    // The scatter of this loading replaces the mean scatter of all loadings.
     let k = sizes.len();
     let q2 = size * size * known.mean_square.get(l * k + l).copied().unwrap_or(0.0);
     if !(q2 > 0.0) {

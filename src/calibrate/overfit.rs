@@ -76,7 +76,7 @@ fn effective_factor_count(sample: &[f64], basis: &[Vec<f64>], w: f64) -> f64 {
             x.iter_mut().zip(u).for_each(|(x, u)| *x -= along * u);
         }
     };
-    // Rows first, then columns.
+    // The projection acts on the rows first, then on the columns.
     let mut rest = sample.to_vec();
     rest.chunks_exact_mut(n.max(1)).for_each(outside);
     let mut rest: Vec<f64> = (0..n * n).map(|i| rest[i % n * n + i / n]).collect();
@@ -92,7 +92,7 @@ fn effective_factor_count(sample: &[f64], basis: &[Vec<f64>], w: f64) -> f64 {
     variances.iter().map(kept).sum()
 }
 
-/// Returns orthonormal patterns over the gauges that loads make; `None` if numbers are not finite.
+/// Returns orthonormal patterns over the gauges that span the strain of loads. `None` if numbers are not finite.
 pub(super) fn basis(columns: &Matrix) -> Option<Vec<Vec<f64>>> {
     let d = dense::svd(&dense::unit_columns(columns))?;
     let limit = d.s.first().copied().unwrap_or(0.0) * dense::RANK_TOLERANCE;

@@ -9,22 +9,22 @@ use crate::linalg::{Matrix, spd};
 pub(super) struct Equation {
     /// Gauges that read, ascending.
     pub gauges: Vec<usize>,
-    /// Their strain.
+    /// Strain of these gauges.
     pub y: Vec<f64>,
-    /// Loads over their scale.
+    /// Loads, each divided by its scale.
     pub phi: Vec<f64>,
     /// Covariance of the readings, by rows, over `gauges`.
     pub covariance: Vec<f64>,
 }
 
-/// Mean and covariance of S with columns times load scales: strain.
+/// Mean and covariance of S. Its columns are multiplied by the scales of the loads, so that entries are strain.
 #[derive(Clone, Debug)]
 pub(super) struct Posterior {
     pub n: usize,
     pub k: usize,
-    /// Entry (g, l) at `g k + l`.
+    /// Mean. Entry (g, l) is at `g k + l`.
     pub mean: Vec<f64>,
-    /// `(n k) x (n k)` by rows.
+    /// Covariance, `(n k) x (n k)` by rows.
     pub covariance: Vec<f64>,
 }
 
@@ -124,7 +124,7 @@ fn solve_by_gauge(prior: &[RowPrior], equations: &[Equation]) -> Option<Posterio
 }
 
 impl Equation {
-    /// Returns whether the errors of its readings are independent of each other.
+    /// Returns whether the errors of the readings are independent of each other.
     pub fn is_by_gauge(&self) -> bool {
         let step = self.gauges.len() + 1;
         let mut entries = self.covariance.iter().enumerate();
@@ -162,13 +162,13 @@ impl Posterior {
         gauges.iter().map(column).collect()
     }
 
-    /// Covariance of `S phi` over some gauges, by rows.
+    /// Returns the covariance of `S phi` over some gauges, by rows.
     pub fn spread(&self, gauges: &[usize], phi: &[f64]) -> Vec<f64> {
         let columns = self.columns(gauges, phi);
         project(&columns, gauges, phi, self.k)
     }
 
-    /// Returns the posterior without one of its equations; `None` if the other equations do not determine it.
+    /// Returns the posterior without one equation. `None` if the other equations do not determine S.
     ///
     /// `s' = s - V A' M^-1 (y - A s)`, `V' = V + V A' M^-1 A V`, `M = R - A V A'`.
     pub fn without_equation(&self, e: &Equation) -> Option<Self> {

@@ -23,9 +23,9 @@ const SMALL_ROW: f64 = 0.1;
 /// Error of one row, 1 sd.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RowError {
-    /// Common to the gauge.
+    /// Error that is common to the gauge.
     pub common: f64,
-    /// Entry by entry, a part for each of [`FLOORS`].
+    /// Separate error of each entry, with a part for each of [`FLOORS`].
     pub entries: [f64; FLOORS.len()],
 }
 
@@ -39,7 +39,7 @@ impl From<ModelError> for RowError {
     }
 }
 
-/// Without a model.
+/// Returns the prior of the rows without a model.
 pub(super) fn diffuse_prior(n: usize, k: usize, largest_strain: f64) -> Vec<RowPrior> {
     let sd = DIFFUSE * largest_strain;
     let row = RowPrior {

@@ -7,7 +7,7 @@ use crate::finding::{Finding, Severity};
 /// Share of a run's loads from which one load counts as the whole of it.
 const WHOLE: f64 = 0.8;
 
-/// Findings on refused runs (errors of the table, most likely) and on runs far off that were kept.
+/// Returns the findings on refused runs (errors of the table, most likely) and on runs far off that were kept.
 pub(super) fn findings(
     task: &Task,
     left_out: &[LeftOut],

@@ -23,7 +23,7 @@ pub(super) struct Scatter {
 /// Residuals of one run.
 #[derive(Clone, Debug)]
 pub(super) struct RunResiduals {
-    /// Reading less prediction by gauge, strain; NaN without reading.
+    /// Reading minus prediction by gauge, strain. NaN without a reading.
     pub residual: Vec<f64>,
     /// Mean square of the predicted strain.
     pub q2: f64,
@@ -39,7 +39,7 @@ const SIGNIFICANT: f64 = 1e-3;
 const FEWEST: f64 = 0.9;
 
 impl Scatter {
-    /// Returns zero scatter, with readings that have noise alone.
+    /// Returns zero scatter. The readings then contain only noise.
     pub fn none(n: usize) -> Self {
         Self {
             covariance: vec![0.0; n * n],
@@ -49,8 +49,8 @@ impl Scatter {
         }
     }
 
-    /// Returns the factor on the covariance of each of `repeats` runs of one group. With it, the runs counted as independent give the same
-    /// information on S as the correlated runs together. It is exact for runs of one loading if only scatter counts.
+    /// Returns the factor on the covariance of each of `repeats` runs of one group. With this factor, the runs can be treated as independent. They
+    /// then give the same information on S as the correlated runs together. It is exact for runs of one loading if only scatter counts.
     ///
     /// # Reference
     /// L. Kish, Survey Sampling (1965), eq. 5.4.1: the design effect `1 + (m - 1) rho`.
@@ -114,7 +114,7 @@ impl Scatter {
         }
     }
 
-    /// Root mean square over gauges.
+    /// Returns the root mean square over gauges.
     pub fn rms(&self) -> f64 {
         let n = (self.covariance.len() as f64).sqrt().round() as usize;
         let trace: f64 = (0..n).map(|g| self.covariance[g * n + g]).sum();

@@ -248,7 +248,7 @@ fn cause(row: &Row, off_drawing: Option<ShiftWord>) -> ShiftWord {
     }
 }
 
-/// A finding a notable gauge.
+/// Returns a finding for each notable gauge.
 pub(super) fn findings(task: &Task, shifts: &[GaugeShift]) -> Vec<Finding> {
     let stated = task
         .model

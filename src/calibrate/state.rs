@@ -19,13 +19,13 @@ const ROUNDS: usize = 4;
 pub(super) struct State {
     /// Runs used, by number.
     pub used: Vec<usize>,
-    /// Size of each load: columns are S times these.
+    /// Size of each load. The columns of the fit are the columns of S times these sizes.
     pub scales: Vec<f64>,
     /// Prior of the rows.
     pub prior: Vec<RowPrior>,
     /// Entries of S.
     pub posterior: Posterior,
-    /// One a used run.
+    /// Equation of each used run.
     pub equations: Vec<Equation>,
     /// Residuals of each used run.
     pub lefts: Vec<RunResiduals>,
@@ -35,9 +35,9 @@ pub(super) struct State {
     pub scatter_used: Scatter,
     /// See `scatter_used`.
     pub q2_used: Vec<f64>,
-    /// By used run: how many runs are repeats of it, itself among them.
+    /// Number of repeats of each used run, including the run itself.
     pub repeats: Vec<usize>,
-    /// Runs' worth of freedom that the fit took from each gauge.
+    /// Degrees of freedom, counted in runs, that the fit took from each gauge.
     pub fitted: f64,
     /// Estimated error of the model in each gauge's row; empty without a model.
     pub row_errors: Vec<RowError>,
@@ -50,7 +50,7 @@ pub(super) struct State {
 }
 
 impl State {
-    /// Fits all used runs. Gauges that are `wrongly_wired` do not count for the model's error. `None` if numbers are not finite.
+    /// Fits all used runs. `wrongly_wired` gauges do not contribute to the estimate of the model error. Returns `None` if numbers are not finite.
     pub fn fit_runs(task: &Task, used: &[usize], wrongly_wired: &[usize]) -> Option<Self> {
         let runs: Vec<&KnownRun> = used.iter().filter_map(|&r| task.runs.get(r)).collect();
         let (n, k) = (task.gauges.len(), task.loads.len());
@@ -151,8 +151,8 @@ impl State {
     }
 }
 
-/// Returns S of a posterior with the terms of its intervals, in job units of load. It is for the loads of the job and for readings minus the common
-/// zero. See [`State::lack`] for `lack`.
+/// Returns S of a posterior with the terms of its intervals, in job units of load. The columns are the loads of the job. The readings are relative to
+/// the common zero. See [`State::lack`] for `lack`.
 pub(super) fn sensitivity_of(
     task: &Task,
     (scales, posterior, scatter): (&[f64], &Posterior, &Scatter),

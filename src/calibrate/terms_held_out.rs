@@ -9,7 +9,7 @@ const FEWEST: usize = 3;
 /// Held-out error of the recommended model over the error of the simpler model. A smaller improvement is chance.
 const BETTER: f64 = 0.9;
 
-/// Error of left-out loadings with and without a common zero, by least squares with weights of the gauges.
+/// Returns the error of left-out loadings with and without a common zero, by least squares with weights of the gauges.
 pub(super) fn held_out(task: &Task, loadings: &[Loading]) -> Option<HeldOutError> {
     let own = task.own_loads();
     let whole: Vec<&Loading> = (loadings.iter())
@@ -37,7 +37,7 @@ fn left_out_error(loadings: &[&Loading], k: usize, with_zero: bool) -> Option<f6
     let weight: Vec<f64> = (0..n)
         .map(|g| loadings.iter().map(|l| l.weight[g]).sum::<f64>() / loadings.len() as f64)
         .collect();
-    // One weight for each loading, equal for all gauges: the mean.
+    // Each loading has one weight for all gauges: the mean of the weights of the gauges.
     let of_loading = |l: &Loading| {
         let share = l.weight.iter().zip(&weight).map(|(a, b)| a / b);
         share.sum::<f64>() / n as f64
@@ -80,7 +80,7 @@ fn left_out_error(loadings: &[&Loading], k: usize, with_zero: bool) -> Option<f6
 }
 
 impl LackOfFit {
-    /// Returns whether a common zero is recommended: it reduces the error of left-out runs by more than chance.
+    /// Returns whether a common zero is recommended, because it reduces the error of left-out runs by more than chance.
     pub fn recommends_intercept(&self) -> Option<bool> {
         let held_out = self.held_out?;
         Some(held_out.intercept < BETTER * held_out.linear)

@@ -5,7 +5,7 @@ use crate::finding::Finding;
 use crate::linalg::Matrix;
 use crate::sensitivity::{GaugeNoise, Load, Sensitivity};
 
-/// Known loads of one run: Gaussian, job units.
+/// Known loads of one run as a Gaussian distribution, job units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnownLoads {
     /// Mean by load.
@@ -15,7 +15,7 @@ pub struct KnownLoads {
 }
 
 impl KnownLoads {
-    /// Loads known exactly.
+    /// Returns the loads known exactly.
     pub fn from_exact(mean: Vec<f64>) -> Self {
         let k = mean.len();
         Self {
@@ -40,7 +40,7 @@ pub struct KnownRun {
     pub group: usize,
 }
 
-/// The model's S and how far it is trusted.
+/// S of the model, with its uncertainty.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelPrior {
     /// `n x k`, strain per job unit.
@@ -53,19 +53,19 @@ pub struct ModelPrior {
     pub uncertainty_rel: f64,
 }
 
-/// Changes of rows of gauges that are not at their nominal position, `n x k` each, strain per job unit. They separate a rotated or displaced gauge
-/// from a wrong gain. Zeros for a gauge whose changes are not known. They identify the cause of a shift; [`Move`]s state how far a gauge may be off.
+/// Changes of rows of gauges that are not at their nominal position, `n x k` each, strain per job unit. They distinguish a rotated or displaced gauge
+/// from a wrong gain. A gauge without known changes has zeros. The changes identify the cause of a shift. [`Move`] states how far a gauge may be off.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OffDrawing {
-    /// Per radian, right-handed about the element's normal.
+    /// Change per radian of rotation, right-handed about the element's normal.
     pub turned: Matrix,
-    /// At a right angle to the nominal direction.
+    /// Change of a gauge that is installed at a right angle to the nominal direction.
     pub crossed: Matrix,
-    /// Per length along its axis; zeros if strain is known at one place of an element only.
+    /// Change per length along the axis of the gauge. Zeros if strain is known at only one place of an element.
     pub along: Matrix,
-    /// Per length across it.
+    /// Change per length across the axis of the gauge.
     pub across: Matrix,
-    /// Length over which rows change evenly: about an element.
+    /// Length over which rows change linearly. It is about the size of an element.
     pub reach: f64,
 }
 
@@ -83,13 +83,13 @@ pub enum MoveKind {
 /// The change that a move makes: `row(move) = values - change at + change move`, where `values` and `change` belong to the move `at`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Move {
-    /// Which.
+    /// Kind of move.
     pub kind: MoveKind,
-    /// `n x k`, strain per job unit and unit of the move.
+    /// Change of the rows, `n x k`, strain per job unit and unit of the move.
     pub change: Matrix,
-    /// 1 sd.
+    /// Stated standard deviation of the move.
     pub sd: f64,
-    /// By gauge.
+    /// Size of the move of each gauge at which `values` and `change` apply.
     pub at: Vec<f64>,
 }
 
@@ -120,7 +120,7 @@ pub struct Task {
     pub model: Option<ModelPrior>,
     /// Runs of known load.
     pub runs: Vec<KnownRun>,
-    /// Sums of loads whose intervals count too when runs are left out: coefficients by load.
+    /// Sums of loads whose intervals are also tested when runs are left out: coefficients by load.
     pub sums: Vec<Vec<f64>>,
     /// Strain of the gauges without load, equal in all runs.
     pub common_zero: CommonZero,
@@ -150,10 +150,10 @@ pub struct CalibratedRange {
 /// Test of the linear model against further terms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LackOfFit {
-    /// By kind of term; empty if runs are too few.
+    /// Test of each kind of term. Empty if there are too few runs.
     pub tests: Vec<TermTest>,
-    /// Root mean square error of left-out runs over the largest load, over all loads, by least squares. It has a value for a straight line through
-    /// zero and a value for a line with a common zero. `None` if runs are too few.
+    /// Root mean square error of left-out runs over the largest load, over all loads, by least squares. There is one value for a straight line
+    /// through zero, and one value for a line with a common zero. `None` if runs are too few.
     pub held_out: Option<HeldOutError>,
 }
 
@@ -184,7 +184,7 @@ impl Term {
 pub struct TermTest {
     /// Kind of term.
     pub term: Term,
-    /// Probability of a term of at least this significance if the strain has no such term, over all gauges and terms of the kind.
+    /// Probability of a term of at least this significance if the strain contains no such term. It covers all gauges and all terms of the kind.
     pub p: f64,
 }
 
@@ -200,20 +200,20 @@ pub struct HeldOutError {
 /// Number of left-out runs within their 95 % regions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coverage {
-    /// Runs whose known loads are within their region.
+    /// Number of left-out runs whose known loads are within their 95 % region.
     pub held: usize,
-    /// Runs left out, one by one.
+    /// Number of left-out runs.
     pub of: usize,
-    /// Factor on sigma that was applied for it.
+    /// Applied factor on sigma.
     pub factor: f64,
 }
 
 /// Error of the model as determined from the runs: 1 sd, relative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelError {
-    /// Common to a gauge.
+    /// Error that is common to a gauge.
     pub common: f64,
-    /// Entry by entry.
+    /// Separate error of each entry.
     pub entry: f64,
 }
 
@@ -228,17 +228,17 @@ pub struct Calibration {
     pub common_zero: Vec<f64>,
     /// Tests of further terms.
     pub lack_of_fit: LackOfFit,
-    /// By gauge: how far it moved.
+    /// Shift of each gauge from the model.
     pub shifts: Vec<GaugeShift>,
     /// Installed position and gain by gauge; empty if no tolerance is stated.
     pub as_glued: Vec<InstalledPositionEstimate>,
-    /// Scatter between repeats of one loading over the strain, root mean square over gauges; `None` without repeats.
+    /// Scatter between repeats of one loading, divided by the strain: root mean square over gauges. `None` without repeats.
     pub repeat_scatter_rel: Option<f64>,
     /// Noise over the strain, both root mean squares.
     pub noise_rel: f64,
     /// Runs left out one by one.
     pub left_out: Vec<LeftOut>,
-    /// Their tally.
+    /// Tally of the left-out runs.
     pub coverage: Coverage,
     /// Runs that clearly contradict the other runs and were not used, by number.
     pub refused: Vec<usize>,
@@ -271,7 +271,7 @@ pub struct LeftOut {
     pub alone: usize,
     /// Squared distance of each sum of loads of the task, in units of its variance.
     pub sums: Vec<f64>,
-    /// Residual strain over the expected residual: chi2 over its degrees of freedom.
+    /// Residual strain relative to the expected residual: chi2 divided by its degrees of freedom.
     pub misfit: f64,
 }
 
@@ -315,7 +315,7 @@ impl ShiftWord {
     }
 }
 
-/// One gauge.
+/// Shift of one gauge from the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaugeShift {
     /// Name.
@@ -323,7 +323,7 @@ pub struct GaugeShift {
     /// Distance between model and calibrated row in prior sigmas, root mean square over loads; 0 without a model. The prior has the model error that
     /// the gauges without a reported cause show, without this gauge.
     pub shift: f64,
-    /// Calibrated row along the model's: 1 if its size was right; 1 without a model.
+    /// Size of the calibrated row along the model's row: 1 if the size of the model's row is right, or without a model.
     pub scale: f64,
     /// Cause of the change.
     pub word: ShiftWord,

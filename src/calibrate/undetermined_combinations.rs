@@ -83,7 +83,7 @@ fn combination(task: &Task, terms: &[f64]) -> String {
     out
 }
 
-/// An error without a model, a remark with one.
+/// Returns a finding on undetermined combinations: an error without a model, information with a model.
 pub(super) fn findings(task: &Task, all: &[UndeterminedCombination]) -> Vec<Finding> {
     if all.is_empty() {
         return Vec::new();
@@ -123,13 +123,13 @@ const WIDE: f64 = 0.5;
 /// distribution.
 const ENOUGH: f64 = 5.0;
 
-/// Returns a finding on loads that S determines worse than half of their size, in half of the runs or more. By their number, the runs determine S.
-/// With one run of known loads and many runs with a known sum, that run decides by chance how the sum is shared.
+/// Returns a finding on loads that S does not determine: in half of the runs or more, the half width of the interval exceeds [`WIDE`]. The number of
+/// runs alone would be sufficient for S. With one run of known loads and many runs with a known sum, this single run decides by chance how the sum is
+/// shared.
 ///
-/// The finding is an error if only a sum is known for some runs, or if a load is undetermined. Many runs without a model may leave a half width
-/// larger than the load, because they do not fit their loads. This is an error too. With few runs of known loads it is a warning: their scatter is
-/// badly known, and repeats narrow it. With a model, which determines S, it is a warning too: the cause is then gauges with little strain under a
-/// load.
+/// The finding is an error if only a sum is known for some runs, or if a load is undetermined. It is also an error if there are many runs, no model,
+/// and a half width larger than the load: the runs do not fit their loads. With few runs of known loads it is a warning, because repeats would narrow
+/// the intervals. With a model it is also a warning, because some gauges then have little strain under a load.
 pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Finding> {
     let errors = ErrorModel {
         noise: task.noise,

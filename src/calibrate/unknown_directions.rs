@@ -10,7 +10,7 @@ use crate::linalg::{Matrix, dense, spd};
 
 /// Share of the largest eigenvalue of the loads' squares from which a combination counts as applied.
 pub(super) const SPANNED: f64 = 1e-6;
-/// Share of a load's size from which its sd makes it unknown.
+/// Standard deviation of a load, divided by its size, from which the load counts as unknown.
 pub(super) const UNKNOWN: f64 = 0.5;
 /// Variance of a load along a free direction in a run, in units of its size squared and of the number of runs. All runs together then determine the
 /// size of its column with an sd of five times that size, which is no information.
@@ -20,7 +20,7 @@ const SAME: f64 = 1e-6;
 
 /// Known and unknown part of the loads of some runs, in loads of unit size.
 pub(super) struct UnknownDirections {
-    /// Known part of the loads by run: the loads without their unknown directions.
+    /// Known parts of the loads by run: the loads without their components along unknown directions.
     pub parts: Vec<Vec<f64>>,
     /// Orthonormal directions along which the known part of the loads is zero in every run.
     pub untold: Vec<Vec<f64>>,
@@ -80,20 +80,20 @@ impl UnknownDirections {
 }
 
 impl FreeDirections<'_> {
-    /// Nothing.
+    /// No free direction.
     pub const NONE: FreeDirections<'static> = FreeDirections {
         directions: &[],
         variance: 0.0,
     };
 
-    /// Covariance of loads `l` and `m`.
+    /// Returns the covariance of loads `l` and `m`.
     pub fn covariance(&self, l: usize, m: usize) -> f64 {
         let each = self.directions.iter().map(|z| z[l] * z[m]);
         self.variance * each.sum::<f64>()
     }
 }
 
-/// Directions along which the loads of a run, of unit size, have an sd of more than [`UNKNOWN`], orthonormal.
+/// Returns the directions along which the loads of a run, of unit size, have an sd of more than [`UNKNOWN`], orthonormal.
 pub(super) fn wide_directions(loads: &KnownLoads, scales: &[f64]) -> Vec<Vec<f64>> {
     let k = scales.len();
     if loads.covariance.iter().all(|v| *v == 0.0) {

@@ -382,7 +382,7 @@ pub struct FilesArguments {
 }
 
 impl FilesArguments {
-    /// The first file.
+    /// Returns the first file.
     pub(super) fn first_file(&self) -> &Path {
         self.files.first().map_or(Path::new(""), |f| f)
     }
@@ -406,7 +406,7 @@ pub struct InitArguments {
 }
 
 impl InitArguments {
-    /// The deck, where one is given.
+    /// Returns the path of the deck. It is empty if no deck is given.
     pub(super) fn main(&self) -> &Path {
         self.deck.as_deref().unwrap_or(Path::new(""))
     }

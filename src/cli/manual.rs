@@ -1,4 +1,4 @@
-//! Man pages, one a command.
+//! Man pages, one for each command.
 
 use super::Arguments;
 use super::arguments::ManArguments;

@@ -67,7 +67,7 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Fleet(a) => {
             let run = Run::from_arguments(&a.common, &a.job);
             let folder = run.folder(&a.job);
-            // Shards run at the same time, so that each writes its answer into a separate folder.
+            // Shards run at the same time. Each therefore writes its answer into a separate folder.
             let answer = match a.shard {
                 Some(s) => folder.join(format!("shard-{}-of-{}", s.number, s.of)),
                 None => folder.clone(),

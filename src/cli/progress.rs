@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// How much of a stage is done.
+/// Finished part of a stage.
 #[derive(Default)]
 struct Meter {
     done: AtomicU64,
@@ -39,12 +39,12 @@ impl Meter {
     }
 }
 
-/// How long work may take before a progress line appears.
+/// Time after which a progress line appears.
 const PATIENCE: Duration = Duration::from_secs(1);
 /// Period at which the remaining time is updated.
 const TICK: Duration = Duration::from_millis(250);
 
-/// A line on standard error for the stage in progress; silent if standard error is not a terminal.
+/// Line of standard error with the stage in progress. Nothing is printed if standard error is not a terminal.
 #[derive(Default)]
 pub struct Terminal {
     meter: Arc<Meter>,

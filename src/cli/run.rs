@@ -39,13 +39,13 @@ impl Run {
         }
     }
 
-    /// Returns `--out`, else `<job name>.out` next to the job.
+    /// Returns the folder stated by `--out`. Without `--out` it is `<job name>.out` next to the job.
     pub fn folder(&self, path: &Path) -> PathBuf {
         let asked = self.common.out.clone();
         asked.unwrap_or_else(|| default_folder(path))
     }
 
-    /// Runs `ask` on a job and writes the outcome into `--out`, else `<job name>.out` next to the job.
+    /// Runs `ask` on a job and writes the outcome to `--out`, or to `<job name>.out` next to the job.
     pub fn job<A>(
         &self,
         path: &Path,
@@ -58,7 +58,7 @@ impl Run {
         self.job_into(path, &self.folder(path), ask)
     }
 
-    /// Asks a question of a job, writes the outcome into `folder`.
+    /// Runs a computation on a job and writes the outcome into `folder`.
     pub fn job_into<A>(
         &self,
         path: &Path,
@@ -72,7 +72,7 @@ impl Run {
         self.ask_into(folder, |cx| ask(&Job::read(path, cx.files)?, cx))
     }
 
-    /// Runs `ask` on files and writes the outcome into `--out`, else `<name>.out` next to the first file.
+    /// Runs `ask` on files and writes the outcome to `--out`, or to `<name>.out` next to the first file.
     pub fn files<A>(
         &self,
         first: &Path,
@@ -85,7 +85,7 @@ impl Run {
         self.ask_into(&self.folder(first), ask)
     }
 
-    /// Asks a question, writes the outcome into `folder`.
+    /// Runs a computation and writes the outcome into `folder`.
     pub fn ask_into<A>(
         &self,
         folder: &Path,
@@ -104,7 +104,8 @@ impl Run {
         self.print(done, Some(folder))
     }
 
-    /// Recovers the loads of a job into `--out`, else `<job name>.out` next to the job; loads of a record are written as they come.
+    /// Recovers the loads of a job and writes them to `--out`, or to `<job name>.out` next to the job. Loads of a record are written during the
+    /// computation.
     pub fn recover(&self, path: &Path) -> ExitCode {
         let folder = self.folder(path);
         let done = self.run_in_pool(|cx| {
@@ -114,7 +115,7 @@ impl Run {
         self.print(done, Some(&folder))
     }
 
-    /// Checks files: written only with `--out`; their faults are part of the answer.
+    /// Checks files. The answer contains the faults of the files. Files are written only with `--out`.
     pub fn check(&self, files: &[PathBuf]) -> ExitCode {
         let folder = self.common.out.as_deref();
         let done = self.run_in_pool(|cx| {
@@ -233,7 +234,7 @@ impl Run {
         let faults = outcome.answer.faults();
         let summary = outcome.summary();
         let texts = Texts {
-            // Faults go to standard error, and their summary too.
+            // Faults and their summary go to standard error.
             summary: if faults.is_empty() {
                 summary.as_str()
             } else {

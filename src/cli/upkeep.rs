@@ -11,9 +11,9 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
-/// Runs the command that made a folder again, into another folder, and compares both.
+/// Runs the command of a folder again with another output folder, and compares both folders.
 pub(super) fn verify(a: &VerifyArguments) -> ExitCode {
-    // The scratch folder is next to the folder, because paths in the jobs that a command writes are relative to it.
+    // Jobs that a command writes contain paths relative to their folder. The scratch folder is next to the given folder, so these paths agree.
     let folder = std::fs::canonicalize(&a.folder).unwrap_or_else(|_| a.folder.clone());
     let beside = format!(".strainbridge-verify-{}", std::process::id());
     let scratch = Scratch(folder.with_file_name(beside));

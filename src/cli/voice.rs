@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
 
-/// How much is printed.
+/// Amount of printed text.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Level {
     /// Faults, and findings of severity error.
@@ -33,7 +33,7 @@ pub(super) struct Voice {
 }
 
 impl Voice {
-    /// Returns the settings of printed text that the arguments ask for; in colour if stderr is a terminal and `NO_COLOR` is not set.
+    /// Returns the settings of printed text that the arguments request. Text has colours if stderr is a terminal and `NO_COLOR` is not set.
     pub fn from_arguments(common: &CommonArguments) -> Self {
         let level = match (common.quiet, common.verbose) {
             (true, _) => Level::Quiet,
@@ -117,7 +117,7 @@ impl Voice {
         }
     }
 
-    /// Columns of the terminal.
+    /// Returns the columns of the terminal.
     pub fn width(self) -> usize {
         self.room.width
     }
@@ -159,7 +159,7 @@ impl Voice {
         write_to_stderr(&text_of(&wrap_lines(&time, self.room.width, 4)));
     }
 
-    /// Prints faults on standard error; also as JSON on standard output if JSON is asked for.
+    /// Prints faults on standard error, and as JSON on standard output if JSON is requested.
     pub fn faults(self, faults: &[Fault]) {
         if self.json {
             let json = json!({ "faults": faults });

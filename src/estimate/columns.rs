@@ -5,7 +5,7 @@ use crate::linalg::tall::{solve, triangle};
 /// Column of whitened rows and the prior of its coefficient (mean 0).
 #[derive(Clone, Debug)]
 pub struct PriorColumn {
-    /// Entries, each over the standard deviation of its reading.
+    /// Entries of the column, each divided by the standard deviation of its reading.
     pub rows: Vec<f64>,
     /// Standard deviation of the coefficient; `None` if there is no prior.
     pub prior: Option<f64>,
@@ -14,13 +14,13 @@ pub struct PriorColumn {
 /// Solution of the model for one target.
 #[derive(Clone, Debug)]
 pub struct TargetSolution {
-    /// Coefficients, one a column.
+    /// Coefficient of each column.
     pub x: Vec<f64>,
     /// Covariance of the coefficients `(A'A)^-1`, by rows.
     pub covariance: Vec<Vec<f64>>,
     /// Squared residual of the data rows.
     pub chi2: f64,
-    /// Squared coefficients over their priors.
+    /// Sum of the squared coefficients, each divided by the variance of its prior.
     pub penalty: f64,
     /// Residual: `target - A x` of the data rows, then the residual of the priors.
     pub residual: Vec<f64>,
@@ -106,7 +106,7 @@ impl Basis {
         out
     }
 
-    /// The orthonormal columns, rows of priors at their end.
+    /// Returns the orthonormal columns. The rows of the priors follow the rows of the readings.
     pub fn columns(&self) -> &[Vec<f64>] {
         &self.columns
     }
@@ -133,7 +133,7 @@ impl Basis {
         }
     }
 
-    /// Returns the norm of the part of a column that other columns do not span. It is one over the standard deviation of the coefficient.
+    /// Returns the norm of the part of a column that other columns do not span. It is the reciprocal of the standard deviation of the coefficient.
     pub fn left_of(&self, column: &[f64]) -> f64 {
         let mut c = column.to_vec();
         c.extend(vec![0.0; self.n_priors]);
@@ -143,7 +143,7 @@ impl Basis {
         if after <= 1e-7 * before { 0.0 } else { after }
     }
 
-    /// Fall of the squared residual by further free columns, one after the other, and the coefficient of the first.
+    /// Returns the reduction of the squared residual by each further free column in sequence, and the coefficient of the first column.
     pub fn gain(&self, residual: &[f64], further: &[Vec<f64>]) -> (f64, f64) {
         let mut own = Self {
             columns: vec![],

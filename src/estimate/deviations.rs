@@ -13,7 +13,8 @@ fn largest_square() -> f64 {
         .powi(2)
 }
 
-/// Differences of many samples from true values, over their stated standard deviation. [`Deviations::is_significant`] tests the stated intervals.
+/// Differences of many samples from the true values, in units of their stated standard deviation. [`Deviations::is_significant`] tests the stated
+/// intervals.
 ///
 /// # Example
 /// Two records of 10 independent samples, one with mean squares as stated and one three times as large:

@@ -59,7 +59,7 @@ pub struct LinearEstimate {
     pub gain: Matrix,
     /// Diagonal of the hat matrix `A gain`, by reading.
     pub leverage: Vec<f64>,
-    /// Rank of the weighted system; below `k`, `f` is the smallest of many solutions.
+    /// Rank of the weighted system. Below `k` many solutions fit equally, and `f` is the smallest one.
     pub rank: usize,
     /// `(y - A f)' C^-1 (y - A f)`, priors left out.
     pub chi2: f64,

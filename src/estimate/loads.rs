@@ -81,7 +81,7 @@ impl LoadEstimate {
         self.names.extend_from_slice(names);
     }
 
-    /// The 95 % interval of load `i`.
+    /// Returns the 95 % interval of load `i`.
     pub fn interval(&self, i: usize) -> [f64; 2] {
         let half = self.coverage_factor * self.sigma(i);
         let v = self.values.get(i).copied().unwrap_or(f64::NAN);

@@ -2,7 +2,7 @@
 
 use crate::linalg::Matrix;
 
-/// Returns the median: half of the values are smaller. Of an even number it is the upper one of the middle. `None` for an empty list.
+/// Returns the median. For an even number of values, it is the larger of the two middle values. `None` for an empty list.
 pub fn median(mut values: Vec<f64>) -> Option<f64> {
     let middle = values.len() / 2;
     if values.is_empty() {
@@ -59,8 +59,8 @@ pub fn effective_rows(rows: &Matrix) -> f64 {
     rows.nrows() as f64 / (1.0 + 2.0 * squares)
 }
 
-/// Returns the share of independent rows in these rows, a sample each in order of time: `1 / (1 + 2 sum_k r_k)`. White noise has 1: its
-/// correlations reach four standard deviations once in 30,000 records.
+/// Returns the number of independent rows divided by the number of rows. Each row is a sample, in order of time: `1 / (1 + 2 sum_k r_k)`. White noise
+/// has 1: its correlations reach four standard deviations once in 30,000 records.
 ///
 /// # Reference
 /// G. V. Bayley and J. M. Hammersley, J. R. Stat. Soc. Suppl. 8 (1946) 184.
@@ -69,7 +69,7 @@ pub fn independent_share(rows: &Matrix) -> f64 {
     (1.0 / (1.0 + 2.0 * correlations(rows, 4.0).sum::<f64>())).max(least)
 }
 
-/// Root mean square of the finite values; 0 without any.
+/// Returns the root mean square of the finite values. It is 0 if there are no finite values.
 pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
     let (mut sum, mut n) = (0.0, 0usize);
     for v in values.filter(|v| v.is_finite()) {

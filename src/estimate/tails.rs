@@ -19,10 +19,10 @@ fn evaluate_tail(x: f64, tail: impl Fn(f64) -> Option<f64>) -> f64 {
 
 /// Probability that a stated interval or region contains the truth.
 pub const COVERAGE: f64 = 0.95;
-/// Probability of the number of intervals that contain the truth, below which intervals are too narrow.
+/// Probability of a coverage as low as observed, below which intervals count as too narrow.
 pub const TOO_FEW: f64 = 0.01;
 
-/// Returns the probability that at most `held` of `of` independent 95 % intervals contain the truth; 1 for none.
+/// Returns the probability that at most `held` of `of` independent 95 % intervals contain the truth. It is 1 if `of` is 0.
 ///
 /// # Example
 /// ```
@@ -39,7 +39,7 @@ pub fn chance_of_so_few(held: usize, of: usize) -> f64 {
     Binomial::new(COVERAGE, of as u64).map_or(1.0, |b| b.cdf(held as u64))
 }
 
-/// Returns the upper tail probability of chi-square with `dof` degrees of freedom; 1 without any. A value that is not a number gives 1 too.
+/// Returns the upper tail probability of chi-square with `dof` degrees of freedom. It is 1 if `dof` is 0 or the value is not a number.
 ///
 /// # Example
 /// ```

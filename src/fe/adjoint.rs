@@ -23,7 +23,7 @@ use rayon::prelude::*;
 /// A part of a reading: `coefficient . (exx, eyy, gxy)` of a shell, in the frame of its strain output.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrainTerm {
-    /// Which.
+    /// Shell of the term.
     pub shell: ShellIx,
     /// Side.
     pub surface: Surface,
@@ -37,9 +37,9 @@ pub struct StrainTerm {
 #[derive(Debug)]
 pub struct Adjoint<'a> {
     prepared: PreparedModel<'a>,
-    /// By load; empty for temperatures, whose forces are the elements' own and change with them.
+    /// Forces of each load. Empty for temperatures, because their forces come from the elements and change with these.
     loads: Vec<Vec<[f64; 6]>>,
-    /// By reading.
+    /// Forces of each reading.
     readings: Vec<Vec<[f64; 6]>>,
 }
 
@@ -87,13 +87,13 @@ impl<'a> Adjoint<'a> {
         })
     }
 
-    /// The model.
+    /// Returns the model.
     pub fn model(&self) -> &Model {
         self.prepared.model
     }
 
-    /// Change of every reading under every load for each 1 that `d` grows by, `n_readings x n_loads` by rows: strain per unit load; zero
-    /// for temperatures.
+    /// Returns the derivative of every reading under every load by the design variable `d`, `n_readings x n_loads` by rows, strain per unit load.
+    /// Temperatures contribute zero.
     ///
     /// # Errors
     /// Shells that can't be formed.
@@ -132,7 +132,7 @@ impl<'a> Adjoint<'a> {
     }
 }
 
-/// Returns the adjoint forces of a reading: by grid of its shells, the reading per unit of displacement.
+/// Returns the adjoint forces of a reading: the derivative of the reading by the displacement of each grid of its shells.
 pub(super) fn forces_of(
     prepared: &PreparedModel<'_>,
     terms: &[StrainTerm],

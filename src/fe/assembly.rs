@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// Numbering of the unknowns: groups are the grids with a free dof that an element touches.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Numbering {
-    /// Group of each grid; `None`: no unknown there.
+    /// Group of each grid. `None` if the grid has no unknown.
     pub(crate) group: Vec<Option<u32>>,
     /// Grid of each group.
     pub(crate) grid: Vec<u32>,
@@ -20,12 +20,12 @@ pub(crate) struct Numbering {
 }
 
 impl Numbering {
-    /// Unknowns in each group.
+    /// Returns the unknowns in each group.
     pub(crate) fn sizes(&self) -> Vec<u8> {
         self.free.iter().map(|b| b.count_ones() as u8).collect()
     }
 
-    /// Grid and dof (0 to 5) of an unknown; `start` is the first unknown of each group.
+    /// Returns grid and dof (0 to 5) of an unknown. `start` is the first unknown of each group.
     pub(super) fn dof_of(&self, unknown: usize, start: &[usize]) -> (usize, usize) {
         let g = start.partition_point(|&s| s <= unknown) - 1;
         let dof = (0..6)
@@ -35,7 +35,7 @@ impl Numbering {
         (self.grid[g] as usize, dof)
     }
 
-    /// Values at the unknowns of a field over all dofs.
+    /// Writes the values of a field over all dofs at the unknowns to `out`.
     pub(crate) fn pack(&self, field: &[[f64; 6]], out: &mut [f64]) {
         let mut at = 0;
         for (g, free) in self.grid.iter().zip(&self.free) {
@@ -46,7 +46,7 @@ impl Numbering {
         }
     }
 
-    /// A field over all dofs, zero where there is no unknown.
+    /// Returns a field over all dofs, with zeros at dofs without an unknown.
     pub(crate) fn unpack(&self, values: &[f64]) -> Vec<[f64; 6]> {
         let mut field = vec![[0.0; 6]; self.group.len()];
         let mut at = 0;
@@ -102,7 +102,7 @@ fn find_reached_dofs(reduction: &Reduction, grids: &[GridIx], dofs: u8) -> Vec<(
     list
 }
 
-/// The assembled stiffness T' K T.
+/// Returns the assembled stiffness T' K T.
 ///
 /// # Errors
 /// Elements that can't be formed; nothing to solve.
@@ -160,7 +160,7 @@ pub(crate) fn assemble(
     })
 }
 
-/// Turns an element's matrix to the displacement frames of its grids.
+/// Transforms an element's matrix to the displacement frames of its grids.
 pub(super) fn to_displacement_frames(axes: &[Option<Mat3>], k: &mut ElementMatrix) {
     let n = k.n();
     for (b, g) in k.grids.iter().enumerate() {

@@ -6,7 +6,7 @@ use crate::linalg::{DMatrix, sparse::BlockMatrix};
 use crate::model::Model;
 use rayon::prelude::*;
 
-/// A direction at a grid is without stiffness when it has less than this share of the grid's stiffest one.
+/// Share of the largest stiffness at a grid, below which a direction counts as without stiffness.
 pub(super) const EPZERO: f64 = 1e-8;
 /// With AUTOSPC off: only rounding counts as no stiffness.
 const NOTHING: f64 = 1e-13;
@@ -18,14 +18,14 @@ const MIN_GRIDS: usize = 256;
 /// Share of the loads that held directions may take: the share in a solution whose equations are satisfied to six digits.
 const LOST: f64 = 1e-6;
 
-/// A direction at a grid that gets a spring because it has no other stiffness.
+/// A direction at a grid without other stiffness, which gets a spring.
 #[derive(Clone, Debug)]
 pub(crate) struct Weak {
-    /// Unknown with the spring: the one that moves most along the direction.
+    /// Unknown at which the spring acts: the unknown that moves most along the direction.
     pub(crate) unknown: usize,
     /// Stiffness of this spring.
     pub(crate) k: f64,
-    /// Whether there is any stiffness along it, beyond rounding.
+    /// Whether the direction has any stiffness beyond rounding.
     pub(crate) some: bool,
     /// First unknown of the translations, or rotations, of the grid.
     first: usize,
@@ -34,7 +34,7 @@ pub(crate) struct Weak {
 }
 
 impl Weak {
-    /// Returns the part of a load along the direction, 0 if the load does not act along it; both at the unknowns.
+    /// Returns the part of a load along the direction; 0 if the load does not act along the direction. Load and result are at the unknowns.
     pub(super) fn load_along(&self, packed: &[f64]) -> f64 {
         let pairs = packed.iter().skip(self.first).zip(&self.direction);
         let (along, square) = pairs.fold((0.0, 0.0), |(a, s), (f, d)| (a + f * d, s + f * f));
@@ -139,7 +139,7 @@ fn describe_unknowns(
     format!("grid/dof {}", list_few(&names))
 }
 
-/// That directions were held.
+/// Returns the finding that springs hold directions without stiffness.
 pub(super) fn autospc_finding(
     model: &Model,
     assembled: &AssembledStiffness,
@@ -161,8 +161,8 @@ pub(super) fn autospc_finding(
     })
 }
 
-/// Returns the sizes of the forces and of the moments at the unknowns, the reference for held loads. They are sums, because a load spread over a
-/// million grids is small at each. `reach`, the size of the model, converts forces to moments.
+/// Returns the sizes of the forces and of the moments at the unknowns, the reference for held loads. They are sums, because a load that is spread
+/// over a million grids is small at each grid. `reach`, the size of the model, converts forces to moments.
 pub(super) fn load_sizes(numbering: &Numbering, acting: &[f64], reach: f64) -> [f64; 2] {
     let mut sizes = [0.0; 2];
     let mut values = acting.iter();

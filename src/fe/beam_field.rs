@@ -21,12 +21,12 @@ pub struct BeamField {
     pub axial: Vec<Vec<f64>>,
     /// Section forces of solved elements; `None` for strain of result files.
     pub(crate) solved: Option<SolvedBeams>,
-    /// Elements of result files whose strain between two stations is not determined: loads act between their ends, or the section
-    /// changes along them.
+    /// Elements of result files whose strain between stations is not determined, because loads act between the ends or the section changes along the
+    /// element.
     pub(crate) stations_alone: BTreeSet<BeamIx>,
 }
 
-/// Section forces and sections of solved elements, which determine their strain at every station; rows as in [`BeamField::elements`].
+/// Section forces and sections of solved elements. They determine the strain at every station. The rows have the order of [`BeamField::elements`].
 #[derive(Clone, Debug)]
 pub(crate) struct SolvedBeams {
     pub(crate) shapes: Arc<Vec<BeamShape>>,
@@ -94,7 +94,7 @@ impl BeamField {
         self.stations_alone.contains(&beam)
     }
 
-    /// Marks bars and beams with loads between their ends: strain between their stations is not determined by the result.
+    /// Marks bars and beams with loads between their ends. The result does not determine their strain between stations.
     pub fn mark_loaded(&mut self, beams: impl IntoIterator<Item = BeamIx>) {
         self.stations_alone.extend(beams);
     }

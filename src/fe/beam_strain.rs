@@ -10,7 +10,7 @@ use crate::model::{BeamIx, Model};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Strain at C, D, E, F of every bar and beam, one field a displacement field (basic frame, by grid).
+/// Computes the strain at C, D, E, F of every bar and beam, one field for each displacement field (basic frame, by grid).
 ///
 /// # Errors
 /// Beams that can't be formed.

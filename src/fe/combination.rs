@@ -5,7 +5,7 @@ use super::relief::Balance;
 use super::{BeamField, CaseResult, ShellField, SolidField};
 use std::collections::BTreeMap;
 
-/// Returns the sum of results, each times its factor; `None` where they are of different elements or stations, or there are none.
+/// Returns the sum of results, each multiplied by its factor. `None` if the results have different elements or stations, or if there are no results.
 pub fn combine_results(
     subcase: u32,
     label: String,
@@ -54,7 +54,7 @@ pub fn combine_results(
     terms.iter().all(|t| same_places(first, t.1)).then_some(sum)
 }
 
-/// Returns the balance of a combination; `None` where no term is balanced by inertia.
+/// Returns the balance of a combination. `None` if inertia balances no term.
 pub fn combine_balances(subcase: u32, terms: &[(f64, &Balance)]) -> Option<Balance> {
     let mut sum: Option<Balance> = None;
     for (factor, b) in terms {
@@ -73,7 +73,7 @@ pub fn combine_balances(subcase: u32, terms: &[(f64, &Balance)]) -> Option<Balan
     sum
 }
 
-/// Returns the reactions of a combination; `None` where no term has any.
+/// Returns the reactions of a combination. `None` if no term has reactions.
 pub fn combine_reactions(subcase: u32, terms: &[(f64, &Reactions)]) -> Option<Reactions> {
     let mut sum: Option<Reactions> = None;
     let mut grids: BTreeMap<u32, [f64; 6]> = BTreeMap::new();

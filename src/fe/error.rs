@@ -94,7 +94,7 @@ pub enum FeError {
         dof: u8,
         /// Subcase id.
         subcase: u32,
-        /// Where AUTOSPC holds it: the share of the stiffest direction of the grid that it has less than.
+        /// If AUTOSPC holds this dof: the limit of its stiffness, as a share of the stiffest direction of the grid.
         softer: Option<f64>,
         /// Place of the grid in the deck.
         at: Place,

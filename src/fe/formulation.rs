@@ -4,7 +4,7 @@ use crate::finding::{Finding, Severity, list_few};
 use crate::model::{Joint, JointCard, Model, RigidElement, RigidKind};
 use nastran::cards::ShellShape;
 
-/// Returns findings on elements that are solved with another formulation than their card names.
+/// Returns findings on elements that the solver computes with another formulation than Nastran.
 pub(super) fn formulations(model: &Model) -> Vec<Finding> {
     let told: [(&[ShellShape], &str, &str); 2] = [
         (
@@ -142,7 +142,7 @@ fn idle_warping_points(model: &Model) -> Option<Finding> {
     })
 }
 
-/// Whether the two forces of a CGAP leave a moment: stiffness in a direction off the line between its grids.
+/// Returns whether the two forces of a CGAP leave a moment, because a stiffness acts in a direction off the line between its grids.
 pub(super) fn gap_leaves_moment(j: &Joint) -> bool {
     /// Sine of an angle that only the rounding of coordinates gives.
     const ROUNDING: f64 = 1e-9;
@@ -237,7 +237,7 @@ fn ground_of_rigid_bushes(model: &Model) -> Option<Finding> {
     )
 }
 
-/// Whether a rigid element ties dofs of one grid to each other, and through them to ground.
+/// Returns whether a rigid element connects dofs of one grid with each other, and through them with ground.
 pub(super) fn held_off_axes(r: &RigidElement) -> bool {
     match &r.kind {
         RigidKind::Equations { equations, .. } => equations.iter().any(|terms| {

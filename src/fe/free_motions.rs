@@ -15,7 +15,7 @@ use std::ops::Range;
 /// Largest resistance to a free rigid motion, as a share of the resistance to the motion that is resisted most.
 const FREE_MOTION: f64 = 1e-10;
 
-/// Grids that belong to the structure: of an element, or tied to it.
+/// Returns the grids that belong to the structure: grids of elements, and grids tied to such grids.
 pub(super) fn find_structure_grids(model: &Model, reduction: &Reduction) -> Vec<bool> {
     let mut touched = vec![false; model.grids.len()];
     for element in model.elements() {
@@ -44,14 +44,14 @@ pub(super) struct RigidStructure<'a> {
     pub(super) reduction: &'a Reduction,
     /// Grids that belong to the structure, scalar points left out.
     pub(super) touched: &'a [bool],
-    /// Point about which the motions turn.
+    /// Point about which the motions rotate.
     pub(super) centre: Vec3,
     /// Largest distance of a grid from the centre.
     pub(super) size: f64,
 }
 
 impl RigidStructure<'_> {
-    /// Returns the motions that nothing resists, one a column: three translations, three rotations about the centre.
+    /// Returns the motions that nothing resists, one in each column: three translations, three rotations about the centre.
     pub(super) fn free_motions(&self) -> DMatrix<f64> {
         let mut resisted = self.by_constraints();
         self.add_springs(&mut resisted);
@@ -201,12 +201,12 @@ fn add(resisted: &mut Matrix6<f64>, row: Vector6<f64>) {
     *resisted += row * row.transpose();
 }
 
-/// Rigid motions of a model without a selected SPC set, by what resists them.
+/// Rigid motions of a model without a selected SPC set, grouped by what resists them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct HeldMotions {
     /// Motions that nothing resists.
     pub(super) free: usize,
-    /// Motions that springs to ground resist, and no constraint of a grid.
+    /// Motions that springs to ground resist, but no constraint of a grid.
     pub(super) by_springs: usize,
 }
 
@@ -238,7 +238,7 @@ fn with_structure<T>(model: &Model, with: impl FnOnce(&RigidStructure<'_>) -> T)
     }))
 }
 
-/// Returns how the rigid motions of a model are held by its springs to ground and the permanent constraints of its grids.
+/// Returns which rigid motions of a model are resisted by its springs to ground and by the permanent constraints of its grids.
 pub(super) fn held_motions(model: &Model) -> HeldMotions {
     let unheld = HeldMotions {
         free: 6,

@@ -3,7 +3,7 @@
 use crate::model::{Frame, Grid, Mat3, Model, Vec3};
 use nastran::cards::CoordKind;
 
-/// Axes of a coordinate system at a point: rows are its first, second and third direction in basic.
+/// Returns the axes of a coordinate system at a point. The rows are the first, second and third direction in basic.
 ///
 /// Cylindrical: radial, tangential, axial. Spherical: r, theta (down from the axis), phi. On the axis the azimuth is zero.
 pub(crate) fn axes_at(frame: &Frame, x: &Vec3) -> Mat3 {
@@ -30,7 +30,7 @@ pub(crate) fn axes_at(frame: &Frame, x: &Vec3) -> Mat3 {
     turned * frame.axes
 }
 
-/// Axes of each grid's displacement frame; `None` for basic.
+/// Returns the axes of each grid's displacement frame. `None` stands for the basic frame.
 pub(super) fn grid_axes(model: &Model) -> Vec<Option<Mat3>> {
     let axes = |g: &Grid| match g.cd.0 {
         0 => None,
@@ -39,7 +39,7 @@ pub(super) fn grid_axes(model: &Model) -> Vec<Option<Mat3>> {
     model.grids.iter().map(axes).collect()
 }
 
-/// Six components from the grid's displacement frame to basic.
+/// Transforms six components from the grid's displacement frame to basic.
 pub(crate) fn to_basic(axes: &Option<Mat3>, u: [f64; 6]) -> [f64; 6] {
     match axes {
         None => u,
@@ -47,7 +47,7 @@ pub(crate) fn to_basic(axes: &Option<Mat3>, u: [f64; 6]) -> [f64; 6] {
     }
 }
 
-/// Six components from basic to the grid's displacement frame.
+/// Transforms six components from basic to the grid's displacement frame.
 pub(super) fn to_local(axes: &Option<Mat3>, u: [f64; 6]) -> [f64; 6] {
     match axes {
         None => u,

@@ -45,7 +45,7 @@ pub(super) fn grounded_points(model: &Model, reduction: &Reduction) -> Vec<bool>
     grounded
 }
 
-/// Returns every spring and bush to ground. A grounded scalar point is ground to the springs between it and grids.
+/// Returns every spring and bush to ground. For springs between grids and a grounded scalar point, this point is ground.
 pub(super) fn grounds(model: &Model, reduction: &Reduction) -> Vec<Ground> {
     let scalar = |g: GridIx| model.grids[g.us()].is_scalar();
     let state = |g: GridIx| reduction.state[6 * g.us()];
@@ -76,7 +76,7 @@ pub(super) fn grounds(model: &Model, reduction: &Reduction) -> Vec<Ground> {
     all
 }
 
-/// Held grids that springs and bushes alone join to the structure: they represent ground and are not part of the moving structure.
+/// Returns held grids that only springs and bushes join to the structure. They represent ground and are not part of the moving structure.
 pub(super) fn anchors(model: &Model, reduction: &Reduction) -> Vec<bool> {
     if model.springs.is_empty() && model.bushes.is_empty() {
         return vec![false; model.grids.len()];
@@ -103,7 +103,7 @@ pub(super) fn anchors(model: &Model, reduction: &Reduction) -> Vec<bool> {
     anchors
 }
 
-/// Springs and bushes between the structure and an anchor.
+/// Returns the springs and bushes between the structure and an anchor.
 pub(super) fn to_anchors(model: &Model, reduction: &Reduction) -> Vec<Ground> {
     let anchors = anchors(model, reduction);
     let is_anchor = |g: GridIx| anchors[g.us()];
@@ -131,7 +131,7 @@ pub(super) fn to_anchors(model: &Model, reduction: &Reduction) -> Vec<Ground> {
     all
 }
 
-/// The forces that these put onto the grids, basic frame, of displacements in the same.
+/// Returns the forces that the springs and bushes to ground apply to the grids under given displacements, basic frame.
 ///
 /// # Errors
 /// Elements that can't be formed.

@@ -27,7 +27,7 @@ const ROUNDING: f64 = 1e-12;
 pub(super) struct Accuracy {
     /// Bound on the relative error of a frequency.
     pub(super) frequency: f64,
-    /// Bound on the residual of a pair over its value: the error of a shape is this over the distance to the next value.
+    /// Bound on the residual of a pair, divided by its value. The error of a shape is this bound divided by the distance to the next value.
     pub(super) residual: f64,
 }
 
@@ -49,11 +49,11 @@ pub(super) struct ModeRequest<'a> {
 pub(super) struct Pair {
     /// Cycles per unit of time.
     pub(super) frequency: f64,
-    /// With unit generalised mass, basic frame.
+    /// Shape with unit generalised mass, basic frame.
     pub(super) shape: Field,
     /// |K^-1 M q - theta q| over theta = 1 / omega^2, in the norm of M.
     pub(super) residual: f64,
-    /// Distance to the nearest other value over its own, both of 1 / omega^2.
+    /// Distance to the nearest other value, divided by the value of this mode. Values are 1 / omega^2.
     pub(super) gap: f64,
 }
 
@@ -151,7 +151,7 @@ pub(super) fn find_lowest_modes(
     drop(start);
     let mut basis: Vec<Field> = Vec::new();
     let mut masses = mass_times(mass, &block);
-    // `projected` is Q' M A Q by basis vectors; `along` has its columns for the last block.
+    // `projected` is Q' M A Q over the basis vectors. `along` contains the columns of Q' M A Q for the last block.
     let mut projected = DMatrix::<f64>::zeros(0, 0);
     let mut along = DMatrix::zeros(0, block.len());
     let found = loop {
@@ -244,7 +244,8 @@ fn orthonormalize_block(
     let scale = block.iter().zip(&masses).map(square).fold(0.0, f64::max);
     drop(masses);
     if !basis.is_empty() {
-        // A Lanczos step couples a block only to the last two. Their components are removed first, then the rounding error along all basis vectors.
+        // A Lanczos step couples a block only to the last two blocks. Components along these blocks are removed first, then the rounding
+        // errors along all vectors.
         let first = basis.len().saturating_sub(2 * BLOCK);
         let tied = along.rows(first, basis.len() - first).into_owned();
         subtract(&mut block, &basis[first..], &tied);

@@ -18,7 +18,7 @@ pub(crate) struct BeamLoads<'a> {
     acceleration: Option<Vec<[f64; 6]>>,
 }
 
-/// A PLOAD1 without anything else; empty for other loads.
+/// Returns the load if it is a single PLOAD1. Other loads give an empty list.
 pub(crate) fn as_line_load(load: &Load) -> Interior {
     Interior {
         loads: scale_line_load(load, 1.0)
@@ -99,7 +99,7 @@ impl<'a> BeamLoads<'a> {
     }
 }
 
-/// Returns the acceleration of coupled mass in a case: GRAV, ACCEL, ACCEL1, RFORCE, less the acceleration of inertia relief.
+/// Returns the acceleration of coupled mass in a case: GRAV, ACCEL, ACCEL1, RFORCE, minus the acceleration of inertia relief.
 /// `None` if mass is lumped, or nothing accelerates it.
 fn acceleration(
     model: &Model,

@@ -7,7 +7,7 @@ use super::mass::{Mass, add_acceleration};
 use crate::model::{Direction, GridIx, Load, LoadSet, Model, Vec3, solid_edges};
 use std::collections::HashMap;
 
-/// Forces and moments at all grids, basic frame, of one load set.
+/// Returns forces and moments of one load set at all grids, basic frame.
 ///
 /// # Errors
 /// A load along a beam that can't be formed.

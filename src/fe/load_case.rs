@@ -3,12 +3,12 @@
 use crate::model::{GridIx, Model, Vec3};
 use nastran::bdf::Subcase;
 
-/// How the loads of a case are held in balance.
+/// Way in which the loads of a case are balanced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Relief {
-    /// By the SPC set alone.
+    /// The SPC set alone supports the model.
     None,
-    /// By inertia, supports chosen by us (PARAM,INREL,-2).
+    /// Inertia relief with supports that the program chooses (PARAM,INREL,-2).
     Automatic,
     /// Inertia relief, with displacements relative to the SUPORT dofs and the dofs of this SUPORT1 set (PARAM,INREL,-1).
     Suport(Option<u32>),
@@ -45,7 +45,7 @@ impl LoadCase {
     }
 }
 
-/// How a model without case control is balanced: by PARAM,INREL; a model with neither INREL nor `spc` as a free structure.
+/// Returns the balance of a model without case control: by PARAM,INREL. A model with neither INREL nor `spc` is a free structure.
 ///
 /// A SUPORT1 set that the model lacks stays selected without PARAM,INREL too: the solver refuses it.
 fn relief_of(model: &Model, spc: Option<u32>, suport: Option<u32>) -> Relief {
@@ -79,7 +79,7 @@ fn loads_of_subcase(s: &Subcase) -> Vec<UnitLoad> {
         .collect()
 }
 
-/// Unit loads as load cases, subcases numbered 1 .. n; `spc` and `relief` hold them all.
+/// Returns unit loads as load cases with subcases numbered 1 .. n. `spc` and `relief` apply to all cases.
 pub fn unit_cases(
     model: &Model,
     (spc, relief): (Option<u32>, Relief),
@@ -98,7 +98,7 @@ pub fn unit_cases(
         .collect()
 }
 
-/// A unit load: what acts in one load case.
+/// A unit load: the action of one load case.
 #[derive(Clone, Debug, PartialEq)]
 pub enum UnitLoad {
     /// A force and a moment at a grid, basic frame.

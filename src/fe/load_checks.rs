@@ -29,7 +29,7 @@ pub(super) fn check_finite(
     }
 }
 
-/// A finding where nothing acts in a case: `f` is what acts at grids.
+/// Returns a finding if no load acts in a case. `f` contains the forces at grids.
 pub(super) fn nothing_acts(
     model: &Model,
     case: &LoadCase,
@@ -137,9 +137,9 @@ fn are_balanced(model: &Model, loads: &[[f64; 6]]) -> bool {
         .all(|(s, size)| s.norm() <= EQUAL * size)
 }
 
-/// A finding where a point load goes straight into a support, in part or whole: supports are stiff, so that part strains nothing.
+/// Returns a finding if a part of a point load goes directly into a support. Supports are stiff, so this part causes no strain.
 ///
-/// Measured: the share of the point loads' forces (moments, where there are no forces) that supports take before the structure does.
+/// Measured: the share of the forces of point loads that supports take directly. Without forces, it is the share of the moments.
 pub(super) fn load_into_support(
     model: &Model,
     axes: &[Option<Mat3>],

@@ -30,7 +30,7 @@ pub(crate) struct Mass {
 /// Mass, centre of gravity and the 6 x 6 matrix of rigid motions about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MassProperties {
-    /// Mass of the model, as [`crate::model::Weight`] has it.
+    /// Mass of the model, equal to the mass in [`crate::model::Weight`].
     pub mass: f64,
     /// Centre of gravity, basic frame.
     pub cg: Vec3,
@@ -39,8 +39,9 @@ pub struct MassProperties {
 }
 
 impl Mass {
-    /// Mass of all elements and concentrated masses: lumped, or with PARAM,COUPMASS consistent for shells, bars, beams and solids (rods and
-    /// shear panels stay lumped). Solids with mid-side grids are consistent always: lumped by rows their corners would have negative mass.
+    /// Computes the mass of all elements and concentrated masses. It is lumped. With PARAM,COUPMASS it is consistent for shells, bars, beams and
+    /// solids. Rods and shear panels stay lumped. Solids with mid-side grids are always consistent, because lumping by rows gives their corners
+    /// negative mass.
     pub(crate) fn new(prepared: &PreparedModel<'_>) -> Self {
         let model = prepared.model;
         let mut mass = Self {
@@ -128,7 +129,7 @@ impl Mass {
         mass
     }
 
-    /// A point mass at an offset from a grid.
+    /// Adds a point mass at an offset from a grid.
     pub(super) fn add_point(&mut self, grid: GridIx, m: f64, offset: &Vec3) {
         if *offset == Vec3::zeros() {
             self.point[grid.us()] += m;
@@ -137,7 +138,7 @@ impl Mass {
         }
     }
 
-    /// M u.
+    /// Returns `M u`.
     pub(crate) fn times(&self, u: &[[f64; 6]]) -> Vec<[f64; 6]> {
         let mut f: Vec<[f64; 6]> = self
             .point
@@ -197,7 +198,7 @@ impl Mass {
         masses.find(|m| m.ends.iter().flatten().any(|(g, _)| scalar(g)))
     }
 
-    /// Adds the centrifugal forces of masses off their grids in a rotation `omega`: those at the grids are [`Mass::on_grids`] of the field.
+    /// Adds the centrifugal forces of masses away from their grids in a rotation `omega`. [`Mass::on_grids`] gives the forces of masses at the grids.
     pub(super) fn add_off_grids(&self, factor: f64, omega: &Vec3, f: &mut [[f64; 6]]) {
         let gradient = centrifugal_gradient(omega) * factor;
         for (g, m) in &self.blocks {
@@ -215,7 +216,7 @@ impl Mass {
         }
     }
 
-    /// R' M R about a point.
+    /// Returns `R' M R` about a point.
     pub(crate) fn rigid_mass_matrix(&self, x: &[Vec3], centre: &Vec3) -> Matrix6<f64> {
         let mut matrix = Matrix6::zeros();
         for mode in 0..6 {
@@ -225,7 +226,7 @@ impl Mass {
         matrix
     }
 
-    /// Mass and centre of gravity; `None` without mass.
+    /// Returns mass and centre of gravity. `None` without mass.
     pub(crate) fn properties(&self, x: &[Vec3]) -> Option<MassProperties> {
         let near = x.first().copied().unwrap_or_else(Vec3::zeros);
         let Weight { mass, cg } =
@@ -293,7 +294,7 @@ pub(super) fn add_acceleration(model: &Model, factor: f64, load: &Load, field: &
     }
 }
 
-/// Force and moment about a point of nodal forces.
+/// Returns the force and moment about a point of nodal forces.
 pub(crate) fn resultant(x: &[Vec3], f: &[[f64; 6]], centre: &Vec3) -> [f64; 6] {
     let mut sum = [0.0; 6];
     for (x, f) in x.iter().zip(f) {

@@ -38,7 +38,7 @@ pub struct Mode {
     pub residual: f64,
     /// Bound on the relative error of the frequency that follows from residual and gap.
     pub frequency_error: f64,
-    /// Distance to the nearest other mode's 1 / omega^2, over its own.
+    /// Distance to the nearest other mode, divided by the value of this mode. Values are 1 / omega^2.
     pub gap: f64,
     /// Modal effective mass along x, y, z and about axes through the centre of gravity: (u'MR)^2 / u'Mu. Zero for a free structure, whose
     /// elastic modes move no centre of gravity.
@@ -50,7 +50,7 @@ pub struct Mode {
 /// Modes of a structure, with their strain.
 #[derive(Clone, Debug, Default)]
 pub struct ModalSolution {
-    /// Modes, frequencies ascending; rigid motions are left out.
+    /// Modes with ascending frequency, without rigid motions.
     pub modes: Vec<Mode>,
     /// Number of rigid motions without a support.
     pub rigid_motions: usize,
@@ -150,7 +150,7 @@ pub fn solve_modes(
     })
 }
 
-/// Frequencies of the lowest elastic modes from the factor of a static solution.
+/// Returns the frequencies of the lowest elastic modes from the factor of a static solution.
 ///
 /// # Errors
 /// Returns every error of [`FeError`].

@@ -4,9 +4,10 @@ use super::PlaneStrain;
 use super::element::shell::{in_axes_at, material_angle};
 use crate::model::{Model, ShellIx, ShellKind};
 
-/// Strain in the middle of every ply from the bottom up, in ply axes: along the fibres, across, engineering shear.
+/// Returns the strain in the middle of every ply from the bottom up, in ply axes: along the fibres, across, engineering shear.
 ///
-/// `surfaces` are the shell's strain at Z1 and Z2 in its output frame, linear between; empty for a shell that is no laminate.
+/// `surfaces` contains the strain of the shell at Z1 and Z2 in its output frame. Between them strain is linear. The result is empty if the shell is
+/// not a laminate.
 pub fn ply_strains(model: &Model, shell: ShellIx, surfaces: &[PlaneStrain; 2]) -> Vec<PlaneStrain> {
     let Some(shell) = model.shells.get(shell.us()) else {
         return Vec::new();

@@ -4,7 +4,7 @@ use super::element::shell::{CornerDirectors, shared_normals};
 use super::grid_frames::grid_axes;
 use crate::model::{Mat3, Model};
 
-/// A model with what its elements need beyond it.
+/// A model with further data that its elements need.
 #[derive(Debug)]
 pub(crate) struct PreparedModel<'a> {
     pub(crate) model: &'a Model,

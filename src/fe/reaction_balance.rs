@@ -41,7 +41,7 @@ impl LoadImbalance {
         Self { left, size }
     }
 
-    /// The larger share.
+    /// Returns the larger share.
     pub(super) fn share(&self) -> f64 {
         let share = |i: usize| match self.size[i] > 0.0 {
             true => self.left[i] / self.size[i],
@@ -51,7 +51,8 @@ impl LoadImbalance {
     }
 }
 
-/// A finding where reactions leave loads unbalanced; `elements` are those at supports, `mpc` whether equations of a set take part.
+/// Returns a finding if reactions do not balance the loads. `elements` are the elements at supports. `mpc` states whether equations of an MPC set
+/// act.
 ///
 /// # Errors
 /// Elements that can't be formed.

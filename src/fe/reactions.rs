@@ -19,12 +19,12 @@ const CHUNK: usize = 1024;
 /// Reactions below this share of the largest one are rounding and left out of the list.
 const ROUNDING: f64 = 1e-12;
 
-/// Force and moment that supports, and springs to ground, put onto one grid, basic frame.
+/// Force and moment that supports and springs to ground apply to one grid, basic frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Reaction {
     /// Grid id.
     pub grid: u32,
-    /// Three forces, three moments; zero along dofs that neither a support nor a spring to ground holds.
+    /// Three forces and three moments. Dofs that neither a support nor a spring to ground holds have zeros.
     pub force: [f64; 6],
 }
 
@@ -33,18 +33,19 @@ pub struct Reaction {
 pub struct Reactions {
     /// Subcase id.
     pub subcase: u32,
-    /// Resultant of what acts on grids (inertia included where it balances), about the basic origin: three forces, three moments.
+    /// Resultant of the forces on grids about the basic origin: three forces, three moments. It includes the inertia forces that balance the loads.
     pub applied: [f64; 6],
-    /// Resultant of the reactions about the same point: the applied one with its sign turned, but for `residual`.
+    /// Resultant of the reactions about the basic origin: minus `applied`, except for `residual`.
     pub total: [f64; 6],
     /// Largest share of the applied forces, or moments, that the reactions leave unbalanced.
     pub residual: f64,
-    /// By grid, ascending. Scalar points are none of them: a held one counts where its springs meet grids, and a bimoment is no force.
+    /// Reactions by grid, ascending, without scalar points. The force on a held scalar point counts at the grids of its springs. A bimoment is not a
+    /// force.
     pub grids: Vec<Reaction>,
 }
 
-/// A case with its answer: subcase id, displacements, forces (what acts, without reactions; none at scalar points that follow grids).
-/// Fields are by grid in the basic frame.
+/// A solved case: subcase id, displacements, and forces without reactions. Scalar points that follow grids have no forces. Fields are by grid in the
+/// basic frame.
 pub(super) type SolvedCase<'a> = (u32, &'a [[f64; 6]], &'a [[f64; 6]]);
 
 /// Computes the reactions of solved cases: K u - f at held dofs, and the forces of springs to ground. K u - f includes the forces that dependent dofs

@@ -41,7 +41,7 @@ pub struct Balance {
     pub subcase: u32,
     /// Resultant of the applied loads.
     pub applied: [f64; 6],
-    /// Resultant of the inertia loads that balance them.
+    /// Resultant of the inertia loads that balance the loads.
     pub inertia: [f64; 6],
     /// Rigid acceleration: three translations of the centre of gravity, three rotations.
     pub acceleration: [f64; 6],
@@ -67,11 +67,11 @@ fn refuse_masses_of_points(model: &Model) -> Result<(), FeError> {
 }
 
 impl RigidBody {
-    /// The free motions of a model with the given mass; `touched` are the grids that belong to the structure. `None` where supports and
-    /// springs to ground leave no motion free.
+    /// Returns the free motions of a model with the given mass. `touched` are the grids that belong to the structure. `None` if supports and springs
+    /// to ground leave no motion free.
     ///
     /// # Errors
-    /// Free motions, and no mass to balance loads along them.
+    /// Free motions without mass, so that no inertia balances the loads along them.
     pub(crate) fn new(
         model: &Model,
         axes: &[Option<Mat3>],
@@ -120,12 +120,12 @@ impl RigidBody {
         }))
     }
 
-    /// How many motions are free.
+    /// Returns the number of free motions.
     pub(super) fn n_free(&self) -> usize {
         self.basis.ncols()
     }
 
-    /// The displacement field of a free motion, basic frame.
+    /// Returns the displacement field of a free motion, basic frame.
     pub(crate) fn motion(&self, column: usize) -> Vec<[f64; 6]> {
         self.field(&self.basis.column(column).into_owned())
     }
@@ -168,7 +168,7 @@ impl RigidBody {
         resultant(&self.x, &on_body, &self.properties.cg)
     }
 
-    /// f - M R a with a = (R'MR)^-1 R'f over the free motions, and what it amounts to.
+    /// Returns the balanced force `f - M R a` with `a = (R'MR)^-1 R'f` over the free motions, and a description of the balance.
     pub(crate) fn balance(&self, subcase: u32, mass: &Mass, f: &mut [[f64; 6]]) -> Balance {
         let applied = self.resultant(f);
         let generalized = self.basis.transpose() * DVector::from_column_slice(&applied);
@@ -219,7 +219,7 @@ impl RigidBody {
         x
     }
 
-    /// Takes the free motions out of a displacement field so that R'M u = 0.
+    /// Removes the free motions from a displacement field, so that R'M u = 0.
     pub(crate) fn take_out(&self, mass: &Mass, u: &mut [[f64; 6]]) {
         let momentum = self.resultant(&mass.times(u));
         let generalized = self.basis.transpose() * DVector::from_column_slice(&momentum);
@@ -292,7 +292,7 @@ impl RigidBody {
         chosen
     }
 
-    /// The unknowns of SUPORT dofs, if they hold every free motion once.
+    /// Returns the unknowns of the SUPORT dofs if they hold every free motion exactly once.
     ///
     /// # Errors
     /// Another number of dofs than free motions, dofs that are no unknowns, or that leave a motion free.
@@ -338,7 +338,7 @@ impl RigidBody {
         }
     }
 
-    /// A free motion at the unknowns, of the order of one: rotations times the size of the model.
+    /// Returns a free motion at the unknowns, scaled to the order of one: rotations are multiplied by the size of the model.
     pub(crate) fn pack_motion(
         &self,
         axes: &[Option<Mat3>],
@@ -366,7 +366,7 @@ impl RigidBody {
         out
     }
 
-    /// A free motion at the unknowns as it is.
+    /// Returns a free motion at the unknowns without scaling.
     pub(super) fn packed_motion(
         &self,
         axes: &[Option<Mat3>],

@@ -13,7 +13,7 @@ pub struct SolveReport {
     pub grids: usize,
     /// Unknowns of the largest system solved.
     pub dofs: usize,
-    /// Entries of its factor.
+    /// Number of entries of the factor.
     pub factor_nonzeros: usize,
     /// Ordering of the factor.
     pub ordering: Option<OrderingMethod>,

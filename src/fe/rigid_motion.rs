@@ -4,7 +4,7 @@ use super::grid_frames::to_local;
 use crate::linalg::Matrix6;
 use crate::model::{Mat3, Vec3};
 
-/// Displacement of a point by rigid motion `mode` about `centre`: unit translations, then unit rotations, basic frame.
+/// Returns the displacement of a point by rigid motion `mode` about `centre`: unit translations, then unit rotations, basic frame.
 pub(crate) fn rigid_displacement(mode: usize, x: &Vec3, centre: &Vec3) -> [f64; 6] {
     let mut u = [0.0; 6];
     u[mode] = 1.0;
@@ -15,7 +15,7 @@ pub(crate) fn rigid_displacement(mode: usize, x: &Vec3, centre: &Vec3) -> [f64; 
     u
 }
 
-/// The six motions as columns, rows in the grid's displacement frame.
+/// Returns the six motions as columns, rows in the grid's displacement frame.
 pub(super) fn rigid_matrix(x: &Vec3, centre: &Vec3, axes: &Option<Mat3>) -> Matrix6<f64> {
     let mut m = Matrix6::zeros();
     for mode in 0..6 {

@@ -43,7 +43,7 @@ pub(super) fn carry_to_grids(
     }
 }
 
-/// Gives scalar points that follow grids the displacement that these give them. Basic frame.
+/// Sets the displacement of each scalar point that depends on grids, from the displacement of these grids (basic frame).
 pub(super) fn follow_grids(
     prepared: &PreparedModel<'_>,
     reduction: &Reduction,
@@ -65,11 +65,11 @@ pub(super) fn follow_grids(
     }
 }
 
-/// Checks that no load acts on an independent scalar point of a free structure. How its force reaches the body is unknown, so inertia can't balance
-/// it. `field` is the result of [`carry_to_grids`].
+/// Checks that no load acts on an independent scalar point of a free structure. Inertia can't balance such a load, because the path of its force into
+/// the body is unknown. `field` is the result of [`carry_to_grids`].
 ///
 /// # Errors
-/// Such a load, with its point.
+/// The load on such a point, with the point.
 pub(super) fn check_free_points(
     model: &Model,
     reduction: &Reduction,

@@ -8,7 +8,7 @@ use crate::model::{Model, Shell, Vec3};
 /// the surface warping factor in Nastran's GEOMCHECK (Q4_WARP).
 const FOLDED: f64 = 0.05;
 
-/// Findings on elements of doubtful shape, one a kind.
+/// Returns findings on elements with a doubtful shape, one for each kind.
 pub fn check_shapes(model: &Model) -> Vec<Finding> {
     let quads = || model.shells.iter().filter(|s| s.shape.n_corners() == 4);
     let corners = |s: &Shell| -> Option<[Vec3; 4]> {

@@ -17,7 +17,7 @@
 use crate::model::{Mat3, Model, Shell, Vec3};
 use nastran::cards::ShellShape;
 
-/// Where on a shell.
+/// Place on a shell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShellPlace {
     /// The centre.
@@ -26,7 +26,7 @@ pub enum ShellPlace {
     Corner(usize),
 }
 
-/// The output frame of a quadrilateral with corners `p`; rows are x, y, z in basic. `None` where it has no area.
+/// Returns the output frame of a quadrilateral with corners `p`. Rows are x, y, z in basic. `None` if the quadrilateral has no area.
 pub fn quad_axes(p: [Vec3; 4]) -> Option<Mat3> {
     let [d13, d24] = [p[2] - p[0], p[3] - p[1]];
     let z = d13.cross(&d24).try_normalize(0.0)?;
@@ -34,13 +34,13 @@ pub fn quad_axes(p: [Vec3; 4]) -> Option<Mat3> {
     rows(x, z)
 }
 
-/// The output frame of a triangle with corners `p`; rows are x, y, z in basic. `None` where it has no area.
+/// Returns the output frame of a triangle with corners `p`. Rows are x, y, z in basic. `None` if the triangle has no area.
 pub fn tria_axes(p: [Vec3; 3]) -> Option<Mat3> {
     let z = (p[1] - p[0]).cross(&(p[2] - p[0])).try_normalize(0.0)?;
     rows((p[1] - p[0]).try_normalize(0.0)?, z)
 }
 
-/// The frame at equal angles to tangents `r` and `s`: x is as far from r as y is from s.
+/// Returns the frame at equal angles to tangents `r` and `s`: x is as far from r as y is from s.
 pub fn balanced_axes(r: Vec3, s: Vec3) -> Option<Mat3> {
     let z = r.cross(&s).try_normalize(0.0)?;
     let (r, s) = (r.try_normalize(0.0)?, s.try_normalize(0.0)?);
@@ -54,7 +54,7 @@ fn rows(x: Vec3, z: Vec3) -> Option<Mat3> {
     axes.iter().all(|v| v.is_finite()).then_some(axes)
 }
 
-/// The output frame of a shell of the model at a place; rows are x, y, z in basic. `None` where the element has no area or no such corner.
+/// Returns the output frame of a shell of the model at a place. Rows are x, y, z in basic. `None` if the element has no area or not this corner.
 pub fn shell_axes(model: &Model, shell: &Shell, place: ShellPlace) -> Option<Mat3> {
     let x = |i: usize| model.grids.get(shell.grids.get(i)?.us()).map(|g| g.x);
     if let ShellPlace::Corner(c) = place

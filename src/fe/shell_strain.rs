@@ -26,7 +26,7 @@ fn gather_displacements<const M: usize>(u: &[[f64; 6]], grids: &[GridIx]) -> [f6
     out
 }
 
-/// Strain of every shell, one field a displacement field (basic frame, by grid).
+/// Computes the strain of every shell, one field for each displacement field (basic frame, by grid).
 ///
 /// # Errors
 /// Shells that can't be formed.

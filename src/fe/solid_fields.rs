@@ -8,7 +8,7 @@ use super::temperature::Temperatures;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Mechanical strain of every solid, one field a displacement field (basic frame, by grid) with its temperatures.
+/// Computes the mechanical strain of every solid, one field for each displacement field (basic frame, by grid) with its temperatures.
 ///
 /// # Errors
 /// Solids that can't be formed.

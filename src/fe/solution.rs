@@ -10,7 +10,7 @@ use std::sync::Arc;
 pub struct Solution {
     /// Results of each load case.
     pub cases: Vec<CaseResult>,
-    /// Source of the results: the solver's name, or the file's.
+    /// Source of the results: name of the solver or of the file.
     pub source: String,
     /// Findings on the results.
     pub findings: Vec<Finding>,
@@ -27,7 +27,7 @@ pub struct CaseResult {
     pub shells: ShellField,
     /// Bar and beam strain.
     pub beams: BeamField,
-    /// Strain of solids; solved ones only.
+    /// Strain of solids. Only solved fields contain it.
     pub solids: SolidField,
     /// Displacements in the basic frame, transformed from the displacement frames of a file: translation and rotation by grid index. Empty if absent,
     /// NaN at a grid without displacements.
@@ -40,11 +40,11 @@ pub type PlaneStrain = [f64; 3];
 /// Strain of shells at the surfaces Z1 and Z2, element output frame.
 #[derive(Clone, Debug, Default)]
 pub struct ShellField {
-    /// Elements with strain, ascending; shared between load cases that have the same.
+    /// Elements with strain, ascending. Load cases with equal elements share the list.
     pub elements: Arc<Vec<ShellIx>>,
-    /// By element: at the centre, bottom (Z1) and top (Z2).
+    /// Strain at the centre of each element, bottom (Z1) and top (Z2).
     pub centre: Vec<[PlaneStrain; 2]>,
-    /// By element and corner (G1..G4; a triangle's fourth is NaN); empty where the result has no corner rows.
+    /// Strain at each corner of each element (G1..G4; NaN for the fourth corner of a triangle). Empty if the result has no corner rows.
     pub corners: Vec<[[PlaneStrain; 2]; 4]>,
     /// Strain was computed from stress and the isotropic material.
     pub from_stress: bool,
@@ -55,8 +55,8 @@ pub struct ShellField {
 pub struct SolidField {
     /// Indices into [`crate::model::Model::solids`], ascending.
     pub elements: Arc<Vec<usize>>,
-    /// By element: at the centre.
+    /// Strain at the centre of each element.
     pub centre: Vec<[f64; 6]>,
-    /// By element and corner; NaN beyond the element's own corners.
+    /// Strain at each corner of each element. NaN beyond the corners of the element.
     pub corners: Vec<[[f64; 6]; 8]>,
 }

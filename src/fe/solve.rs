@@ -62,7 +62,7 @@ pub fn solve_unit_loads(
     solve_unit_loads_on(model, Support::without_spc(model), loads, options)
 }
 
-/// Solves unit loads on a structure held like this, subcases numbered 1 .. n.
+/// Solves unit loads on a structure with this support. Subcases are numbered 1 .. n.
 ///
 /// # Errors
 /// Returns every error of [`FeError`].
@@ -75,7 +75,7 @@ pub fn solve_unit_loads_on(
     solve_cases(model, &support.unit_cases(model, loads), options)
 }
 
-/// Solves load cases; those with the same constraints share one factor.
+/// Solves load cases. Cases with equal constraints share one factor.
 ///
 /// # Errors
 /// Returns every error of [`FeError`].
@@ -101,7 +101,7 @@ pub fn solve_displacements(
     displacements(&prepare(model, cases)?, cases, options)
 }
 
-/// The strain of solved load cases.
+/// Returns the strain of solved load cases.
 ///
 /// # Errors
 /// Returns every error of [`FeError`].
@@ -328,7 +328,7 @@ fn check_accuracy(subcase: u32, epsilon: f64) -> Option<Finding> {
 
 /// Forces on the structure in a case.
 pub(super) struct CaseForces {
-    /// Forces by grid, basic frame, inertia included if it balances.
+    /// Forces by grid, basic frame. They include inertia forces that balance the loads.
     pub(super) forces: Vec<[f64; 6]>,
     pub(super) balance: Option<Balance>,
     pub(super) findings: Vec<Finding>,
@@ -337,7 +337,7 @@ pub(super) struct CaseForces {
 /// Returns the loads of a case, balanced by the inertia of `body` if there is one.
 ///
 /// # Errors
-/// Loads on nothing; numbers beyond all bounds; sets that the deck lacks.
+/// Loads at dofs that no element holds; numbers that are too large; sets that the deck lacks.
 pub(super) fn form_case_loads(
     prepared: &PreparedModel<'_>,
     mass: &Mass,
@@ -396,7 +396,7 @@ pub fn factor_on_paper(model: &Model) -> Result<(TreeWork, Vec<(usize, f64)>), F
 /// A matrix as its order and entries of its lower triangle: row, column, value.
 pub type Triplets = (usize, Vec<(usize, usize, f64)>);
 
-/// The stiffness of the free structure, supported determinately: for comparing factorisations with other programs.
+/// Returns the stiffness of the free structure with a statically determinate support, to compare factorisations with other programs.
 ///
 /// # Errors
 /// Returns every error of [`FeError`].

@@ -12,7 +12,7 @@ use super::temperature::Temperatures;
 use super::{BeamField, CaseResult, ShellField, SolidField, Solution};
 use crate::model::Model;
 
-/// Strain of all elements from the displacements of every case.
+/// Returns the strain of all elements from the displacements of every case.
 ///
 /// # Errors
 /// Elements that can't be formed; temperature sets that the deck lacks.

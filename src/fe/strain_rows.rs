@@ -13,9 +13,9 @@ pub struct StrainRow {
     pub element: u32,
     /// Card name: `CQUAD4`, `CBAR` ..
     pub card: &'static str,
-    /// Where along or on the element.
+    /// Place along or on the element.
     pub location: Location,
-    /// Which face or recovery point.
+    /// Face or recovery point.
     pub point: Point,
     /// Element frame: exx, eyy, gxy (engineering shear). Bars: exx along the bar; eyy and gxy are NaN.
     pub local: PlaneStrain,
@@ -25,7 +25,7 @@ pub struct StrainRow {
     pub basic: [f64; 6],
 }
 
-/// Where along or on an element.
+/// Place along or on an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Location {
     /// Centre of a shell.
@@ -50,7 +50,7 @@ pub fn n_elements(case: &CaseResult) -> usize {
     case.shells.elements.len() + case.beams.elements.len()
 }
 
-/// Number of rows that [`each_row`] gives for a whole case.
+/// Returns the number of rows that [`each_row`] gives for a whole case.
 pub fn n_rows(model: &Model, case: &CaseResult) -> usize {
     let known = |strain: &[PlaneStrain; 2]| !strain.iter().flatten().all(|v| v.is_nan());
     let shells = case.shells.elements.iter().enumerate().map(|(i, ix)| {
@@ -177,7 +177,7 @@ fn beam_rows(model: &Model, case: &CaseResult, i: usize, each: &mut impl FnMut(&
     }
 }
 
-/// Largest strain in any direction of the surface, or along the bar, without sign: `|m| + r` of Mohr's circle.
+/// Returns the largest strain in any direction of the surface, or along the bar, without sign: `|m| + r` of Mohr's circle.
 pub fn largest_strain(row: &StrainRow) -> f64 {
     let [exx, eyy, gxy] = row.local;
     match row.point {
@@ -186,8 +186,8 @@ pub fn largest_strain(row: &StrainRow) -> f64 {
     }
 }
 
-/// The `n` rows of a case with the largest strain ([`largest_strain`]), one an element, largest first: centres of shells and ends of
-/// bars.
+/// Returns the `n` rows of a case with the largest strain ([`largest_strain`]), the largest first. Each element has at most one row: the centre of a
+/// shell, or an end of a bar.
 pub fn largest_strain_rows(model: &Model, case: &CaseResult, n: usize) -> Vec<StrainRow> {
     let mut best: Vec<StrainRow> = Vec::new();
     for i in 0..n_elements(case) {
@@ -239,7 +239,7 @@ pub fn without_normal_strain(model: &Model, cases: &[CaseResult]) -> Vec<u32> {
         .collect()
 }
 
-/// xx, yy, zz, xy, yz, zx of a symmetric tensor.
+/// Returns xx, yy, zz, xy, yz, zx of a symmetric tensor.
 pub fn components(e: &Mat3) -> [f64; 6] {
     [
         e[(0, 0)],

@@ -13,7 +13,7 @@ pub enum Surface {
 }
 
 impl Surface {
-    /// Both, bottom first.
+    /// Both surfaces, bottom first.
     pub const BOTH: [Surface; 2] = [Surface::Bottom, Surface::Top];
 
     /// Returns the name in files and reports.
@@ -24,7 +24,7 @@ impl Surface {
         }
     }
 
-    /// 0 bottom, 1 top.
+    /// Returns 0 for bottom and 1 for top.
     pub fn ix(self) -> usize {
         match self {
             Self::Bottom => 0,
@@ -60,25 +60,25 @@ pub fn basic_tensor(strain: PlaneStrain, ezz: f64, axes: &Mat3) -> Mat3 {
     axes.transpose() * local * axes
 }
 
-/// Normal strain along `direction` (any length) of tensor `e`: `n' E n`.
+/// Returns the normal strain along `direction` (any length) of tensor `e`: `n' E n`.
 pub fn strain_along(e: &Mat3, direction: &Vec3) -> f64 {
     let n = direction.normalize();
     n.dot(&(e * n))
 }
 
-/// Principal strains of exx, eyy, gxy (engineering shear), the larger first: `(exx + eyy)/2 +- sqrt(((exx - eyy)/2)^2 + (gxy/2)^2)`.
+/// Returns the principal strains of exx, eyy, gxy (engineering shear), the larger first: `(exx + eyy)/2 +- sqrt(((exx - eyy)/2)^2 + (gxy/2)^2)`.
 pub fn principal_in_plane([exx, eyy, gxy]: PlaneStrain) -> [f64; 2] {
     let (mean, radius) = ((exx + eyy) / 2.0, ((exx - eyy) / 2.0).hypot(gxy / 2.0));
     [mean + radius, mean - radius]
 }
 
-/// Principal strain of the largest magnitude of exx, eyy, gxy.
+/// Returns the principal strain with the largest magnitude, from exx, eyy, gxy.
 pub fn largest_in_plane(strain: PlaneStrain) -> f64 {
     let [most, least] = principal_in_plane(strain);
     if most + least < 0.0 { least } else { most }
 }
 
-/// Principal strains of xx yy zz xy yz zx (engineering shear), largest first; not a number where any is not.
+/// Returns the principal strains of xx yy zz xy yz zx (engineering shear), the largest first. They are NaN if a component is NaN.
 pub fn principal_strains(strain: &[f64; 6]) -> [f64; 3] {
     if strain.iter().any(|v| !v.is_finite()) {
         return [f64::NAN; 3];
@@ -91,13 +91,13 @@ pub fn principal_strains(strain: &[f64; 6]) -> [f64; 3] {
     p
 }
 
-/// Principal strain of the largest magnitude of xx yy zz xy yz zx.
+/// Returns the principal strain with the largest magnitude, from xx yy zz xy yz zx.
 pub fn largest_principal(strain: &[f64; 6]) -> f64 {
     let [most, _, least] = principal_strains(strain);
     if most + least < 0.0 { least } else { most }
 }
 
-/// Strain at fibre `z` from curvature form: `row1 - z row2`, row2 being MINUS the derivative along z.
+/// Returns the strain at fibre `z` from curvature form: `row1 - z row2`, row2 being MINUS the derivative along z.
 pub fn strain_from_curvature(row1: PlaneStrain, row2: PlaneStrain, z: f64) -> PlaneStrain {
     std::array::from_fn(|i| row1[i] - z * row2[i])
 }

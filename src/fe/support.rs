@@ -6,7 +6,7 @@ use super::load_case::{LoadCase, Relief, unit_cases};
 use crate::finding::{Finding, Severity, list_few};
 use crate::model::Model;
 
-/// Which support is wanted.
+/// Requested support.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum SupportChoice {
     /// The SPC set that the deck's case control selects; free where it selects none.
@@ -21,7 +21,7 @@ pub enum SupportChoice {
 /// Support of the structure in every load case of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Support {
-    /// SPC set; `None`: no set supports it (permanent constraints of grids apply in any case).
+    /// SPC set. `None` if no set supports the structure. Permanent constraints of grids always apply.
     pub spc: Option<u32>,
     /// Balance of the loads that no support takes.
     pub relief: Relief,
@@ -78,12 +78,12 @@ impl Support {
         }
     }
 
-    /// Unit loads as load cases on this support, subcases numbered 1 .. n.
+    /// Returns the unit loads as load cases on this support, subcases numbered 1 .. n.
     pub fn unit_cases(&self, model: &Model, loads: &[UnitLoad]) -> Vec<LoadCase> {
         unit_cases(model, (self.spc, self.relief), loads)
     }
 
-    /// Returns whether supports hold every rigid motion that they are meant to hold: an SPC set, or springs to ground alone.
+    /// Returns whether an SPC set or springs to ground hold every rigid motion that they are meant to hold.
     pub fn is_held(&self) -> bool {
         self.spc.is_some() || self.relief == Relief::None
     }
@@ -223,7 +223,7 @@ pub fn suport_without_inrel(model: &Model, sequence: Option<u32>) -> Option<Find
     })
 }
 
-/// Contradictions of an SPC set: dofs that its cards hold at different values.
+/// Returns contradictions in an SPC set: dofs that its cards hold at different values.
 pub fn contradictions(model: &Model, spc: Option<u32>) -> Option<Finding> {
     let mut values: Vec<(u32, f64)> = Vec::new();
     for set in model.spcs.iter().filter(|s| Some(s.sid) == spc) {

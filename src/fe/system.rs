@@ -35,8 +35,8 @@ pub(super) struct System {
 impl System {
     /// Assembles the stiffness under an SPC and an MPC set, with determinate supports if inertia balances the loads.
     ///
-    /// Springs of the size of their stiffness act as determinate supports, and at dofs without stiffness. A balanced load causes no force in them, so
-    /// the result equals the result of a rigid support.
+    /// Springs act as determinate supports, and at dofs without stiffness. Their stiffness has the size of the other stiffness at the grid. A
+    /// balanced load causes no force in these springs, so the result equals the result of a rigid support.
     ///
     /// # Errors
     /// See [`FeError`].
@@ -50,7 +50,7 @@ impl System {
         let model = prepared.model;
         let support = (sets.0, relief);
         let reduction = reduce(model, &prepared.axes, sets)?;
-        // Ordering the unknowns leaves a thread idle, which computes the body meanwhile.
+        // The ordering of the unknowns leaves a thread idle. This thread computes the rigid body in the meantime.
         let (assembled, body) = rayon::join(
             || assemble(prepared, &reduction),
             || body(prepared, mass, &reduction, relief),
@@ -111,7 +111,7 @@ impl System {
         })
     }
 
-    /// The free rigid motions of a structure with these constraints and its own mass.
+    /// Returns the free rigid motions of a structure with these constraints and its mass.
     ///
     /// # Errors
     /// See [`RigidBody::new`].
@@ -273,7 +273,7 @@ impl System {
         }
     }
 
-    /// T' (f - K u0) at the unknowns, from forces at all grids in the basic frame.
+    /// Computes `T' (f - K u0)` at the unknowns, from forces at all grids in the basic frame.
     ///
     /// # Errors
     /// Elements that can't be formed.
@@ -293,7 +293,7 @@ impl System {
         Ok(())
     }
 
-    /// Displacements of all grids, basic frame, from the unknowns.
+    /// Returns the displacements of all grids, basic frame, from the unknowns.
     pub(super) fn unpack(&self, prepared: &PreparedModel<'_>, values: &[f64]) -> Vec<[f64; 6]> {
         let mut u = self.reduction.expand(&self.numbering.unpack(values));
         for (u, axes) in u.iter_mut().zip(&prepared.axes) {

@@ -15,16 +15,16 @@ type LineRise = ([f64; 2], [[f64; 2]; 2]);
 /// Temperatures of a load case.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Temperatures {
-    /// By grid.
+    /// Temperature of each grid.
     at: Vec<f64>,
-    /// By grid, where TEMPERATURE(INITIAL) is given: thermal strain counts from these, not from TREF.
+    /// Temperature of each grid in TEMPERATURE(INITIAL), if given. Thermal strain is then relative to these temperatures, not to TREF.
     initial: Option<Vec<f64>>,
-    /// By element id: TEMPP1 and TEMPRB.
+    /// TEMPP1 and TEMPRB, by element id.
     elements: HashMap<u32, ElementTemperature>,
 }
 
 impl Temperatures {
-    /// The temperatures of a case; `None` where it has none.
+    /// Returns the temperatures of a case. `None` if the case has no temperatures.
     ///
     /// # Errors
     /// A temperature set that the deck lacks.
@@ -57,7 +57,7 @@ impl Temperatures {
         }))
     }
 
-    /// How much warmer a grid is than where thermal strain counts from; `tref` is the material's reference.
+    /// Returns the temperature of a grid minus the temperature of zero thermal strain. `tref` is the reference temperature of the material.
     pub(crate) fn rise(&self, g: GridIx, tref: f64) -> f64 {
         self.at[g.us()] - self.initial_temperature(g, tref)
     }
@@ -66,7 +66,7 @@ impl Temperatures {
         self.initial.as_ref().map_or(tref, |i| i[g.us()])
     }
 
-    /// The rise of a shell's reference plane at its corners, and the gradient through its thickness.
+    /// Returns the temperature rise of a shell's reference plane at the corners, and the gradient through the thickness.
     pub(super) fn shell_rise(&self, shell: &Shell, tref: f64) -> ([f64; 4], f64) {
         let corner = |k: usize| shell.grids[k.min(shell.shape.n_corners() - 1)];
         if let Some(ElementTemperature::Plate { mean, gradient }) = self.elements.get(&shell.id) {
@@ -76,7 +76,7 @@ impl Temperatures {
         (std::array::from_fn(|k| self.rise(corner(k), tref)), 0.0)
     }
 
-    /// The rise of a bar, beam or rod at its ends, and its gradients across.
+    /// Returns the temperature rise of a bar, beam or rod at both ends, and the gradients across.
     pub(super) fn line_rise(&self, id: u32, grids: [GridIx; 2], tref: f64) -> LineRise {
         if let Some(ElementTemperature::Line { ends, gradient }) = self.elements.get(&id) {
             let rise = [0, 1].map(|k| ends[k] - self.initial_temperature(grids[k], tref));
@@ -85,7 +85,7 @@ impl Temperatures {
         (grids.map(|g| self.rise(g, tref)), [[0.0; 2]; 2])
     }
 
-    /// The rise of the grids of solid `i`.
+    /// Returns the temperature rise at the grids of solid `i`.
     pub(super) fn solid_rise(&self, model: &Model, i: usize, grids: &[GridIx]) -> Vec<f64> {
         let tref = model
             .solid_properties
@@ -96,7 +96,7 @@ impl Temperatures {
     }
 }
 
-/// Free thermal strain of beam `i`; `None` where its material is no MAT1.
+/// Returns the free thermal strain of beam `i`. `None` if its material is not a MAT1.
 pub(super) fn beam_expansion(model: &Model, i: usize, t: &Temperatures) -> Option<LineStrain> {
     let beam = model.beams.get(i)?;
     let property = model.beam_properties.get(beam.property.us())?;
@@ -115,7 +115,8 @@ pub(super) fn beam_expansion(model: &Model, i: usize, t: &Temperatures) -> Optio
 /// Rises of temperature up to this one are rounding of the cards.
 const NO_RISE: f64 = 1e-9;
 
-/// Returns whether the temperatures of a case act: an element whose material expands is warmer or colder than its reference.
+/// Returns whether the temperatures of a case cause thermal strain: an element whose material expands is warmer or colder than its reference
+/// temperature.
 ///
 /// # Errors
 /// A temperature set that the deck lacks.

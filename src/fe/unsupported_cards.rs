@@ -10,7 +10,7 @@ use nastran::place::Place;
 /// Faults that one refusal names.
 const MOST: usize = 200;
 
-/// Refuses a model and load cases of which something would be left out of the answer.
+/// Refuses a model and load cases with entries that the answer would leave out.
 ///
 /// # Errors
 /// Everything that the solver does not carry.
@@ -23,7 +23,7 @@ pub fn refuse(model: &Model, cases: &[LoadCase]) -> Result<(), FeError> {
     }
 }
 
-/// Returns every entry of the model, or load of the cases, that would be left out of the answer.
+/// Returns every entry of the model or of the loads that the answer would leave out.
 pub(crate) fn unsupported_cards(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
     let mut all = Vec::new();
     let mut refuse = |card: String, at: Place, reason: &str, remedy: &str| {

@@ -81,7 +81,8 @@ pub fn solve_variants<T>(
     Ok(out)
 }
 
-/// The constrained stiffness that all cases share; `None` where they don't, where something is enforced, or nothing is free.
+/// Returns the constrained stiffness that all cases share. `None` if the cases have different constraints, if a displacement is enforced, or if no
+/// dof is free.
 pub(super) fn system_of(
     prepared: &PreparedModel<'_>,
     mass: &Mass,
@@ -104,13 +105,13 @@ pub(super) fn system_of(
     Ok(shared.then_some(system))
 }
 
-/// The structure that variants differ from, solved.
+/// Solution of the structure from which the variants differ.
 pub(super) struct Base<'a> {
     pub(super) model: &'a Model,
     pub(super) prepared: &'a PreparedModel<'a>,
     pub(super) system: &'a System,
     pub(super) factor: Factor<'a>,
-    /// Balanced loads at the unknowns, a column a case.
+    /// Balanced loads at the unknowns, one column for each case.
     pub(super) forces: Vec<f64>,
     /// Displacements at the unknowns.
     pub(super) moved: Vec<f64>,
@@ -230,8 +231,8 @@ impl<'a> Base<'a> {
         all.map_err(|r| FeError::Refused(vec![r]))
     }
 
-    /// Returns the displacements at the unknowns under `forces`, a column a case. `None` if they do not converge in [`MOST_STEPS`], or the variant
-    /// has a motion without support.
+    /// Returns the displacements at the unknowns under `forces`, a column for each case. `None` if they do not converge in [`MOST_STEPS`], or the
+    /// variant has a motion without support.
     fn iterate_to_convergence(
         &self,
         change: &[ElementMatrix],
@@ -283,7 +284,7 @@ impl<'a> Base<'a> {
         Ok(None)
     }
 
-    /// D u of columns of unknowns.
+    /// Returns the product `D u` for columns of unknowns.
     pub(super) fn product(&self, change: &[ElementMatrix], u: &[f64]) -> Result<Vec<f64>, FeError> {
         let n = self.system.symbolic.n_unknowns();
         let mut out = vec![0.0; u.len()];
@@ -336,7 +337,8 @@ fn follow(to: &mut [f64], factors: &[f64], more: &[f64], n: usize) {
     });
 }
 
-/// Shells and bushes whose stiffness may differ; `None` where anything else does that stiffness, constraints or numbering depend on.
+/// Returns the shells and bushes whose stiffness differs. `None` if a variant changes anything else that stiffness, constraints or numbering depend
+/// on.
 pub(super) fn changed_elements(a: &Model, b: &Model) -> Option<Vec<ElementRef>> {
     let material = |m: MaterialIx| a.materials.get(m.us()) == b.materials.get(m.us());
     let same = a.grids == b.grids

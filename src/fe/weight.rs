@@ -24,7 +24,7 @@ impl Model {
         Weight::from_mass_matrix(&self.rigid_body_mass(origin), origin).unwrap_or(nothing)
     }
 
-    /// Rigid-body mass matrix (6 x 6: translations, then rotations) about the basic location `about`, WTMASS applied.
+    /// Returns the rigid-body mass matrix (6 x 6: translations, then rotations) about the basic location `about`, WTMASS applied.
     ///
     /// Elements have the mass of the solver's mass matrix, which is not assembled. OGPWG of a solver is this without WTMASS.
     pub fn rigid_body_mass(&self, about: Vec3) -> Matrix6<f64> {

@@ -10,7 +10,7 @@ use crate::model::{BeamIx, ShellIx, Vec3};
 pub enum Spot {
     /// A shell's surface, at its centre or a corner.
     Shell {
-        /// Which.
+        /// Shell of the place.
         shell: ShellIx,
         /// Side.
         surface: Surface,
@@ -19,7 +19,7 @@ pub enum Spot {
     },
     /// A recovery point of a bar or beam.
     Beam {
-        /// Which.
+        /// Bar or beam of the place.
         beam: BeamIx,
         /// 0 to 3: C D E F.
         point: usize,
@@ -28,32 +28,32 @@ pub enum Spot {
     },
     /// The neutral axis of a bar or beam, where bending strains nothing.
     BeamAxis {
-        /// Which.
+        /// Bar or beam of the place.
         beam: BeamIx,
         /// x/xb.
         station: f64,
     },
 }
 
-/// `coefficient . (exx, eyy, gxy)` at a spot, in the output frame of that spot; a beam's arm counts the first alone.
+/// `coefficient . (exx, eyy, gxy)` at a spot, in the output frame of that spot; an arm on a beam uses only the first component.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arm {
-    /// Where.
+    /// Place of the arm.
     pub spot: Spot,
     /// Weight and direction together: `w (cos^2 t, sin^2 t, sin t cos t)` for a plain grid.
     pub coefficient: [f64; 3],
 }
 
-/// A channel: what it reads, and what a drawing or a gluing sheet shows of it.
+/// A channel: the arms that it reads, and data for drawing and gluing sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gauge {
     /// Channel name.
     pub name: String,
     /// Arms.
     pub arms: Vec<Arm>,
-    /// Id of the element it sits on.
+    /// Id of the element that carries the gauge.
     pub element: u32,
-    /// Side; beams count as top.
+    /// Side of the shell. Gauges on beams have `Top`.
     pub surface: Surface,
     /// Basic frame, on the surface.
     pub position: Vec3,
@@ -66,7 +66,7 @@ pub struct Gauge {
 }
 
 impl Gauge {
-    /// Unit vector out of the side that the gauge sits on, basic frame.
+    /// Returns the unit vector out of the side of the gauge, basic frame.
     pub fn outward(&self) -> Vec3 {
         match self.surface {
             Surface::Top => self.normal,
@@ -75,7 +75,7 @@ impl Gauge {
     }
 }
 
-/// Returns the shell terms of the reading of a gauge, for [`crate::fe::Adjoint`]; an arm on a bar has no term.
+/// Returns the shell terms of the reading of a gauge, for [`crate::fe::Adjoint`]. Arms on bars contribute no terms.
 pub fn strain_terms(gauge: &Gauge) -> Vec<StrainTerm> {
     let term = |arm: &Arm| match arm.spot {
         Spot::Shell {

@@ -3,8 +3,7 @@
 use super::grid_average::SMOOTH;
 use crate::model::{BeamIx, GridIx, Model, Vec3};
 
-/// Returns the length of the bars that go on straight from this one at both ends, itself included. A run that is at least as long as `enough` is
-/// not followed farther.
+/// Returns the length of the straight chain of bars that contains this bar. The search ends if the chain is at least as long as `enough`.
 pub(super) fn run_length(model: &Model, beam: BeamIx, enough: f64) -> Option<f64> {
     let ends = |ix: BeamIx| {
         let b = model.beams.get(ix.us())?;

@@ -9,7 +9,7 @@ use crate::fe::strain_tensor::Surface;
 use crate::finding::{Finding, Severity};
 use crate::model::{BeamIx, Model, Vec3};
 
-/// Position along a beam, and the recovery point C D E F (0 to 3) there.
+/// Position along a beam, and the recovery point C D E F (0 to 3) at this position.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BeamSeat {
     pub(super) beam: BeamIx,
@@ -41,10 +41,10 @@ fn find_off_axis_part(spec: &GaugeSpec, axis: &Vec3) -> Option<&'static str> {
 /// Builds the gauge at a recovery point.
 ///
 /// A bending bridge pairs the point with the point across the neutral axis, whose bending strain has the opposite sign. It reads twice (half
-/// bridge) or four times (full bridge) the strain of the point less the strain of the neutral axis.
+/// bridge) or four times (full bridge) the strain of the point minus the strain of the neutral axis.
 ///
 /// # Errors
-/// A beam that is not there; a gauge that reads across its axis; a grid longer than the bars along it.
+/// A missing beam; a gauge across the axis of its beam; a grid that is longer than the bars along it.
 pub(super) fn on_beam(
     model: &Model,
     spec: &GaugeSpec,
@@ -126,7 +126,7 @@ pub(super) fn on_beam(
     })
 }
 
-/// Returns a warning for a gauge at a recovery point on the neutral axis. A point whose coordinates the property does not state is on it.
+/// Returns a warning for a gauge at a recovery point on the neutral axis. Points without stated coordinates are on this axis.
 pub(super) fn point_on_axis(model: &Model, spec: &GaugeSpec, seat: BeamSeat) -> Option<Finding> {
     let beam = model.beams.get(seat.beam.us())?;
     let property = model.beam_properties.get(beam.property.us())?;

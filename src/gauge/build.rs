@@ -56,7 +56,7 @@ pub fn build(
     })
 }
 
-/// [`build`] with a point of the shells found by `nearest_to`.
+/// Places a gauge like [`build`]. `nearest_to` finds the point of the shells.
 pub(super) fn build_by(
     model: &Model,
     spec: &GaugeSpec,

@@ -9,9 +9,9 @@ use crate::model::{BeamIx, Model, ShellIx, Vec3};
 pub struct ElementDistance {
     /// Distance from the nearest point of the reference surface or axis of the element.
     pub distance: f64,
-    /// Longest side or diagonal of the element, plus the distance of its faces or recovery points from there.
+    /// Longest side or diagonal of the element, plus the distance of its faces or recovery points from the reference surface or axis.
     pub size: f64,
-    /// Distance of its faces or recovery points from there; `None` for a bar that states none.
+    /// Distance of the faces or recovery points from the reference surface or axis. `None` for a bar without stated recovery points.
     pub faces: Option<f64>,
 }
 

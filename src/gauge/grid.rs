@@ -26,7 +26,7 @@ pub(super) fn laid_onto(d: Vec3, z: Vec3) -> Option<Vec3> {
     }
 }
 
-/// `d`, normal to `z`, turned right-handed about `z`.
+/// Returns `d`, which is normal to `z`, rotated right-handed about `z`.
 pub(super) fn rotate_about(d: Vec3, z: Vec3, angle: f64) -> Vec3 {
     d * angle.cos() + z.cross(&d) * angle.sin()
 }
@@ -46,7 +46,7 @@ struct Grid {
     weight: f64,
 }
 
-/// Arms of a gauge, and how far its grids reach past the edge of the part at most.
+/// Arms of a gauge, and the largest distance by which its grids extend past the edge of the part.
 pub(super) struct PlacedArms {
     pub(super) arms: Vec<Arm>,
     pub(super) past_edge: f64,
@@ -64,7 +64,7 @@ pub(super) struct Site<'m> {
 }
 
 impl Site<'_> {
-    /// Returns all arms of a channel whose axis is `axis`, the bridge factor in them; `z` is the normal there.
+    /// Returns all arms of a channel with the axis `axis`. The weights include the bridge factor. `z` is the normal at the gauge.
     ///
     /// # Errors
     /// A pair on a missing shell or normal to its axis; a grid longer than the part.

@@ -21,7 +21,7 @@ pub const POINTS: [(f64, f64); 5] = [
 /// Cosine of 20 degrees, the default of PARAM,SNORM: plates that meet at a larger angle form a bend or a joint.
 pub const SMOOTH: f64 = 0.939_692_620_785_908_4;
 
-/// Shells that share an edge with `shell` and go on smoothly.
+/// Returns the shells that share an edge with `shell` and continue it smoothly.
 pub fn neighbours(model: &Model, shell: ShellIx) -> Vec<ShellIx> {
     let Some(me) = model.shells.get(shell.us()) else {
         return Vec::new();
@@ -46,7 +46,7 @@ pub fn neighbours(model: &Model, shell: ShellIx) -> Vec<ShellIx> {
         .collect()
 }
 
-/// Weights of the centres of `shell` and its neighbours in the strain at `x` on it: value and gradient along `axis`.
+/// Returns the weights of the centres of `shell` and its neighbours for the strain at `x` on the shell: value and gradient along `axis`.
 pub fn about_centre(model: &Model, shell: ShellIx, x: Vec3, axis: Vec3) -> Vec<(ShellIx, f64)> {
     let Some(c) = model.shells.get(shell.us()).and_then(|s| centre(model, s)) else {
         return vec![(shell, 1.0)];
@@ -76,17 +76,17 @@ pub fn about_centre(model: &Model, shell: ShellIx, x: Vec3, axis: Vec3) -> Vec<(
     out
 }
 
-/// Point on the shells, with the side of its shell that faces as a side of the first shell does.
+/// Point on the shells. The side of this shell faces in the same direction as the side of the first shell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Landing {
-    /// Point on the reference surface; `side` is the side that faces as the one asked for.
+    /// Point on the reference surface. `side` faces in the same direction as the requested side.
     pub foot: Foot,
-    /// Distance from the edge of the surface to the point asked for, along the surface; 0 over the surface.
+    /// Distance from the edge of the surface to the requested point, along the surface. It is 0 if the point is over the surface.
     pub past_edge: f64,
 }
 
-/// Returns the place on the shells at `x`, seen from `side` of `home`: on it, or on a shell that smooth neighbours lead to. Each step keeps
-/// the side in space, whichever way the next shell's normal points.
+/// Returns the place on the shells at `x`, seen from `side` of `home`. It is on `home`, or on a shell that smooth neighbours connect with `home`.
+/// Each step keeps the side in space. The directions of the shell normals do not matter.
 pub(super) fn place_at(
     model: &Model,
     (home, side): (ShellIx, Surface),
@@ -119,7 +119,7 @@ pub(super) fn place_at(
     let z = shell_normal(model, best.shell)?;
     let off = x - best.point;
     let flat = (off - z * off.dot(&z)).norm();
-    // On a smooth surface the point is off along the normal. At an edge it is off along the surface.
+    // On a smooth surface, the offset of the point is along the normal. At an edge, the offset is along the surface.
     let at_edge = flat * flat > (1.0 - SMOOTH * SMOOTH) * off.norm_squared();
     Some(Landing {
         foot: best,

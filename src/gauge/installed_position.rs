@@ -12,7 +12,7 @@ use crate::model::{Model, ShellIx, Vec3};
 /// Offset of a gauge from its nominal position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Offset {
-    /// Along its axis, length of the deck.
+    /// Offset along the axis of the gauge, length of the deck.
     pub along: f64,
     /// Offset across the axis: along normal x axis, with the normal of the element.
     pub across: f64,
@@ -45,7 +45,7 @@ const MAX_STEP_MISS_REL: f64 = 1.0 - SMOOTH * SMOOTH;
 /// Number of times that a step is halved if edges stop it on both sides.
 const HALVINGS: usize = 8;
 
-/// Gauge on shells at its nominal position, and the shells that it may be on.
+/// Gauge on shells at its nominal position, with the shells that it may be on.
 #[derive(Clone, Debug)]
 pub struct NominalGauge<'m> {
     model: &'m Model,
@@ -98,8 +98,8 @@ impl<'m> NominalGauge<'m> {
         &self.spec
     }
 
-    /// Returns the gauge at an offset and its point on the reference surface, as for a job with this position and direction. Past the edge of the
-    /// surface the gauge stays on the edge.
+    /// Returns the gauge at an offset, with its point on the reference surface. The result equals the gauge of a job with this position and
+    /// direction. If the offset is past the edge of the surface, the gauge is on the edge.
     pub fn gauge_at_offset(&self, offset: Offset) -> Option<(Gauge, Vec3)> {
         let axis = self.gauge.direction;
         let across = self.gauge.normal.cross(&axis);
@@ -124,16 +124,16 @@ impl<'m> NominalGauge<'m> {
         Some((built.into_iter().next()?, foot.point))
     }
 
-    /// Returns the change of `read` per unit of length of an offset of the gauge along `way`. It is the central difference over `step` to either
-    /// side. If an edge of the surface stops the gauge on one side, it is the difference on the other side. `None` if both sides are stopped for any
-    /// `step`, or if `read` returns nothing.
+    /// Returns the change of `read` per unit of length of an offset of the gauge along `way`. It is the central difference over `step` in both
+    /// directions. If an edge of the surface stops the gauge on one side, it is the difference on the other side. `None` if edges stop the gauge on
+    /// both sides for any `step`, or if `read` returns nothing.
     pub fn slope(
         &self,
         way: fn(f64) -> Offset,
         step: f64,
         read: impl Fn(&Gauge) -> Option<Vec<f64>>,
     ) -> Option<Vec<f64>> {
-        // Distance that the gauge reaches along the way, and its reading there.
+        // Distance by which the gauge really moves along `way`, and its reading there.
         let end = |asked: f64| -> Option<(f64, Vec<f64>)> {
             let (gauge, x) = self.gauge_at_offset(way(asked))?;
             let unit = way(1.0);

@@ -54,8 +54,8 @@ fn parts_at(fine: &RefinedModel, shell: ShellIx, place: ShellPlace) -> Option<Ve
     })
 }
 
-/// Returns the strain on `fine` minus the strain on `coarse` by case, on the shells of `coarse` and in their output frames. It takes the strain as
-/// [`on_refined`] does. Bars do not change, and solids are left out. The value is not a number if either mesh has no strain.
+/// Returns the strain on `fine` minus the strain on `coarse` by case, on the shells of `coarse` and in their output frames. The strain on `fine` is
+/// averaged as in [`on_refined`]. Bars do not change, and solids are left out. The value is NaN if one of the meshes has no strain.
 pub fn change_by_refining(
     coarse: &Model,
     fine: &RefinedModel,
@@ -137,9 +137,9 @@ fn zero_beam_field(field: &BeamField) -> BeamField {
     }
 }
 
-/// Returns coefficients of exx, eyy, gxy (engineering shear) in the output frame of `to`. They take the same strain in the same direction as
-/// `coefficient` takes in the output frame of `from`. The shells are assumed to be level with each other. Let t be the angle of the old x axis from
-/// the new one: exx = c^2 Exx + s^2 Eyy + s c Gxy and so on.
+/// Returns coefficients of exx, eyy, gxy (engineering shear) in the output frame of `to`. They give the strain in the same direction as `coefficient`
+/// gives in the output frame of `from`. The shells are assumed to be parallel. Let t be the angle of the old x axis from the new one: exx = c^2 Exx +
+/// s^2 Eyy + s c Gxy and so on.
 pub(super) fn transfer_coefficients(
     from_model: &Model,
     from: (ShellIx, ShellPlace),

@@ -22,7 +22,7 @@ pub(super) fn shell_normal(model: &Model, ix: ShellIx) -> Option<Vec3> {
     )
 }
 
-/// Returns the side of shell `other` that faces the same way as `side` of shell `from`: the opposite one where their normals oppose.
+/// Returns the side of shell `other` that faces in the same direction as `side` of shell `from`. It is the opposite side if the normals are opposite.
 pub(super) fn same_side(
     model: &Model,
     (from, side): (ShellIx, Surface),
@@ -35,8 +35,8 @@ pub(super) fn same_side(
 /// Cosine of the angle between two normals below which shells face neither the same nor opposite ways: 60 degrees.
 const FACING: f64 = 0.5;
 
-/// Returns the side of shell `other` that faces opposite to `side` of shell `from`. `None` if the angle between their normals is 60 to 120
-/// degrees, or if a shell has no area.
+/// Returns the side of shell `other` that faces in the direction opposite to `side` of shell `from`. `None` if the angle between their normals is 60
+/// to 120 degrees, or if a shell has no area.
 pub fn away_from(
     model: &Model,
     (from, side): (ShellIx, Surface),

@@ -3,7 +3,7 @@
 use crate::fe::strain_tensor::Surface;
 use crate::model::{BeamIx, Mat3, ShellIx, Vec3};
 
-/// How the arms are wired. `eps(d)` is the strain along direction `d`; readings are divided by the bridge factor.
+/// Wiring of the arms. `eps(d)` is the strain along direction `d`. The sum is divided by the bridge factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bridge {
     /// One grid: `eps`.
@@ -18,7 +18,7 @@ pub enum Bridge {
 }
 
 impl Bridge {
-    /// All of them.
+    /// All wirings.
     pub const ALL: [Bridge; 4] = [
         Self::Quarter,
         Self::HalfBending,
@@ -70,7 +70,7 @@ pub enum Rosette {
 }
 
 impl Rosette {
-    /// Leg names and angles, radians, right-handed about the element normal.
+    /// Returns the leg names and angles, radians, right-handed about the element normal.
     pub fn legs(self) -> [(&'static str, f64); 3] {
         let step = match self {
             Self::Rectangular => 45_f64,
@@ -113,12 +113,12 @@ pub enum CornerRows {
 /// Place of the second pair of grids of a bridge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
-    /// Shell, at whose centre it sits.
+    /// Shell of the pair. The pair is at the centre of the shell.
     pub shell: ShellIx,
     /// Side.
     pub surface: Surface,
     /// Rotation from the axes of the gauge's coordinate system at the first pair to its axes at this pair, basic frame. It is the identity except in
-    /// cylindrical and spherical systems. It turns the axis of the first pair into the axis of this pair.
+    /// cylindrical and spherical systems. The rotation transforms the axis of the first pair into the axis of this pair.
     pub turn: Mat3,
 }
 
@@ -136,34 +136,34 @@ impl Pair {
 /// A gauge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaugeSpec {
-    /// Name; a rosette's channels are `name.a`, `name.b`, `name.c`.
+    /// Name of the gauge. The channels of a rosette are `name.a`, `name.b`, `name.c`.
     pub name: String,
-    /// Where.
+    /// Place of the gauge.
     pub place: GaugePlace,
-    /// Side; `None`: top, or the nearer one for a point.
+    /// Side of the shell. `None` means top, or the nearer side for a point.
     pub surface: Option<Surface>,
-    /// Laid onto the surface gives the direction from which `angle_rad` counts; `None`: the element x axis.
+    /// Direction that is projected onto the surface. `angle_rad` counts from it. `None` means the element x axis.
     pub direction: Option<Vec3>,
     /// Right-handed about the element normal, on both sides.
     pub angle_rad: f64,
     /// Wiring.
     pub bridge: Bridge,
-    /// Divides the signed sum.
+    /// Number that divides the signed sum.
     pub bridge_factor: f64,
-    /// Length of the grid along its axis; 0: a point.
+    /// Length of the grid along its axis. 0 means a point.
     pub grid_length: f64,
-    /// Place of the second pair; `None`: the other side of the same shell (bending), no second pair (shear).
+    /// Place of the second pair. `None` means the other side of the same shell for bending, and no second pair for shear.
     pub pair: Option<Pair>,
-    /// Three channels instead of one.
+    /// Rosette, with three channels. `None` for a gauge with one channel.
     pub rosette: Option<Rosette>,
-    /// Angles by which legs a, b, c of a rosette are turned beyond their own, radians.
+    /// Additional rotations of the legs a, b, c of a rosette, radians.
     pub leg_turns_rad: [f64; 3],
-    /// Kt, a fraction; readings are taken as corrected for a Poisson ratio of 0.285 by the maker's gauge factor.
+    /// Transverse sensitivity Kt, a fraction. The gauge factor of the maker corrects readings for a Poisson ratio of 0.285.
     pub transverse_sensitivity: f64,
 }
 
 impl GaugeSpec {
-    /// A quarter bridge on the top of a shell along its x axis.
+    /// Returns a quarter bridge on the top of a shell along its x axis.
     pub fn place_on_shell(name: impl Into<String>, shell: ShellIx) -> Self {
         Self {
             name: name.into(),

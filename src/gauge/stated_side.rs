@@ -16,9 +16,9 @@ pub struct BetweenSkins {
     pub thickness: f64,
     /// Distance from the surface through the grids.
     pub from_grids: f64,
-    /// Height over the middle surface of the flat shell, along its normal.
+    /// Height of the point over the middle surface of the flat shell, along its normal.
     pub height: f64,
-    /// Height at the point of the curved surface that the shell and its neighbours outline, over the flat shell.
+    /// Height of the curved surface over the flat shell at this point. The shell and its neighbours define the curved surface.
     pub bulge: f64,
 }
 
@@ -39,8 +39,8 @@ impl BetweenSkins {
         }
     }
 
-    /// Returns whether the side of the point is ambiguous. It is if the point is equally far from both skins. It also is if the point is on different
-    /// sides of the flat shell and of the curved surface.
+    /// Returns whether the side of the point is ambiguous. This is so if the point is equally far from both skins, or if it is on different sides of
+    /// the flat shell and of the curved surface.
     pub fn is_undecided(&self) -> bool {
         let [bottom, top] = self.distance;
         (bottom - top).abs() < UNDECIDED * self.thickness || self.is_within_bulge()
@@ -66,14 +66,14 @@ impl BetweenSkins {
         self.contradicts(stated) && self.skin_distances(stated)[1] <= near && self.from_grids > near
     }
 
-    /// Distances from the skin of this side and from the other one.
+    /// Returns the distances from the skin of this side and from the other skin.
     pub fn skin_distances(&self, side: Surface) -> [f64; 2] {
         let here = self.distance[side.ix()];
         [here, self.distance[1 - side.ix()]]
     }
 }
 
-/// Returns how a point is placed to the skins of a shell; `None` for a shell without area or thickness.
+/// Returns the position of a point between the skins of a shell. `None` for a shell without area or thickness.
 pub fn between_skins(model: &Model, ix: ShellIx, x: Vec3) -> Option<BetweenSkins> {
     let shell = model.shells.get(ix.us())?;
     let [bottom, top] = [Surface::Bottom, Surface::Top].map(|s| to_side(model, shell, s));

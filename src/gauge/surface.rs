@@ -7,19 +7,19 @@ use crate::model::{Model, Shell, ShellIx, ShellKind, Vec3};
 /// A point on a shell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foot {
-    /// Which shell.
+    /// Shell that contains the point.
     pub shell: ShellIx,
-    /// Weights of its corners: bilinear shape functions of a quadrilateral, area coordinates of a triangle.
+    /// Weights of the corners of the shell: bilinear shape functions of a quadrilateral, area coordinates of a triangle.
     pub weights: [f64; 4],
-    /// On the reference surface, basic frame.
+    /// Point on the reference surface, basic frame.
     pub point: Vec3,
-    /// Distance of the given point from it, or from the skin of `side` ([`nearest_skin`]).
+    /// Distance of the given point from `point`, or from the skin of `side` ([`nearest_skin`]).
     pub distance: f64,
-    /// Side that faces the given point, or whose skin is nearest to it ([`nearest_skin`]).
+    /// Side that faces the given point, or whose skin is nearest to the given point ([`nearest_skin`]).
     pub side: Surface,
 }
 
-/// Corners of a shell (a triangle repeats its third).
+/// Returns the corners of a shell. For a triangle the fourth corner repeats the third.
 pub fn corners(model: &Model, shell: &Shell) -> Option<[Vec3; 4]> {
     let n = shell.shape.n_corners();
     let x = |i: usize| {
@@ -31,14 +31,15 @@ pub fn corners(model: &Model, shell: &Shell) -> Option<[Vec3; 4]> {
     Some([x(0)?, x(1)?, x(2)?, x(3)?])
 }
 
-/// Mean of the corners.
+/// Returns the mean of the corners.
 pub fn centre(model: &Model, shell: &Shell) -> Option<Vec3> {
     let n = shell.shape.n_corners();
     Some(corners(model, shell)?.iter().take(n).sum::<Vec3>() / n as f64)
 }
 
-/// Returns the distance from the reference surface of a shell to the skin of a side, along the normal at its centre. It is the offset and half of the
-/// thickness there (for a laminate, to the outer face of its last ply). Z1 and Z2 state the fibres of the strain, which may be elsewhere.
+/// Returns the distance from the reference surface of a shell to the skin of a side, along the normal at its centre. It is the offset plus half of
+/// the thickness at the centre. For a laminate it reaches to the outer face of the last ply. Z1 and Z2 state the fibres of the strain, which may be
+/// at other heights.
 pub fn to_side(model: &Model, shell: &Shell, side: Surface) -> f64 {
     let n = shell.shape.n_corners();
     let weights = std::array::from_fn(|i| if i < n { 1.0 / n as f64 } else { 0.0 });

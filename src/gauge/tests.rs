@@ -321,7 +321,7 @@ fn a_grid_averages_over_its_length() {
         &field(&m, CornerRows::Present, linear),
     )[0];
     assert!((got - 48e-6).abs() < 1e-15, "{got}");
-    // The field `(x - 45)^2` at the corners is 25 at both ends of the middle element, so that it is constant in this element.
+    // The field `(x - 45)^2` at the corners is 25 at both ends of the middle element, so it is constant in this element.
     let long = GaugeSpec {
         grid_length: 30.0,
         ..spec

@@ -5,8 +5,8 @@ use crate::finding::{Finding, Severity};
 use crate::model::Model;
 use nastran::cards::ShellShape;
 
-/// A warning for gauges on CQUADR, CTRIAR, CQUAD8 and CTRIA6 whose strain the built-in solver computes: single elements of these kinds
-/// differ from Nastran's.
+/// Returns a warning for gauges on CQUADR, CTRIAR, CQUAD8 and CTRIA6 whose strain the built-in solver computes: single elements of these kinds differ
+/// from Nastran's.
 pub fn on_unverified_elements(model: &Model, gauges: &[Gauge]) -> Option<Finding> {
     use ShellShape::{Quad8, QuadR, Tria6, TriaR};
     let doubtful = |g: &&Gauge| {

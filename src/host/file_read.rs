@@ -3,17 +3,17 @@
 use crate::finding::{Finding, Severity};
 use std::path::PathBuf;
 
-/// A file that was read, with its location.
+/// A file that the command read, with its location.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileRead {
     /// Path as given, by the user or by the job.
     pub given: String,
-    /// Path it was read from.
+    /// Path from which the file was read.
     pub path: PathBuf,
     /// SHA-256 of its bytes, hexadecimal.
     pub sha256: String,
-    /// How much a table whose last line may be cut matters; `None`: its end is sound.
+    /// Severity of a last line that may be cut off in a table. `None` if the end of the table is complete.
     pub unsure: Option<Severity>,
-    /// Findings on a table, other than on its end.
+    /// Other findings on the table.
     pub noted: Vec<Finding>,
 }

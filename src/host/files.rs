@@ -25,7 +25,7 @@ pub struct Input {
     pub sha256: String,
 }
 
-/// The files that one question read, in order. Hashes are computed on a thread of their own.
+/// The files that one question read, in order. A separate thread computes the hashes.
 pub struct Inputs<'a> {
     files: &'a dyn Files,
     entries: Vec<(String, PathBuf, PendingDigest)>,
@@ -58,7 +58,7 @@ impl PendingDigest {
 }
 
 impl<'a> Inputs<'a> {
-    /// Returns inputs of these files, none of them read so far.
+    /// Returns inputs with these files. None of them has been read yet.
     pub fn new(files: &'a dyn Files) -> Self {
         Self {
             files,
@@ -69,7 +69,7 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Files that were read before, such as the job with its tables.
+    /// Continues with files that were read before, such as the job with its tables.
     pub fn resume(files: &'a dyn Files, read: &[FileRead]) -> Self {
         let entry = |f: &FileRead| {
             let done = PendingDigest::Done(f.sha256.clone());
@@ -154,7 +154,7 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Bytes of a table of text.
+    /// Returns the bytes of a table of text.
     pub(crate) fn table_bytes(&mut self, base: &Path, given: &str) -> Result<FileBytes, Fault> {
         let bytes = as_table(given, self.read(base, given)?)?;
         if let Some(format) = format_of(&bytes) {
@@ -203,7 +203,7 @@ impl<'a> Inputs<'a> {
             .collect()
     }
 
-    /// Notes a file that was read by other means, so that it is listed.
+    /// Adds a file that other code read to the list of inputs.
     pub fn record(&mut self, given: &str, path: PathBuf, bytes: &FileBytes) {
         if self.entries.iter().any(|e| e.1 == path) {
             return;
@@ -218,7 +218,7 @@ impl<'a> Inputs<'a> {
         self.entries.push((given.to_owned(), path, hashing));
     }
 
-    /// SHA-256 of a file that was read, by the path it was read from.
+    /// Returns the SHA-256 of a file by the path from which it was read.
     pub fn digest_of(&mut self, path: &Path) -> Option<String> {
         let entry = self.entries.iter_mut().find(|e| e.1 == path)?;
         Some(entry.2.finish()).filter(|hex| !hex.is_empty())
@@ -229,7 +229,7 @@ impl<'a> Inputs<'a> {
         self.entries.iter().map(|e| e.1.clone()).collect()
     }
 
-    /// The list, hashes finished.
+    /// Returns the list of files with all hashes.
     pub fn list(&mut self) -> Vec<Input> {
         self.entries
             .iter_mut()
@@ -241,7 +241,7 @@ impl<'a> Inputs<'a> {
     }
 }
 
-/// Returns the bytes of a table or a record. For a spreadsheet these are the CSV text of its first sheet.
+/// Returns the bytes of a table or a record. For a spreadsheet, these bytes are the CSV text of the first sheet.
 ///
 /// # Errors
 /// A file that is neither a table nor a record.
@@ -299,7 +299,7 @@ fn is_table(given: &str) -> bool {
     [".csv", ".tsv", ".txt"].iter().any(|e| name.ends_with(e))
 }
 
-/// The finding of a table, or a record, whose last line may be cut.
+/// Returns the finding of a table, or a record, whose last line may be cut.
 pub(crate) fn may_be_cut(file: &str, severity: Severity) -> Finding {
     let (message, remedy) = match severity {
         Severity::Error => (

@@ -41,12 +41,12 @@ impl Manifest {
         self.digests.get(name).map(String::as_str)
     }
 
-    /// States the SHA-256 of files as they are written.
+    /// Adds the SHA-256 of files in their written state.
     pub(crate) fn state_digests(&mut self, digests: impl IntoIterator<Item = (String, String)>) {
         self.digests.extend(digests);
     }
 
-    /// The files of a command.
+    /// Returns the files of a command.
     pub(crate) fn names_of(&self, command: &str) -> BTreeSet<String> {
         let own = self.entries.iter().filter(|e| e.0 == command);
         own.map(|e| e.1.clone()).collect()
@@ -63,7 +63,7 @@ impl Manifest {
         found.map(|e| e.0.as_str())
     }
 
-    /// Returns the files of every other command. Files that a command writes before its answer have the command, a blank and a word as key.
+    /// Returns the files of every other command. For files that a command writes before its answer, the key is the command, a blank and a word.
     pub(crate) fn of_others(&self, command: &str) -> BTreeMap<&str, Vec<&str>> {
         let of_other = |by: &str| by.split(' ').next() != Some(command);
         let mut out: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
@@ -81,7 +81,7 @@ impl Manifest {
         self.entries.extend(added);
     }
 
-    /// Replaces the list of files of a command. Returns the files that it wrote before and that no command writes now.
+    /// Replaces the list of files of a command. Returns earlier files of the command that no command writes now.
     pub(crate) fn replace(&mut self, command: &str, names: &[String]) -> Vec<PathBuf> {
         let (before, others): (BTreeSet<_>, BTreeSet<_>) = std::mem::take(&mut self.entries)
             .into_iter()

@@ -92,7 +92,7 @@ impl<A> Outcome<A> {
 }
 
 impl<A: Answer> Outcome<A> {
-    /// Returns the sentence that states the result and whether it can be used. Console, page and `result.json` show the same one first.
+    /// Returns the sentence that states the result and whether the result can be used. Console, page and `result.json` begin with this sentence.
     pub fn summary(&self) -> String {
         let count = |severity| {
             let of_severity = self.findings.iter().filter(|f| f.severity == severity);

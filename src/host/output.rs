@@ -43,7 +43,7 @@ impl Output {
         })
     }
 
-    /// The folder.
+    /// Returns the folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
@@ -58,7 +58,7 @@ impl Output {
         self.tables.insert(table.to_owned(), columns.collect());
     }
 
-    /// Units of the columns of every table declared.
+    /// Returns the units of the columns of every declared table.
     pub fn tables(&self) -> &Tables {
         &self.tables
     }
@@ -76,7 +76,7 @@ impl Output {
         fill_file(&part, fill).map_err(|e| unwritable_file_fault(&self.folder.join(name), &e))
     }
 
-    /// Opens file `name` to be written piece by piece; flush it before [`Output::commit`].
+    /// Opens file `name` for writing piece by piece. Flush the file before [`Output::commit`].
     ///
     /// # Errors
     /// A fault if it cannot be created.
@@ -93,7 +93,7 @@ impl Output {
         self.pending.iter().any(|p| p.1 == target)
     }
 
-    /// Bytes of file `name` as written so far, which must be flushed. Drop them before [`Output::commit`].
+    /// Returns the bytes that have been written to file `name`. Flush the file first, and drop the bytes before [`Output::commit`].
     ///
     /// # Errors
     /// A fault if it cannot be read.
@@ -110,7 +110,7 @@ impl Output {
         self.folder.join(half_written::name_of_part(name, n))
     }
 
-    /// A fault for a file of this folder that could not be written on.
+    /// Returns the fault of a file in this folder whose writing failed.
     pub fn fault(&self, name: &str, e: &std::io::Error) -> Fault {
         unwritable_file_fault(&self.folder.join(name), e)
     }
@@ -162,8 +162,7 @@ impl Output {
     /// Refuses names of files that are inputs of the answer, or that no command wrote into the folder. Overwriting them would change the next answer
     /// or lose data.
     ///
-    /// # Errors
-    /// A fault for each.
+    /// # Errors A fault for each such file.
     pub fn check_spared(&self, sources: &[PathBuf]) -> Result<(), Faults> {
         let sources = canonicalize_paths(sources);
         let ours = Manifest::read(&self.folder);
@@ -187,7 +186,7 @@ impl Output {
     /// Refuses a folder that contains files of `names` that no command wrote. The check precedes all computation.
     ///
     /// # Errors
-    /// A fault for each.
+    /// A fault for each of these files.
     pub fn check_free(folder: &Path, names: &[&str]) -> Result<(), Faults> {
         let targets = names.iter().map(|n| folder.join(n));
         let standing: Vec<PathBuf> = targets.filter(|t| t.exists()).collect();
@@ -209,7 +208,7 @@ impl Output {
         let before = written.clone();
         let gone = written.replace(command, &self.names());
         if self.holds(INDEX) {
-            // The page depends on the results of other commands, so that it is not part of the answer.
+            // The page depends on the results of other commands, so it is not part of the answer.
             written.add(&format!("{command} index"), &[INDEX.to_owned()]);
         }
         for (other, kept) in self.keep_answers_of_others(command, &before)? {
@@ -252,10 +251,10 @@ impl Output {
         Ok(kept)
     }
 
-    /// Renames every file to its name and keeps earlier files of the command: for a command that writes a folder bit by bit.
+    /// Renames every file to its name and keeps earlier files of the command: for a command that writes its folder in several calls.
     ///
     /// # Errors
-    /// As [`Output::commit`].
+    /// The errors of [`Output::commit`].
     pub fn commit_with_earlier_files(mut self, command: &str) -> Result<(), Faults> {
         let _held = hold(&self.folder);
         self.check_spared(&[])?;
@@ -283,7 +282,7 @@ impl Output {
         Ok(())
     }
 
-    /// Renames every file to its name and does not change the folder otherwise, for a file in a user's folder.
+    /// Renames every file to its name and makes no other change in the folder. It is used for a file in a user's folder.
     ///
     /// # Errors
     /// A fault for the first file that cannot be renamed.

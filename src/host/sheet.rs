@@ -64,7 +64,7 @@ pub(crate) fn sheet_names(bytes: &[u8]) -> Vec<String> {
     Xlsx::new(std::io::Cursor::new(bytes)).map_or_else(|_| Vec::new(), |b| b.sheet_names())
 }
 
-/// Returns no name: this build reads no spreadsheets.
+/// Returns an empty list, because this build reads no spreadsheets.
 #[cfg(not(feature = "xlsx"))]
 pub(crate) fn sheet_names(_: &[u8]) -> Vec<String> {
     Vec::new()

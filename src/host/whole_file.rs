@@ -16,7 +16,7 @@ use std::time::UNIX_EPOCH;
 /// Bytes hashed at a time: they are still in the processor's nearer cache.
 const PART: usize = 1 << 17;
 
-/// Bytes of a file, in memory. Later changes of the file by another program do not affect them.
+/// Bytes of a file in memory. Later changes of the file by another program have no effect on these bytes.
 #[derive(Clone)]
 pub struct FileBytes(Arc<Vec<u8>>);
 
@@ -45,7 +45,7 @@ impl std::ops::Deref for FileBytes {
 /// Errors of the system, and errors of these kinds:
 /// - [`ErrorKind::IsADirectory`] for a folder, [`ErrorKind::InvalidInput`] for a device, pipe or socket, which may never end;
 /// - [`ErrorKind::OutOfMemory`] for a file larger than the free memory;
-/// - [`ErrorKind::ResourceBusy`] for one that changed meanwhile.
+/// - [`ErrorKind::ResourceBusy`] for a file that changed during reading.
 pub fn load(path: &Path) -> std::io::Result<FileBytes> {
     rest_of(open_file(path)?)
 }
@@ -79,8 +79,7 @@ impl OpenedFile {
 
     /// SHA-256 of its bytes, hexadecimal.
     ///
-    /// # Errors
-    /// Of kind [`ErrorKind::ResourceBusy`] where it was shortened since it was opened; where a part could not be read.
+    /// # Errors Kind [`ErrorKind::ResourceBusy`] if the file was shortened after it was opened. An error if a part could not be read.
     pub fn sha256(&self) -> std::io::Result<String> {
         let file = match self {
             Self::Whole(bytes) => return Ok(hex(&Sha256::digest(&**bytes))),
@@ -98,10 +97,9 @@ impl OpenedFile {
         Ok(hex(&hash.finalize()))
     }
 
-    /// Checks that all requested bytes were read, and from one state of the file.
+    /// Checks that all requested bytes were read, and that all are from one state of the file.
     ///
-    /// # Errors
-    /// Of kind [`ErrorKind::ResourceBusy`] where it was written to since it was opened; where a part could not be read.
+    /// # Errors Kind [`ErrorKind::ResourceBusy`] if the file was written to after it was opened. An error if a part could not be read.
     pub fn check(&self) -> std::io::Result<()> {
         let Self::Parts(file) = self else {
             return Ok(());
@@ -116,7 +114,7 @@ impl OpenedFile {
     }
 }
 
-/// A file that is read in parts, each part by the code that needs it. It is always the opened file, even if its path changes.
+/// A file that is read in parts, each part by the code that needs it. The file stays open, so a change of its path has no effect.
 pub struct InParts {
     file: File,
     before: Metadata,
@@ -161,7 +159,7 @@ fn fill_from_file(file: &File, mut from: u64, mut out: &mut [u8]) -> std::io::Re
 /// Opens a file. Its bytes are in memory unless its format is [read in parts](is_read_in_parts).
 ///
 /// # Errors
-/// As [`load`].
+/// The errors of [`load`].
 pub fn open(path: &Path) -> std::io::Result<OpenedFile> {
     // The check precedes the opening, because opening a pipe waits for its writer.
     check_kind(&std::fs::metadata(path)?)?;
@@ -187,7 +185,7 @@ fn cut_meanwhile(e: Error) -> Error {
     }
 }
 
-/// A digest as it is written.
+/// Returns a digest as hexadecimal text.
 pub fn hex(digest: &[u8]) -> String {
     digest.iter().map(|b| format!("{b:02x}")).collect()
 }
@@ -221,7 +219,7 @@ fn check_kind(meta: &Metadata) -> std::io::Result<()> {
     }
 }
 
-/// State of a file as the system reports it: it differs after a write, and no byte is read for it.
+/// State of a file as the system reports it. It changes with each write. It is determined without reading the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stamp {
     /// Length of the file, bytes.

@@ -4,7 +4,7 @@ use crate::finding::Finding;
 pub use crate::finding::capitalize;
 use crate::finding::explain::code;
 
-/// One finding as one line: file and line where they are known, severity, code, subject, sentence, numbers, remedy.
+/// Returns a finding as one line: file and line if known, severity, code, subject, sentence, numbers, remedy.
 pub fn finding_text(f: &Finding) -> String {
     let (place, message) = split_place(&f.message);
     let numbers = numbers_in_words(f).map_or_else(String::new, |words| format!(" ({words})"));
@@ -22,7 +22,7 @@ pub fn finding_text(f: &Finding) -> String {
 }
 
 /// Returns the measured number of a finding and its limit in words: `scaled condition number 116.4, limit 50`. `None` if the message already contains
-/// them.
+/// the numbers.
 pub fn numbers_in_words(f: &Finding) -> Option<String> {
     let (measured, limit) = f.shown_numbers()?;
     let words = code(f.code)?.numbers;

@@ -48,7 +48,7 @@ impl<'a> Work<'a> {
         out
     }
 
-    /// Adds seconds under a name of their own, for the steps of a stage.
+    /// Adds seconds under a separate name, for the steps of a stage.
     pub fn note_seconds(&mut self, name: &str, seconds: f64) {
         self.seconds.add(name, seconds);
     }
@@ -64,7 +64,7 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// The outcome: the answer with everything that was collected.
+    /// Returns the outcome: the answer with everything that was collected.
     pub fn finish<A>(mut self, units: StatedUnits, answer: A) -> Outcome<A> {
         self.note_seconds("total", self.began.elapsed().as_secs_f64());
         self.findings.extend(self.inputs.findings());

@@ -4,7 +4,7 @@ use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix;
 use crate::units::{MICROSTRAIN, number};
 
-/// One gauge by number, or all of them.
+/// One gauge by its number, or all gauges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channels {
     /// One gauge.
@@ -38,12 +38,12 @@ pub enum InputFault {
     Unlike(usize),
 }
 
-/// Readings by run and gauge (NaN if one is missing), and the rows of S that they are compared with.
+/// Readings by run and gauge (NaN if missing), and the rows of S for the comparison.
 #[derive(Clone, Debug)]
 pub struct Inputs {
     /// Strain by run and gauge.
     pub strain: Vec<Vec<f64>>,
-    /// S, strain per unit of load, a row a gauge.
+    /// S, strain per unit of load, with a row for each gauge.
     pub rows: Matrix,
 }
 
@@ -52,7 +52,7 @@ pub struct Inputs {
 pub struct AlternativeRows {
     /// [`InputFault::OtherSide`] or [`InputFault::Radians`] of a gauge.
     pub fault: fn(Channels) -> InputFault,
-    /// S with every gauge so installed.
+    /// S with every gauge in this installation.
     pub rows: Matrix,
     /// Whether this is possible for a gauge.
     pub applies: Vec<bool>,
@@ -88,7 +88,7 @@ impl InputFault {
         }
     }
 
-    /// Returns whether gauges are installed otherwise than their table states.
+    /// Returns whether the fault is that gauges are not installed as their table states.
     pub fn is_of_installation(&self) -> bool {
         matches!(self, Self::OtherSide(_) | Self::Radians(_))
     }
@@ -254,17 +254,17 @@ impl InputFault {
 pub struct DetectedFault {
     /// The fault.
     pub fault: InputFault,
-    /// Share of the reduced sum of squares that is left, once it is undone.
+    /// Share of the reduced sum of squares that remains after correction of the fault.
     pub share: f64,
     /// Limit of `share`, or of `sigmas`.
     pub limit: f64,
-    /// Sigmas by which the gauge contradicts the other gauges, root mean square over the runs, if errors come from scatter.
+    /// Number of sigmas by which the gauge contradicts the other gauges, if errors come from scatter. It is a root mean square over the runs.
     pub sigmas: Option<f64>,
     /// Size of the gauge's readings, and size of their prediction from the other gauges, strain.
     pub sizes: [f64; 2],
-    /// Largest shift of a load over the half width of its interval; `None` if loads are known.
+    /// Largest shift of a load, divided by the half width of its interval. `None` if loads are known.
     pub moves: Option<f64>,
-    /// Whether the fault is found only with the other faults undone as well.
+    /// Whether the fault is found only after correction of the other faults.
     pub together: bool,
     /// Faults that explain the readings as well.
     pub alternatives: Vec<InputFault>,

@@ -6,8 +6,8 @@ use std::collections::HashMap;
 /// Least number of different readings in two equal columns. Fewer may be equal by chance if numbers are rounded.
 const DIFFERENT_READINGS: usize = 3;
 
-/// Returns pairs of columns that have the same numbers in all rows, each with the first of its kind. Columns with fewer than `different_at_least`
-/// different values are left out.
+/// Returns pairs of columns with the same numbers in all rows. Each pair contains the first of the equal columns. Columns with fewer than
+/// `different_at_least` different values are left out.
 pub fn identical_pairs(columns: &[Vec<f64>], different_at_least: usize) -> Vec<[usize; 2]> {
     let mut first: HashMap<Vec<u64>, usize> = HashMap::new();
     let mut out = Vec::new();
@@ -33,7 +33,7 @@ pub fn identical_pairs(columns: &[Vec<f64>], different_at_least: usize) -> Vec<[
     out
 }
 
-/// The finding on gauges whose readings, a column each, are the same in all rows.
+/// Returns the finding on gauges with the same readings in all rows. `readings` has a column for each gauge.
 pub fn identical_readings(gauges: &[String], columns: &[Vec<f64>]) -> Option<Finding> {
     let pairs = identical_pairs(columns, DIFFERENT_READINGS);
     let names: Vec<String> = (pairs.iter())

@@ -89,18 +89,18 @@ pub struct MotionChannel<'a> {
     pub is_unit_stated: bool,
     /// Unit that the channel is read in: the stated unit, or the unit of the job.
     pub unit: String,
-    /// Mean of its samples.
+    /// Mean of the samples.
     pub mean: f64,
-    /// Standard deviation of its samples.
+    /// Standard deviation of the samples.
     pub scatter: f64,
 }
 
-/// The channel that replaces another one, and the factor on its samples.
+/// Channel that replaces another channel, with a factor on the samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChannelSource {
     /// Number of the channel whose samples are used.
     pub from: usize,
-    /// Factor on them.
+    /// Factor on the samples.
     pub factor: f64,
 }
 
@@ -110,8 +110,8 @@ pub struct MotionRecord<'a> {
     pub channels: Vec<MotionChannel<'a>>,
     /// Acceleration of gravity in the unit of the samples.
     pub gravity: f64,
-    /// Returns the share of the motion that the vehicle does not explain (0 to 1), with a source for each channel. Parameters keep their natural
-    /// signs. `None` if there is nothing to compare.
+    /// Function that returns the share of the motion that the vehicle does not explain (0 to 1), with a source for each channel. Parameters keep
+    /// their natural signs. `None` if there is nothing to compare.
     pub unexplained: Box<dyn Fn(&[ChannelSource]) -> Option<f64> + Sync + 'a>,
 }
 
@@ -135,7 +135,7 @@ pub struct ExplainedFault {
     pub before: f64,
     /// Unexplained share of the motion with the fault corrected.
     pub after: f64,
-    /// Other faults that explain it as well.
+    /// Other faults that explain the record equally well.
     pub alternatives: Vec<MotionFault>,
 }
 
@@ -257,8 +257,8 @@ fn other_units(c: &MotionChannel) -> Vec<(&'static str, f64)> {
         .collect()
 }
 
-/// Returns the fault that explains the motion, with the faults that fit as well. `None` if the vehicle explains the motion as recorded, or if no
-/// single fault explains it. Faults that gravity shows are corrected first.
+/// Returns the fault that explains the motion, with the alternative faults that fit equally well. `None` if the vehicle explains the motion as
+/// recorded, or if no single fault explains it. Faults that gravity shows are corrected first.
 pub fn fault_of_motion(record: &MotionRecord) -> Option<ExplainedFault> {
     let channels = &record.channels;
     let mut recorded: Vec<ChannelSource> = (0..channels.len())

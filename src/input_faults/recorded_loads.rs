@@ -53,9 +53,9 @@ pub struct RecordedRuns<'a> {
     pub loads: Vec<&'a str>,
     /// Readings by run and gauge; NaN if one is missing.
     pub readings: Vec<Vec<f64>>,
-    /// Strain of the model: of `gauge` in `run` under the load of the third number, its size taken from the record of the fourth.
+    /// Strain of the model. Arguments are gauge, run, the load that acts, and the load whose record gives the size.
     pub strain_of: Box<dyn Fn(usize, usize, usize, usize) -> f64 + Sync + 'a>,
-    /// Quantity of each load: records of one quantity may be exchanged. `None`: its record cannot be another load's.
+    /// Quantity of each load. Records of one quantity may be exchanged. `None` if the record of the load cannot belong to another load.
     pub quantities: Vec<Option<Quantity>>,
     /// Whether the record of a load in a run is accurate enough to compare.
     pub known: Vec<bool>,
@@ -114,7 +114,7 @@ impl RecordedRuns<'_> {
         n as f64 * self.noise.powi(2)
     }
 
-    /// Returns gauge, run and reading less the model of each reading, with a factor for each load.
+    /// Returns gauge, run and reading minus the model of each reading, with a factor for each load.
     fn differences(&self, factor: &[f64]) -> Vec<(usize, usize, f64)> {
         let readings = self.gauges().flat_map(|g| self.runs().map(move |r| (g, r)));
         let each = readings.filter_map(|(g, r)| Some((g, r, self.reading_at(g, r)?)));
@@ -168,7 +168,7 @@ pub fn faults_of_recorded_loads(runs: &RecordedRuns) -> Vec<RecordFault> {
     unit.into_iter().chain(sign).collect()
 }
 
-/// Returns the findings on [`faults_of_recorded_loads`]: one each, an error; `file` names the file of the records.
+/// Returns the findings on [`faults_of_recorded_loads`], one error for each fault. `file` names the file of the records.
 pub fn findings_of_recorded_loads(runs: &RecordedRuns, file: &str) -> Vec<Finding> {
     let faults = faults_of_recorded_loads(runs);
     faults.iter().map(|f| finding(runs, file, f)).collect()
@@ -419,8 +419,8 @@ fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
 /// Returns the finding on recorded payloads if the wheel forces and the strain both contradict their weight by one factor. `payload` is their place
 /// among the loads. `weights` and `sums` are recorded weight and sum of the wheel forces by run in one unit, `sum_sd` is the noise of a sum.
 ///
-/// The factor is the slope of the sums over the weights, so that the weight of the empty structure in the sums does not matter. Wheel forces or
-/// strain alone are no evidence, as wheels may be without a sensor.
+/// The factor is the slope of the sums over the weights, so that the weight of the empty structure in the sums does not matter. Wheel forces alone or
+/// strain alone are no evidence, because some wheels may have no sensor.
 pub fn recorded_mass_contradicted(
     runs: &RecordedRuns,
     payload: usize,

@@ -5,7 +5,7 @@ use crate::estimate::{chi_square_tail, median};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// How well readings fit, by one measure of their errors.
+/// Misfit of readings, measured relative to their errors.
 pub trait Misfit: Sync {
     /// Returns the inputs as they are.
     fn inputs(&self) -> Inputs;
@@ -22,18 +22,18 @@ pub trait Misfit: Sync {
 /// A fit of inputs.
 #[derive(Clone, Debug, Default)]
 pub struct InputFit {
-    /// Sum of squares that is left, in units of the errors.
+    /// Sum of squares of the residual, in units of the errors.
     pub chi2: f64,
     /// Degrees of freedom of the sum of squares.
     pub dof: usize,
     /// Predicted strain by run and gauge.
     pub predicted: Vec<Vec<f64>>,
-    /// Value and half width of the interval of each load asked for, by run; empty if the loads are known.
+    /// Value and half width of the interval of each requested load, by run. Empty if the loads are known.
     pub loads: Vec<Vec<[f64; 2]>>,
 }
 
 impl InputFit {
-    /// Returns the sum of squares over its degrees of freedom; infinite if there are none.
+    /// Returns the sum of squares divided by its degrees of freedom. It is infinite without degrees of freedom.
     pub fn reduced_chi2(&self) -> f64 {
         match self.dof {
             0 => f64::INFINITY,
@@ -53,30 +53,31 @@ impl InputFit {
 /// Limits of the search.
 #[derive(Clone, Copy, Debug)]
 pub struct Rules {
-    /// Reduced sum of squares under which errors explain the readings, and chance of one as large from which they do.
+    /// Reduced sum of squares up to which errors explain the readings, and the probability of such a sum from which errors explain them.
     pub explained: [f64; 2],
-    /// Share of the reduced sum of squares that a fault leaves at most, once it is undone.
+    /// Largest share of the reduced sum of squares that remains after correction of a fault.
     pub remains: f64,
     /// Sigmas above which a gauge contradicts the others, root mean square over the runs, if errors come from scatter. The limit grows if the
     /// residuals of the other gauges exceed their errors. All runs may have the same error, so that they count as one. `None`: [`Self::remains`]
     /// decides.
     pub sigmas: Option<f64>,
     /// Sigmas above which a gauge is reported whatever its limit from the scatter is. A few repeats determine their own scatter to a factor of two at
-    /// best. Healthy gauges near a wheel reach five in calibrations of two runs a lane on two measured bridges.
+    /// best. Healthy gauges near a wheel reach five sigmas in calibrations with two runs for each lane, on two measured bridges.
     pub named: f64,
     /// Share of the reduction by leaving a gauge out that a cause may leave.
     pub cause_leaves: f64,
-    /// Sum of squares, over the reduced one, by which two explanations differ if the readings distinguish them: three sigmas.
+    /// Difference of the sums of squares of two explanations, divided by the reduced sum of squares, from which the readings distinguish the
+    /// explanations: three sigmas.
     pub apart: f64,
     /// Share of the expected strain under which a gauge reads nothing.
     pub nothing: f64,
     /// Largest reading of a dead gauge, and smallest prediction from the other gauges, in noise sd.
     pub dead: [f64; 2],
-    /// How close a factor comes to a power of ten to be a unit.
+    /// Largest distance of a factor from a power of ten at which the factor indicates a unit.
     pub near: f64,
     /// Gauges that are tried for a cause, and for an exchange with every other gauge.
     pub tried: usize,
-    /// Faults looked for one after the other.
+    /// Largest number of faults that are searched for in sequence.
     pub most: usize,
 }
 
@@ -96,7 +97,7 @@ impl Rules {
         most: 3,
     };
 
-    /// Returns the limits if errors come from scatter. By a small chance, one sound gauge of all exceeds `sigmas`.
+    /// Returns the limits if errors come from scatter. With a small probability, one of all sound gauges exceeds `sigmas`.
     pub fn of_scatter(sigmas: f64) -> Self {
         Self {
             sigmas: Some(sigmas),
@@ -132,9 +133,9 @@ impl Rules {
 /// Returns the faults of the channels, with the fault that explains most first. The list is empty if errors explain the readings, or if no fault
 /// does.
 ///
-/// Gauges are left out one by one. For the gauges without which the others agree best, each cause and each exchange is tried, and a fault of all
-/// gauges. A fault counts if the readings agree with it undone ([`Rules`]), or with up to three undone together. `alternatives` is called only if the
-/// readings are not explained.
+/// Gauges are left out one by one. The search then tries each cause and each exchange for the gauges whose removal improves the agreement most. It
+/// also tries faults of all gauges. A fault counts if the readings agree after its correction ([`Rules`]), or after the correction of up to three
+/// faults together. `alternatives` is called only if the readings are not explained.
 pub fn search_faults(
     misfit: &dyn Misfit,
     alternatives: &mut dyn FnMut() -> Vec<AlternativeRows>,

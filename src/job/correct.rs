@@ -9,9 +9,9 @@ use crate::host::fault::{Fault, FaultList, Faults};
 /// Correction that converts the readings of a channel to strain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Channel {
-    /// Subtracted first, microstrain.
+    /// Offset that is subtracted first, microstrain.
     pub offset: f64,
-    /// Divisor of the reading less its offset.
+    /// Divisor of the reading after subtraction of the offset.
     pub factor: f64,
     /// Whether the readings of the channel are ignored.
     pub ignore: bool,
@@ -58,7 +58,7 @@ pub fn channel_of(corrections: &[StrainCorrection], gauge: &str) -> Channel {
     )
 }
 
-/// The column that holds the readings of this gauge: another's, where the two are exchanged.
+/// Returns the column that contains the readings of this gauge. It is the column of the other gauge if two gauges are exchanged.
 pub fn column_of<'a>(corrections: &'a [StrainCorrection], gauge: &'a str) -> &'a str {
     corrections
         .iter()
@@ -130,7 +130,7 @@ pub(super) fn correct_legs(job: &mut Job, faults: &mut FaultList) {
 /// Refuses corrections of channels that are not among `known`, in a job that does not list its gauges; `place` is where these channels are.
 ///
 /// # Errors
-/// A fault for each such correction.
+/// A fault for each of these corrections.
 pub fn check_channels(job: &Job, known: &[String], place: &str) -> Result<(), Faults> {
     let mut faults = FaultList::new();
     for c in job.corrections.iter().filter(|_| job.gauges.is_empty()) {

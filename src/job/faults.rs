@@ -11,7 +11,7 @@ use crate::host::words::format_number;
 /// No quantity of a job is larger in any system of units; the square of one that is smaller stays a number.
 const LARGEST: f64 = 1e30;
 
-/// The job's text and the faults found in it so far.
+/// Text of the job, and the faults found so far.
 pub(super) struct Collector<'a> {
     pub file: &'a str,
     pub text: &'a str,
@@ -31,13 +31,13 @@ impl<'a> Collector<'a> {
         }
     }
 
-    /// Line of a value.
+    /// Returns the line of a value.
     pub(super) fn line<T>(&self, at: &SpannedValue<T>) -> u32 {
         let start = at.span().start;
         self.ends.partition_point(|end| *end < start) as u32 + 1
     }
 
-    /// Notes a fault at a value.
+    /// Adds a fault at a value.
     pub(super) fn fault<T>(
         &mut self,
         at: &SpannedValue<T>,
@@ -51,7 +51,7 @@ impl<'a> Collector<'a> {
             .push(Fault::with_line(self.file, line, field, wrong, remedy));
     }
 
-    /// The value of a key that must be there; `section` is where it is missed.
+    /// Returns the value of a required key. Otherwise it adds a fault; `section` is the section that lacks the key.
     pub(super) fn require<T: Clone, U>(
         &mut self,
         value: &S<T>,
@@ -70,12 +70,12 @@ impl<'a> Collector<'a> {
         value.as_ref().map(|v| v.value().clone())
     }
 
-    /// A named file.
+    /// Returns a named file.
     pub(super) fn named_file(&self, value: &S<String>, key: &str) -> Option<NamedFile> {
         value.as_ref().map(|v| self.named_at(v, key))
     }
 
-    /// A named file.
+    /// Returns a named file.
     pub(super) fn named_at(&self, v: &SpannedValue<String>, key: &str) -> NamedFile {
         NamedFile {
             given: v.value().clone(),
@@ -121,7 +121,7 @@ impl<'a> Collector<'a> {
         found
     }
 
-    /// Returns a number if it is finite, no larger than [`LARGEST`] and passes `ok`, else adds a fault. `expected` describes `ok`.
+    /// Returns a number that is finite, at most [`LARGEST`], and passes `ok`. Otherwise it adds a fault. `expected` describes `ok`.
     pub(super) fn number(
         &mut self,
         value: &S<f64>,
@@ -142,12 +142,12 @@ impl<'a> Collector<'a> {
         None
     }
 
-    /// A number of 0 or more.
+    /// Returns a number of 0 or more.
     pub(super) fn at_least_zero(&mut self, value: &S<f64>, key: &str) -> Option<f64> {
         self.number(value, key, "0 or more", |x| x >= 0.0)
     }
 
-    /// A relative error, a fraction from 0 to 1; a larger one may be percent, which the fault asks for.
+    /// Returns a relative error, a fraction from 0 to 1. Otherwise it adds a fault, which asks whether a larger number is in percent.
     pub(super) fn fraction(&mut self, value: &S<f64>, key: &str) -> Option<f64> {
         const EXPECTED: &str = "a fraction from 0 to 1";
         let percent = |x: f64| x > 1.0 && x <= 100.0;
@@ -168,12 +168,12 @@ impl<'a> Collector<'a> {
         }
     }
 
-    /// A number above 0.
+    /// Returns a number above 0.
     pub(super) fn positive_number(&mut self, value: &S<f64>, key: &str) -> Option<f64> {
         self.number(value, key, "a number above 0", |x| x > 0.0)
     }
 
-    /// A count of at least 1.
+    /// Returns a count of at least 1.
     pub(super) fn count(&mut self, value: &S<u32>, key: &str) -> Option<usize> {
         let v = value.as_ref()?;
         if *v.value() == 0 {

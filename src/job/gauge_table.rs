@@ -81,9 +81,9 @@ const INFORMATIVE: [&str; 19] = [
 /// A column that is read.
 #[derive(Clone, Copy)]
 pub(super) struct GaugeColumn {
-    /// Place in the table.
+    /// Index of the column in the table.
     pub at: usize,
-    /// Job units (degrees for an angle) in one of its numbers.
+    /// Factor from a number of the column to job units (degrees for an angle).
     pub scale: f64,
 }
 
@@ -101,7 +101,7 @@ struct ColumnHeader<'a> {
 }
 
 impl GaugeColumns {
-    /// Returns the columns of a table; `length_m` are the metres in the job's unit of length.
+    /// Returns the columns of a table. `length_m` is the job's unit of length in metres.
     pub fn from_table(t: &Table, length_m: f64, faults: &mut FaultList) -> Self {
         let mut out = Self {
             known: Vec::new(),
@@ -121,19 +121,19 @@ impl GaugeColumns {
         out
     }
 
-    /// Returns the column of this name, where the table has one.
+    /// Returns the column with this name, if the table has the column.
     pub fn column(&self, name: &str) -> Option<GaugeColumn> {
         let known = self.known.iter().find(|k| k.0 == name);
         known.map(|k| k.1)
     }
 
-    /// Whether the table states how its gauges point.
+    /// Returns whether the table states the directions of its gauges.
     pub fn has_direction(&self) -> bool {
         let names = ["dir_x", "dir_y", "dir_z", "angle_deg"];
         names.iter().any(|n| self.column(n).is_some())
     }
 
-    /// Marks a column as one that nothing reads.
+    /// Marks a column as not used by any command.
     pub fn leave_unread(&mut self, name: &str) {
         self.unread.extend(self.column(name).map(|c| c.at));
         self.known.retain(|k| k.0 != name);
@@ -151,7 +151,7 @@ impl GaugeColumns {
         names.filter(|n| self.column(n).is_none()).collect()
     }
 
-    /// Adds a fault for each column that looks like one that the table lacks: an angle that is not read would be 0.
+    /// Adds a fault for each unknown column whose name is similar to a missing column. Otherwise a misspelt angle column would count as 0.
     pub fn check_spelling(&self, t: &Table, faults: &mut FaultList) {
         let lacking = self.missing_columns();
         let long = |n: &&&str| n.len() > 4 && **n != "direction" && **n != "member";

@@ -1,4 +1,4 @@
-//! The gauge file: a row a gauge, columns as the keys of `[[gauge]]`.
+//! The gauge file. It has a row for each gauge, and the keys of `[[gauge]]` as columns.
 //!
 //! `direction` is `dir_x`, `dir_y`, `dir_z`; `position` is `x`, `y`, `z` in job units, or `x_m`, `y_m`, `z_m` in metres. `super::gauge_table`
 //! finds the columns: a finding names those that nothing reads, and one that looks like a column that the table lacks is a fault.
@@ -18,7 +18,7 @@ use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::files::Inputs;
 use crate::placement::Role;
 
-/// The gauges of `[gauges] file`; faults are added to the list.
+/// Reads the gauges of `[gauges] file` and adds faults to the list.
 pub(super) fn read_gauge_file(
     inputs: &mut Inputs,
     job: &Job,
@@ -38,7 +38,7 @@ pub(super) fn read_gauge_file(
     gauges
 }
 
-/// Returns a table of gauges, its columns and the gauges in it; `None` if it can't be read. Faults are added to the list.
+/// Returns a table of gauges with its columns and gauges. `None` if the table can't be read. Faults are added to the list.
 pub(super) fn read_gauges(
     inputs: &mut Inputs,
     job: &Job,

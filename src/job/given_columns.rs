@@ -3,8 +3,8 @@
 use super::same_name::{is_same_name, is_same_word};
 use super::types::{GivenSensitivity, Job, JobLoad};
 
-/// Returns load and column of a given S whose table has this header, without the column of gauge names. They are as `columns` states; if it is
-/// omitted, every column that a stated load names, or every column if no load is stated.
+/// Returns load and column of a given S whose table has this header, without the column of gauge names. The key `columns` states them. Without this
+/// key, they are the columns that stated loads name, or all columns if the job states no load.
 pub fn columns_of_given(
     job: &Job,
     given: &GivenSensitivity,

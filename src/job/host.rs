@@ -12,8 +12,8 @@ use crate::series::record::csv::table_text;
 use std::path::Path;
 
 impl Inputs<'_> {
-    /// Returns the bytes of a file that a job names. A spreadsheet gives the CSV text of its first sheet. Parquet and Feather with a column `run`
-    /// give the table as CSV text.
+    /// Returns the bytes of a file that a job names. For a spreadsheet, the bytes are the CSV text of its first sheet. For Parquet and Feather with a
+    /// column `run`, they are the CSV text of the table.
     ///
     /// # Errors
     /// A fault at the line of the job that names it.
@@ -71,7 +71,7 @@ impl Inputs<'_> {
 }
 
 impl<'a> Work<'a> {
-    /// A question of a job, whose files count as read.
+    /// Starts the work of a command on a job. The files of the job count as read.
     pub fn of_job(cx: &Context<'a>, job: &Job) -> Self {
         let mut work = Self::new(cx);
         work.inputs = Inputs::resume(cx.files, &job.read);
@@ -104,7 +104,7 @@ fn at_job_line(job: &Job, named: &NamedFile, f: Fault) -> Fault {
     }
 }
 
-/// The fault, at its line of the job, of a file that can't be read.
+/// Returns the fault of a file that can't be read, at the line of the job that names the file.
 pub(crate) fn unreadable_at(job: &Job, named: &NamedFile, e: &std::io::Error) -> Fault {
     at_job_line(job, named, unreadable_file_fault(&named.given, e))
 }

@@ -74,7 +74,7 @@ impl Job {
         self.gravity_m_s2() / self.units.length_m()
     }
 
-    /// Returns the grid where the payload acts: the grid in `[payload]`, else the only grid at which wanted moments act.
+    /// Returns the grid where the payload acts: the grid in `[payload]`, or else the only grid with moments among the wanted loads.
     pub fn payload_grid(&self) -> Option<u32> {
         let payload = self.payload.as_ref()?;
         let mut with_moment = self.loads.iter().filter_map(|l| match l.acts {

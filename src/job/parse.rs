@@ -11,7 +11,7 @@ use toml::de::{DeTable, DeValue, Deserializer, Error};
 /// The most faults listed for one job; more would hide the first.
 const MOST_FAULTS: usize = 100;
 
-/// The raw job and the faults met on the way.
+/// Returns the raw job, and the faults found during parsing.
 pub(super) fn parse_job(file: &str, text: &str) -> (RawJob, FaultList) {
     let (mut table, errors) = DeTable::parse_recoverable(text);
     let mut faults: FaultList = errors.iter().map(|e| syntax_fault(file, text, e)).collect();
@@ -128,7 +128,7 @@ fn plain_type(expected: &str) -> String {
     }
 }
 
-/// Line and column, counted from 1, of a byte of the text.
+/// Returns the line and column, counted from 1, of a byte of the text.
 pub(super) fn line_column(text: &str, at: usize) -> (u32, u32) {
     let before = text.get(..at.min(text.len())).unwrap_or(text);
     let line = before.matches('\n').count() + 1;

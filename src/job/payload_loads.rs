@@ -2,7 +2,7 @@
 
 use super::types::{Component, Job, LoadActs};
 
-/// Names of these loads without a model: the weight, downwards, and its moments about x and y.
+/// Names of the payload loads without a model: the weight (downwards), and its moments about x and y.
 pub const NAMES: [&str; 3] = ["payload", "payload.MX", "payload.MY"];
 
 /// Coefficients of the weight `W`, of `W dx` and of `W dy` in each of [`NAMES`]: `MX = -W dy`, `MY = W dx`, z upwards.

@@ -4,7 +4,7 @@ use super::table::Table;
 use super::unread_columns;
 use crate::host::files::Inputs;
 
-/// Columns of the signature, each by its names: microstrain per mass, per mass and length along x, along y, and along both.
+/// Columns of the signature with their possible names: microstrain per mass, per mass and length along x, along y, and along both.
 pub const COLUMNS: [[&str; 2]; 4] = [
     ["b0", "b0"],
     ["b_dx", "b_x"],

@@ -7,7 +7,7 @@ use crate::finding::list_few;
 use crate::host::fault::{Fault, FaultList, Faults};
 
 impl PropertyIds {
-    /// Whether the id is among them; names count once [`Job::with_property_ids`] has replaced them.
+    /// Returns whether the list contains the id. Names have an effect only after [`Job::with_property_ids`] has replaced them.
     pub fn contains(&self, id: u32) -> bool {
         self.ids.contains(id)
     }
@@ -50,10 +50,10 @@ fn unknown_remedy(name: &str, named: &[(u32, String)]) -> String {
 }
 
 impl Job {
-    /// Returns the job with ids in place of the names of properties; `named` are the names that the deck gives them.
+    /// Returns the job with ids instead of the names of properties. `named` contains the names in the deck.
     ///
     /// # Errors
-    /// A fault for each name that no property has, or several.
+    /// A fault for each name that no property or more than one property has.
     pub fn with_property_ids(&self, named: &[(u32, String)]) -> Result<Self, Faults> {
         let mut job = self.clone();
         let lines = [

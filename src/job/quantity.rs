@@ -5,7 +5,7 @@ use crate::units::Quantity;
 /// Parts of a name that identify a moment.
 const MOMENTS: [&str; 3] = ["MX", "MY", "MZ"];
 
-/// Returns force or moment by the parts of a load's name (`LF.MX`, `MX_LF` and `M_LF` are moments); force if the name does not state it.
+/// Returns force or moment according to the parts of a load's name: `LF.MX`, `MX_LF` and `M_LF` are moments. Other names mean a force.
 pub fn quantity_of_name(name: &str) -> Quantity {
     let is_moment = name
         .split(['.', '_', ' '])

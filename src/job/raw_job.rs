@@ -426,11 +426,11 @@ pub(super) struct RawReconcile {
 pub(super) struct RawEffect {
     /// Id of the effect in results.
     pub id: S<String>,
-    /// A CSV file: a row a gauge, a column a load, the change of S for an effect of size one.
+    /// CSV file with a row for each gauge and a column for each load: the change of S due to an effect of size one.
     pub signature: S<String>,
-    /// An edit of the deck, which is an effect of size one.
+    /// Edit of the deck that represents an effect of size one.
     pub edit: Option<RawEdit>,
-    /// One standard deviation of its size before a run is seen; default 1.
+    /// Standard deviation of the size of the effect before the measurement. The default is 1.
     pub prior: S<f64>,
 }
 

@@ -2,7 +2,7 @@
 
 use super::types::{Job, JobGauge};
 
-/// Returns the names of the readings of a gauge; a rosette has one a leg.
+/// Returns the names of the readings of a gauge. A rosette has one reading for each leg.
 pub fn readings_of(g: &JobGauge) -> Vec<String> {
     let leg = |leg: &str| format!("{}.{leg}", g.name);
     match g.rosette {
@@ -11,7 +11,7 @@ pub fn readings_of(g: &JobGauge) -> Vec<String> {
     }
 }
 
-/// Returns the names of the readings of the job's stated gauges; a rosette has one a leg.
+/// Returns the names of the readings of the stated gauges. A rosette has one reading for each leg.
 pub fn stated_readings(job: &Job) -> Vec<String> {
     job.gauges.iter().flat_map(readings_of).collect()
 }

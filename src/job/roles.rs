@@ -17,11 +17,11 @@ impl Job {
         names
     }
 
-    /// Returns the job without its validation gauges, as a command takes it that estimates from readings. The names of their readings
-    /// are in [`Job::reserved`]: their columns are known, and no command reads them.
+    /// Returns the job without its validation gauges, for commands that estimate from readings. [`Job::reserved`] contains the names of the readings
+    /// of validation gauges. Their columns are known, but no command reads them.
     ///
     /// # Errors
-    /// One fault where every gauge of the job is a validation gauge.
+    /// One fault if every gauge of the job is a validation gauge.
     pub fn without_validation_gauges(&self) -> Result<Self, Faults> {
         let mut job = self.clone();
         job.reserved.extend(self.validation_readings());

@@ -1,6 +1,6 @@
 //! Names that differ by case and separators alone.
 
-/// Whether two names are the same apart from case and separators: `DIR_X`, `dir x` and `dirx`.
+/// Returns whether two names are equal apart from case and separators: `DIR_X`, `dir x` and `dirx`.
 ///
 /// Blanks and `_`, `-`, `.`, `:`, `/` are separators. Between two digits a separator counts: `F1.1` is not `F11`. A minus at an end is a sign:
 /// `FX-` is not `FX`.
@@ -9,7 +9,7 @@ pub fn is_same_name(a: &str, b: &str) -> bool {
     !a.is_empty() && a == b
 }
 
-/// Whether two names are the same apart from case and separators, and are more than a letter: `x` and `X` may be two loads.
+/// Returns whether two names are equal apart from case and separators. Single letters must be equal, because `x` and `X` may be two loads.
 pub fn is_same_word(a: &str, b: &str) -> bool {
     a.chars().filter(|c| c.is_alphanumeric()).count() > 1 && is_same_name(a, b)
 }

@@ -18,13 +18,13 @@ pub struct Key {
     pub meaning: &'static str,
     /// Unit of the key; `None` for text, counts and fractions.
     pub unit: Option<&'static str>,
-    /// Description of the default; `None` for sections, and for keys of which one of several is required.
+    /// Description of the default. `None` for sections, and for groups of keys of which one is required.
     pub default: Option<&'static str>,
     /// Allowed values, if only these are valid.
     pub words: Vec<&'static str>,
 }
 
-/// Every key of a job, in the order of the reference.
+/// Returns every key of a job, in the order of the reference.
 pub fn keys() -> Vec<Key> {
     let lines = KEYS.lines().filter(|l| !l.starts_with('#'));
     lines.filter_map(read_key).collect()
@@ -65,7 +65,7 @@ impl Key {
     }
 }
 
-/// The schema as JSON text (draft 2020-12).
+/// Returns the schema as JSON text (draft 2020-12).
 pub fn job_schema() -> String {
     let settings = SchemaSettings::draft2020_12().for_deserialize().with(|s| {
         s.inline_subschemas = true;

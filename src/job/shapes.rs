@@ -20,7 +20,7 @@ pub struct PropertyIds {
 }
 
 impl Ids {
-    /// Whether `id` is among them.
+    /// Returns whether the list contains `id`.
     pub fn contains(&self, id: u32) -> bool {
         self.0.iter().any(|[a, b]| (*a..=*b).contains(&id))
     }
@@ -136,7 +136,7 @@ impl<'de> Deserialize<'de> for PropertyIds {
     }
 }
 
-/// One text, or a list of texts; which of them it was is kept.
+/// One text, or a list of texts. The form in the job is kept.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Texts {
     /// `"all"`, a file name.
@@ -199,12 +199,12 @@ impl<'de> Deserialize<'de> for NumberOrWord {
     }
 }
 
-/// One number, or numbers by name.
+/// One number, or one number for each name.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NumberOrNumbers {
     /// One for all.
     One(f64),
-    /// By name, in alphabetical order.
+    /// A number for each name, in alphabetical order.
     ByName(BTreeMap<String, f64>),
 }
 
@@ -239,7 +239,7 @@ impl<'de> Deserialize<'de> for NumberOrNumbers {
 pub enum DampingValue {
     /// One for all modes.
     One(f64),
-    /// By band.
+    /// A damping for each band of frequency.
     Bands(Vec<DampingBand>),
     /// A word.
     Word(String),

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use std::borrow::{Borrow, Cow};
 use std::ops::Range;
 
-/// A value with its place, `None` where the key is absent.
+/// A value with its place in the file. `None` if the key is absent.
 pub(super) type S<T> = Option<SpannedValue<T>>;
 
 /// A value and its place in the file.
@@ -19,17 +19,17 @@ impl<T> SpannedValue<T> {
         Self(toml::Spanned::new(span, value))
     }
 
-    /// Bytes of the text.
+    /// Returns the bytes of the text.
     pub(super) fn span(&self) -> Range<usize> {
         self.0.span()
     }
 
-    /// The value.
+    /// Returns the value.
     pub(super) fn value(&self) -> &T {
         self.0.get_ref()
     }
 
-    /// The value alone.
+    /// Returns the value alone.
     pub(super) fn into_inner(self) -> T {
         self.0.into_inner()
     }

@@ -43,7 +43,7 @@ pub fn remedy<'a>(word: &str, names: impl IntoIterator<Item = &'a str> + Clone) 
     }
 }
 
-/// Returns the remedy for a table without the column that names its rows: `general`, with the header closest to `word` if there is one.
+/// Returns the remedy for a table without the column of row names: `general`, with the header closest to `word` if one is close.
 pub fn header_remedy<'a>(
     word: &str,
     headers: impl IntoIterator<Item = &'a str>,
@@ -55,8 +55,8 @@ pub fn header_remedy<'a>(
     )
 }
 
-/// Returns the remedy for gauges without a column: the closest columns, each with its gauge, or a general remedy. A column that
-/// comes close to several gauges is listed only for the closest gauge.
+/// Returns the remedy for gauges without a column: the closest columns, each with its gauge, or a general remedy. A column that is close to several
+/// gauges is listed only for the closest gauge.
 pub fn column_remedy(gauges: &[&str], columns: &[&str]) -> String {
     let mut pairs: Vec<(usize, &str, &str)> = Vec::new();
     for gauge in gauges {

@@ -17,9 +17,8 @@ pub struct Table {
     pub rows: Vec<(u32, Vec<String>)>,
 }
 
-/// The table in a CSV text. Comma, semicolon or tab, whichever the header has most of or a first line `sep=;` states; lines starting with
-/// `#` are comments.
-/// Where commas don't divide the fields, a number may have a decimal comma.
+/// Reads a table from a CSV text. The delimiter is comma, semicolon or tab: the most frequent one in the header, or the delimiter that a first line
+/// `sep=;` states. Lines that start with `#` are comments. If commas don't separate the fields, numbers may have a decimal comma.
 ///
 /// # Errors
 /// Rows of another length, an empty file.
@@ -29,8 +28,8 @@ pub fn read_table(file: &str, text: &str) -> Result<Table, Faults> {
     whole.ok_or_else(|| Faults::from(empty_file_fault(file)))
 }
 
-/// Reads a table in parts of `most` rows: fields of a long table take many times the memory of its text. `take` also gets the last part, and a table
-/// without rows once.
+/// Reads a table in parts of `most` rows, because the fields of a long table need many times the memory of its text. `take` gets each part, including
+/// a shorter last part. For a table without rows it is called once.
 ///
 /// # Errors
 /// Every error of [`read_table`]; `take` may have received rows before a fault was found.
@@ -213,10 +212,10 @@ impl Table {
         faults
     }
 
-    /// The number in a field; blank gives `None`.
+    /// Returns the number in a field. `None` if the field is blank.
     ///
     /// # Errors
-    /// A fault where the field is no finite number.
+    /// A fault if the field is not a finite number.
     pub fn number(&self, row: usize, column: usize) -> Result<Option<f64>, Fault> {
         let Some((line, fields)) = self.rows.get(row) else {
             return Ok(None);
@@ -252,10 +251,10 @@ impl Table {
         }
     }
 
-    /// The standard deviation in a field that counts as [`Table::size`] does; blank gives `None`.
+    /// Returns the standard deviation in a field, converted as in [`Table::size`]. `None` if the field is blank.
     ///
     /// # Errors
-    /// A fault where it is no number, below zero, or more than this quantity can be.
+    /// A fault if it is not a number, is negative, or is larger than possible for this quantity.
     pub fn sd(
         &self,
         row: usize,
@@ -273,10 +272,10 @@ impl Table {
         Err(Fault::with_line(&*self.file, line, name, wrong, remedy))
     }
 
-    /// The number in a field that counts in units of `si` SI units of a quantity of loads or payloads; blank gives `None`.
+    /// Returns the number in a field, converted from units of `si` SI units of a quantity of loads or payloads. `None` if the field is blank.
     ///
     /// # Errors
-    /// A fault where the field is no finite number, or one that this quantity can't be.
+    /// A fault if the field is not a finite number, or is impossible for this quantity.
     pub fn size(
         &self,
         row: usize,

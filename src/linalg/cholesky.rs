@@ -34,7 +34,7 @@ pub struct Cholesky {
 }
 
 impl Cholesky {
-    /// The factor of `covariance` (`n x n` by rows, lower triangle read), or `None` where it is not positive definite.
+    /// Returns the factor of `covariance` (`n x n` by rows, lower triangle read). `None` if it is not positive definite.
     pub fn from_covariance(covariance: &[f64], n: usize) -> Option<Self> {
         if covariance.len() != n * n {
             return None;
@@ -64,17 +64,17 @@ impl Cholesky {
         })
     }
 
-    /// Order.
+    /// Returns the order of the matrix.
     pub fn n(&self) -> usize {
         self.n
     }
 
-    /// `ln det C`.
+    /// Returns `ln det C`.
     pub fn log_det(&self) -> f64 {
         self.log_det
     }
 
-    /// `C^-1 x`.
+    /// Returns `C^-1 x`.
     pub fn solve(&self, x: &[f64]) -> Vec<f64> {
         let mut out = self.whiten_vector(x);
         for j in (0..self.n).rev() {
@@ -85,7 +85,7 @@ impl Cholesky {
         out
     }
 
-    /// `x' C^-1 x`.
+    /// Returns `x' C^-1 x`.
     pub fn chi2(&self, x: &[f64]) -> f64 {
         self.whiten_vector(x).iter().map(|v| v * v).sum()
     }
@@ -113,7 +113,7 @@ impl Cholesky {
         (below[0], &below[1..])
     }
 
-    /// `C^-1`, `n x n`.
+    /// Returns `C^-1`, `n x n`.
     pub fn inverse(&self) -> Vec<f64> {
         let n = self.n;
         match workspace(n, inverse_scratch::<f64>(n, Par::Seq)) {

@@ -18,7 +18,7 @@ pub struct Svd {
     pub v: Matrix,
 }
 
-/// Relative size below which a singular value counts as zero: what single-precision result files distinguish from rounding.
+/// Relative size below which a singular value counts as zero. Single-precision result files do not distinguish smaller values from rounding.
 pub const RANK_TOLERANCE: f64 = 1e-6;
 
 /// Returns the thin singular value decomposition `a = u diag(s) v'`, `s` descending. `None` if an entry of `a` is not finite.
@@ -61,8 +61,8 @@ pub fn svd(a: &Matrix) -> Option<Svd> {
     })
 }
 
-/// The shortest of the vectors that come nearest to `a x = b`; singular values below `tolerance` of the largest count as zero. `None`
-/// where `a` holds numbers that are not finite.
+/// Returns the shortest of the vectors that minimise `|a x - b|`. Singular values below `tolerance` times the largest count as zero. `None` if `a`
+/// contains numbers that are not finite.
 pub fn shortest_solution(a: &Matrix, b: &[f64], tolerance: f64) -> Option<Vec<f64>> {
     let d = svd(a)?;
     let limit = tolerance * d.s.first().copied().unwrap_or(0.0);
@@ -87,7 +87,8 @@ pub(super) fn bounded_svd(a: Matrix) -> Option<nalgebra::SVD<f64, nalgebra::Dyn,
         .find_map(|loose| a.clone().try_svd(true, true, loose * f64::EPSILON, sweeps))
 }
 
-/// Largest over smallest singular value of a matrix with at least as many rows as columns; infinite where fewer or singular.
+/// Returns the largest divided by the smallest singular value of a matrix with at least as many rows as columns. It is infinite for fewer rows or a
+/// singular matrix.
 pub fn condition(a: &Matrix) -> f64 {
     if a.nrows() < a.ncols() {
         return f64::INFINITY;
@@ -101,7 +102,7 @@ pub fn condition(a: &Matrix) -> f64 {
     }
 }
 
-/// Number of singular values above [`RANK_TOLERANCE`] times the largest.
+/// Returns the number of singular values above [`RANK_TOLERANCE`] times the largest.
 pub fn rank(a: &Matrix) -> usize {
     svd(a).map_or(0, |d| {
         let limit = d.s.first().copied().unwrap_or(0.0) * RANK_TOLERANCE;
@@ -109,7 +110,7 @@ pub fn rank(a: &Matrix) -> usize {
     })
 }
 
-/// Columns divided by their norm; a zero column stays.
+/// Returns the columns divided by their norm. A zero column is not changed.
 pub fn unit_columns(a: &Matrix) -> Matrix {
     let mut m = a.clone();
     for mut c in m.column_iter_mut() {

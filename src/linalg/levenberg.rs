@@ -4,7 +4,7 @@ use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationRe
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 use rayon::prelude::*;
 
-/// Why an iteration ended.
+/// Reason why an iteration ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
     /// Steps or gains fell below the tolerance.
@@ -15,7 +15,7 @@ pub enum Stop {
     Failed,
 }
 
-/// A minimum and how it was reached.
+/// A minimum, with the reason why the search ended.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Minimum {
     /// Parameters.
@@ -24,9 +24,9 @@ pub struct Minimum {
     pub objective: f64,
     /// Number of residual evaluations, without the evaluations for derivatives.
     pub evaluations: usize,
-    /// Why it ended.
+    /// Reason why the search ended.
     pub stop: Stop,
-    /// (J'J)^-1 at the end, by rows; empty when singular.
+    /// `(J'J)^-1` at the end, by rows. Empty if `J'J` is singular.
     pub inverse: Vec<Vec<f64>>,
 }
 

@@ -3,8 +3,8 @@
 use super::cholesky::Cholesky;
 use std::sync::OnceLock;
 
-/// Inverse and log-determinant of a symmetric positive definite `n x n` covariance. Entries of the inverse are made when the first of them
-/// is asked for: what solves alone does without.
+/// Inverse and log-determinant of a symmetric positive definite `n x n` covariance. The entries of the inverse are computed on the first request for
+/// an entry. Solutions alone do not need them.
 #[derive(Clone, Debug)]
 pub struct Precision {
     factor: Cholesky,
@@ -12,7 +12,7 @@ pub struct Precision {
 }
 
 impl Precision {
-    /// The precision of `covariance` (`n x n` by rows, lower triangle read), or `None` where it is not positive definite.
+    /// Returns the precision of `covariance` (`n x n` by rows, lower triangle read). `None` if it is not positive definite.
     pub fn from_covariance(covariance: &[f64], n: usize) -> Option<Self> {
         Some(Self {
             factor: Cholesky::from_covariance(covariance, n)?,
@@ -20,34 +20,34 @@ impl Precision {
         })
     }
 
-    /// Order.
+    /// Returns the order of the matrix.
     pub fn n(&self) -> usize {
         self.factor.n()
     }
 
-    /// Natural log of the determinant of the covariance.
+    /// Returns the natural log of the determinant of the covariance.
     pub fn log_det(&self) -> f64 {
         self.factor.log_det()
     }
 
-    /// Entry (`i`, `j`) of the inverse; zero outside.
+    /// Returns the entry (`i`, `j`) of the inverse. It is zero outside of the matrix.
     pub fn entry(&self, i: usize, j: usize) -> f64 {
         let n = self.n();
         let at = (i < n && j < n).then(|| self.inverse().get(i * n + j));
         at.flatten().copied().unwrap_or(0.0)
     }
 
-    /// By rows.
+    /// Returns the inverse, by rows.
     fn inverse(&self) -> &[f64] {
         self.inverse.get_or_init(|| self.factor.inverse())
     }
 
-    /// `P x`.
+    /// Returns `P x`.
     pub fn apply(&self, x: &[f64]) -> Vec<f64> {
         self.factor.solve(x)
     }
 
-    /// `P x` for an `x` given by its few entries (index, value).
+    /// Returns `P x` for a sparse `x`, given by its non-zero entries (index, value).
     pub fn apply_sparse(&self, x: &[(usize, f64)]) -> Vec<f64> {
         let n = self.n();
         let mut out = vec![0.0; n];
@@ -62,7 +62,7 @@ impl Precision {
         out
     }
 
-    /// `x' P x` for an `x` given by its few entries.
+    /// Returns `x' P x` for a sparse `x`, given by its non-zero entries.
     pub fn quadratic_sparse(&self, x: &[(usize, f64)]) -> f64 {
         let mut sum = 0.0;
         for &(i, a) in x {

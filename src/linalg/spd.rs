@@ -26,12 +26,12 @@ pub fn cholesky(a: &[f64], k: usize) -> Option<Vec<f64>> {
 /// Relative size under which a Cholesky pivot counts as zero.
 const PIVOT_FLOOR: f64 = 1e-14;
 
-/// `ln det(L L')`.
+/// Returns `ln det(L L')`.
 pub fn log_det(l: &[f64], k: usize) -> f64 {
     2.0 * (0..k).map(|i| l[i * k + i].ln()).sum::<f64>()
 }
 
-/// Inverse of a lower triangular matrix.
+/// Returns the inverse of a lower triangular matrix.
 pub fn inverse_lower(l: &[f64], k: usize) -> Vec<f64> {
     let mut inv = vec![0.0; k * k];
     for j in 0..k {
@@ -44,7 +44,7 @@ pub fn inverse_lower(l: &[f64], k: usize) -> Vec<f64> {
     inv
 }
 
-/// `inv' inv` for a lower triangular `inv`: the inverse of `L L'` from the inverse of `L`.
+/// Returns `inv' inv` for a lower triangular `inv`. It is the inverse of `L L'` from the inverse of `L`.
 pub fn gram_of_lower(inv: &[f64], k: usize) -> Vec<f64> {
     let mut g = vec![0.0; k * k];
     for p in 0..k {
@@ -63,7 +63,7 @@ pub fn gram_of_lower(inv: &[f64], k: usize) -> Vec<f64> {
     g
 }
 
-/// Lower triangular `w` with `w' w = g` for a symmetric `g` that is not negative; rows of directions in which it is zero are zero.
+/// Returns a lower triangular `w` with `w' w = g` for a symmetric positive semidefinite `g`. Rows of directions in which `g` is zero are zero.
 pub fn lower_root(g: &[f64], k: usize) -> Vec<f64> {
     let mut rest = g.to_vec();
     let mut w = vec![0.0; k * k];
@@ -89,7 +89,7 @@ pub fn lower_root(g: &[f64], k: usize) -> Vec<f64> {
 /// Relative size under which a pivot of a product of matrices counts as zero; products carry more rounding than sums.
 const ROOT_FLOOR: f64 = 1e-12;
 
-/// Eigenvalues of a symmetric matrix, ascending.
+/// Returns the eigenvalues of a symmetric matrix, ascending.
 pub fn eigenvalues(a: &[f64], k: usize) -> Vec<f64> {
     let matrix = nalgebra::DMatrix::from_row_slice(k, k, a);
     let mut e: Vec<f64> = matrix.symmetric_eigenvalues().iter().copied().collect();
@@ -97,7 +97,7 @@ pub fn eigenvalues(a: &[f64], k: usize) -> Vec<f64> {
     e
 }
 
-/// `a b`, all `k x k`.
+/// Returns `a b`, all `k x k`.
 pub fn product(a: &[f64], b: &[f64], k: usize) -> Vec<f64> {
     let mut c = vec![0.0; k * k];
     for i in 0..k {
@@ -111,7 +111,7 @@ pub fn product(a: &[f64], b: &[f64], k: usize) -> Vec<f64> {
     c
 }
 
-/// `a += weight x x'`.
+/// Adds an outer product: `a += weight x x'`.
 pub fn add_outer(a: &mut [f64], x: &[f64], weight: f64) {
     let k = x.len();
     for (row, &xi) in a.chunks_exact_mut(k).zip(x) {
@@ -122,14 +122,14 @@ pub fn add_outer(a: &mut [f64], x: &[f64], weight: f64) {
     }
 }
 
-/// `y = a x`.
+/// Computes `y = a x`.
 pub fn times(a: &[f64], x: &[f64], y: &mut [f64]) {
     for (row, v) in a.chunks_exact(x.len()).zip(y) {
         *v = dot(row, x);
     }
 }
 
-/// Scalar product, in four sums side by side (one sum would wait for each addition).
+/// Returns the scalar product, computed in four parallel sums, because a single sum would wait for each addition.
 #[inline(always)]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().min(b.len());
@@ -150,12 +150,12 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
-/// `trace(a b)` of symmetric matrices.
+/// Returns `trace(a b)` of symmetric matrices.
 pub fn trace_of_product(a: &[f64], b: &[f64]) -> f64 {
     dot(a, b)
 }
 
-/// `L^-1 x` in place, `L` lower triangular by rows.
+/// Computes `L^-1 x` in place, with `L` lower triangular by rows.
 pub fn solve_lower(l: &[f64], x: &mut [f64]) {
     let k = x.len();
     for i in 0..k {

@@ -3,21 +3,21 @@
 use super::dense::bounded_svd;
 use nalgebra::{DMatrix, DVector};
 
-/// The triangular factor of tall rows: as much as least squares needs to know of them.
+/// Triangular factor of tall rows. It contains all information that least squares needs about the rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Triangle {
-    /// Which of the problem's columns these are, ascending.
+    /// Columns of the problem that the factor contains, ascending.
     pub columns: Vec<usize>,
     /// Rows of the factor, each as long as `columns`.
     pub rows: Vec<Vec<f64>>,
-    /// How many rows were reduced.
+    /// Number of rows that were reduced to the factor.
     pub n_rows: usize,
 }
 
-/// A least-squares solution with what it is worth.
+/// A least-squares solution with its quality.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
-    /// One value a column; 0 along directions that the rows do not determine.
+    /// Value for each column. It is 0 along directions that the rows do not determine.
     pub x: Vec<f64>,
     /// (A'A)^-1 by rows, undetermined directions left out.
     pub inverse: Vec<Vec<f64>>,
@@ -30,7 +30,7 @@ pub struct Solution {
 /// Singular values below this share of the largest (columns of unit norm) are taken as zero: rounding of sums of 1e5 terms.
 const RANK_TOLERANCE: f64 = 1e-10;
 
-/// Triangular factor of the matrix whose given columns are `values`, by Householder reflections.
+/// Returns the triangular factor of the matrix whose given columns are `values`, by Householder reflections.
 pub fn triangle(columns: &[(usize, &[f64])]) -> Triangle {
     let n = columns.first().map_or(0, |c| c.1.len());
     let a = DMatrix::from_fn(n, columns.len(), |i, j| columns[j].1[i]);
@@ -45,7 +45,7 @@ pub fn triangle(columns: &[(usize, &[f64])]) -> Triangle {
 }
 
 impl Triangle {
-    /// Norm of A x over the original rows, for x over all columns of the problem.
+    /// Returns the norm of A x over the original rows, for x over all columns of the problem.
     pub fn norm(&self, x: &[f64]) -> f64 {
         let dot = |row: &Vec<f64>| {
             row.iter()
@@ -57,7 +57,7 @@ impl Triangle {
     }
 }
 
-/// x that minimises the sum over blocks of weight^2 |A x - y|^2, where column `n` of the triangles is y.
+/// Returns the `x` that minimises the sum over blocks of `weight^2 |A x - y|^2`. Column `n` of the triangles is `y`.
 pub fn solve(blocks: &[(f64, &Triangle)], n: usize) -> Solution {
     let m: usize = blocks.iter().map(|(_, t)| t.rows.len()).sum();
     let mut a = DMatrix::zeros(m.max(n), n);
@@ -171,7 +171,7 @@ pub fn solve_rows(a: &[Vec<f64>], y: &[f64]) -> Option<Solution> {
     ))
 }
 
-/// Pseudo-inverse (n x m by rows) of a small m x n matrix given by rows; `None` when it has not full column rank.
+/// Returns the pseudo-inverse (n x m by rows) of a small m x n matrix given by rows. `None` if the matrix does not have full column rank.
 pub fn left_inverse(a: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let n = a.first()?.len();
     let mut columns = Vec::new();

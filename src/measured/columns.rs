@@ -5,7 +5,7 @@ use crate::host::work::Work;
 use crate::job::{NamedFile, suggest};
 use std::collections::{HashMap, HashSet};
 
-/// Position of a gauge's column; `None`: the file has no column of this gauge.
+/// Returns the position of each gauge's column and adds the findings on columns. `None` for a gauge without a column.
 pub(crate) fn columns_of(
     work: &mut Work,
     named: &NamedFile,
@@ -24,14 +24,14 @@ pub(crate) fn columns_of(
     columns
 }
 
-/// Returns where each gauge's column is; `None`: it has none.
+/// Returns the position of each gauge's column. `None` for a gauge without a column.
 pub(crate) fn columns_of_gauges(header: &[String], gauges: &[String]) -> Vec<Option<usize>> {
     let places: HashMap<&String, usize> =
         header.iter().rev().zip((0..header.len()).rev()).collect();
     gauges.iter().map(|g| places.get(g).copied()).collect()
 }
 
-/// A warning of gauges that a file of strain has no column of; `unknown` are its columns that belong to no gauge.
+/// Returns a warning on gauges without a column in a strain file. `unknown` contains the columns that belong to no gauge.
 pub(crate) fn gauges_without_strain(
     named: &NamedFile,
     silent: &[&str],
@@ -41,7 +41,7 @@ pub(crate) fn gauges_without_strain(
     (!silent.is_empty()).then(|| gauge_without_column(&of_file, silent, unknown))
 }
 
-/// Returns the warning of gauges without a column; `of_file` goes before its message.
+/// Returns the warning on gauges without a column. `of_file` precedes its message.
 pub(crate) fn gauge_without_column(of_file: &str, silent: &[&str], unknown: &[&str]) -> Finding {
     Finding::new(
         Severity::Warning,

@@ -6,10 +6,10 @@ use crate::job::Job;
 use crate::job::table::read_table;
 use crate::units::MICROSTRAIN;
 
-/// Returns the common zero of each gauge, strain: zeros for a job that states none, and NaN for gauges that its table lacks.
+/// Returns the common zero of each gauge, strain. It is zero if the job states no common zero, and NaN for gauges that the table lacks.
 ///
 /// # Errors
-/// A table without its two columns, fields that are not numbers.
+/// A table without its two columns, or fields that are not numbers.
 pub(crate) fn common_zero(
     work: &mut Work,
     job: &Job,

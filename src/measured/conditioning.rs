@@ -95,8 +95,8 @@ impl Conditioner {
     }
 }
 
-/// Returns the record with the readings that the job's `[conditioning]` makes of the columns `wanted`; `record` itself without the section.
-/// `[[correction]]` is applied first, and not again afterwards.
+/// Returns the record with the columns `wanted` conditioned as `[conditioning]` of the job states. Without this section, the result is `record`
+/// itself. `[[correction]]` is applied first, and not again afterwards.
 ///
 /// # Errors
 /// A temperature channel that the record lacks or that is a gauge, a stretch of zero beyond the record or with too few readings, two zeros, a corner
@@ -262,7 +262,7 @@ fn run_steps(
     }
     if let Some(zero) = zero {
         work.apply("zero", |x| {
-            // A gauge without a reading in the stretch has none at all.
+            // Only a gauge without any reading in the record can lack readings in the time span: other gauges were refused before.
             let offset = finite_mean(&x[zero.clone()]);
             x.iter_mut().for_each(|v| *v -= offset);
         });

@@ -13,7 +13,7 @@ pub struct ConditioningStep {
     pub samples: usize,
     /// Root mean square of the change over the record, microstrain.
     pub rms_microstrain: f64,
-    /// Drift: largest change of the subtracted line if a part of the record is left out, microstrain. Loads change the line by as much.
+    /// Largest change of the subtracted drift line if a part of the record is left out, microstrain. It shows how far loads tilt the line.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error_microstrain: Option<f64>,
 }

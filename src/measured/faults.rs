@@ -6,7 +6,7 @@ use crate::job::Job;
 use crate::job::same_name::is_same_name;
 use crate::series::SeriesError;
 
-/// Returns the fault of a record where runs are needed.
+/// Returns the fault of a record in a place where runs are required.
 pub(crate) fn no_runs(file: &str) -> Fault {
     Fault::new(
         file,
@@ -16,7 +16,7 @@ pub(crate) fn no_runs(file: &str) -> Fault {
     )
 }
 
-/// Returns the fault of a strain file without a column of a gauge. Where a table of S alone names the gauges, either file may be wrong.
+/// Returns the fault of a strain file without a column of a gauge. If only a table of S names the gauges, either file may be wrong.
 pub(crate) fn no_gauge_column(
     job: &Job,
     file: &str,
@@ -52,7 +52,7 @@ pub(crate) fn no_gauge_column(
     Fault::with_line(file, 1, "gauge", wrong, remedy)
 }
 
-/// The fault of a record that can't be read.
+/// Returns the fault of a record that can't be read.
 pub(crate) fn record_fault(file: &str, e: &SeriesError) -> Fault {
     let (wrong, remedy) = e.parts();
     match e {

@@ -8,16 +8,16 @@ use std::collections::{HashMap, HashSet};
 /// A column of a strain file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrainColumn {
-    /// Name of the gauge in the job; for a column that is not a gauge's, a name that is unique in the file.
+    /// Name of the gauge in the job. For a column without a gauge, it is a name that is unique in the file.
     pub name: String,
-    /// Microstrain in one of its numbers; `None` where they are no strain, and it is no gauge's.
+    /// Factor from a number of the column to microstrain. `None` if the column contains no strain and belongs to no gauge.
     pub microstrain: Option<f64>,
 }
 
-/// Returns the columns of a file, in file order, with the names of `gauges`. Without known gauges, every column may be one.
+/// Returns the columns of a file, in file order, with the names of `gauges`. Without known gauges, every column may be a gauge.
 ///
 /// Text in brackets after a name is its unit or, if a gauge of the job has that name, part of the name: `SG1 (left)`. If a strain column has the name
-/// of a gauge, a column without strain is a different one: `P01 (raw)` next to `P01 [um/m]`.
+/// of a gauge, a similar column without strain is a different channel: `P01 (raw)` next to `P01 [um/m]`.
 ///
 /// # Errors
 /// Gauges in a unit that is not a unit of strain, or that contradicts the row of units; gauges with two columns.
@@ -165,7 +165,7 @@ fn holder(column: &Column, names: &Names) -> Result<Holds, ColumnUnitFault> {
             some => (name, some),
         }
     } else if let Some(gauge) = names.in_whole(header) {
-        // The unit is stated elsewhere, or is a strain unit in the header's brackets; else the brackets contain a label.
+        // The unit is in a row of units, or is a unit of strain in the header's brackets. Any other text in brackets is a label.
         let unit = match column.stated.as_str() {
             "" => microstrain_in(&header.bracket).or(Some(1.0)),
             stated => microstrain_in(stated),

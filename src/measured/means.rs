@@ -18,7 +18,7 @@ const LARGE: usize = 16 << 20;
 pub enum StrainFile {
     /// Runs, or a record small enough to be a table.
     Table(StrainTable),
-    /// A record.
+    /// A fault if the strain file is a record, not a table of runs.
     Means(StrainMeans),
 }
 
@@ -29,7 +29,7 @@ pub struct StrainMeans {
     pub gauges: Vec<String>,
     /// Readings of each gauge, microstrain, with corrected channels.
     pub readings: Vec<Series>,
-    /// Readings of its first samples, microstrain, a row a sample.
+    /// First readings, microstrain, one row for each sample.
     pub first: Vec<f64>,
 }
 
@@ -45,7 +45,7 @@ impl StrainFile {
         }
     }
 
-    /// Returns its rows, of a long record the first, microstrain by column.
+    /// Returns the rows, microstrain by column. For a long record, these are only the first rows.
     pub fn rows(&self) -> Box<dyn Iterator<Item = &[f64]> + '_> {
         match self {
             Self::Means(m) => Box::new(m.first.chunks_exact(m.gauges.len().max(1))),
@@ -75,7 +75,8 @@ pub fn is_long_record(bytes: &FileBytes) -> bool {
     is_format(bytes) || bytes.len() > LARGE && is_record(bytes)
 }
 
-/// Reads a strain file with its channels corrected by `[[correction]]`; a record as sums. `wanted`: its [`super::strain_file::wanted_columns`].
+/// Reads a strain file and corrects its channels as `[[correction]]` states. A record is read as sums. `wanted` are its
+/// [`super::strain_file::wanted_columns`].
 ///
 /// # Errors
 /// Every fault of the file.

@@ -11,7 +11,7 @@ use crate::sensitivity::Sensitivity;
 use crate::strain_chain::{JobSensitivity, prepare};
 use crate::units::MICROSTRAIN;
 
-/// S of the job's gauges, with the noise that the job states or its zero record shows.
+/// Returns S of the job's gauges with their noise. The noise is stated in the job or determined from the zero record.
 ///
 /// # Errors
 /// Faults of [`prepare`] and of the zero file.

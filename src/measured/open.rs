@@ -23,7 +23,7 @@ impl MeasuredStrain {
     /// Returns the runs.
     ///
     /// # Errors
-    /// A record.
+    /// A fault if the strain file is a record, not a table of runs.
     pub fn into_runs(self) -> Result<StrainTable, Faults> {
         match self {
             Self::Runs(table) => Ok(table),
@@ -31,7 +31,7 @@ impl MeasuredStrain {
         }
     }
 
-    /// Names of its columns, by gauge as the job calls them.
+    /// Returns the name of each column: the gauge as the job names it.
     pub fn gauges(&self) -> &[String] {
         match self {
             Self::Runs(table) => &table.gauges,
@@ -40,7 +40,7 @@ impl MeasuredStrain {
     }
 }
 
-/// Whether a strain file is a record, a row a sample, rather than runs.
+/// Returns whether a strain file is a record, with a row for each sample, and not a table of runs.
 pub(super) fn is_record(bytes: &FileBytes) -> bool {
     is_format(bytes) || Layout::detect(bytes).is_ok_and(|l| l.is_record())
 }

@@ -19,7 +19,7 @@ use crate::units::MICROSTRAIN;
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
-/// Largest number of readings of a record, and of their errors, that are held in memory: 0.8 GB.
+/// Largest number of readings of a record, and of their errors, that are kept in memory: 0.8 GB.
 pub(crate) const MOST_NUMBERS: usize = 100_000_000;
 
 /// A record whose columns are read as strain.
@@ -27,7 +27,7 @@ pub(crate) const MOST_NUMBERS: usize = 100_000_000;
 pub(crate) struct Record {
     inner: Arc<series::Record>,
     file: String,
-    /// The gauge that each column holds the readings of, as the job calls it.
+    /// Gauge of each column, as the job names it.
     pub names: Vec<String>,
     /// Microstrain in one unit of each column; not a number where it is no strain.
     micro: Vec<f64>,
@@ -122,7 +122,7 @@ impl Record {
         self.with_columns(columns)
     }
 
-    /// Returns the record with the columns `wanted` read, with their corrections; with all columns of strain if `wanted` is empty.
+    /// Returns the record with the columns `wanted`, corrected. If `wanted` is empty, it contains all columns of strain.
     pub fn with_wanted_strain(self, job: &Job, wanted: &[String]) -> Self {
         let is_read = |c: &usize| {
             let name = column_of(&job.corrections, &self.names[*c]);
@@ -137,7 +137,8 @@ impl Record {
         self.with_columns(columns)
     }
 
-    /// Returns the record with conditioned readings, strain, a column for each column that is read; `except` is a column that it no longer has.
+    /// Returns the record with conditioned readings, strain, one column for each column that is read. The result does not contain the column
+    /// `except`.
     ///
     /// # Errors
     /// A record without samples.
@@ -218,7 +219,7 @@ impl Record {
         Ok(sums)
     }
 
-    /// Returns the first samples of the columns, microstrain, row by row; `most` of them or all of the first piece.
+    /// Returns the first samples of the columns, microstrain, row by row. It returns at most `most` samples, and at most the first piece.
     ///
     /// # Errors
     /// A piece that can't be read.
@@ -236,7 +237,7 @@ impl Record {
         Self { blank, ..self }
     }
 
-    /// Returns the samples of a part in which a gauge (a column by its number) is dead.
+    /// Returns the samples of a part in which a gauge is dead. The gauge is stated by the number of its column.
     ///
     /// # Errors
     /// A piece that can't be read.
@@ -274,7 +275,8 @@ impl Record {
         Ok(out)
     }
 
-    /// Returns this record with other readings, strain, a column each; the pair is the first sample's time and the time between samples, s.
+    /// Returns this record with other readings, strain, one column for each gauge. The pair contains the time of the first sample and the time step,
+    /// s.
     ///
     /// # Errors
     /// A record without samples.
@@ -317,12 +319,12 @@ impl Record {
         })
     }
 
-    /// Number of the first sample of a piece.
+    /// Returns the number of the first sample of a piece.
     pub fn first_of(&self, piece: usize) -> usize {
         self.inner.span(piece).0
     }
 
-    /// Time of a sample, s.
+    /// Returns the time of a sample, s.
     pub fn time_s(&self, sample: usize) -> f64 {
         self.clock.time_s(sample)
     }
@@ -332,13 +334,13 @@ impl Record {
         &self.clock
     }
 
-    /// Time of the first sample and between samples, s.
+    /// Returns the time of the first sample and between samples, s.
     pub fn first_and_step(&self) -> (f64, f64) {
         let clock = self.clock();
         (clock.start_s, 1.0 / clock.rate_hz)
     }
 
-    /// Whether neither the file nor the job states the unit of its times, and their size does not show it.
+    /// Returns whether the unit of the times is unknown: neither file nor job states it, and the size of the times does not show it.
     pub fn is_time_unit_open(&self) -> bool {
         !self.inner.is_time_unit_stated()
     }
@@ -355,7 +357,7 @@ impl Record {
         self.columns.len()
     }
 
-    /// Hands the readings of a piece on, strain, a block at a time.
+    /// Passes the readings of a piece, as strain, to `sink`, block by block.
     ///
     /// # Errors
     /// A piece that can't be read.
@@ -395,14 +397,14 @@ impl Record {
         read.map_err(|e| record_fault(&self.file, &e))
     }
 
-    /// Times, s, and readings of a piece, strain.
+    /// Returns the times, s, and readings of a piece, strain.
     pub fn piece(&self, i: usize) -> Result<(Vec<f64>, Vec<f64>), Fault> {
         let mut values = Vec::new();
         self.each_strain_block(i, |strain| values.extend_from_slice(strain))?;
         Ok((self.times(i), values))
     }
 
-    /// How many readings of a piece, less `zero`, are too large to be strain.
+    /// Returns the number of readings of a piece that are too large to be strain after subtraction of `zero`.
     pub fn count_impossible_readings(&self, i: usize, zero: &[f64]) -> Result<u64, Fault> {
         let mut n = 0;
         self.each_strain_block(i, |strain| {

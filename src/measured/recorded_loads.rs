@@ -23,15 +23,15 @@ pub(crate) enum RecordedLoads {
     Record(Box<LoadRecord>),
 }
 
-/// A record of loads, in memory: four bytes a number.
+/// A record of loads in memory, with four bytes for each number.
 pub(crate) struct LoadRecord {
-    /// The file, as the job names it.
+    /// File, as the job names it.
     pub file: String,
     /// Times of the samples.
     pub clock: Clock,
     /// Loads with a column, in the order of the names.
     pub loads: Vec<RecordedLoad>,
-    /// Samples of each of these loads, SI units; not a number where nothing was recorded.
+    /// Samples of each load, SI units. NaN if nothing was recorded.
     pub samples: Vec<Vec<f32>>,
     /// Findings on the times.
     pub findings: Vec<Finding>,
@@ -41,19 +41,20 @@ pub(crate) struct LoadRecord {
 pub(crate) struct RecordedLoad {
     /// Load or combination of the job.
     pub name: String,
-    /// Standard deviation of its noise, SI units; 0 where none is stated.
+    /// Standard deviation of the noise, SI units. 0 if the job states none.
     pub noise_si: f64,
 }
 
 impl LoadRecord {
-    /// Seconds between the start of the clock of another record and the start of this one's, where both files state absolute times; else 0.
+    /// Returns the seconds from the start of another record's clock to the start of this record's clock. It is 0 unless both files state absolute
+    /// times.
     pub fn epoch_after(&self, other: &Clock) -> f64 {
         let both = self.clock.epoch_s.zip(other.epoch_s);
         both.map_or(0.0, |(own, other)| own - other)
     }
 }
 
-/// Reads the recorded loads of `[compare]`; `names` are the loads and combinations of the job.
+/// Reads the recorded loads of `[compare]`. `names` contains the loads and combinations of the job.
 ///
 /// # Errors
 /// A file that can't be read; units that don't fit the load or contradict the job; a file without these loads.
@@ -72,7 +73,7 @@ pub(crate) fn read_recorded(
     Ok(RecordedLoads::Record(Box::new(record)))
 }
 
-/// Reads a record of loads from the bytes of its file; `time_unit_s` is used if the file states no unit of time.
+/// Reads a record of loads from the bytes of its file. `time_unit_s` is used if the file states no unit of time.
 ///
 /// # Errors
 /// A file that is not a record; units that don't fit the load or contradict the job; a file without the loads `names`.
@@ -142,14 +143,14 @@ pub(crate) fn read_load_record(
     })
 }
 
-/// Returns what a load or a combination measures; `None` for a load set.
+/// Returns the quantity of a load or a combination. `None` for a load set.
 pub(crate) fn quantity_of(job: &Job, name: &str) -> Option<Quantity> {
     let combination = job.combinations.iter().find(|c| c.name == name);
     let first = combination.and_then(|c| c.terms.first());
     job.quantity_of_load(first.map_or(name, |term| term.0.as_str()))
 }
 
-/// Returns the stated standard deviation of recorded loads of a quantity, SI units; 0 where none is stated.
+/// Returns the stated standard deviation of recorded loads of a quantity, SI units. It is 0 if the job states none.
 pub(crate) fn noise_si(runs: &Runs, quantity: Quantity) -> f64 {
     let stated = match quantity {
         Quantity::Force => runs.noise.force,

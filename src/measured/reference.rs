@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::strain_chain::JobSensitivity;
 use crate::strain_chain::built_in_solver::stands_on_wheels;
 
-/// Strain of the reference state by gauge: it is added to the readings, so that loads are totals.
+/// Returns the strain of the reference state by gauge. It is added to the readings, so that loads are totals.
 pub(crate) fn reference_strain(
     job: &Job,
     measured: &Measured,

@@ -14,7 +14,8 @@ use crate::units::{Quantity, Unit, find_unit, unit_names};
 use serde_json::Value;
 use std::path::Path;
 
-/// Returns name and unit of every column; removes a row of units below the names from the table. A unit after the name precedes one in that row.
+/// Returns name and unit of every column, and removes a row of units below the names from the table. A unit after the name takes precedence over the
+/// row of units.
 pub fn take_units(t: &mut Table) -> Vec<Column> {
     let mut columns: Vec<Column> = t.header.iter().map(|h| name_and_unit(h)).collect();
     let is_row = t.rows.first().is_some_and(|(_, fields)| {
@@ -63,7 +64,7 @@ pub fn take_units_of(
     columns
 }
 
-/// Returns the column whose header is `name`, or `name` and a unit; `None` without such a column.
+/// Returns the column whose header is `name`, or `name` with a unit. `None` if there is no such column.
 ///
 /// # Errors
 /// Several columns that are `name` and a unit, without a column that is `name` alone.
@@ -103,8 +104,8 @@ fn sole_column(
     }
 }
 
-/// Returns the column of `name` of the job: [`place_of`], else the only column with this name apart from case and separators. The name of that column
-/// must not be another name of the job.
+/// Returns the column for the name `name` of the job: [`place_of`], or else the only column with this name apart from case and separators. This
+/// column must not have another name of the job.
 ///
 /// # Errors
 /// Several columns.
@@ -153,7 +154,7 @@ pub const PAYLOAD: [(&str, Quantity); 4] = [
     ("payload_y", Quantity::Length),
 ];
 
-/// Column of the runs file that marks the runs to recover and compare, which are not calibrated with.
+/// Column of the runs file that marks check runs: runs that are recovered and compared, but not calibrated with.
 pub const CHECK: &str = "check";
 
 /// Returns the names that a column of the runs file may have for any command, except the names of a given S.
@@ -197,7 +198,7 @@ fn columns_claimed(
     (names, read)
 }
 
-/// Returns a column that no name of the job claims and that may belong to a load: `FZ_FL` for `FL.FZ`, else the closest spelling.
+/// Returns a column that no name of the job claims and that may belong to a load: `FZ_FL` for `FL.FZ`, or else the column with the closest spelling.
 pub fn column_meant<'a>(
     job: &Job,
     (t, columns): (&Table, &'a [Column]),
@@ -218,7 +219,7 @@ pub fn column_meant<'a>(
     turned.or_else(|| suggest::find_closest_name(name, free))
 }
 
-/// Adds a warning that names the columns of the runs file which no command reads; `given` are the loads of a given S.
+/// Adds a warning on the columns of the runs file that no command reads. `given` contains the loads of a given S.
 pub fn note_unread_runs(
     inputs: &mut Inputs,
     job: &Job,
@@ -277,7 +278,7 @@ pub struct KnownColumn {
     pub is_stated: bool,
 }
 
-/// Returns the column of the runs file that contains `name`; `None` if the file has no such column and the job requests none.
+/// Returns the column of the runs file for `name`. `None` if the file has no such column and the job requests none.
 ///
 /// The column determines the unit. If the job's `[runs] units` states another unit for the quantity, one of the two units is wrong. Nothing shows
 /// which one, so this is a fault.

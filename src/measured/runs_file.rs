@@ -12,12 +12,12 @@ use crate::job::{Job, Runs};
 use crate::units::Quantity;
 use std::collections::{BTreeMap, HashSet};
 
-/// One run, SI units; what a file lacks or leaves blank is absent.
+/// One run, SI units. Missing or blank fields are absent.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct RunRow {
     /// Name.
     pub run: String,
-    /// By load name: force in N, moment in N m.
+    /// Value of each load by name: force in N, moment in N m.
     pub loads_si: BTreeMap<String, f64>,
     /// Payload weight, N.
     pub payload_force_n: Option<f64>,
@@ -128,7 +128,7 @@ pub fn no_load_column(
     Ok(Fault::with_line(&*t.file, 1, name, wrong, remedy))
 }
 
-/// Loads of a given S; where the job does not list them, S's own table does.
+/// Returns the loads of a given S. They are listed in the job, or else in the table of S.
 pub fn given_loads(inputs: &mut Inputs, job: &Job) -> Result<Vec<String>, Faults> {
     let Some(given) = &job.sensitivity else {
         return Ok(Vec::new());

@@ -11,7 +11,7 @@ use crate::job::table::read_table;
 use crate::job::{Job, JobGauge, NamedFile};
 use std::collections::HashSet;
 
-/// Reads a strain file of text whole, its channels corrected as `[[correction]]` states; `wanted`: its [`wanted_columns`].
+/// Reads a whole strain file from text and corrects its channels as `[[correction]]` states. `wanted` are its [`wanted_columns`].
 ///
 /// # Errors
 /// Every fault: no `run` or `time` column, fields that are no numbers, runs named twice, times that don't ascend.
@@ -34,7 +34,7 @@ pub fn read_strain(
     Ok(table)
 }
 
-/// Refuses corrections of channels that the job's strain file lacks, where nothing else names the channels.
+/// Refuses corrections of channels that the job's strain file lacks, if nothing else names the channels.
 pub(crate) fn check_corrected(
     job: &Job,
     named: &NamedFile,
@@ -48,8 +48,8 @@ pub(crate) fn check_corrected(
     check_channels(job, columns, &format!("`{}`", named.given))
 }
 
-/// Returns the names of the columns with the readings of the job's gauges; empty if the job does not name its gauges. If a given S names them, its
-/// whole table is read for this: call once for each command.
+/// Returns the names of the columns with the readings of the job's gauges; empty if the job does not name its gauges. If a given S names the gauges,
+/// this function reads the whole table. Call it once for each command.
 pub fn wanted_columns(inputs: &mut Inputs, job: &Job) -> Vec<String> {
     let mut names = gauge_names(inputs, job);
     names.extend(job.reserved.iter().cloned());
@@ -73,8 +73,8 @@ pub fn without_column(inputs: &mut Inputs, job: &Job, columns: &[String]) -> Vec
     job.gauges.iter().flat_map(of_gauge).collect()
 }
 
-/// Returns the names of the job's gauges: the stated gauges, with the legs of rosettes, else the rows of a given S, else none. A table of S that
-/// can't be read is reported by the caller that reads S.
+/// Returns the names of the job's gauges: the stated gauges, with the legs of rosettes, or else the rows of a given S. The list is empty without
+/// both. The caller that reads S reports a table of S that can't be read.
 pub fn gauge_names(inputs: &mut Inputs, job: &Job) -> Vec<String> {
     let mut names: Vec<String> = job.gauges.iter().map(|g| g.name.clone()).collect();
     // A rosette has its own name as a channel too if S comes from a table.

@@ -21,12 +21,12 @@ pub struct StrainTable {
     pub gauges: Vec<String>,
     /// Runs or samples.
     pub rows: StrainRows,
-    /// Row-major, `n_rows x n_gauges`; a blank is NaN.
+    /// Strain by rows, `n_rows x n_gauges`. NaN for a blank field.
     pub microstrain: Vec<f64>,
 }
 
 impl StrainTable {
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn n_rows(&self) -> usize {
         match &self.rows {
             StrainRows::Runs(r) => r.len(),
@@ -34,7 +34,7 @@ impl StrainTable {
         }
     }
 
-    /// Returns the names of the runs; none of a record.
+    /// Returns the names of the runs. The list is empty for a record.
     pub fn runs(&self) -> &[String] {
         match &self.rows {
             StrainRows::Runs(names) => names,
@@ -42,13 +42,13 @@ impl StrainTable {
         }
     }
 
-    /// Readings of row `i`.
+    /// Returns the readings of row `i`.
     pub fn row(&self, i: usize) -> &[f64] {
         let w = self.gauges.len();
         self.microstrain.get(i * w..(i + 1) * w).unwrap_or(&[])
     }
 
-    /// Drops the columns of these gauges.
+    /// Removes the columns of these gauges.
     pub(crate) fn leave_out(&mut self, gauges: &[String]) {
         let kept: Vec<bool> = self.gauges.iter().map(|g| !gauges.contains(g)).collect();
         if kept.iter().all(|k| *k) {
@@ -60,7 +60,7 @@ impl StrainTable {
         self.gauges.retain(|_| of_gauge.next() == Some(&true));
     }
 
-    /// Gives every column its gauge's name and every reading its gauge's strain.
+    /// Replaces the name of each column by the name of its gauge, and each reading by the corrected strain of the gauge.
     pub(crate) fn put_right(&mut self, corrections: &[StrainCorrection]) {
         if corrections.is_empty() {
             return;

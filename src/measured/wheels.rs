@@ -7,20 +7,20 @@ use crate::host::work::cancelled_fault;
 use crate::job::{Job, JobLoad, LoadActs};
 use crate::model::{GridIx, Model, Vec3};
 
-/// Vertical loads of a job that are no payload.
+/// Vertical loads of a job that are not the payload.
 pub struct Wheels {
-    /// The axis they act along: 0 x, 1 y, 2 z.
+    /// Axis along which the wheel forces act: 0 x, 1 y, 2 z.
     pub axis: usize,
     /// Index of each in the job's loads.
     pub loads: Vec<usize>,
-    /// Their grids.
+    /// Grids of the wheels.
     pub grids: Vec<GridIx>,
 }
 
-/// The job's wheels: forces along the axis that most of its forces act along, at other grids than the payload's.
+/// Returns the wheels of the job: forces along the most frequent axis of its forces, at grids other than the payload grid.
 ///
 /// # Errors
-/// Fewer than three, grids that the deck lacks.
+/// Fewer than three wheels, or grids that the deck lacks.
 pub fn wheels_of(job: &Job, model: &Model) -> Result<Wheels, Faults> {
     let payload = job.payload_grid();
     let force = |l: &JobLoad| match l.acts {
@@ -111,7 +111,7 @@ fn basic_axis(model: &Model, grid: u32, dof: usize, cid: u32) -> Option<usize> {
     (0..3).find(|axis| direction[*axis] > ALIGNED)
 }
 
-/// A floor that can't be had, as faults of the job's model.
+/// Returns the faults of the job's model if the floor cannot be computed.
 pub fn floor_fault(job: &Job, e: &FloorError) -> Faults {
     if matches!(e, FloorError::Solver(FeError::Stopped)) {
         return cancelled_fault().into();

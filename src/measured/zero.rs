@@ -19,9 +19,9 @@ use crate::job::{HoldOut, Job, Measured, NamedFile};
 use crate::recovery::{ErrorModel, Readings, reading_plausibility};
 use crate::units::MICROSTRAIN;
 
-/// A strain table less its zero.
+/// A strain table after subtraction of its zero.
 pub(crate) struct ZeroedTable {
-    /// A reading without a zero is not a number.
+    /// Table of net readings. A reading without a zero is NaN.
     pub table: StrainTable,
     /// Noise variance of each row's readings, relative to the noise variance of a single reading.
     pub noise_factor: Vec<f64>,
@@ -31,7 +31,7 @@ impl ZeroedTable {
     /// Returns the names of the runs.
     ///
     /// # Errors
-    /// A record.
+    /// A fault if the strain file is a record, not a table of runs.
     pub fn runs(&self) -> Result<&[String], Faults> {
         match &self.table.rows {
             StrainRows::Runs(names) => Ok(names),
@@ -65,7 +65,7 @@ impl ZeroedTable {
     }
 }
 
-/// A strain file of the job less its zero.
+/// Reads a strain file of the job and subtracts its zero.
 ///
 /// # Errors
 /// Faults of the files, a long record among them; zero runs that the table lacks.
@@ -124,8 +124,8 @@ pub(crate) fn note_columns(
     work.findings.extend(new);
 }
 
-/// Returns readings less their zero, tested as `recover` tests its own: a reading that is not strain becomes missing. Findings report it, once for
-/// the same gauges.
+/// Returns readings after subtraction of their zero, tested as `recover` tests its readings. Readings that are not strain become missing. Findings
+/// report them, with one finding for equal gauges.
 pub(crate) fn subtract_and_test_zero(
     work: &mut Work,
     measured: &Measured,
@@ -151,7 +151,7 @@ pub(crate) fn reads_strain(job: &Job) -> bool {
     job.model.is_some() || job.sensitivity.is_some()
 }
 
-/// Tests readings like [`subtract_and_test_zero`], for a job that may have no S yet: its readings are then tested against their noise alone.
+/// Tests readings like [`subtract_and_test_zero`], for a job that may have no S yet. Readings are then compared only with their noise.
 pub(crate) fn test_calibration_readings(
     work: &mut Work,
     job: &Job,
@@ -189,8 +189,8 @@ pub(crate) fn some_left(file: &str, readings: &[Readings]) -> Result<(), Faults>
     .into())
 }
 
-/// Returns the zero readings, strain by gauge, plus the common zero of a calibration with an intercept, and their effective number of samples.
-/// Without a file: the common zero and `None`. NaN for a gauge that the file does not contain: its readings have no zero, and it is left out.
+/// Returns the zero readings, strain by gauge, plus the common zero of a calibration with an intercept. The second value is the effective number of
+/// samples. Without a file, the result is the common zero and `None`. A gauge that the file does not contain has NaN and is left out.
 pub(crate) fn zero_of(
     work: &mut Work,
     job: &Job,
@@ -219,7 +219,7 @@ pub(crate) fn zero_of(
 
 /// The zero that belongs to each row of a table.
 pub(crate) struct RowZeros {
-    /// Microstrain by row and column of the table.
+    /// Zero of each row and column of the table, microstrain.
     pub zero: Vec<Vec<f64>>,
     /// Noise variance of each row's readings minus zero, relative to the noise variance of a single reading.
     pub noise_factor: Vec<f64>,
@@ -246,7 +246,7 @@ fn held_out_runs(job: &Job, measured: &Measured, table: &StrainTable) -> Result<
     Faults::check(unknown)
 }
 
-/// Computes the zeros from the runs of `zero_runs`; `None` if the job has no `zero_runs`.
+/// Computes the zeros of all rows from the runs of `zero_runs`. `None` if the job has no `zero_runs`.
 ///
 /// A run of `zero_runs` itself gets its zero from the other runs of `zero_runs`, so that its loads show how well the zero was followed.
 ///
@@ -356,7 +356,7 @@ fn zero_rows(
     Ok(at)
 }
 
-/// A record has no runs.
+/// Refuses `zero_runs` for a record, which has no runs.
 ///
 /// # Errors
 /// `zero_runs` of a job whose strain is a record.
@@ -408,7 +408,7 @@ fn zero_run_weights(at: &[usize], i: usize) -> ZeroWeights {
     }
 }
 
-/// How zeros move from one row to the next, mean squares over gauges, microstrain^2.
+/// Change of zeros from one row to the next: mean squares over gauges, microstrain^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Drift {
     /// Variance of a walk.

@@ -9,7 +9,7 @@ use nastran::place::{Place, PlacedCard};
 use std::collections::HashMap;
 
 impl Builder<'_> {
-    /// Properties by ascending id, and where each is by family (beam or not) and id: a PBAR and a PBEAM may share one.
+    /// Returns the properties by ascending id, and the index of each property by family (beam or not) and id. A PBAR and a PBEAM may have one id.
     pub(super) fn beam_properties(
         &mut self,
     ) -> (Vec<BeamProperty>, HashMap<(bool, u32), BeamPropertyIx>) {

@@ -19,7 +19,7 @@ pub(super) struct Builder<'a> {
     pub grid_ix: HashMap<u32, GridIx>,
     pub material_ix: HashMap<u32, MaterialIx>,
     pub element_ids: HashMap<u32, (&'static str, Place)>,
-    /// Properties of bars (false) and beams (true) that are in the deck and have their own fault: they are not missing.
+    /// Properties of bars (false) and beams (true) in the deck that have their own fault. They do not count as missing.
     pub refused_properties: HashSet<(bool, u32)>,
     /// Grids that only state the place of a connector (GS).
     pub points: Vec<GridIx>,
@@ -28,8 +28,8 @@ pub(super) struct Builder<'a> {
 impl Model {
     /// Builds the model of the cards, and lists every fault.
     ///
-    /// Elements whose grids are missing are left out; a shell whose property is missing stays in the mesh without stiffness. A
-    /// model with a fault of weight [`super::FaultWeight::Error`] is good for looking at, not for solving.
+    /// Elements whose grids are missing are left out; a shell whose property is missing stays in the mesh without stiffness. A model with a fault of
+    /// weight [`super::FaultWeight::Error`] can be shown, but not solved.
     pub fn from_cards(cards: &Cards) -> (Model, Vec<ModelFault>) {
         let (structure, loads) = super::unsupported_cards::of_records(cards);
         let (mut model, faults) = Self::build(cards, &[], &loads);
@@ -37,7 +37,7 @@ impl Model {
         (model, faults)
     }
 
-    /// Builds the model of a deck and lists every fault. PARAMs of case control override those of bulk data, and properties keep their names.
+    /// Builds the model of a deck and lists every fault. PARAMs of case control override PARAMs of bulk data, and properties keep their names.
     ///
     /// A model with a fault of weight [`super::FaultWeight::Error`] can be shown, but not solved.
     ///
@@ -150,7 +150,7 @@ impl Builder<'_> {
         });
     }
 
-    /// A fault, and `None`, where a number that must not be negative is.
+    /// Returns the number if it is not negative. Otherwise it adds a fault and returns `None`.
     pub(super) fn not_negative(
         &mut self,
         what: &'static str,
@@ -241,7 +241,7 @@ impl Builder<'_> {
         found
     }
 
-    /// Notes an element id. False, with a fault, where an element of the same card has it already.
+    /// Registers an element id. If an element of the same card already has the id, it adds a fault and returns false.
     pub(super) fn element(&mut self, id: u32, card: &'static str, at: Place) -> bool {
         match self.element_ids.get(&id).copied() {
             None => {
@@ -273,7 +273,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Location of a grid.
+    /// Returns the location of a grid.
     pub(super) fn x(&self, g: GridIx) -> Vec3 {
         self.model
             .grids
@@ -281,19 +281,19 @@ impl Builder<'_> {
             .map_or_else(Vec3::zeros, |g| g.x)
     }
 
-    /// Whether it is a scalar point.
+    /// Returns whether the grid is a scalar point.
     pub(super) fn is_scalar(&self, g: GridIx) -> bool {
         self.model.grids.get(g.us()).is_some_and(Grid::is_scalar)
     }
 
-    /// Displacement frame of a grid at its place, by rows.
+    /// Returns the axes of the displacement frame of a grid at its place, by rows.
     pub(super) fn cd_axes(&self, g: GridIx) -> Mat3 {
         self.model.cd_axes(g)
     }
 }
 
 impl Model {
-    /// Axes of a grid's displacement frame at the grid, by rows: `components = axes * basic`.
+    /// Returns the axes of a grid's displacement frame at the grid, by rows: `components = axes * basic`.
     pub fn cd_axes(&self, g: GridIx) -> Mat3 {
         let Some(grid) = self.grids.get(g.us()) else {
             return Mat3::identity();
@@ -303,7 +303,7 @@ impl Model {
             .map_or_else(Mat3::identity, |f| f.axes_at(grid.x))
     }
 
-    /// The grid of that id.
+    /// Returns the grid of that id.
     pub fn grid_ix(&self, id: u32) -> Option<GridIx> {
         self.grids
             .binary_search_by_key(&id, |g| g.id)
@@ -311,7 +311,7 @@ impl Model {
             .map(|i| GridIx(i as u32))
     }
 
-    /// The shell of that id.
+    /// Returns the shell of that id.
     pub fn shell_ix(&self, id: u32) -> Option<ShellIx> {
         self.shells
             .binary_search_by_key(&id, |s| s.id)
@@ -319,7 +319,7 @@ impl Model {
             .map(|i| ShellIx(i as u32))
     }
 
-    /// The CBAR or CBEAM of that id.
+    /// Returns the CBAR or CBEAM of that id.
     pub fn beam_ix(&self, id: u32) -> Option<BeamIx> {
         self.beams
             .binary_search_by_key(&id, |s| s.id)
@@ -327,7 +327,7 @@ impl Model {
             .map(|i| BeamIx(i as u32))
     }
 
-    /// The coordinate system of that id.
+    /// Returns the coordinate system of that id.
     pub fn frame_ix(&self, id: u32) -> Option<FrameIx> {
         self.frames
             .iter()
@@ -335,7 +335,7 @@ impl Model {
             .map(|i| FrameIx(i as u32))
     }
 
-    /// Number of elements: those with stiffness, masses and rigid elements.
+    /// Returns the number of elements: those with stiffness, masses and rigid elements.
     pub fn n_elements(&self) -> usize {
         self.elements().count() + self.masses.len() + self.scalar_masses.len() + self.rigids.len()
     }

@@ -4,12 +4,12 @@ use super::types::UnsupportedCard;
 use nastran::bdf::Deck;
 use nastran::cards::Param;
 
-/// Parameters that change the structure itself, which is one for all subcases.
+/// Parameters that change the structure, which is the same in all subcases.
 pub(super) const OF_STRUCTURE: [&str; 8] = [
     "WTMASS", "GRDPNT", "INREL", "K6ROT", "SNORM", "AUTOSPC", "COUPMASS", "OMID",
 ];
 
-/// Returns the parameters that hold in every subcase, and one refusal for each that differs from subcase to subcase.
+/// Returns the parameters that apply to every subcase, and a refusal for each parameter that differs between subcases.
 pub(super) fn params_of_case_control(deck: &Deck) -> (Vec<Param>, Vec<UnsupportedCard>) {
     let subcases = deck.case_control.effective_subcases();
     let Some((first, others)) = subcases.split_first() else {

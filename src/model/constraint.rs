@@ -196,7 +196,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Notes the grids that nothing uses.
+    /// Adds notes on the grids that nothing uses.
     pub(super) fn attachments(&mut self) {
         let m = &self.model;
         let mut used = vec![false; m.grids.len()];

@@ -39,8 +39,8 @@ impl<K: Hash + Eq, T: PartialEq> SeenCards<K, T> {
 }
 
 impl Builder<'_> {
-    /// Refuses parameters, temperatures, enforced displacements, tables of materials and combinations of sets (LOAD, SPCADD, MPCADD) that are
-    /// there twice with different content.
+    /// Refuses parameters, temperatures, enforced displacements, tables of materials and combinations of sets (LOAD, SPCADD, MPCADD) that occur twice
+    /// with different content.
     pub(super) fn check_duplicates(&mut self) {
         self.repeated_params();
         self.repeated_temperatures();

@@ -2,7 +2,7 @@
 
 use super::{Beam, GridIx, Joint, Model, Shell, Solid};
 
-/// One element, by its place in the list of its kind.
+/// One element, stated by its index in the list of its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ElementRef {
     Shell(usize),
@@ -16,7 +16,7 @@ pub(crate) enum ElementRef {
 }
 
 impl Model {
-    /// Every element with stiffness, kind by kind.
+    /// Returns every element with stiffness, kind by kind.
     pub(crate) fn elements(&self) -> impl Iterator<Item = ElementRef> + use<> {
         (0..self.shells.len())
             .map(ElementRef::Shell)
@@ -43,7 +43,7 @@ impl Model {
         }
     }
 
-    /// Returns the kind, as messages name it.
+    /// Returns the kind of the element for messages.
     pub(crate) fn element_word(&self, element: ElementRef) -> &'static str {
         match element {
             ElementRef::Shell(i) => self.shells[i].shape.card(),
@@ -58,7 +58,7 @@ impl Model {
         }
     }
 
-    /// Returns the grids and scalar points, each once, in the order of its stiffness.
+    /// Returns the grids and scalar points of the element, each once, in the order of its stiffness.
     pub(crate) fn element_grids(&self, element: ElementRef) -> Vec<GridIx> {
         match element {
             ElementRef::Shell(i) => self.shells[i].all_grids(),
@@ -82,13 +82,13 @@ impl Model {
 }
 
 impl Shell {
-    /// Sides with a grid in their middle: the model repeats the first corner of a side that has none.
+    /// Returns the sides with a mid-side grid. For other sides the model repeats the first corner.
     pub(crate) fn middles(&self) -> impl Iterator<Item = usize> {
         let n = self.shape.n_corners();
         (0..self.shape.n_grids() - n).filter(move |side| self.grids[n + side] != self.grids[*side])
     }
 
-    /// Corners, then the middles of sides that there are.
+    /// Returns the corners, then the existing mid-side grids.
     pub(crate) fn all_grids(&self) -> Vec<GridIx> {
         let n = self.shape.n_corners();
         let middles = self.middles().map(|side| self.grids[n + side]);
@@ -97,7 +97,7 @@ impl Shell {
 }
 
 impl Beam {
-    /// Ends, then the scalar points of its warping.
+    /// Returns the ends, then the scalar points of warping.
     pub(crate) fn all_grids(&self) -> Vec<GridIx> {
         let points = self.warping.into_iter().flatten();
         self.grids.into_iter().chain(points).collect()
@@ -105,7 +105,7 @@ impl Beam {
 }
 
 impl Joint {
-    /// Grids of both ends, ascending.
+    /// Returns the grids of both ends, ascending.
     pub(crate) fn all_grids(&self) -> Vec<GridIx> {
         let motion = self.ends.iter().flat_map(|e| &e.motion);
         let mut grids: Vec<GridIx> = motion.map(|m| m.0).collect();
@@ -116,7 +116,7 @@ impl Joint {
 }
 
 impl Solid {
-    /// Corners, then the middles of edges that there are.
+    /// Returns the corners, then the existing mid-edge grids.
     pub(crate) fn all_grids(&self) -> Vec<GridIx> {
         self.grids.iter().flatten().copied().collect()
     }

@@ -3,7 +3,7 @@
 use super::types::{GridIx, Solid};
 use nastran::cards::SolidShape;
 
-/// Faces by corner, each in an order whose right-hand normal points into the element.
+/// Returns the faces by corner, each in an order whose right-hand normal points into the element.
 pub(crate) fn faces(shape: SolidShape) -> &'static [&'static [usize]] {
     match shape {
         SolidShape::Tetra => &[&[0, 1, 2], &[0, 3, 1], &[1, 3, 2], &[2, 3, 0]],

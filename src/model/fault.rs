@@ -28,7 +28,7 @@ pub enum FaultWeight {
     Error,
 }
 
-/// Kinds of faults, with their numbers.
+/// Kind of a fault, with its numbers.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub enum FaultKind {
@@ -107,7 +107,7 @@ pub enum FaultKind {
 }
 
 impl ModelFault {
-    /// Whether it stops a solution.
+    /// Returns whether the fault prevents a solution.
     pub fn weight(&self) -> FaultWeight {
         match self.kind {
             FaultKind::Unattached | FaultKind::SharedId { .. } | FaultKind::Repeated { .. } => {

@@ -2,12 +2,12 @@
 
 use super::types::{Model, Shell, ShellProperty};
 
-/// Z1 (bottom) and Z2 (top) from the reference plane of a shell, at its centre and at its corners.
+/// Distances Z1 (bottom) and Z2 (top) from the reference plane of a shell, at its centre and at its corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fibres {
-    /// At the centre, where the thickness is the mean of the corners.
+    /// Distances at the centre, where the thickness is the mean of the corners.
     pub centre: [f64; 2],
-    /// At the corners, in the order of the grids.
+    /// Distances at the corners, in the order of the grids.
     pub corners: [[f64; 2]; 4],
 }
 
@@ -35,7 +35,7 @@ impl ShellProperty {
 }
 
 impl Model {
-    /// Returns the fibre distances of a shell; not a number where it has no property.
+    /// Returns the fibre distances of a shell. NaN if the shell has no property.
     pub fn fibres(&self, shell: &Shell) -> Fibres {
         let n = shell.shape.n_corners();
         let mean = shell.thickness.iter().take(n).sum::<f64>() / n as f64;

@@ -7,7 +7,7 @@ use nastran::cards::CoordKind;
 const ON_AXIS: f64 = 1e-12;
 
 impl Frame {
-    /// The basic frame.
+    /// Returns the basic frame.
     pub fn basic() -> Frame {
         Frame {
             id: 0,
@@ -100,13 +100,13 @@ impl Frame {
         local * self.axes
     }
 
-    /// Basic vector of components counted in this system at the basic location `at`.
+    /// Returns the basic vector of components counted in this system at the basic location `at`.
     pub fn vector_to_basic(&self, v: [f64; 3], at: Vec3) -> Vec3 {
         self.axes_at(at).tr_mul(&Vec3::from(v))
     }
 }
 
-/// The unit vector; `None` for a vector without length.
+/// Returns the unit vector. `None` for a vector without length.
 pub(crate) fn unit(v: Vec3) -> Option<Vec3> {
     let n = v.norm();
     (n > 0.0 && n.is_finite()).then(|| v / n)

@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, HashMap, VecDeque};
 const MOST_SCALAR_POINTS: u32 = 100_000;
 
 impl Grid {
-    /// Whether it is a scalar point.
+    /// Returns whether the grid is a scalar point.
     pub fn is_scalar(&self) -> bool {
         self.kind == PointKind::Scalar
     }

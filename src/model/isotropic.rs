@@ -23,7 +23,7 @@ fn complete_moduli(m: &Mat1) -> Option<(f64, f64, f64)> {
     }
 }
 
-/// Returns the material of a MAT1; `None` where E, G and nu do not define it.
+/// Returns the material of a MAT1. `None` if E, G and nu do not define it.
 pub(super) fn isotropic_material(m: &Mat1, at: Place) -> Option<Material> {
     let (e, g, nu) = complete_moduli(m)?;
     let kind = MaterialKind::Isotropic {

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use std::f64::consts::PI;
 
 impl<'a> Builder<'a> {
-    /// Cards by id; a second card of one id is a fault.
+    /// Returns the cards by id. A second card with the same id is a fault.
     pub(super) fn by_id<T>(
         &mut self,
         list: &'a [PlacedCard<T>],

@@ -1,4 +1,4 @@
-//! LOAD combinations written out: every one a sum of sets of primitive loads.
+//! Expanded LOAD combinations: each is a sum of sets of primitive loads.
 
 use super::build::Builder;
 use super::fault::FaultKind;
@@ -27,7 +27,7 @@ impl Weights {
 }
 
 impl Builder<'_> {
-    /// LOAD combinations written out: `scale * sum(factor * set)`, where a set may be another combination.
+    /// Returns the expanded LOAD combinations: `scale * sum(factor * set)`. A set may be another combination.
     pub(super) fn combinations(&mut self, sets: &Sets) -> Sets {
         let cards = self.cards;
         let mut by_sid: BTreeMap<u32, Vec<&PlacedCard<LoadSum>>> = BTreeMap::new();

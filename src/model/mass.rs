@@ -8,7 +8,7 @@ use crate::linalg::Matrix6;
 pub struct Weight {
     /// Mass, PARAM,WTMASS applied.
     pub mass: f64,
-    /// Centre of gravity, basic frame; the origin for a model without mass.
+    /// Centre of gravity, basic frame. It is the origin for a model without mass.
     pub cg: Vec3,
 }
 

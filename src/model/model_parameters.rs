@@ -28,8 +28,8 @@ const DEFAULTS: [(&str, &str); 7] = [
 
 /// Returns the model parameters of an MDLPRM entry that act on the solution.
 ///
-/// OFFDEF acts on elements with offsets. The standard offset ELMOFF is carried. Other values move thermal loads and masses, and take the
-/// shell normal at each grid as direction. A parameter that is in no table acts.
+/// OFFDEF acts on elements with offsets. The solver supports the standard offset ELMOFF. Other values move thermal loads and masses, and use the
+/// shell normal at each grid as direction. An unknown parameter counts as acting.
 pub(super) fn find_acting_parameters(deck: &Deck, card: &OtherCard) -> Vec<UnsupportedCard> {
     let fields = deck.fields(card);
     let filled = fields.iter().map(String::as_str).filter(|w| !w.is_empty());

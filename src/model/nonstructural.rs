@@ -9,8 +9,8 @@ use nastran::place::{Place, PlacedCard};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Adds the nonstructural mass of the set that case control selects. The set identifies elements by id or by property. A total mass is distributed
-/// over the area or length of all its elements. The function refuses unsupported types, totals over elements with area and elements with length
-/// together, and sets that differ between subcases. The structure has one mass.
+/// over the area or length of all its elements. The function refuses unsupported types and total masses over both areas and lengths. It also refuses
+/// sets that differ between subcases, because the structure has only one mass.
 pub(super) fn add_selected(
     model: &mut Model,
     deck: &Deck,
@@ -161,7 +161,7 @@ impl Carriers {
                 true => &["PBEAM", "PBEAML"],
                 false => &["PBAR", "PBARL"],
             };
-            // A deck may contain a PBAR and a PBEAM with one id.
+            // A deck may contain a PBAR and a PBEAM with the same id.
             if words.iter().any(|word| is(word, p.id)) {
                 note(words, p.id, Carrier::Beam(i));
             }

@@ -25,7 +25,7 @@ const NO_PROPERTIES: [&str; 16] = [
     "PBUSHT", "PDAMPT", "PELAST", "PFASTT", "PBSH2DT", "PCONV",
 ];
 
-/// Replaces references to a card that is missing by a fault of the card that is there and not carried. The built-in solver refuses it.
+/// Replaces references to a missing card by a fault of the unsupported card with this id. The built-in solver refuses this card.
 pub(super) fn name_cards(
     deck: &Deck,
     model: &mut Model,
@@ -82,7 +82,7 @@ pub(super) fn name_cards(
     out
 }
 
-/// Drops the notes of unattached grids that an element without a struct names: an element uses them, though the model lacks it.
+/// Removes the notes on unattached grids that belong to an unsupported element. The element uses the grids, although the model lacks the element.
 pub(super) fn attach_grids(deck: &Deck, faults: &mut Vec<ModelFault>) {
     let is_element = |c: &&OtherCard| defined_by(&c.name) == Some(ObjectKind::Element);
     let elements = deck.others.iter().filter(is_element);

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Changes properties element by element and returns the property of each element.
 ///
-/// `elements` holds the index of each element's property and the key of its change. Elements of one property and one key share one changed
-/// copy, behind all others. A property whose elements have one key is changed where it is.
+/// `elements` contains the index of each element's property and the key of its change. Elements with the same property and key share one changed
+/// copy, which is appended. A property whose elements all have one key is changed in place.
 pub(super) fn change_properties<P: Clone, K: Ord + Copy>(
     properties: &mut Vec<P>,
     elements: &[(u32, Option<K>)],

@@ -6,7 +6,7 @@ use super::types::*;
 use crate::linalg::Matrix6;
 use std::collections::HashMap;
 
-/// Mass matrix about the grid of a rigid body: mass, centre of gravity from the grid, inertia tensor about the centre of gravity.
+/// Returns the mass matrix about the grid of a rigid body: mass, centre of gravity from the grid, inertia tensor about the centre of gravity.
 ///
 /// M = [[m I, -m [r]x], [m [r]x, J + m (r.r I - r r')]], displacement then rotation.
 pub(super) fn rigid_body_matrix(mass: f64, r: Vec3, inertia: Mat3) -> Matrix6<f64> {

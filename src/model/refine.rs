@@ -10,11 +10,11 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A model whose shells, all or some, are divided in four, with the children of each.
 #[derive(Clone, Debug)]
 pub struct RefinedModel {
-    /// The finer model. Load sets that act on elements are left out: they would have to be divided too. New grids have the mean
+    /// The finer model. It omits load sets that act on elements, because these loads would have to be divided as well. New grids have the mean
     /// temperature of their side or shell.
     pub model: Model,
-    /// By shell of the coarse model: the shells it was divided into. Child k of a quadrilateral has its corner k, child k of a
-    /// triangle (k < 3) too; a triangle's fourth is the middle one. Four times itself where it was not divided.
+    /// Shells into which each shell of the coarse model was divided. Child k of a quadrilateral has its corner k. Child k of a triangle (k < 3) has
+    /// corner k, and the fourth child is in the middle. For a shell that was not divided, the list contains the shell four times.
     pub children: Vec<[ShellIx; 4]>,
 }
 
@@ -118,7 +118,8 @@ impl Model {
         Some(RefinedModel { model, children })
     }
 
-    /// By index whether a shell is one of `of` or within `rows` rows of elements of one, next to each other by a grid.
+    /// Returns by index whether a shell is one of `of`, or within `rows` rows of elements around one of them. Elements that share a grid are
+    /// neighbours.
     pub fn shells_near(&self, of: &[ShellIx], rows: usize) -> Vec<bool> {
         let mut near = vec![false; self.shells.len()];
         let mut touched = vec![false; self.grids.len()];

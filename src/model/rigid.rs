@@ -171,7 +171,7 @@ impl Builder<'_> {
             })
     }
 
-    /// A dof may be dependent once, in all rigid elements together, and not independent in the same one.
+    /// Checks that each dof is dependent at most once in all rigid elements, and not independent in the same element.
     pub(super) fn check_dependents(&mut self) {
         let mut first: HashMap<(GridIx, usize), Place> = HashMap::new();
         let mut found = Vec::new();

@@ -12,7 +12,7 @@ const NOTHING_LEFT: f64 = 1e-9;
 type Terms = Vec<(GridIx, u8, f64)>;
 
 impl Builder<'_> {
-    /// The equations of rigid bushes, after all that makes dofs dependent or holds them.
+    /// Adds the equations of rigid bushes. It must run after everything else that makes dofs dependent or holds dofs.
     pub(super) fn rigid_bushes(&mut self) {
         let [mut taken, in_sets] = self.constrained_dofs();
         for i in 0..self.model.bushes.len() {

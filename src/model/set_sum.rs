@@ -5,16 +5,16 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Loads or sets in all sums of a deck. Above this limit a few cards would need more memory than a model of their size.
 pub(super) const MOST_TERMS: usize = 4_000_000;
 
-/// Sums in an order in which each comes after those that it names, and the circles that no order has.
+/// Sums of sets in an order in which each sum follows the sums that it names, and the circles of sums that have no such order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct SumOrder {
-    /// Set ids.
+    /// Ids of the sums in this order.
     pub ready: Vec<u32>,
-    /// Each circle from its smallest id on, as it goes: every id names the next, the last the first.
+    /// Each circle as a list of ids, from the smallest id on. Every id names the next id, and the last id names the first.
     pub circles: Vec<Vec<u32>>,
 }
 
-/// The order of sums: `names` holds for each sum the sets that it names, sums or not.
+/// Returns the order of sums. `names` contains the sets that each sum names, including sets that are not sums.
 ///
 /// # Reference
 /// Kahn, Topological sorting of large networks, Communications of the ACM 5 (1962): linear in the number of names.

@@ -82,7 +82,7 @@ fn with_slopes(f: &dyn Fn([f64; 3]) -> f64, p: [f64; 3]) -> [f64; 4] {
     [f(p), slope(0), slope(1), slope(2)]
 }
 
-/// Edges of an element by their corners, in the order of the mid-side grids on the card; a pyramid has none here.
+/// Returns the edges of an element by their corners, in the order of the mid-side grids on the card; a pyramid has none here.
 pub(crate) fn solid_edges(shape: SolidShape) -> &'static [(usize, usize)] {
     match shape {
         SolidShape::Tetra => &TETRAHEDRON,
@@ -120,7 +120,7 @@ pub(crate) fn face_functions(n_corners: usize, p: [f64; 2]) -> (Vec<[f64; 4]>, V
     (domain.corner_functions(p), domain.edge_functions(p))
 }
 
-/// Edges of a triangle or square by their corners, in the order of the mid-side grids.
+/// Returns the edges of a triangle or square by their corners, in the order of the mid-side grids.
 pub(crate) fn face_edges(n_corners: usize) -> &'static [(usize, usize)] {
     if n_corners == 3 { &TRIANGLE } else { &SQUARE }
 }

@@ -304,7 +304,7 @@ fn without_stiffness(id: u32, at: Place) -> ShellProperty {
     }
 }
 
-/// Unit normal of a shell's corners: d13 x d24 of a quad, side 12 x side 13 of a triangle; `None` without area.
+/// Returns the unit normal of a shell's corners: d13 x d24 of a quadrilateral, side 12 x side 13 of a triangle. `None` without area.
 pub(super) fn shell_normal(x: &[Vec3]) -> Option<Vec3> {
     let (u, v) = match x {
         [a, b, c] => (b - a, c - a),

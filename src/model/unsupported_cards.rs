@@ -17,8 +17,8 @@ const BUCKLING: [u32; 3] = [5, 65, 105];
 /// Solution sequences of random and gust response, which are linear too.
 const GUST: [u32; 3] = [146, 187, 190];
 
-/// Returns elements, masses, constraints, statements of case control and the solution sequence that act; then the loads, which act where
-/// their set is selected.
+/// Returns unsupported cards that act on the solution: elements, masses, constraints, statements of case control and the solution sequence. The
+/// second list contains loads, which act only if their set is selected.
 pub(super) fn of_deck(deck: &Deck) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard>) {
     let mut structure: Vec<UnsupportedCard> = sequence(deck).into_iter().collect();
     structure.extend(program_changes(deck));
@@ -45,7 +45,7 @@ pub(super) fn of_deck(deck: &Deck) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard
     (structure, loads)
 }
 
-/// Returns what [`of_deck`] does, of the geometry blocks of an OP2.
+/// Returns the unsupported cards like [`of_deck`], for the geometry blocks of an OP2.
 pub(super) fn of_records(cards: &Cards) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard>) {
     let (loads, structure): (Vec<_>, Vec<_>) = cards.unread.iter().partition(|e| e.is_load);
     let unsupported = |entries: Vec<&PlacedCard<UnreadEntry>>| {

@@ -6,39 +6,39 @@ use crate::linalg::{Matrix, Vector};
 /// Task of the search for ballast masses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BallastSpec {
-    /// How many masses.
+    /// Number of masses.
     pub masses: usize,
-    /// Where they may sit, in plan: low and high along, low and high across.
+    /// Region of the masses in plan: lower and upper bound along the axis, lower and upper bound across.
     pub region: [[f64; 2]; 2],
-    /// The largest weight of one.
+    /// Largest weight of one mass.
     pub largest: f64,
     /// Standard deviation of each measured reaction.
     pub sigma: Vec<f64>,
 }
 
-/// A mass and the range that the data permit if the other masses are adjusted.
+/// A mass, with the range that the data permit if the other masses are adjusted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallastMass {
     /// Weight.
     pub weight: f64,
-    /// 95 % range.
+    /// 95 % interval of the weight.
     pub weight_range: [f64; 2],
     /// Place in plan.
     pub at: [f64; 2],
-    /// 95 % ranges.
+    /// 95 % intervals of the place.
     pub at_range: [[f64; 2]; 2],
 }
 
-/// The answer.
+/// Result of the search for masses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BallastFit {
     /// Masses, front first.
     pub masses: Vec<BallastMass>,
-    /// Reactions with them, by the table of unit reactions.
+    /// Reactions with these masses, from the table of unit reactions.
     pub reactions: Vec<f64>,
-    /// Sum of squares of the misfit over sigma.
+    /// Sum of squares of the misfit, divided by the variances.
     pub chi2: f64,
-    /// Combinations of the `3 n` numbers that the data fix.
+    /// Number of combinations of the `3 n` unknowns that the data determine.
     pub fixed: usize,
 }
 
@@ -57,10 +57,10 @@ const BISECTIONS: usize = 16;
 /// Change in sigma that a combination must make over its whole range to count as fixed by the data.
 const FIXED: f64 = 2.0;
 
-/// Bounded least squares: `min sum ((before + sum w unit(x, y) - measured) / sigma)^2` over weights and places.
+/// Computes the masses by bounded least squares: `min sum ((before + sum w unit(x, y) - measured) / sigma)^2` over weights and places.
 ///
-/// `unit(place)` are the reactions to a unit weight there; it is tabulated over the region once. Numbers that the data leave open take
-/// the value nearest to an even spread over the region.
+/// `unit(place)` gives the reactions to a unit weight at a place. They are tabulated once over the region. Unknowns that the data do not determine
+/// take the value nearest to an even distribution over the region.
 pub fn size_ballast(
     before: &[f64],
     measured: &[f64],

@@ -8,7 +8,7 @@ use crate::recovery::uncalibrated_strain::{check, estimate_loosely, is_unlike};
 use crate::recovery::{ErrorModel, Readings};
 use crate::sensitivity::{Load, Sensitivity, Uncertainty};
 
-/// Payload of one run by a calibrated S.
+/// Payload of one run from a calibrated S.
 pub(super) struct CalibratedPayload {
     /// Components of `p = (F, F dx, F dy)` with a column in the calibration: number and value.
     pub p: Vec<(usize, f64)>,
@@ -22,8 +22,8 @@ pub(super) struct CalibratedPayload {
     pub unlike: Option<Finding>,
 }
 
-/// Estimates the payload of a run from the gauges that are `used`; `known`: covariance of the three columns of [`PayloadModel::payload`]. If the
-/// place is known the one column is `b0 + dx b_dx + dy b_dy`, with its covariance. `None` if the gauges don't determine the payload.
+/// Estimates the payload of a run from the gauges `used`. `known` is the covariance of the three columns of [`PayloadModel::payload`]. If the place
+/// is known, the only column is `b0 + dx b_dx + dy b_dy`, with its covariance. `None` if the gauges don't determine the payload.
 pub(super) fn estimate_payload(
     model: &PayloadModel,
     known: &Uncertainty,

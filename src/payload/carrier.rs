@@ -49,7 +49,7 @@ impl Carriers {
         Self { grids, axis }
     }
 
-    /// Low and high of the carriers along the two plan axes, then along the vertical one; `None` without carriers.
+    /// Returns the lower and upper bound of the carriers along the two plan axes, then along the vertical axis. `None` without carriers.
     pub fn extent(&self) -> Option<[[f64; 2]; 3]> {
         let (b, c) = self.plan();
         self.grids.first()?;
@@ -62,12 +62,12 @@ impl Carriers {
         }))
     }
 
-    /// The plan axes: for z up, x and y.
+    /// Returns the plan axes. If z points up, they are x and y.
     pub fn plan(&self) -> (usize, usize) {
         ((self.axis + 1) % 3, (self.axis + 2) % 3)
     }
 
-    /// The point at this place in plan and this height.
+    /// Returns the point at this place in plan and this height.
     pub fn point(&self, plan: [f64; 2], height: f64) -> Vec3 {
         let (b, c) = self.plan();
         let mut x = Vec3::zeros();
@@ -75,7 +75,7 @@ impl Carriers {
         x
     }
 
-    /// Grids that carry a mass at this place: the four nearest in each quadrant of the plan around it.
+    /// Returns the grids that carry a mass at this place: the four nearest grids in each quadrant of the plan around the place.
     pub fn arms(&self, plan: [f64; 2]) -> Vec<GridIx> {
         let (b, c) = self.plan();
         let mut quadrants: [Vec<(f64, GridIx)>; 4] = Default::default();
@@ -94,7 +94,7 @@ impl Carriers {
     }
 }
 
-/// Returns the forces that an RBE3 with equal weights and translations 123 puts on its arms for a force at `at`.
+/// Returns the forces that an RBE3 with equal weights and translations 123 applies to its arms for a force at `at`.
 ///
 /// The force of an arm is `f_k = S_k (sum S'S)^-1 (F, 0)` with `S_k = [I, -[x_k - at] x]`. `None` if all arms are on one line.
 ///

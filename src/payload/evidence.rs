@@ -4,7 +4,7 @@ use crate::linalg::Matrix;
 use crate::sensitivity::{GaugeNoise, Uncertainty};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-/// Response of gauges and wheels to a unit of weight (model units), and to weight times shift from the nominal position.
+/// Response of gauges and wheels to a unit of weight (model units), and to weight times the shift from the nominal position.
 ///
 /// Let `F` be the weight of a payload, `(dx, dy)` its shift in plan, `p = (F, F dx, F dy)`, and `R` the changes of the wheel forces, positive up.
 /// Then `strain = wheels R + payload p`, and on a flat floor `R = floor p`. Equilibrium is `sum R = F` and `sum R arm = F (dx, dy)`.
@@ -20,7 +20,7 @@ pub struct PayloadModel {
     pub floor: Option<Matrix>,
     /// Positions of the wheels from the nominal place, in plan; `None` if unknown.
     pub arms: Option<Vec<[f64; 2]>>,
-    /// Uncertainty of `payload` from calibration runs, its three columns being the loads; `None` if a model or a table gives them.
+    /// Uncertainty of `payload` from calibration runs, with its three columns as loads. `None` if a model or a table gives them.
     pub calibrated: Option<Uncertainty>,
     /// Noise of the gauges, which gives the correlation of a run's errors; `None` if the gauges are independent of each other.
     pub noise: Option<GaugeNoise>,
@@ -31,13 +31,13 @@ pub struct PayloadModel {
 pub struct PayloadRun {
     /// Name.
     pub run: String,
-    /// Net strain by gauge; NaN where a gauge gave nothing, empty without strain.
+    /// Net strain by gauge. NaN for a gauge without a reading, empty without strain.
     pub strain: Vec<f64>,
     /// Standard deviation of the readings by gauge.
     pub sigma: Vec<f64>,
-    /// Changes of the wheel forces, up; NaN if not measured, empty if none is measured.
+    /// Changes of the wheel forces, upwards. NaN if not measured, empty if none is measured.
     pub reactions: Vec<f64>,
-    /// Shift of the payload where its place is known.
+    /// Shift of the payload if its place is known.
     pub shift: [f64; 2],
 }
 
@@ -55,17 +55,17 @@ pub enum Place {
 pub struct WeighSpec {
     /// Place.
     pub place: Place,
-    /// Model uncertainty: of each influence coefficient and of the whole, 1 sd, a fraction.
+    /// Model uncertainty of each influence coefficient, and of all coefficients together, 1 sd, a fraction.
     pub model_rel: f64,
     /// Standard deviation of a measured wheel force.
     pub reaction_sigma: f64,
     /// Largest weight that is searched: far above the weight that the readings show, so that it does not change the answer.
     pub largest: f64,
-    /// Region of the payload, as shifts; `None`: anywhere between the wheels.
+    /// Region of the payload as shifts. `None` means anywhere between the wheels.
     pub region: Option<[[f64; 2]; 2]>,
 }
 
-/// Why an answer is refused.
+/// Reason why an answer is refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refusal {
     /// The payload would have to pull the structure up.
@@ -75,7 +75,7 @@ pub enum Refusal {
     },
     /// The payload is outside the region by this many standard deviations.
     OutsideRegion {
-        /// How far over sigma.
+        /// Distance from the region divided by sigma.
         sigmas: f64,
     },
     /// Strain and wheel forces give different weights.
@@ -96,7 +96,7 @@ pub enum Refusal {
 pub struct WeighedRun {
     /// Name.
     pub run: String,
-    /// Weight; as found even where it is refused.
+    /// Weight, as computed. It is kept even if the result is refused.
     pub force: f64,
     /// Standard deviation of the weight.
     pub sigma: f64,
@@ -106,7 +106,7 @@ pub struct WeighedRun {
     pub interval: [f64; 2],
     /// Shift from the nominal place: known or found.
     pub shift: [f64; 2],
-    /// Covariance of the shift by rows; zeros where known.
+    /// Covariance of the shift by rows. It is zero if the shift is known.
     pub shift_covariance: [f64; 4],
     /// Reason why the result is not usable.
     pub refused: Option<Refusal>,
@@ -117,7 +117,7 @@ pub struct WeighedRun {
 }
 
 impl WeighedRun {
-    /// Half axes (long, short) of the 95 % region of the place and the angle of the long one from the first plan axis, radians.
+    /// Returns the half axes (long, short) of the 95 % region of the place, and the angle of the long axis from the first plan axis, radians.
     pub fn ellipse(&self) -> ([f64; 2], f64) {
         /// 95 % point of chi-square with two degrees of freedom.
         const CHI2_95: f64 = 5.991;
@@ -134,7 +134,7 @@ impl WeighedRun {
 }
 
 impl PayloadModel {
-    /// Strain by gauge per unit weight at a shift, on the floor (`true` answer of the standing structure) or by the payload alone.
+    /// Returns the strain by gauge per unit weight at a shift, on the floor (`true` answer of the standing structure) or by the payload alone.
     pub fn unit_strain(&self, shift: [f64; 2], support: Support) -> Vec<f64> {
         let p = [1.0, shift[0], shift[1]];
         let direct = |g: usize| (0..3).map(|k| self.payload[(g, k)] * p[k]).sum::<f64>();

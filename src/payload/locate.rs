@@ -18,12 +18,12 @@ const STEPS: [usize; 2] = [8, 60];
 /// Weight of a doubted gauge at a start.
 const DOUBTED: f64 = 1e-6;
 
-/// All runs and what became of the gauges.
+/// Result of all runs, with the state of the gauges.
 #[derive(Clone, Debug)]
 pub struct Location {
-    /// By run.
+    /// Result for each run.
     pub runs: Vec<PayloadFit>,
-    /// Probability that a gauge is as good as stated.
+    /// Probability that each gauge is as good as stated.
     pub good: Vec<f64>,
 }
 
@@ -34,7 +34,7 @@ struct State {
     log_likelihood: f64,
 }
 
-/// The most probable answer over many starts; `None` where the readings leave the weight open.
+/// Returns the most probable answer over many starts. `None` if the readings do not determine the weight.
 pub fn locate(
     model: &PayloadModel,
     runs: &[PayloadRun],

@@ -11,19 +11,19 @@ const REGION_SD: f64 = 1.0;
 /// Standard deviation of a wheel force that stays as the floor gives it.
 const SHUT: f64 = 1e-9;
 
-/// One run as found.
+/// Payload of one run, as fitted.
 #[derive(Clone, Debug)]
 pub struct PayloadFit {
     /// `(F, F dx, F dy)`.
     pub p: [f64; 3],
-    /// Covariance of it by rows, 3 x 3.
+    /// Covariance of the payload by rows, 3 x 3.
     pub covariance: [f64; 9],
-    /// Wheel forces as fitted or as the floor gives them.
+    /// Wheel forces, fitted or computed from the floor.
     pub reactions: Vec<f64>,
 }
 
 impl PayloadFit {
-    /// Before the first answer.
+    /// Returns zeros, for the time before the first answer.
     pub(super) fn zeros() -> Self {
         Self {
             p: [0.0; 3],
@@ -45,14 +45,14 @@ pub enum Balance {
 /// A solved run with the sizes of its residuals.
 pub(super) struct SolvedRun {
     pub(super) found: PayloadFit,
-    /// Gauge, stated variance, expected square of its residual.
+    /// For each gauge used: its number, stated variance, and expected square of its residual.
     pub(super) gauges: Vec<(usize, f64, f64)>,
     /// Log-likelihood of the wheel forces.
     pub(super) wheels: f64,
 }
 
-/// Solves one run; `weights` of the gauges on their stated noise, `old` the answer before, whose size the model's error is measured by.
-/// `None` where the rows have no solution.
+/// Solves one run. `weights` are factors on the stated noise of the gauges. `old` is the previous answer, whose size determines the model error.
+/// `None` if the rows have no solution.
 pub(super) fn solve_run(
     model: &PayloadModel,
     run: &PayloadRun,

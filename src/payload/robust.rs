@@ -2,14 +2,14 @@
 
 use std::f64::consts::TAU;
 
-/// Payload estimates of one gauge alone: its reading over its sensitivity, a value a run.
+/// Payload estimates of one gauge alone: reading divided by sensitivity, one value for each run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaugeEstimates {
     /// Gauge name.
     pub name: String,
-    /// Estimated payload force, a value a run; NaN where the run has no reading.
+    /// Estimated payload force, one value for each run. NaN if the run has no reading.
     pub estimates: Vec<f64>,
-    /// Stated noise over sensitivity, a value a run; `None` if the gauge's noise is unknown.
+    /// Stated noise divided by sensitivity, one value for each run. `None` if the noise of the gauge is unknown.
     pub sigma: Option<Vec<f64>>,
 }
 
@@ -29,7 +29,7 @@ pub struct RunPayload {
     pub value: f64,
     /// Posterior standard deviation.
     pub sigma: f64,
-    /// 2.5 % and 97.5 % points.
+    /// Ends of the 95 % interval: the 2.5 % and 97.5 % points of the posterior distribution.
     pub interval: [f64; 2],
 }
 
@@ -38,26 +38,26 @@ pub struct RunPayload {
 pub struct GaugeVerdict {
     /// Gauge name.
     pub name: String,
-    /// Whether it carries the answer.
+    /// Whether the gauge contributes to the answer.
     pub used: bool,
-    /// Posterior probability that it is as good as the model of a good gauge assumes.
+    /// Posterior probability that the noise of the gauge is as small as assumed for a good gauge.
     pub probability_good: f64,
-    /// Why it is not used, or why it is.
+    /// Reason why the gauge is used or not used.
     pub reason: String,
 }
 
 /// The answer for all runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobustPayload {
-    /// A value a run.
+    /// Value of each run.
     pub runs: Vec<RunPayload>,
-    /// A verdict a gauge, in the order given.
+    /// Verdict on each gauge, in the given order.
     pub gauges: Vec<GaugeVerdict>,
 }
 
-/// Noise levels a gauge may have, log-spaced.
+/// Number of noise levels of a gauge, log-spaced.
 pub(super) const N_LEVELS: usize = 25;
-/// Where the noise is stated: the largest factor on it. Such a gauge carries nothing.
+/// Largest factor on stated noise. A gauge with this factor contributes nothing.
 pub(super) const LARGEST_FACTOR: f64 = 1.0e4;
 /// Where it is not: from this share of the largest payload to its inverse.
 const SMALLEST_SHARE: f64 = 1.0e-3;
@@ -72,9 +72,9 @@ const NOTHING: f64 = -30.0;
 const N_STARTS: usize = 5;
 /// Above this probability a gauge counts as used.
 const USED_ABOVE: f64 = 0.5;
-/// A gauge is good when its noise is at most this factor above the stated one, or above the scatter that all gauges have.
+/// Largest noise of a good gauge, as a factor on the stated noise or on the scatter of all gauges.
 pub(super) const GOOD_FACTOR: f64 = 3.0;
-/// A negative estimate counts against a gauge from this many of its standard deviations on.
+/// Number of standard deviations below zero from which an estimate counts against a gauge.
 pub(super) const SIGN_SIGMAS: f64 = 3.0;
 
 /// Returns the posterior of the payload force of every run.
@@ -82,9 +82,9 @@ pub(super) const SIGN_SIGMAS: f64 = 3.0;
 /// Model, gauge i, run j: `p_ij ~ N(F_j, (tau F_j)^2 + (m_i s_ij)^2)`. If the noise `s_ij` is stated, `m_i` is 1 for a good gauge and log-uniform
 /// above 1 for a bad one. If it is not, `m_i s_ij` is one unknown level for each gauge, log-uniform over six decades. The level belongs to the gauge,
 /// so a gauge that disagrees in one run loses its weight in all runs. `F_j` is uniform. The joint mode is found by coordinate ascent from every
-/// gauge's own estimates. The search ends at `largest` above, and at zero less the noise of an empty structure (`doubt`). The interval of each run is
-/// from its posterior around this mode, with the other runs at their modes. It is not cut at zero: `cut_at_zero` gives the interval of a payload of
-/// zero or more.
+/// gauge's own estimates. The search ends at `largest` above, and at zero minus the noise of an empty structure (`doubt`). The interval of each run
+/// is from its posterior around this mode, with the other runs at their modes. It is not cut at zero: `cut_at_zero` gives the interval of a payload
+/// of zero or more.
 ///
 /// Units: the units of the estimates. Returns `None` if a run has no finite, possible estimate. Leave out runs whose gauges give a payload
 /// significantly below zero, or no payload: they would reduce the weight of every gauge.
@@ -154,9 +154,9 @@ fn run_uncertainty(gauges: &[GaugeEstimates], j: usize) -> f64 {
 /// Returns the value and the 95 % interval of a load that can't be negative, from the value and interval without this constraint. They are `max(0,
 /// v)` and `[max(0, low), max(0, v) + (high - v)]`.
 ///
-/// An unconstrained interval `v -+ h` contains any true value `t >= 0` with 95 %. Cut at zero it still does, since the true value is never in the
-/// removed part. The upper end is never below `h`, so the interval can't end below zero. An unconstrained interval ends below zero for one empty
-/// structure in forty.
+/// An unconstrained interval `v -+ h` contains any true value `t >= 0` with 95 %. This is also true after the cut at zero, because the true value is
+/// never in the removed part. The upper end is never below `h`, so the interval can't end below zero. An unconstrained interval ends below zero for
+/// one empty structure in forty.
 ///
 /// The interval misses `t` if `v - h > t` (2.5 %), and if `max(0, v) + h < t` (2.5 % for `t > h`, never for `t < h`). It contains 97.5 % of the loads
 /// below its half width and 95 % of all larger loads. If `low` is above zero, it equals the unconstrained interval.

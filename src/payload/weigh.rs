@@ -16,11 +16,11 @@ use crate::sensitivity::GaugeNoise;
 /// The answer for all runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Weighing {
-    /// By run.
+    /// Result for each run.
     pub runs: Vec<WeighedRun>,
-    /// By gauge; empty without strain.
+    /// Result for each gauge. Empty without strain.
     pub gauges: Vec<GaugeVerdict>,
-    /// Runs whose strain no payload makes by a calibrated S.
+    /// Findings on runs whose strain no payload explains with a calibrated S.
     pub unlike: Vec<Finding>,
 }
 
@@ -238,7 +238,7 @@ fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     // gauges in other runs. The noise level of a gauge is common to all runs.
     let mut out: Vec<WeighedRun> = Vec::new();
     let mut judged: Vec<usize> = Vec::new();
-    // The model error is proportional to the payload: first to the median of the gauges, then to the answer.
+    // The model error is proportional to the payload. The first round uses the median of the gauges as payload, later rounds use the answer.
     let mut sizes: Vec<f64> = Vec::new();
     for (i, run) in runs.iter().enumerate() {
         let (estimates, estimate_sigma) = estimate_by_gauge(model, run, run.shift, &[], 0.0, spec);

@@ -9,7 +9,7 @@ pub type Trig = [f64; 5];
 /// Symmetric 3 x 3 forms as `[xx, yy, gg, xy, xg, yg]` over (exx, eyy, gxy).
 pub type Form = [f64; 6];
 
-/// `c(t)' G c(t)`.
+/// Returns the form `c(t)' G c(t)`.
 pub fn of_row(g: &Form) -> Trig {
     let [xx, yy, gg, xy, xg, yg] = *g;
     let pp = xx + yy + 2.0 * xy;
@@ -23,19 +23,19 @@ pub fn of_row(g: &Form) -> Trig {
     ]
 }
 
-/// `c'(t)' H c'(t)`, with `c'` the derivative by the angle `t` in radians.
+/// Returns the form `c'(t)' H c'(t)`, with `c'` the derivative by the angle `t` in radians.
 pub fn of_slope(h: &Form) -> Trig {
     let [xx, yy, gg, xy, xg, yg] = *h;
     let mm = xx + yy - 2.0 * xy;
     [0.5 * (mm + gg), 0.0, 0.0, 0.5 * (gg - mm), -(xg - yg)]
 }
 
-/// Value at the angle whose double has these cosines and sines (`[cos u, sin u, cos 2u, sin 2u]`).
+/// Returns the value at the angle whose double has these cosines and sines (`[cos u, sin u, cos 2u, sin 2u]`).
 pub fn value(p: &Trig, cs: &[f64; 4]) -> f64 {
     p[0] + p[1] * cs[0] + p[2] * cs[1] + p[3] * cs[2] + p[4] * cs[3]
 }
 
-/// `[cos u, sin u, cos 2u, sin 2u]` of the angle `t`.
+/// Returns `[cos u, sin u, cos 2u, sin 2u]` of the angle `t`, with `u = 2 t`.
 pub fn phases(t: f64) -> [f64; 4] {
     let (s, c) = (2.0 * t).sin_cos();
     [c, s, c * c - s * s, 2.0 * s * c]
@@ -44,7 +44,7 @@ pub fn phases(t: f64) -> [f64; 4] {
 /// Samples over half a turn from which the search starts.
 pub const SAMPLES: usize = 16;
 
-/// How far a polynomial can exceed the larger of two neighbouring samples: `h^2/8 max |p''|` in `u`.
+/// Returns by how much a polynomial can exceed the larger of two neighbouring samples: `h^2/8 max |p''|` in `u`.
 fn overshoot(p: &Trig, h: f64) -> f64 {
     h * h / 8.0 * (p[1].hypot(p[2]) + 4.0 * p[3].hypot(p[4]))
 }
@@ -53,7 +53,7 @@ fn subtract_scaled(f: &Trig, v: &Trig, lambda: f64) -> Trig {
     std::array::from_fn(|i| f[i] - lambda * v[i])
 }
 
-/// True where `f / v` certainly stays under `limit` at every angle (`v` is positive).
+/// Returns whether `f / v` is certainly below `limit` at every angle (`v` is positive).
 pub fn stays_under(f: &Trig, v: &Trig, limit: f64, samples: &[[f64; 4]; SAMPLES]) -> bool {
     let g = subtract_scaled(f, v, limit);
     let slack = overshoot(&g, std::f64::consts::TAU / SAMPLES as f64);
@@ -63,7 +63,7 @@ pub fn stays_under(f: &Trig, v: &Trig, limit: f64, samples: &[[f64; 4]; SAMPLES]
 /// Relative amount by which [`largest_ratio`] may return more than the true maximum, so that it is never less.
 const CERTIFIED_EXCESS: f64 = 1e-7;
 
-/// The angle in `[0, pi)` where `f / v` is largest, and an upper bound of that maximum (at most `1e-7` relative above it).
+/// Returns the angle in `[0, pi)` where `f / v` is largest, and an upper bound of this maximum (at most `1e-7` relative above it).
 pub fn largest_ratio(f: &Trig, v: &Trig, samples: &[[f64; 4]; SAMPLES]) -> (f64, f64) {
     let ratio = |t: f64| {
         let cs = phases(t);

@@ -14,11 +14,11 @@ use crate::stop::Stop;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// The problem: `s` of the rows.
+/// Problem of the search: choose `s` of the rows.
 pub struct Problem<'a> {
     /// Rows and groups; members of a group exclude each other.
     pub active: &'a Active,
-    /// Gauges.
+    /// Number of gauges.
     pub s: usize,
     /// Prior information.
     pub prior: &'a [f64],
@@ -26,7 +26,8 @@ pub struct Problem<'a> {
     pub incumbent: f64,
     /// Known upper bound of the criterion.
     pub upper: f64,
-    /// Approximate number of floating-point operations after which the search stops; counted, not timed, so that results don't depend on the machine.
+    /// Approximate number of floating-point operations after which the search stops. Operations are counted instead of time, so that results don't
+    /// depend on the machine.
     pub work: f64,
     /// Cancellation of the search.
     pub stop: &'a Stop,
@@ -39,7 +40,7 @@ pub struct Proof {
     pub best: Option<RowSelection>,
     /// Upper bound of the criterion of any layout; the criterion of the best layout if proved.
     pub upper: f64,
-    /// Nodes visited.
+    /// Number of visited nodes.
     pub nodes: usize,
     /// Whether no better layout exists (by more than [`SAME`]).
     pub proved: bool,
@@ -488,5 +489,5 @@ fn branch(rules: &Rules, node: Node, step: &mut Step) {
     });
 }
 
-/// Rows up to which a proof is tried.
+/// Number of rows up to which a proof is tried.
 pub const MOST_ROWS: usize = 3000;

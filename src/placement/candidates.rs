@@ -3,7 +3,7 @@
 use super::angle_variance::{self, Form, Trig};
 use rayon::prelude::*;
 
-/// Places handled together by the scan.
+/// Number of places that the scan computes together.
 pub const LANES: usize = 8;
 
 /// Angles a gauge may have at a place.
@@ -25,7 +25,7 @@ pub struct Scatter {
     pub noise: f64,
     /// Angle tolerance, 1 sd, radians; needs tensors.
     pub angle_sd: f64,
-    /// Uncertainty of each load's part of the reading, 1 sd, a fraction (model and gauge factor, squares added); needs tensors.
+    /// Uncertainty of the contribution of each load to the reading, 1 sd, a fraction (model and gauge factor, squares added). It needs tensors.
     pub model_rel: f64,
     /// Separate variance of each place; empty if none.
     pub extra: Vec<f64>,
@@ -74,7 +74,7 @@ pub struct Candidates {
 }
 
 impl Candidates {
-    /// Candidates with fixed rows: `fill(place, row)` writes the row of a place (strain per unit of each column).
+    /// Creates candidates with fixed rows. `fill(place, row)` writes the row of a place (strain per unit of each column).
     pub fn from_rows(
         k: usize,
         n: usize,
@@ -93,8 +93,8 @@ impl Candidates {
         }
     }
 
-    /// Candidates from tensors: `fill(place, t)` writes `t[3 load + component]`, components exx, eyy, gxy (engineering shear) in the
-    /// element frame, for each load times its expected size.
+    /// Creates candidates from tensors. `fill(place, t)` writes `t[3 load + component]` for each load times its expected size. The components are
+    /// exx, eyy, gxy (engineering shear) in the element frame.
     pub fn from_tensors(
         k: usize,
         n: usize,
@@ -136,17 +136,17 @@ impl Candidates {
         self
     }
 
-    /// Number of columns.
+    /// Returns the number of columns.
     pub fn n_loads(&self) -> usize {
         self.k
     }
 
-    /// Number of places.
+    /// Returns the number of places.
     pub fn n_places(&self) -> usize {
         self.n
     }
 
-    /// Number of rows: places times angles (places where the angle is continuous).
+    /// Returns the number of rows: places times angles, or places if the angle is continuous.
     pub fn n_rows(&self) -> usize {
         match &self.angles {
             Angles::Grid(a) => self.n * a.len(),
@@ -154,22 +154,22 @@ impl Candidates {
         }
     }
 
-    /// The angles at a place.
+    /// Returns the angles at a place.
     pub fn angles(&self) -> &Angles {
         &self.angles
     }
 
-    /// Positions of the places, where known.
+    /// Returns the positions of the places, if known.
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions
     }
 
-    /// Components a load has in the blocks: 1 for rows, 3 for tensors.
+    /// Returns the components a load has in the blocks: 1 for rows, 3 for tensors.
     pub fn components(&self) -> usize {
         if self.angles == Angles::Fixed { 1 } else { 3 }
     }
 
-    /// Blocks of [`LANES`] places, each `n_loads x components x LANES`.
+    /// Returns the blocks of [`LANES`] places, each `n_loads x components x LANES`.
     pub fn blocks(&self) -> &[f64] {
         &self.blocks
     }
@@ -180,7 +180,7 @@ impl Candidates {
         std::array::from_fn(|c| self.blocks[at + c * LANES])
     }
 
-    /// Variance of a reading at a place as a function of the angle.
+    /// Returns the variance of a reading at a place as a function of the angle.
     pub fn variance(&self, place: usize) -> Trig {
         let mut v = [0.0; 5];
         if let Some(form) = self.slopes.get(place) {
@@ -217,7 +217,7 @@ impl Candidates {
         !self.slopes.is_empty() || !self.scatter.forms.is_empty()
     }
 
-    /// Standard deviation of a gauge's reading.
+    /// Returns the standard deviation of a gauge's reading.
     pub fn sd(&self, choice: Choice) -> f64 {
         angle_variance::value(
             &self.variance(choice.place as usize),
@@ -226,7 +226,7 @@ impl Candidates {
         .sqrt()
     }
 
-    /// How much a gauge's reading changes with its angle: rms over the expected loads (independent), per radian; 0 for fixed rows.
+    /// Returns the change of a gauge's reading with its angle: rms over the expected loads (independent), per radian. It is 0 for fixed rows.
     pub fn turn_rms(&self, choice: Choice) -> f64 {
         if self.angles == Angles::Fixed {
             return 0.0;
@@ -241,7 +241,7 @@ impl Candidates {
             .sqrt()
     }
 
-    /// The row of a gauge over the standard deviation of its reading.
+    /// Returns the row of a gauge divided by the standard deviation of its reading.
     pub fn row(&self, choice: Choice) -> Vec<f64> {
         let p = choice.place as usize;
         if self.angles == Angles::Fixed {
@@ -263,7 +263,7 @@ impl Candidates {
             .collect()
     }
 
-    /// A smaller problem: these places only (indices ascending), positions and scatter kept.
+    /// Returns a smaller problem: these places only (indices ascending), positions and scatter kept.
     pub fn subset(&self, places: &[u32]) -> Self {
         let kc = self.k * self.components();
         let blocks = fill_blocks(places.len(), kc, &|i: usize, out: &mut [f64]| {

@@ -10,7 +10,7 @@ use super::variance_scan::{CandidateVariance, Report, price};
 use crate::stop::Stop;
 use std::collections::{HashMap, HashSet};
 
-/// Which rows share a weight of at most 1.
+/// Groups of rows. The weights of a group sum to at most 1.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Groups {
     /// Every row for itself: distinct rows.
@@ -43,7 +43,7 @@ impl Groups {
 /// The relaxation solved over all candidates.
 #[derive(Clone, Debug)]
 pub struct Columns {
-    /// Rows that took part.
+    /// Rows that took part in the solution.
     pub active: Active,
     /// Candidates of these rows.
     pub choices: Vec<Choice>,
@@ -205,7 +205,7 @@ fn start(set: &RowSet, s: usize, prior: &[f64]) -> Option<RelaxationSolution> {
     relax(&set.active, s, prior, weights, 0.05, 60)
 }
 
-/// `T` over the candidates priced at or above `threshold`: the sum of the `s` largest group maxima, and the least of them.
+/// Returns `T` over the candidates whose price is at least `threshold`: the sum of the `s` largest group maxima, and the smallest of these maxima.
 pub fn top_of(
     priced: &[CandidateVariance],
     groups: &Groups,

@@ -18,14 +18,14 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-/// A layout of small condition number.
+/// A layout with a small condition number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionedLayout {
     /// The gauges, by place and angle.
     pub gauges: Vec<Choice>,
-    /// Condition number of its `S`, gauges that stay included.
+    /// Condition number of `S` of the layout, including the gauges that stay.
     pub condition: f64,
-    /// The least condition number of any layout the search met.
+    /// Least condition number of all tried layouts.
     pub least: f64,
 }
 
@@ -40,8 +40,8 @@ const TESTED_ROWS: [usize; 2] = [24, 6];
 /// Share of the mean diagonal that is added to keep a layout without one gauge regular.
 const RIDGE: f64 = 1e-10;
 
-/// The layout of least condition number found, from `layout` and from random ones; `base` is the `S'S` of gauges that stay, columns
-/// as the candidates'. `None` where no layout met separates the loads.
+/// Returns the layout with the least condition number found, starting from `layout` and from random layouts. `base` is the `S'S` of gauges that stay,
+/// with the columns of the candidates. `None` if no tried layout separates the loads.
 pub fn find_least_condition(
     c: &Candidates,
     spec: &Spec,

@@ -11,7 +11,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::sync::OnceLock;
 
-/// Gain in `det`, or in its logarithm, under which an exchange is rounding error.
+/// Gain in `det`, or in its logarithm, below which an exchange is rounding error.
 pub(super) const LEAST_GAIN: f64 = 1e-9;
 /// Share of its determinant under which a block counts as lost by an exchange.
 const LEAST_PART: f64 = 1e-9;
@@ -58,11 +58,11 @@ impl<'a, E: Fn(usize, usize) -> bool> List<'a, E> {
     }
 }
 
-/// A layout with what its exchanges need.
+/// A layout with the data for its exchanges.
 #[derive(Clone)]
 pub(super) struct CoordinateExchange {
     pub rows: Vec<usize>,
-    /// The criterion, under the base it was begun with.
+    /// Value of the criterion with the base of the start.
     pub value: f64,
     /// `tr(L M^-1)` of a linear criterion.
     spread: f64,
@@ -70,15 +70,15 @@ pub(super) struct CoordinateExchange {
     full: Table,
     /// Under the inverse of the nuisance block (Ds) or `M^-1 L M^-1` (linear).
     second: Option<Table>,
-    /// By row, how many of the chosen exclude it.
+    /// Number of chosen rows that exclude a row, for each row.
     blocked: Vec<u32>,
-    /// By row, 0 where nothing excludes it, minus infinity otherwise.
+    /// 0 for a row that no chosen row excludes, otherwise minus infinity.
     mask: Vec<f64>,
     swaps: usize,
 }
 
 impl CoordinateExchange {
-    /// Begins with these rows and `base` as prior information; `None` where that is singular.
+    /// Creates a layout from these rows with `base` as prior information. `None` if the information matrix is singular.
     pub fn from_rows<E: Fn(usize, usize) -> bool>(
         list: &List<E>,
         base: &[f64],
@@ -217,13 +217,13 @@ impl CoordinateExchange {
         true
     }
 
-    /// How far the variances of the chosen are from `tr(M^-1 (M - P)) = k - tr(M^-1 P)`: rounding that has grown.
+    /// Returns the rounding error: the difference of the variances of the chosen rows from `tr(M^-1 (M - P)) = k - tr(M^-1 P)`.
     fn drift<E>(&self, list: &List<E>, base: &[f64]) -> f64 {
         let sum: f64 = self.rows.iter().map(|&j| self.full.d[j]).sum();
         (sum + spd::trace_of_product(&self.full.inverse, base) - list.active.k as f64).abs()
     }
 
-    /// Exchanges single rows until none gains; false where it came upon a layout that is singular.
+    /// Exchanges single rows until no exchange improves the layout. Returns false if a layout is singular.
     pub fn improve<E: Fn(usize, usize) -> bool>(&mut self, list: &List<E>, base: &[f64]) -> bool {
         for _ in 0..MAX_SWEEPS {
             let mut gained = false;
@@ -242,7 +242,7 @@ impl CoordinateExchange {
         true
     }
 
-    /// Puts random rows in place of `count` gauges.
+    /// Replaces `count` gauges by random rows.
     pub fn perturb<E: Fn(usize, usize) -> bool>(
         &mut self,
         list: &List<E>,
@@ -267,7 +267,7 @@ impl CoordinateExchange {
         true
     }
 
-    /// Becomes what `other` is, in the memory it has.
+    /// Copies `other` into the existing memory.
     pub fn copy(&mut self, other: &Self) {
         self.rows.copy_from_slice(&other.rows);
         self.blocked.copy_from_slice(&other.blocked);

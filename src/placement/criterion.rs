@@ -3,7 +3,7 @@
 //! | criterion | value | slope `G` |
 //! |---|---|---|
 //! | D | `ln det M` | `M^-1` |
-//! | Ds | `ln det M - ln det M_nn` | `M^-1` less the inverse of the nuisance block |
+//! | Ds | `ln det M - ln det M_nn` | `M^-1` minus the inverse of the nuisance block |
 //! | linear | `-k ln tr(L M^-1)` | `k M^-1 L M^-1 / tr(L M^-1)` |
 //!
 //! For all three criteria, a layout `S` with information `M_S = P + sum a a'` satisfies `value(M_S) <= value(M) + q ln((tr(G P) + sum a' G a) / q)`,
@@ -58,7 +58,7 @@ pub struct Point {
 }
 
 impl Criterion {
-    /// The degree `q`: `value` rises by `q ln t` where `M` is multiplied by `t`, so `exp(difference / q)` is an efficiency.
+    /// Returns the degree `q`: if `M` is multiplied by `t`, `value` increases by `q ln t`. So `exp(difference / q)` is an efficiency.
     pub fn degree(&self, k: usize) -> usize {
         match self {
             Self::Ds(nuisance) => k - self.n_nuisance_columns(k, *nuisance),
@@ -71,7 +71,7 @@ impl Criterion {
         nuisance.min(k.saturating_sub(1))
     }
 
-    /// Value and slope at `m`; `None` where it is singular.
+    /// Returns value and slope at `m`. `None` if `m` is singular.
     pub fn evaluate_at(&self, m: &[f64], k: usize) -> Option<Point> {
         let l = spd::cholesky(m, k)?;
         let mut root = spd::inverse_lower(&l, k);
@@ -120,7 +120,7 @@ impl Criterion {
 }
 
 impl Point {
-    /// `G`.
+    /// Returns the slope `G`.
     pub fn slope(&self, k: usize) -> Vec<f64> {
         spd::gram_of_lower(&self.root, k)
     }

@@ -11,10 +11,10 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-/// How hard to search.
+/// Effort of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// Independent starts.
+    /// Number of independent starts.
     pub starts: usize,
     /// Perturbations of the best layout (a few gauges replaced at random, then exchange) for each start.
     pub perturbations: usize,
@@ -22,7 +22,7 @@ pub struct Effort {
     pub seed: u64,
 }
 
-/// Rows chosen (ascending) and their criterion.
+/// Chosen rows in ascending order, with the criterion of this choice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowSelection {
     /// Indices into the rows.

@@ -22,21 +22,21 @@ pub struct Layout {
     pub gauges: Vec<Choice>,
     /// Value of the criterion. For D it is `log det` of the information matrix, for Ds this value less `log det` of the nuisance block.
     pub log_det: f64,
-    /// No layout that keeps the rules has a larger criterion.
+    /// Upper bound of the criterion of all permitted layouts.
     pub upper_bound: f64,
-    /// `exp((log_det - upper_bound) / degree)`: at least this share of the best possible.
+    /// Lower bound on the efficiency, relative to the best layout: `exp((log_det - upper_bound) / degree)`.
     pub efficiency_bound: f64,
-    /// True where no layout that keeps the rules is better.
+    /// Whether no permitted layout is better.
     pub proved: bool,
     /// Passes over all candidates.
     pub passes: usize,
-    /// Candidates that the bound does not exclude from a better layout; `None` where too many to count.
+    /// Number of candidates that the bound does not exclude from a better layout. `None` if there are too many to count.
     pub alive: Option<usize>,
-    /// Nodes of the proof; 0 where none was tried.
+    /// Number of nodes of the proof. It is 0 if no proof was tried.
     pub nodes: usize,
 }
 
-/// Why there is no layout.
+/// Reason why there is no layout.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PlaceError {
     /// Fewer places than gauges.
@@ -95,7 +95,7 @@ impl fmt::Display for PlaceError {
 
 impl std::error::Error for PlaceError {}
 
-/// Returns the best layout found for `spec`, with the bound that no other layout can pass.
+/// Returns the best layout found for `spec`, with an upper bound for all layouts.
 ///
 /// # Errors
 /// Returns an error if there are too few places, or if that many gauges can't separate the loads.

@@ -16,7 +16,7 @@ const MOVES: usize = 20;
 /// Share of the first difference of slopes at which the model counts as solved.
 const SOLVED: f64 = 5e-3;
 
-/// Weights better than `weights`, at which `state` was measured; `None` where the step gains nothing.
+/// Returns better weights than `weights`, at which `state` was computed. `None` if the step gains nothing.
 pub(super) fn step(
     active: &Active,
     prior: &[f64],

@@ -7,13 +7,13 @@ use crate::linalg::spd;
 /// Quality of a layout.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quality {
-    /// `h_i = a_i' M^-1 a_i`: the weight of a gauge's reading in its own prediction; losing the gauge multiplies `det` by `1 - h_i`.
+    /// Leverage `h_i = a_i' M^-1 a_i`: the weight of a gauge's reading in its own prediction. The loss of the gauge multiplies `det` by `1 - h_i`.
     pub leverage: Vec<f64>,
     /// Standard deviation of each load, in shares of the column's scale (`expected`).
     pub sigma: Vec<f64>,
     /// Covariance of the loads in these shares, `k x k` by rows.
     pub covariance: Vec<f64>,
-    /// `(1 - max h)^(1/k)`: efficiency after the worst loss of one gauge, relative to all gauges; 0: no gauge may fail.
+    /// Efficiency after the worst loss of one gauge, relative to all gauges: `(1 - max h)^(1/k)`. 0 means that no gauge may fail.
     pub worst_loss: f64,
     /// Gauge whose loss is worst.
     pub worst: usize,
@@ -25,7 +25,7 @@ pub fn evaluate_layout(c: &Candidates, gauges: &[Choice], prior: &[f64]) -> Opti
     evaluate_rows(&rows, prior, c.n_loads())
 }
 
-/// Computes the quality of rows over their standard deviation, columns times `expected`.
+/// Computes the quality of rows that are divided by their standard deviation and whose columns are multiplied by `expected`.
 pub fn evaluate_rows(rows: &[Vec<f64>], prior: &[f64], k: usize) -> Option<Quality> {
     let mut m = prior.to_vec();
     for r in rows {
@@ -60,7 +60,7 @@ pub fn evaluate_rows(rows: &[Vec<f64>], prior: &[f64], k: usize) -> Option<Quali
 }
 
 /// Returns the `n` gauges to exclude from the estimate, ascending. These are the gauges that the other gauges predict best. The second value is the
-/// standard deviation of reading less prediction over the standard deviation of the reading, `sqrt(1 + a' M_rest^-1 a)`.
+/// standard deviation of reading minus prediction, divided by the standard deviation of the reading, `sqrt(1 + a' M_rest^-1 a)`.
 ///
 /// The gauges are chosen so that `det M_rest` is largest, greedily and then by exchange. This is equivalent to the smallest joint variance of the
 /// predictions. `None` if `M_rest` would be singular.
@@ -138,7 +138,7 @@ pub fn influence(rows: &[Vec<f64>], prior: &[f64], k: usize) -> Option<Vec<f64>>
     )
 }
 
-/// The criterion of these rows with the prior; `None` where singular.
+/// Returns the criterion of these rows with the prior. `None` if the matrix is singular.
 pub fn value(rows: &[Vec<f64>], prior: &[f64], k: usize, criterion: &Criterion) -> Option<f64> {
     let mut m = prior.to_vec();
     for r in rows {

@@ -9,12 +9,12 @@ use std::collections::HashMap;
 /// A straight piece, or a point twice.
 pub type Segment = [Vec3; 2];
 
-/// Edges that belong to one shell alone: borders, and the rims of holes.
+/// Returns the edges that belong to one shell only: borders, and rims of holes.
 pub fn free_edges(model: &Model) -> Vec<Segment> {
     by_edge(model, |shells| shells.len() == 1)
 }
 
-/// Free edges that are no rims of holes.
+/// Returns the free edges that are not rims of holes.
 pub fn borders(model: &Model) -> Vec<Segment> {
     split(model).0
 }
@@ -116,7 +116,7 @@ fn material(
 /// Shells around a grid at most.
 const MOST_AROUND: usize = 64;
 
-/// Edges where plates meet at an angle, or more than two of them: where a weld is.
+/// Returns the edges where plates meet at an angle, or where more than two plates meet. Welds are there.
 pub fn joints(model: &Model) -> Vec<Segment> {
     let normal = |ix: &ShellIx| -> Option<Vec3> {
         let s = model.shells.get(ix.us())?;
@@ -159,7 +159,7 @@ fn by_edge(model: &Model, taken: impl Fn(&[ShellIx]) -> bool) -> Vec<Segment> {
         .collect()
 }
 
-/// Grids that rigid elements, RBE3, bushes, welds, fasteners and gaps hold.
+/// Returns the grids that rigid elements, RBE3, bushes, welds, fasteners and gaps hold.
 pub fn attachments(model: &Model) -> Vec<Segment> {
     let mut grids: Vec<u32> = Vec::new();
     for r in &model.rigids {
@@ -181,7 +181,7 @@ pub fn attachments(model: &Model) -> Vec<Segment> {
         .collect()
 }
 
-/// By point, whether it is at least `distance` from every segment.
+/// Returns for each point whether its distance from every segment is at least `distance`.
 pub fn clear_of(points: &[Vec3], segments: &[Segment], distance: f64) -> Vec<bool> {
     if segments.is_empty() || !(distance > 0.0) {
         return vec![true; points.len()];

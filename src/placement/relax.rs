@@ -29,7 +29,7 @@ pub fn top_sum(d: impl Iterator<Item = (u32, f64)>, n_groups: usize, s: usize) -
     (best[..s].iter().sum(), best[s - 1])
 }
 
-/// Solves the relaxation from `weights` to a gap (per load) of `tolerance`; `None` where the information matrix is singular.
+/// Solves the relaxation from `weights` to a gap (per load) of `tolerance`. `None` if the information matrix is singular.
 pub fn relax(
     active: &Active,
     s: usize,

@@ -21,41 +21,41 @@ pub struct Active {
 }
 
 impl Active {
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.group.len()
     }
 
-    /// True without rows.
+    /// Returns whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.group.is_empty()
     }
 
-    /// Row `i`.
+    /// Returns row `i`.
     pub fn row(&self, i: usize) -> &[f64] {
         &self.rows[i * self.k..(i + 1) * self.k]
     }
 }
 
-/// A solution of the relaxation on its rows.
+/// A solution of the relaxation over a list of rows.
 #[derive(Clone, Debug)]
 pub struct RelaxationSolution {
     /// Weights.
     pub weights: Vec<f64>,
-    /// The criterion at `M`; `d = |root a|^2` is its slope towards a row.
+    /// Criterion at `M`. Its slope towards a row is `d = |root a|^2`.
     pub point: Point,
     /// `tr(G P)`, `G = root' root`.
     pub prior_trace: f64,
     /// Slopes towards the rows.
     pub d: Vec<f64>,
-    /// Upper bound of the criterion over these rows, less its value, over its degree.
+    /// Gap: upper bound of the criterion over these rows minus its value, divided by its degree.
     pub gap: f64,
-    /// Sweeps it took.
+    /// Number of sweeps.
     pub sweeps: usize,
 }
 
 impl RelaxationSolution {
-    /// The criterion at the relaxed solution.
+    /// Returns the criterion at the relaxed solution.
     pub fn value(&self) -> f64 {
         self.point.value
     }

@@ -9,8 +9,8 @@ use super::spec::Spec;
 /// Angles tried at a place where the angle is continuous.
 const STEPS: usize = 36;
 
-/// The layout with gauges exchanged until each group of places has one, each time at the least loss of information. Gauges that hold another
-/// group stay.
+/// Returns the layout after exchanges that give each group of places one gauge, each with the least loss of information. Gauges that belong to
+/// another group stay.
 ///
 /// # Errors
 /// The group for which no gauge fits.

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 /// Leverage that counts as 1: that gauge may not be lost.
 const WHOLE: f64 = 1.0 - 1e-9;
 
-/// `ln det` that is left after the worst loss of one of these rows; `None` where that is singular.
+/// Returns `ln det` after the worst loss of one of these rows. `None` if the remaining matrix is singular.
 pub fn after_worst_loss(active: &Active, prior: &[f64], rows: &[usize]) -> Option<f64> {
     let k = active.k;
     let mut m = prior.to_vec();
@@ -31,8 +31,8 @@ pub fn after_worst_loss(active: &Active, prior: &[f64], rows: &[usize]) -> Optio
     (worst < WHOLE).then(|| spd::log_det(&l, k) + (1.0 - worst).ln())
 }
 
-/// The best rows found from `start`, with their criterion after the worst loss; `None` if every layout has a gauge that must not fail. Asked to stop
-/// it gives the best met so far.
+/// Returns the best rows found from `start`, with their criterion after the worst loss. `None` if every layout has an indispensable gauge. If a stop
+/// is requested, it returns the best rows found so far.
 pub fn search(
     active: &Active,
     prior: &[f64],

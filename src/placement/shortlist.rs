@@ -10,13 +10,13 @@ use super::variance_scan::{CandidateVariance, Report, price};
 use crate::linalg::spd;
 use std::collections::{HashMap, HashSet};
 
-/// Rows an exchange looks at.
+/// Number of rows for an exchange.
 pub(super) const LIST: usize = 700;
 
 /// A layout with its criterion.
 pub(super) type ScoredLayout = (Vec<Choice>, f64);
 
-/// The better of two.
+/// Returns the better of two.
 pub(super) fn better_of(a: Option<ScoredLayout>, b: Option<ScoredLayout>) -> Option<ScoredLayout> {
     match (a, b) {
         (Some(a), Some(b)) => Some(if b.1 > a.1 { b } else { a }),
@@ -24,13 +24,15 @@ pub(super) fn better_of(a: Option<ScoredLayout>, b: Option<ScoredLayout>) -> Opt
     }
 }
 
-/// The price under which a candidate can't be in a layout better than `incumbent`: forcing it in replaces the smallest term of `T`.
+/// Returns the price below which a candidate cannot be in a better layout than `incumbent`. A layout with this candidate loses the smallest term of
+/// `T`.
 pub(super) fn elimination(col: &Columns, k: usize, incumbent: f64) -> f64 {
     let needed = k as f64 * ((incumbent - col.relaxed.value()) / k as f64).exp();
     (needed - col.relaxed.prior_trace - col.top.0 + col.top.1).max(0.0) * (1.0 - 1e-9)
 }
 
-/// The rows for an exchange: those with weight, then the best-priced, at most [`LIST`], none under `floor`.
+/// Returns the rows for an exchange: rows with weight, then rows with the best price. There are at most [`LIST`] rows, with prices of at least
+/// `floor`.
 pub(super) fn list_of(
     c: &Candidates,
     col: &Columns,
@@ -91,8 +93,8 @@ pub(super) fn list_of(
     priced
 }
 
-/// The rows whose variance in a layout is largest: an exchange of gauge `j` for row `i` can gain only where `d_i > d_j`, because
-/// `(1 + d_i)(1 - d_j) + d_ij^2 <= 1 + d_i - d_j`.
+/// Returns the rows with the largest variance in a layout. An exchange of gauge `j` for row `i` can gain only if `d_i > d_j`, because `(1 + d_i)(1 -
+/// d_j) + d_ij^2 <= 1 + d_i - d_j`.
 pub(super) fn largest_variance_rows(
     c: &Candidates,
     spec: &Spec,
@@ -128,7 +130,7 @@ fn by_price(a: &CandidateVariance, b: &CandidateVariance) -> std::cmp::Ordering 
         .then((a.choice.place, a.choice.step).cmp(&(b.choice.place, b.choice.step)))
 }
 
-/// The best layout that a search on `list` finds; `known` is one to start from.
+/// Returns the best layout that a search on `list` finds. `known` is a layout to start from.
 pub(super) fn run(
     c: &Candidates,
     spec: &Spec,
@@ -195,7 +197,7 @@ pub(super) fn rows_of(c: &Candidates, spec: &Spec, choices: &[Choice]) -> Active
     }
 }
 
-/// Whether two of the choices (by index) can't be in one layout.
+/// Returns whether two choices (by index) exclude each other.
 pub(super) fn excluder<'a>(
     c: &'a Candidates,
     spec: &Spec,
@@ -213,7 +215,7 @@ pub(super) fn excluder<'a>(
     }
 }
 
-/// Turns one gauge after the other to its best angle.
+/// Rotates one gauge after the other to its best angle.
 pub(super) fn polish(
     c: &Candidates,
     spec: &Spec,
@@ -263,7 +265,7 @@ pub(super) fn polish(
     (gauges, log_det)
 }
 
-/// The criterion of a layout; `None` where it is singular.
+/// Returns the criterion of a layout. `None` if the layout is singular.
 pub(super) fn value_of(c: &Candidates, spec: &Spec, gauges: &[Choice]) -> Option<f64> {
     let mut m = spec.prior.clone();
     for &g in gauges {

@@ -70,9 +70,10 @@ pub fn bridges(
     .with_positions(positions)
 }
 
-/// The tensor whose strain along a direction a bridge with its grid in that direction reads, element frame, engineering shear.
+/// Returns a tensor for each side (element frame, engineering shear). Its strain along a direction is the reading of a bridge whose first grid has
+/// this direction.
 ///
-/// Bending: this side less the other, once or twice. Shear: the strain along the first grid less that normal to it.
+/// Bending: this side minus the other side, once or twice. Shear: the strain along the first grid minus the strain normal to it.
 pub fn bridge_strain(
     bridge: Bridge,
     case: &CaseResult,

@@ -3,15 +3,15 @@
 use super::variance_scan::CandidateVariance;
 use std::collections::HashMap;
 
-/// Distance of two places.
+/// Returns the distance of two places.
 pub fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Two gauges may be exactly a spacing apart: distances down to this share of it count as that.
+/// Share of the spacing that is allowed for rounding. Two gauges may be exactly a spacing apart.
 pub const ROUNDING: f64 = 1e-9;
 
-/// True where two places are too close to each other.
+/// Returns whether two places are too close to each other.
 pub fn too_close(a: [f64; 3], b: [f64; 3], spacing: f64) -> bool {
     distance(a, b) < spacing * (1.0 - ROUNDING)
 }

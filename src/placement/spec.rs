@@ -9,13 +9,13 @@ use crate::stop::Stop;
 pub struct Spec {
     /// Number of gauges to choose.
     pub gauges: usize,
-    /// Least distance between two gauges, in the unit of the positions; 0: none. With a distance, a place takes one gauge at most.
+    /// Least distance between two gauges, in the unit of the positions. 0 means no limit. With a limit, a place takes at most one gauge.
     pub spacing: f64,
-    /// Known information, `k x k` by rows (zeros: none): gauges kept, known load sizes.
+    /// Prior information, `k x k` by rows (zeros if none): kept gauges, known sizes of loads.
     pub prior: Vec<f64>,
     /// Criterion of the layout.
     pub criterion: Criterion,
-    /// Gap, per load, to which the relaxation is solved; the certificate is as much looser.
+    /// Gap per load to which the relaxation is solved. The certificate is looser by this gap.
     pub tolerance: f64,
     /// Effort of the search.
     pub effort: Effort,

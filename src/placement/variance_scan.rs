@@ -4,7 +4,7 @@ use super::angle_variance::{self, Form, SAMPLES};
 use super::candidates::{Angles, Candidates, Choice, LANES};
 use rayon::prelude::*;
 
-/// A candidate and its variance (an upper bound within 1e-7 where the angle is continuous).
+/// A candidate and its variance. For a continuous angle, the variance is an upper bound within 1e-7.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CandidateVariance {
     /// `a' M^-1 a`.
@@ -25,8 +25,8 @@ pub enum Report {
 /// Number of blocks in a task: fixed, so that results do not depend on the number of threads.
 const CHUNK: usize = 512;
 
-/// Returns the candidates with `d >= threshold`, by place and angle, of each 4,096 places the `keep` largest. `linv` is the inverse of the
-/// lower Cholesky factor of `M`, by rows.
+/// Returns the candidates with `d >= threshold`, by place and angle. Of each 4,096 places, it returns the `keep` largest. `linv` is the inverse of
+/// the lower Cholesky factor of `M`, by rows.
 pub fn price(
     c: &Candidates,
     linv: &[f64],

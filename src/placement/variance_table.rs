@@ -1,6 +1,6 @@
 //! Variances of all rows of a list under an inverse, and their cross variances with a layout, brought up to date gauge by gauge.
 //!
-//! Rows lie in blocks of [`WIDE`], a column after the other, so that products of all rows with a vector run in vector registers.
+//! Rows are in blocks of [`WIDE`], one column after the other, so that products of all rows with a vector run in vector registers.
 
 use super::relaxation_solution::Active;
 use crate::linalg::spd;
@@ -8,7 +8,7 @@ use crate::linalg::spd;
 /// Rows handled together.
 const WIDE: usize = 16;
 
-/// The rows of a list in blocks, the last one filled up with zeros.
+/// Rows of a list in blocks. Zeros fill the last block.
 #[derive(Clone, Debug)]
 pub(super) struct PackedRows {
     k: usize,
@@ -37,12 +37,12 @@ impl PackedRows {
         }
     }
 
-    /// Rows with those that fill up.
+    /// Returns the number of rows, including the rows of zeros.
     pub fn len(&self) -> usize {
         self.n
     }
 
-    /// `a_i' u` of every row.
+    /// Computes `a_i' u` of every row.
     pub fn products(&self, u: &[f64], out: &mut [f64]) {
         self.arch.dispatch(|| {
             let blocks = self.blocks.chunks_exact(WIDE * self.k);
@@ -52,7 +52,7 @@ impl PackedRows {
         });
     }
 
-    /// `a_i' G a_i` of every row.
+    /// Computes `a_i' G a_i` of every row.
     pub fn variances(&self, g: &[f64], out: &mut [f64]) {
         self.arch.dispatch(|| {
             let blocks = self.blocks.chunks_exact(WIDE * self.k);
@@ -81,7 +81,7 @@ fn product(block: &[f64], u: &[f64]) -> [f64; WIDE] {
     sum
 }
 
-/// An inverse with the variances of all rows, and their cross variances with the chosen ones (by slot).
+/// An inverse, with the variances of all rows and their cross variances with the chosen rows (by slot).
 #[derive(Clone, Debug, Default)]
 pub(super) struct Table {
     pub inverse: Vec<f64>,
@@ -111,25 +111,26 @@ impl Table {
         t
     }
 
-    /// Becomes what `other` is, in the memory it has.
+    /// Copies `other` into the existing memory.
     pub fn copy(&mut self, other: &Self) {
         self.inverse.copy_from_slice(&other.inverse);
         self.d.copy_from_slice(&other.d);
         self.cross.copy_from_slice(&other.cross);
     }
 
-    /// Cross variance of row `i` with the gauge in `slot`.
+    /// Returns the cross variance of row `i` with the gauge in `slot`.
     pub fn cross_variance(&self, slot: usize, i: usize) -> f64 {
         self.cross[slot * self.d.len() + i]
     }
 
-    /// Factor on the determinant when row `i` takes the place of row `j` in `slot`.
+    /// Returns the factor on the determinant if row `i` replaces row `j` in `slot`.
     pub fn ratio(&self, slot: usize, i: usize, j: usize) -> f64 {
         let cross = self.cross_variance(slot, i);
         (1.0 + self.d[i]) * (1.0 - self.d[j]) + cross * cross
     }
 
-    /// The largest factor above `least` of a row in place of `j` in `slot`, and the row; `mask` is added to the factors.
+    /// Returns the row whose exchange with row `j` in `slot` gives the largest factor above `least`, with this factor. `mask` is added to the
+    /// factors.
     pub fn find_best_row(
         &self,
         packed: &PackedRows,
@@ -166,7 +167,7 @@ impl Table {
         })
     }
 
-    /// Brings itself up to date for row `i` in place of the gauge in `slot` of `chosen`.
+    /// Updates the table after row `i` has replaced the gauge in `slot` of `chosen`.
     pub fn swap(
         &mut self,
         active: &Active,

@@ -20,17 +20,17 @@ pub struct Cause {
     pub values: Vec<f64>,
 }
 
-/// Set of causes with its evidence, gap and slopes.
+/// A set of causes with its evidence, gap and slopes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CauseSet {
     /// Names of the causes.
     pub names: Vec<String>,
     /// Log evidence over the fit runs.
     pub log_evidence: f64,
-    /// RMS(reading - prediction) / RMS(reading) over the proof runs, with each channel divided by its own scale. The mean of the fit runs is
+    /// RMS(reading - prediction) / RMS(reading) over the held-out runs, with each channel divided by its own scale. The mean of the fit runs is
     /// subtracted from readings and predictions.
     pub gap: f64,
-    /// By cause, then channel: change of the reading per unit of the cause, and its standard deviation.
+    /// Change of the reading per unit of the cause, with its standard deviation, by cause and then by channel.
     pub slopes: Vec<Vec<(f64, f64)>>,
 }
 
@@ -73,7 +73,7 @@ pub fn evaluate_cause_sets(
             )
         })
         .collect();
-    // Each cause costs as much log evidence as the naming of any effect. Of equally good sets, the one with fewer causes is therefore first.
+    // Each cause in a set costs `DECISIVE` of log evidence. Of equally good sets, the set with fewer causes is therefore first.
     let penalised = |s: &CauseSet| s.log_evidence - DECISIVE * s.names.len() as f64;
     sets.sort_by(|a, b| penalised(b).total_cmp(&penalised(a)));
     let Some(best) = sets.first().cloned() else {

@@ -17,7 +17,7 @@ impl Check {
         }
     }
 
-    /// Returns a check that fails where there is a reason.
+    /// Returns a check that fails if there is a reason against the set.
     pub fn unless(against: Option<String>) -> Self {
         Self { against }
     }
@@ -46,7 +46,7 @@ pub(super) fn verdict(is_empty: bool, checks: &[Check], agrees: bool, hint: bool
 /// Fall of a sum of squared residuals on data that were not fitted, with its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fall {
-    /// Sum of squares without the effect less the sum with it.
+    /// Sum of squares without the effect minus the sum with the effect.
     pub by: f64,
     /// Standard error of `by`.
     pub error: f64,

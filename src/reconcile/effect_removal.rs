@@ -7,9 +7,9 @@ use super::search::ScoredSet;
 pub(super) struct Useless {
     /// Candidate number.
     pub candidate: usize,
-    /// Gap of the set with it.
+    /// Gap of the set with the effect.
     pub with: f64,
-    /// Gap of the set without it.
+    /// Gap of the set without the effect.
     pub without: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Measured readings by run and channel, and the runs held out for the proof.
+//! Measured readings by run and channel, and the held-out runs.
 
 /// Readings of channels (gauges, accelerometers) in runs (static states, records), by rows of runs; NaN for a missing reading.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,7 +9,7 @@ pub struct Observations {
     pub runs: Vec<String>,
     /// `n_runs x n_channels` by rows.
     pub values: Vec<f64>,
-    /// Whether a run is held out for the proof and never used for fitting, by run.
+    /// Whether a run is held out and never used for fitting, by run.
     pub held_out: Vec<bool>,
 }
 
@@ -32,7 +32,7 @@ impl Observations {
         self.runs_where(false)
     }
 
-    /// Returns the runs held out for the proof, in file order; the fit runs if no run is held out.
+    /// Returns the held-out runs, in file order. If no run is held out, these are the fit runs.
     pub fn proof_runs(&self) -> Vec<usize> {
         let kept = self.runs_where(true);
         if kept.is_empty() {

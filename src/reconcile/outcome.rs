@@ -53,7 +53,7 @@ pub struct NamedEffect {
 pub struct AlternativeExplanation {
     /// Ids with places.
     pub ids: Vec<String>,
-    /// Log evidence of the identified set less the log evidence of this explanation.
+    /// Log evidence of the identified set minus the log evidence of this explanation.
     pub evidence_difference: f64,
     /// Gap on held-out runs with this explanation.
     pub gap_after: f64,
@@ -83,7 +83,8 @@ impl GapBasis {
     }
 }
 
-/// RMS(reading - model) / RMS(reading): before, after, and as expected of a right model. All three are computed in the same way.
+/// Gap `RMS(reading - model) / RMS(reading)`: without the effects, with the effects, and expected for a correct model. All three are computed in the
+/// same way.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct GapNumbers {
     /// Gap of the analyst's model.
@@ -189,7 +190,7 @@ pub struct DetectionLimit {
 pub struct Misfit {
     /// Gauge or run.
     pub name: String,
-    /// Chi-square over the number of readings: 1 at the floor.
+    /// Chi-square divided by the number of readings. It is 1 at the floor.
     pub reduced_chi2: f64,
     /// Chi-square as a standard normal deviate.
     pub deviate: f64,
@@ -224,7 +225,7 @@ pub struct Outcome {
     pub replaced: Vec<NamedEffect>,
     /// Alternative explanations, nearest first.
     pub rivals: Vec<AlternativeExplanation>,
-    /// Log evidence of the identified set (or best attempt) less the log evidence without effects.
+    /// Log evidence of the identified set (or best attempt) minus the log evidence without effects.
     pub evidence: f64,
     /// Number of resampled run sets, out of 100, whose best set contains every effect of the identified set (or best attempt).
     pub wins: usize,

@@ -107,8 +107,8 @@ pub struct MotionRules {
     pub zero_g: f64,
     /// Stiffness within a gap over the stiffness beyond it that separates free play from an end stop. Both have the same force law with two slopes.
     pub play: f64,
-    /// Ratio of the gap on the proof data to its largest value for a complete model. Above this ratio, only the verdict `unknown` is possible. Three
-    /// tolerances that are stated too small by half add up to as much.
+    /// Ratio of the gap on the held-out data to its largest value for a complete model. Above this ratio, only the verdict `unknown` is possible.
+    /// Three tolerances that are stated too small by half add up to as much.
     pub limits: f64,
     /// Residual, as a share of the measured quantity, above which a fit is invalid. Its parameters then describe no vehicle and are no start for
     /// other fits.

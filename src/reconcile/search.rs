@@ -20,9 +20,9 @@ pub struct Addition {
     pub candidate: usize,
     /// Approximate gain of log evidence, prior weight included.
     pub gain: f64,
-    /// Start values of its parameters.
+    /// Start values of the parameters.
     pub parameters: Vec<f64>,
-    /// Sizes of its amplitudes.
+    /// Sizes of the amplitudes.
     pub sizes: Vec<f64>,
 }
 
@@ -52,16 +52,16 @@ pub trait Scorer {
     }
 }
 
-/// How far the search looks.
+/// Breadth of the search.
 #[derive(Clone, Copy, Debug)]
 pub struct Breadth {
     /// Largest number of effects in a set.
     pub largest: usize,
-    /// Sets kept from level to level.
+    /// Number of sets that are kept from level to level.
     pub beam: usize,
-    /// Additions tried exactly for each.
+    /// Number of additions to each set that are fitted exactly.
     pub tries: usize,
-    /// A set must raise the log evidence by this over the same set less one.
+    /// Log evidence by which a set must exceed the same set without one of its effects.
     pub decisive: f64,
 }
 

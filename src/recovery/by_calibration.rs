@@ -20,7 +20,7 @@ pub(super) fn recover(
     errors: ErrorModel,
     (known, (handling, alternatives)): (&Uncertainty, (FaultTreatment, &mut Alternatives)),
 ) -> (Vec<RunEstimate>, Vec<Finding>) {
-    // If the error of S is only stated, as for a mesh, the readings are used as measured.
+    // If the error of S is stated and not estimated, such as the error of a mesh, the readings are used as measured.
     let handling = match known.dof.is_finite() {
         true => handling,
         false => FaultTreatment::AsMeasured,
@@ -56,7 +56,7 @@ pub(super) fn recover(
     (runs, findings)
 }
 
-/// The finding on a calibration whose intervals no run tested.
+/// Returns the finding on a calibration whose intervals no run tested.
 pub fn report_untested_intervals() -> Finding {
     Finding::new(
         Severity::Error,

@@ -11,7 +11,7 @@ use crate::sensitivity::{GaugeNoise, Sensitivity, Uncertainty};
 /// Rounds between loads and the covariance that depends on them; they settle in three.
 const ROUNDS: usize = 5;
 
-/// One run.
+/// Returns the estimate of one run.
 pub fn estimate(
     s: &Sensitivity,
     r: &Readings,
@@ -24,9 +24,9 @@ pub fn estimate(
 /// Excess error of readings, relative to the known errors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Excess {
-    /// Independent excess variance of each reading, over its known variance.
+    /// Independent excess variance of each reading, divided by its known variance.
     pub each: f64,
-    /// Excess covariance of all readings, over their known covariance.
+    /// Excess covariance of all readings, divided by their known covariance.
     pub all: f64,
 }
 

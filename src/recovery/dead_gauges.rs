@@ -12,7 +12,7 @@ const PART: usize = 20;
 /// Samples of a part at least.
 const LEAST: usize = 10;
 
-/// Returns the number of samples in a row with one value from which on a gauge is tested for a dead part, of `samples` samples.
+/// Returns the number of successive samples with one value, from which on a gauge is tested for a dead part. The record has `samples` samples.
 pub fn shortest_part(samples: usize) -> usize {
     (samples / PART).max(LEAST)
 }
@@ -35,7 +35,7 @@ pub struct DeadGaugeSpan {
     pub within: [usize; 2],
 }
 
-/// Returns the dead parts of gauges from samples spread over a record: number of the sample, strain less zero by gauge (NaN for no reading).
+/// Returns the dead parts of gauges from samples spread over a record: number of the sample, strain minus zero by gauge (NaN for no reading).
 pub fn check(
     s: &Sensitivity,
     samples: &[(usize, &[f64])],

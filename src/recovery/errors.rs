@@ -17,18 +17,18 @@ pub struct ErrorModel {
 }
 
 impl ErrorModel {
-    /// Variance of the noise of a reading; `noise_factor` is 1 for a single reading less a long zero.
+    /// Returns the variance of the noise of a reading. `noise_factor` is 1 for a single reading with a long zero subtracted.
     pub fn noise_variance(&self, noise_factor: f64) -> f64 {
         (self.noise * self.noise * noise_factor).max(f64::MIN_POSITIVE)
     }
 
-    /// Variance of the noise of gauge `g` of S.
+    /// Returns the variance of the noise of gauge `g` of S.
     pub fn noise_of(&self, s: &Sensitivity, g: usize, noise_factor: f64) -> f64 {
         let own = s.noise.as_ref().map_or(1.0, |n| n.variance(g));
         self.noise_variance(noise_factor) * own
     }
 
-    /// Covariance of the noise of the gauges `used`, by number; `None` where all have the stated noise, independent of each other.
+    /// Returns the covariance of the noise of the gauges `used`, by number. `None` if all gauges have the stated noise, independent of each other.
     pub fn noise_covariance(
         &self,
         s: &Sensitivity,
@@ -54,7 +54,8 @@ impl ErrorModel {
         self.model_rel * self.model_rel * sum
     }
 
-    /// Variance of each reading at loads `f`; `noise_factor` multiplies the noise variance (1 for a single reading less a long zero).
+    /// Returns the variance of each reading at loads `f`. `noise_factor` multiplies the noise variance (1 for a single reading with a long zero
+    /// subtracted).
     pub fn variances(&self, s: &Matrix, f: &[f64], noise_factor: f64) -> Vec<f64> {
         let own = self.noise_variance(noise_factor);
         s.row_iter()
@@ -62,7 +63,7 @@ impl ErrorModel {
             .collect()
     }
 
-    /// Variance added to load `f_l` for the error of its column as a whole.
+    /// Returns the variance added to load `f_l` for the common error of its column.
     pub fn column_variance(&self, f_l: f64) -> f64 {
         (self.model_rel * f_l).powi(2)
     }

@@ -154,7 +154,7 @@ impl Gain {
         })
     }
 
-    /// Returns this gain with a covariance of its readings in addition to these errors, `n_used x n_used`, strain^2.
+    /// Returns this gain with an additional covariance of its readings, `n_used x n_used`, strain^2.
     pub fn with_noise(&self, of_readings: &Matrix) -> Self {
         Self {
             base: &self.base + &self.gain * of_readings * self.gain.transpose(),
@@ -203,7 +203,7 @@ impl Gain {
         }
     }
 
-    /// Number of loads, sums among them.
+    /// Returns the number of loads, including sums.
     pub fn n_loads(&self) -> usize {
         self.gain.nrows()
     }
@@ -213,7 +213,7 @@ impl Gain {
         self.base[(l, l)].is_finite()
     }
 
-    /// Loads from the strain of all gauges of S.
+    /// Returns the loads from the strain of all gauges of S.
     pub fn loads(&self, strain: &[f64]) -> Vec<f64> {
         (0..self.n_loads())
             .map(|l| {
@@ -223,7 +223,7 @@ impl Gain {
             .collect()
     }
 
-    /// Covariance of the estimate at loads `f`, by rows.
+    /// Returns the covariance of the estimate at loads `f`, by rows.
     pub fn covariance(&self, f: &[f64], widening: &Widening) -> Vec<f64> {
         let k = self.n_loads();
         let model: Vec<f64> = self
@@ -260,7 +260,7 @@ impl Gain {
         out
     }
 
-    /// Standard deviation of each load at loads `f`: the roots of the diagonal of [`Self::covariance`].
+    /// Returns the standard deviation of each load at loads `f`: the roots of the diagonal of [`Self::covariance`].
     pub fn sigma(&self, f: &[f64], widening: &Widening) -> Vec<f64> {
         let shifts = self.shifts(f, widening);
         (0..self.n_loads())

@@ -44,15 +44,15 @@ pub struct Filter {
 /// Loads of samples.
 #[derive(Clone, Debug, Default)]
 pub struct SampleLoads {
-    /// `n_loads` a sample; NaN for a load that the gauges that read don't determine.
+    /// Values of the loads, `n_loads` for each sample. NaN for a load that the active gauges don't determine.
     pub values: Vec<f64>,
-    /// Samples in which a gauge gave nothing, and the estimate used for each; ascending.
+    /// Samples in which a gauge has no reading, ascending, with the estimate used for each.
     pub gaps: Vec<(usize, Option<Arc<Gain>>)>,
 }
 
 impl Filter {
-    /// Returns the filter for `s` with `zero` (strain by gauge) subtracted. Its weights include the model's error at `typical` loads, its intervals
-    /// `widening`. `None` if numbers are not finite.
+    /// Returns the filter for `s` with `zero` (strain by gauge) subtracted. The weights include the model error at `typical` loads. The intervals
+    /// include `widening`. `None` if numbers are not finite.
     pub fn new(
         s: &Sensitivity,
         zero: Vec<f64>,
@@ -80,7 +80,7 @@ impl Filter {
         Some(filter)
     }
 
-    /// Adds what readings are off by beyond these errors; before sums of loads are listed.
+    /// Adds further errors of the readings beyond the errors of the filter. Call it before sums of loads are added.
     pub fn add_reading_covariance(&mut self, doubt: ReadingCovariance) {
         let noise = doubt.of_noise(&self.whole.used);
         self.whole = Arc::new(self.whole.with_noise(&noise));
@@ -88,7 +88,7 @@ impl Filter {
         self.others = RwLock::new(HashMap::new());
     }
 
-    /// Lists sums of loads (loads and factors) after the loads.
+    /// Adds sums of loads (loads and factors) after the loads.
     pub fn combine(&mut self, sums: &[Vec<(usize, f64)>]) {
         self.whole = Arc::new(self.whole.with_sums(sums));
         self.sums = sums.to_vec();
@@ -110,7 +110,7 @@ impl Filter {
             .collect();
     }
 
-    /// Loads of samples (`n_gauges` readings each, times `to_strain`), appended to `out` and to `sums`.
+    /// Computes the loads of samples (`n_gauges` readings each, times `to_strain`), and adds them to `out` and `sums`.
     pub fn apply(&self, samples: &[f64], to_strain: f64, out: &mut SampleLoads, sums: &mut Sums) {
         let missing = self.recover(samples, to_strain, out, Some(sums));
         sums.missing.merge(&missing);
@@ -222,7 +222,7 @@ impl Filter {
         }
     }
 
-    /// The estimate from the gauges `used` alone; `None` where none reads.
+    /// Returns the estimate from the gauges `used` only. `None` if no gauge reads.
     pub fn estimate(&self, used: Vec<usize>) -> Option<Arc<Gain>> {
         if used.is_empty() {
             return None;
@@ -302,7 +302,7 @@ impl Filter {
         doubt.map_or(0.0, |d| d.of_motion(sample, &gain.used, &gain.weights(l)))
     }
 
-    /// Half width of the 95 % interval over sigma.
+    /// Returns the half width of the 95 % interval divided by sigma.
     pub fn coverage_factor(&self) -> f64 {
         self.widening.coverage_factor
     }
@@ -325,17 +325,17 @@ impl Filter {
         own.hypot(from + to)
     }
 
-    /// The estimate from all gauges.
+    /// Returns the estimate from all gauges.
     pub fn gain_of_all_gauges(&self) -> &Gain {
         &self.whole
     }
 
-    /// Number of loads.
+    /// Returns the number of loads.
     pub fn n_loads(&self) -> usize {
         self.whole.n_loads()
     }
 
-    /// Number of gauges.
+    /// Returns the number of gauges.
     pub fn n_gauges(&self) -> usize {
         self.zero.len()
     }

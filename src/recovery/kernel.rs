@@ -18,13 +18,13 @@ pub(super) struct Samples<'a> {
     pub s: &'a [f64],
     /// Zero reading to subtract, strain by gauge.
     pub zero: &'a [f64],
-    /// Readings, `n` a sample.
+    /// Readings, `n` for each sample.
     pub samples: &'a [f64],
-    /// Strain of one unit of the readings.
+    /// Factor from readings to strain.
     pub to_strain: f64,
-    /// Loads are appended, `k` a sample; NaN where a reading is missing or too large to be strain.
+    /// Buffer to which loads are appended, `k` for each sample. NaN if a reading is missing or too large to be strain.
     pub out: &'a mut Vec<f64>,
-    /// Numbers of the samples with a NaN are appended; the sums exclude these samples.
+    /// Buffer to which the numbers of samples with NaN are appended. The sums exclude these samples.
     pub gaps: &'a mut Vec<usize>,
     /// Sums to add to, if wanted.
     pub sums: Option<&'a mut Sums>,
@@ -66,7 +66,7 @@ impl pulp::WithSimd for Samples<'_> {
 }
 
 impl Samples<'_> {
-    /// Converts the readings of a block to strain less zero, contiguous by gauge; NaN for a value that is too large to be strain.
+    /// Converts the readings of a block to strain minus zero, contiguous by gauge; NaN for a value that is too large to be strain.
     #[inline(always)]
     fn by_gauge(&self, block: &[f64], y: &mut [f64]) {
         /// Samples taken together.

@@ -122,7 +122,7 @@ fn report_undetermined_loads(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Fi
 
 /// Returns the finding on loads that planned gauges don't determine. It compares `sigma`, by load in the unit of S, with the largest `expected` load
 /// of the kind. Both are one standard deviation: runs will have loads of twice `expected`, and intervals of twice `sigma`. A kind without a stated
-/// size is not tested. The finding is an error from `HOPELESS` on: a guessed size may be too small by some times, not by more.
+/// size is not tested. The finding is an error from `HOPELESS` on, because a guessed size is not too small by such a factor.
 pub fn check_planned(s: &Sensitivity, sigma: &[f64]) -> Option<Finding> {
     let mut out: Vec<(&str, f64)> = Vec::new();
     for (load, sigma) in s.loads.iter().zip(sigma).filter(|(l, _)| l.wanted) {
@@ -154,7 +154,7 @@ pub fn check_planned(s: &Sensitivity, sigma: &[f64]) -> Option<Finding> {
     )
 }
 
-/// The finding on a load many times larger than `expected` in some state.
+/// Returns the finding on a load many times larger than `expected` in some state.
 pub fn beyond_expected(
     load: &str,
     expected: Option<f64>,

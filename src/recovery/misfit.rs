@@ -13,7 +13,7 @@ use crate::linalg::Matrix;
 use crate::sensitivity::{Sensitivity, Uncertainty};
 use rayon::prelude::*;
 
-/// Returns the rows of S that gauges would have if they were installed otherwise; called if the loads do not explain the readings.
+/// Function that returns the rows of S for gauges that are installed otherwise. It is called if the loads do not explain the readings.
 pub type Alternatives<'a> = dyn FnMut() -> Vec<AlternativeRows> + 'a;
 
 /// Largest number of runs to try, spread over all: more runs add no information on a gauge.
@@ -112,7 +112,7 @@ impl Misfit for RecoveryInput<'_> {
     }
 }
 
-/// Returns the findings on faults of the gauges by stated errors. The result holds them as measured.
+/// Returns the findings on faults of the gauges by stated errors. The result contains the readings as measured.
 pub(super) fn faults_by_stated_errors(
     s: &Sensitivity,
     readings: &[Readings],

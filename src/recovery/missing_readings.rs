@@ -3,9 +3,9 @@
 /// Numbers of samples of a record with and without missing readings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MissingReadings {
-    /// Samples in which every gauge gave a reading.
+    /// Number of samples in which every gauge has a reading.
     pub whole: u64,
-    /// Samples in which some gauge gave nothing.
+    /// Number of samples in which a gauge has no reading.
     pub gaps: u64,
     /// Readings too large to be strain, which count as missing.
     pub impossible: u64,
@@ -22,12 +22,12 @@ impl MissingReadings {
         }
     }
 
-    /// How many samples there are.
+    /// Returns the number of samples.
     pub fn samples(&self) -> u64 {
         self.whole + self.gaps
     }
 
-    /// Both together.
+    /// Adds the numbers of `other`.
     pub fn merge(&mut self, other: &Self) {
         self.whole += other.whole;
         self.gaps += other.gaps;

@@ -1,24 +1,24 @@
-//! Net readings: a run's mean less the unloaded run's mean, with the noise of both, and whether a gauge gives a signal.
+//! Net readings: a run's mean minus the unloaded run's mean, with the noise of both, and whether a gauge gives a signal.
 
 /// A net reading, strain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Net {
-    /// Mean of the run less mean of the zero, strain.
+    /// Mean of the run minus mean of the zero, strain.
     pub value: f64,
     /// Standard deviation of the value, strain.
     pub sigma: f64,
 }
 
 impl Net {
-    /// Size over noise; NaN where the gauge gave nothing.
+    /// Returns the size divided by the noise. NaN for a gauge without a reading.
     pub fn signal_to_noise(&self) -> f64 {
         self.value.abs() / self.sigma
     }
 }
 
-/// Sums over consecutive readings, for a record that is never whole in memory.
+/// Sums over consecutive readings, for a record that is never completely in memory.
 ///
-/// Readings count from the first of them, so that a large mean takes no digits from a small scatter.
+/// The sums use readings minus the first reading, so that a large mean does not reduce the precision of a small scatter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Series {
     n: u64,
@@ -31,7 +31,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// Adds a reading; one that is not finite is passed over.
+    /// Adds a reading. A reading that is not finite is ignored.
     pub fn add(&mut self, reading: f64) {
         if !reading.is_finite() {
             return;
@@ -82,10 +82,11 @@ const NOTHING: Net = Net {
     sigma: f64::NAN,
 };
 
-/// Signal to noise under which a gauge is too weak for the job.
+/// Ratio of signal to noise below which a gauge is too weak for the job.
 pub const WEAK: f64 = 3.0;
 
-/// Samples of white noise whose mean scatters as much as this record's: `n (1 - r) / (1 + r)`, r the correlation of neighbours; at least 1.
+/// Returns the number of samples of white noise whose mean scatters as much as the mean of this record: `n (1 - r) / (1 + r)`, at least 1. r is the
+/// correlation of neighbouring samples.
 ///
 /// # Reference
 /// G. V. Bayley and J. M. Hammersley, J. R. Stat. Soc. Suppl. 8 (1946) 184, for a first-order process.
@@ -106,8 +107,8 @@ fn effective_count(n: f64, var: f64, lag: f64) -> f64 {
     (n * (1.0 - r) / (1.0 + r)).max(1.0)
 }
 
-/// Mean of the finite readings and its standard deviation: the scatter of the record over its effective samples, `noise` for a single
-/// reading. NaN without readings.
+/// Returns the mean of the finite readings and its standard deviation. This is the scatter of the record over its effective samples, or `noise` for a
+/// single reading. NaN without readings.
 pub fn mean_of(readings: &[f64], noise: f64) -> Net {
     let v: Vec<f64> = readings.iter().copied().filter(|x| x.is_finite()).collect();
     let n = v.len() as f64;
@@ -126,7 +127,7 @@ fn net_of(n: f64, value: f64, var: f64, noise: f64, effective: impl Fn() -> f64)
             sigma: noise / n.sqrt(),
         };
     }
-    // If a record is constant by chance, its mean is still not better than the noise of the gauge over the number of samples.
+    // If a record is constant by chance, the variance of its mean is still at least `noise^2 / n`.
     Net {
         value,
         sigma: (var / effective()).max(noise * noise / n).sqrt(),
@@ -136,7 +137,7 @@ fn net_of(n: f64, value: f64, var: f64, noise: f64, effective: impl Fn() -> f64)
 /// Number of samples below which the stated noise replaces the scatter of the record.
 const FEW: f64 = 8.0;
 
-/// A run less its zero.
+/// Returns the net reading of a run: the run minus its zero.
 pub fn net(run: Net, zero: Option<Net>) -> Net {
     match zero {
         None => run,

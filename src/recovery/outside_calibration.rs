@@ -12,13 +12,13 @@ pub const CODE: &str = "loads-outside-calibration";
 #[derive(Clone, Copy, Debug)]
 pub struct RangeRules {
     /// Size of a load over the largest calibration load from which the finding is an error. For gauges with 5 % non-linearity at full load, the error
-    /// there is as large as the interval. In a test, 16 of 600 intervals contained the load at 1.3 to 2.5 times the calibration load.
+    /// at this size is as large as the interval. In a test, 16 of 600 intervals contained the load at 1.3 to 2.5 times the calibration load.
     pub error_from: f64,
     /// Share of the largest load by which a load may exceed the range: loads that are applied again are not repeated to better than this.
     pub margin: f64,
     /// Chance, over all values together, that the noise of a load at the end of the range exceeds the range.
     pub chance: f64,
-    /// Strain over the largest of the calibration from which readings are reported although each load is within its range.
+    /// Ratio of the strain to the largest strain of the calibration, from which readings are reported although each load is within its range.
     pub strain_from: f64,
 }
 
@@ -33,14 +33,14 @@ impl Default for RangeRules {
     }
 }
 
-/// A load with the range that it had in the calibration.
+/// A load with its range in the calibration.
 #[derive(Clone, Debug)]
 pub struct CalibratedLoad<'a> {
     /// Name.
     pub name: &'a str,
     /// Smallest and largest known load, job units.
     pub range: [f64; 2],
-    /// Report units of one job unit, and their name.
+    /// Size of one job unit in report units, with the name of the report unit.
     pub unit: (f64, &'a str),
 }
 
@@ -51,7 +51,7 @@ pub struct RunLoad<'a> {
     pub run: &'a str,
     /// Estimate, job units.
     pub value: f64,
-    /// Half width of its 95 % interval.
+    /// Half width of the 95 % interval.
     pub half: f64,
 }
 
@@ -75,8 +75,8 @@ impl CalibratedLoad<'_> {
     }
 }
 
-/// Returns the finding on a load that exceeds the range of the calibration in some of `runs`. `values` is the number of tested values of all loads. A
-/// load that exceeds the range only by as much as noise can cause in so many values is within the range.
+/// Returns the finding on a load that exceeds the range of the calibration in some of `runs`. `values` is the number of tested values of all loads.
+/// If noise in so many values can explain the excess, the load counts as within the range.
 pub fn check_load(
     load: &CalibratedLoad,
     runs: &[RunLoad],

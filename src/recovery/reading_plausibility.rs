@@ -6,7 +6,7 @@ use crate::estimate::median;
 use crate::finding::{Finding, Severity, list_few};
 use crate::units::{MICROSTRAIN, number};
 
-/// Strain that no reading exceeds: gauges for large elongation end at a fifth of it, and metals break before.
+/// Strain that no reading can exceed. Gauges for large elongation end at a fifth of this strain, and metals break earlier.
 pub const LARGEST_STRAIN: f64 = 1.0;
 /// Strain beyond the range of gauges on a structure. Foil gauges measure up to 3 to 5 %, gauges for tests beyond yield up to 10 to 20 %. S is valid
 /// for small strain only. Larger readings are kept with a finding: either one channel is overloaded, or a part yields.
@@ -31,8 +31,8 @@ const UNRESOLVED: f64 = 1e-3 * MICROSTRAIN;
 /// 0.72).
 const FEW: usize = 8;
 
-/// The readings without those that are no strain, and findings on them: what every command asks of the strain it reads. Readings are less
-/// their zero, in the order of `gauges`.
+/// Replaces readings that cannot be strain by NaN, and returns findings on readings. Every command applies this test to its strain. The zero is
+/// subtracted from the readings, which are in the order of `gauges`.
 pub fn check(
     gauges: &[String],
     readings: &[Readings],
@@ -65,8 +65,8 @@ pub fn check(
     (readings, findings)
 }
 
-/// Returns findings on readings that only their noise can test, as when S is estimated from these readings alone. Any signal in any unit is accepted
-/// if it exceeds the stated noise.
+/// Returns findings on readings that can only be compared with their noise, for example if S is estimated from these readings alone. Any signal in
+/// any unit is accepted if it exceeds the stated noise.
 pub fn check_signal(readings: &[Readings], errors: ErrorModel) -> Vec<Finding> {
     too_quiet(readings, errors, 0.0).into_iter().collect()
 }
@@ -98,7 +98,7 @@ fn beyond_gauges(gauges: &[&str], largest: f64, median_size: f64) -> Option<Find
     })
 }
 
-/// The finding on readings too large to be strain; `None` without gauges.
+/// Returns the finding on readings that are too large to be strain. `None` without gauges.
 pub fn report_impossible_readings(gauges: &[&str], largest: f64) -> Option<Finding> {
     (!gauges.is_empty()).then(|| {
         Finding::new(
@@ -115,7 +115,7 @@ pub fn report_impossible_readings(gauges: &[&str], largest: f64) -> Option<Findi
     })
 }
 
-/// The finding on so many readings of a record that are too large to be strain.
+/// Returns the finding on a number of readings of a record that are too large to be strain.
 pub fn impossible_in_record(subject: &str, n: u64) -> Finding {
     Finding::new(
         Severity::Error,

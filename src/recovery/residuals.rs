@@ -17,7 +17,7 @@ const EMPTY: f64 = 1e-9;
 /// Squared length of the part of a gauge's reading that no load can make, below which the gauge is unchecked: rounding.
 const UNCHECKED: f64 = 1e-9;
 
-/// Runs in which one set of gauges reads.
+/// Runs with the same active gauges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
     /// Gauges of S that read.
@@ -35,7 +35,7 @@ pub struct GaugeTest {
     pub gauge: usize,
     /// Kind of the error.
     pub kind: ShiftKind,
-    /// Size of the error over its standard deviation: normal with variance 1 if all gauges are right.
+    /// Size of the error, divided by its standard deviation. It is standard normal if all gauges are right.
     pub t: f64,
     /// Size of the error: a share of the reading, or strain.
     pub size: f64,
@@ -44,7 +44,7 @@ pub struct GaugeTest {
 /// Statistics of the residuals of all runs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Joint {
-    /// Sum of squares over their covariance.
+    /// Sum of squares of the residuals relative to their covariance.
     pub chi2: f64,
     /// Degrees of freedom.
     pub dof: usize,
@@ -54,17 +54,17 @@ pub struct Joint {
     pub gauges: Vec<GaugeTest>,
 }
 
-/// Runs in which one set of gauges reads, with their joint test.
+/// Runs with the same active gauges, and the joint test of these runs.
 pub(super) struct PatternTest<'a> {
     pub pattern: &'a Pattern,
     pub gain: &'a Gain,
     pub projection: Projection,
-    /// By run of the pattern.
+    /// Strain of each run of the pattern.
     pub strain: Vec<&'a [f64]>,
     pub joint: Joint,
 }
 
-/// The part of readings that a set of loads can't make.
+/// Part of readings that no loads can cause.
 pub(super) struct Projection {
     /// `m x n_used`; orthonormal rows times one over the typical sd of each reading.
     t: Matrix,
@@ -90,7 +90,7 @@ pub(super) enum RemovedLoads {
 }
 
 impl Projection {
-    /// `None` where no reading is spare.
+    /// Creates the projection. `None` if no reading is redundant.
     pub fn new(
         s: &Sensitivity,
         pattern: &Pattern,
@@ -149,7 +149,7 @@ impl Projection {
         Self { share, ..self }
     }
 
-    /// Share of independent runs in the runs.
+    /// Returns the share of independent runs in the runs.
     pub fn share(&self) -> f64 {
         self.share
     }
@@ -181,12 +181,12 @@ impl Projection {
             .collect()
     }
 
-    /// Dimensions.
+    /// Returns the number of dimensions.
     pub fn m(&self) -> usize {
         self.t.nrows()
     }
 
-    /// `T y`.
+    /// Returns `T y`.
     pub fn project_strain(&self, pattern: &Pattern, strain: &[f64]) -> Vec<f64> {
         (0..self.m())
             .map(|a| {
@@ -217,8 +217,8 @@ impl Projection {
         out
     }
 
-    /// Returns the sum of squares of the residual `z` of one run over its covariance at loads `f`. `beyond` is the covariance of its readings beyond
-    /// noise.
+    /// Returns the sum of squares of the residual `z` of one run, relative to its covariance at loads `f`. `beyond` is the covariance of its readings
+    /// beyond noise.
     pub fn chi2_of_run(
         &self,
         pattern: &Pattern,
@@ -243,7 +243,7 @@ impl Projection {
         spd::dot(&x, &x)
     }
 
-    /// All runs of a pattern together; `strain` and `loads` by run of the pattern.
+    /// Tests all runs of a pattern together. `strain` and `loads` are by run of the pattern.
     pub fn test_pattern(
         &self,
         pattern: &Pattern,
@@ -272,7 +272,7 @@ impl Projection {
         })
     }
 
-    /// The residuals of all runs over their covariance at `loads`.
+    /// Returns the residuals of all runs, relative to their covariance at `loads`.
     pub fn joint_residuals(
         &self,
         pattern: &Pattern,
@@ -299,7 +299,7 @@ impl Projection {
         })
     }
 
-    /// The error of the `i`-th gauge of the pattern that these residuals suggest; `None` where nothing checks it.
+    /// Returns the error of the `i`-th gauge of the pattern that these residuals indicate. `None` if nothing checks this gauge.
     pub fn test(
         &self,
         together: &WhitenedResiduals,
@@ -439,11 +439,11 @@ impl Projection {
     }
 }
 
-/// Residuals of all runs over their covariance.
+/// Residuals of all runs, relative to their covariance.
 pub(super) struct WhitenedResiduals {
     /// Sum of squares.
     pub chi2: f64,
-    /// By run, over the covariance of noise and nuisance loads.
+    /// Residuals of each run, whitened by the covariance of noise and nuisance loads.
     white: Vec<Vec<f64>>,
     turned: Vec<Block>,
 }

@@ -14,10 +14,10 @@ use std::collections::BTreeMap;
 /// Iterations between loads and the variances that depend on them; they settle in two or three.
 const ITERATIONS: usize = 4;
 
-/// Estimates with intervals as stated errors make them.
+/// Estimates with intervals from the stated errors.
 pub(super) struct RunEstimates {
     pub runs: Vec<RunEstimate>,
-    /// Runs by the gauges that read in them, the most frequent first, and their estimate; `None` where S is not finite.
+    /// Groups of runs with the same active gauges, the largest group first, with the estimate of each group. `None` if S is not finite.
     pub patterns: Vec<(Pattern, Option<Gain>)>,
     /// Loads at which the model error is weighted.
     pub typical: Vec<f64>,
@@ -26,7 +26,7 @@ pub(super) struct RunEstimates {
 /// The estimate of each pattern, and the loads of every run.
 type Estimates = (Vec<Option<Gain>>, Vec<Vec<f64>>);
 
-/// The runs by the gauges that read in them and by their noise, the most frequent first.
+/// Returns groups of runs with the same active gauges and noise, the largest group first.
 pub(super) fn patterns(n: usize, readings: &[Readings]) -> Vec<Pattern> {
     let mut map: BTreeMap<(Vec<usize>, u64), Vec<usize>> = BTreeMap::new();
     for (i, r) in readings.iter().enumerate() {
@@ -49,12 +49,13 @@ pub(super) fn patterns(n: usize, readings: &[Readings]) -> Vec<Pattern> {
     list
 }
 
-/// Computes the loads of every run: weights depend on typical loads through the model's error, so solution and weights alternate.
+/// Computes the loads of every run. The weights depend on typical loads through the model error, so the solution and the weights are computed
+/// alternately.
 pub(super) fn solve(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> RunEstimates {
     solve_beyond(s, readings, errors, &[])
 }
 
-/// Computes the loads of readings with errors beyond noise, by run; `beyond` is empty without such errors. They do not change the weights.
+/// Computes the loads of readings with errors beyond noise, by run. `beyond` is empty without such errors. These errors do not change the weights.
 pub(super) fn solve_beyond(
     s: &Sensitivity,
     readings: &[Readings],

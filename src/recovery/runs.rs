@@ -51,7 +51,7 @@ pub fn recover(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Re
     recover_with_alternatives(s, readings, errors, &mut Vec::new)
 }
 
-/// Loads of every run as [`recover`] has them; faults of the installation are searched for as well.
+/// Recovers the loads of every run like [`recover`], and also searches for faults of the installation.
 pub fn recover_with_alternatives(
     s: &Sensitivity,
     readings: &[Readings],

@@ -64,9 +64,9 @@ fn each_alone(f: &[f64], known: &Uncertainty) -> Vec<SingleLoad> {
     out
 }
 
-/// Finds runs whose loads differ from every single load by more than scatter (Hotelling's T-squared), if no calibration run had several loads. Their
-/// covariance is widened so that each of the two nearest single loads is one sigma away. It is not widened if most runs, and at least [`USUAL`], have
-/// several loads.
+/// Finds runs whose loads differ from every single load by more than scatter (Hotelling's T-squared), if no calibration run had several loads. The
+/// covariance of these runs is widened so that each of the two nearest single loads is one sigma away. It is not widened if most runs, and at least
+/// [`USUAL`], have several loads.
 ///
 /// # Reference
 /// H. Hotelling, Ann. Math. Stat. 2 (1931) 360.

@@ -5,15 +5,15 @@ use super::missing_readings::MissingReadings;
 /// Sums over a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sums {
-    /// Counts of samples and gaps. In a sample with a silent gauge, only the loads that the other gauges determine are known.
+    /// Counts of samples and gaps. In a sample with a missing reading, only the loads that the other gauges determine are known.
     pub missing: MissingReadings,
-    /// Smallest of each load.
+    /// Smallest value of each load.
     pub min: Vec<f64>,
-    /// Largest of each load.
+    /// Largest value of each load.
     pub max: Vec<f64>,
-    /// Sum of each load.
+    /// Sum of the values of each load.
     pub sum: Vec<f64>,
-    /// Sum of squares of each load.
+    /// Sum of the squared values of each load.
     pub sum_of_squares: Vec<f64>,
     /// Sum of squared residuals by gauge, strain^2.
     pub residual: Vec<f64>,
@@ -24,7 +24,7 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Nothing yet, for `n` gauges and `k` loads.
+    /// Creates empty sums for `n` gauges and `k` loads.
     pub fn new(n: usize, k: usize) -> Self {
         Self {
             missing: MissingReadings::new(k),
@@ -38,13 +38,13 @@ impl Sums {
         }
     }
 
-    /// Samples in which load `l` is known.
+    /// Returns the samples in which load `l` is known.
     pub fn known_samples(&self, l: usize) -> u64 {
         let in_gaps = self.missing.known_in_gaps.get(l);
         self.missing.whole + in_gaps.copied().unwrap_or(0)
     }
 
-    /// Samples in which gauge `g` read.
+    /// Returns the number of samples in which gauge `g` has a reading.
     pub fn read(&self, g: usize) -> u64 {
         self.missing.whole + self.read_in_gaps.get(g).copied().unwrap_or(0)
     }

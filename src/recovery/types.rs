@@ -13,7 +13,7 @@ pub const GAUGE_SUSPECT: &str = "gauge-suspect";
 pub struct Readings {
     /// Run name.
     pub run: String,
-    /// Strain by gauge, zero and reference taken into account; NaN where a gauge gave nothing.
+    /// Strain by gauge, with zero and reference subtracted or added. NaN for a gauge without a reading.
     pub strain: Vec<f64>,
     /// Noise variance of these readings, relative to a single reading: `1/n_run + 1/n_zero` for means of `n` effective samples.
     pub noise_factor: f64,
@@ -47,22 +47,22 @@ pub struct RunEstimate {
     pub estimate: LoadEstimate,
     /// Predicted strain by gauge.
     pub predicted: Vec<f64>,
-    /// Reading less prediction; NaN where a gauge gave nothing.
+    /// Reading minus prediction. NaN for a gauge without a reading.
     pub residual: Vec<f64>,
-    /// 1 sd of each reading, stated noise and model error together; NaN where a gauge gave nothing.
+    /// Standard deviation of each reading from stated noise and model error together. NaN for a gauge without a reading.
     pub sd: Vec<f64>,
-    /// Least sum of squares of residuals over their covariance, plus nuisance loads over their stated sizes.
+    /// Minimum of the sum of squares of residuals relative to their covariance, plus nuisance loads relative to their stated sizes.
     pub chi2: f64,
     /// Degrees of freedom of `chi2`: readings less loads without a stated size.
     pub dof: usize,
     /// Leverage by gauge.
     pub leverage: Vec<f64>,
-    /// Rank of the system; if it is below the number of loads, some of the values are arbitrary.
+    /// Rank of the system. If it is below the number of loads, some of the values are arbitrary.
     pub rank: usize,
 }
 
 impl RunEstimate {
-    /// Whether the readings determine load `l`; if not, its value is blank or arbitrary.
+    /// Returns whether the readings determine load `l`. Otherwise its value is blank or arbitrary.
     pub fn determines_load(&self, l: usize) -> bool {
         let value = self.estimate.values.get(l);
         value.is_some_and(|v| v.is_finite()) && self.estimate.sigma(l).is_finite()
@@ -84,9 +84,9 @@ pub struct Recovery {
     pub findings: Vec<Finding>,
     /// Widening of the intervals by the residuals.
     pub widening: Widening,
-    /// Root mean square of each load over the runs that determine it, 0 if none does: a stated model error is weighted at these loads.
+    /// Root mean square of each load over the runs that determine it. It is 0 if no run does. The stated model error is weighted at these loads.
     pub typical: Vec<f64>,
-    /// Noise that the residuals show where they contradict equal and independent noise, by gauge of S.
+    /// Noise from the residuals, by gauge of S, if they contradict equal and independent noise.
     pub noise: Option<GaugeNoise>,
 }
 
@@ -104,7 +104,7 @@ impl Recovery {
 /// Widening of the intervals relative to stated errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Widening {
-    /// Factor on every covariance (Birge); 1 where the residuals are as small as stated.
+    /// Factor on every covariance (Birge). It is 1 if the residuals are as small as the stated errors predict.
     pub variance_factor: f64,
     /// Factor on sigma of a 95 % interval: normal, or Student's if the residuals determine the scale.
     pub coverage_factor: f64,

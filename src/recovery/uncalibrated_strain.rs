@@ -12,8 +12,8 @@ use crate::sensitivity::{Sensitivity, Uncertainty};
 /// Code of a run that no combination of the loads explains.
 pub const CODE: &str = "run-unlike-calibration";
 
-/// Returns the probability that chi-square with `dof` degrees of freedom is at least `chi2`. Its covariance was estimated with `from` degrees of
-/// freedom (infinite: known covariance).
+/// Returns the probability that chi-square with `dof` degrees of freedom is at least `chi2`. The covariance was estimated with `from` degrees of
+/// freedom (infinite for a known covariance).
 pub fn chance_estimated(chi2: f64, dof: usize, from: f64) -> f64 {
     if !from.is_finite() || dof == 0 {
         return chance(chi2, dof);
@@ -21,7 +21,7 @@ pub fn chance_estimated(chi2: f64, dof: usize, from: f64) -> f64 {
     f_tail(chi2 / dof as f64, dof as f64, from.max(1.0))
 }
 
-/// Whether a run's residual is larger than noise, scatter and the uncertainty of S make it.
+/// Returns whether the residual of a run is larger than noise, scatter and the uncertainty of S explain.
 pub fn is_unlike(run: &RunEstimate, known: &Uncertainty) -> bool {
     chance_estimated(run.chi2, run.dof, known.dof) < SIGNIFICANT
 }
@@ -31,7 +31,7 @@ fn birge(run: &RunEstimate) -> f64 {
     (run.chi2 / run.dof.max(1) as f64).sqrt()
 }
 
-/// A finding a run, with the gauges that deviate most; one for all where nothing was calibrated.
+/// Returns a finding for each run, with the gauges that deviate most. Without a calibration, it is one finding for all runs.
 pub fn check(gauges: &[String], runs: &[RunEstimate], known: &Uncertainty) -> Vec<Finding> {
     let unlike = runs.iter().filter(|r| is_unlike(r, known));
     if !known.dof.is_finite() {
@@ -141,7 +141,7 @@ fn estimate_with_least_excess(with: &dyn Fn(f64) -> (RunEstimate, f64)) -> (RunE
     with(high)
 }
 
-/// The three gauges with the largest residual over its sd, with reading less prediction.
+/// The three gauges with the largest residual over its sd, with reading minus prediction.
 fn list_worst_gauges(gauges: &[String], run: &RunEstimate) -> String {
     let mut order: Vec<(f64, usize)> = (0..gauges.len())
         .filter(|&g| run.residual[g].is_finite() && run.sd[g] > 0.0)

@@ -4,9 +4,9 @@ use super::errors::ErrorModel;
 use super::gain::Gain;
 use super::types::Widening;
 
-/// Returns the variance, strain^2, of reading less prediction `row f` of a gauge that the estimate does not use. It is `N + M(f) + row Cov(f) row'`.
-/// `N` is the noise of its reading and `M(f)` the errors of its coefficients. `Cov(f)` is the covariance of the loads without the errors of whole
-/// columns, which shift the loads but not the prediction.
+/// Returns the variance, strain^2, of the difference between the reading and the prediction `row f`, for a gauge that the estimate does not use. It
+/// is `N + M(f) + row Cov(f) row'`. `N` is the noise of its reading and `M(f)` the errors of its coefficients. `Cov(f)` is the covariance of the
+/// loads without the errors of whole columns, which shift the loads but not the prediction.
 pub fn prediction_variance(
     (gain, row): (&Gain, &[f64]),
     errors: ErrorModel,

@@ -19,7 +19,7 @@ pub const UNEXPLAINED: &str = "strain-not-explained";
 pub const NOT_SOLVABLE: &str = "run-not-solvable";
 /// Probability below which a sum of squares counts as larger than stated errors or scatter.
 pub(super) const SIGNIFICANT: f64 = 1e-3;
-/// Probability below which it is certainly larger.
+/// Probability below which the residual is certainly larger than the stated errors explain.
 pub(super) const CERTAIN_CHANCE: f64 = 1e-6;
 /// Residual over readings (root mean squares): a right model with the wrong mesh is below this limit, a missing load is above.
 const EXPLAINED_LIMIT: f64 = 0.05;
@@ -59,8 +59,8 @@ struct Evidence {
     effective: f64,
 }
 
-/// Returns findings on rank, redundancy and the size of the residuals. `beyond` are errors of the readings beyond noise, by run, or empty; `share`
-/// is the share of independent runs in the runs.
+/// Returns findings on rank, redundancy and the size of the residuals. `beyond` contains errors of the readings beyond noise, by run, or is empty.
+/// `share` is the share of independent runs.
 pub(super) fn check(
     s: &Sensitivity,
     readings: &[Readings],

@@ -22,7 +22,7 @@ const BEAM: &[&str] = &[
     "x_xb", "sxc", "sxd", "sxe", "sxf", "smax", "smin", "mst", "msc",
 ];
 
-/// One block of a solution, to be made into rows when its turn comes.
+/// One block of a solution whose rows are formed later.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlannedBlock {
     case: usize,
@@ -142,7 +142,7 @@ pub fn planned_blocks(model: &Model, solution: &Solution) -> Vec<PlannedBlock> {
     all
 }
 
-/// A planned block and its rows.
+/// Returns a planned block and its rows.
 pub fn rows_of_block(model: &Model, solution: &Solution, plan: PlannedBlock) -> (Block, Rows) {
     let case = &solution.cases[plan.case];
     match plan.content {
@@ -373,7 +373,7 @@ fn beams(model: &Model, case: &CaseResult, is_beam: bool) -> Rows {
                     .extend([*xi, s[0], s[1], s[2], s[3], largest, smallest, 0.0, 0.0]);
             }
         } else if let (Some((_, a)), Some((_, b))) = (stations.first(), stations.last()) {
-            // A row holds the axial strain once, for end A; readers add it to the bending strain of both ends.
+            // A row contains the axial strain once, for end A; readers add this strain to the bending strain of both ends.
             let axial = axial.first().copied().unwrap_or(f64::NAN);
             let (bend_a, bend_b) = (a.map(|s| s - axial), b.map(|s| s - axial));
             let ((amax, amin), (bmax, bmin)) = (extremes(a), extremes(b));

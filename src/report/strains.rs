@@ -8,11 +8,12 @@ use rayon::prelude::*;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// First line of `strains.csv`; strain is in microstrain. Lower case: element frame, engineering shear; upper case: basic frame, tensor shear.
+/// First line of `strains.csv`. Strain is in microstrain. Lower case names are in the element frame with engineering shear, upper case names in the
+/// basic frame with tensor shear.
 pub const STRAINS_HEADER: &str =
     "subcase,element,type,location,surface,exx,eyy,gxy,Exx,Eyy,Ezz,Exy,Eyz,Ezx";
 
-/// Columns of `strains.csv` with their units.
+/// Returns the columns of `strains.csv` with their units.
 pub fn strains_columns() -> impl Iterator<Item = (&'static str, &'static str)> {
     let is_strain = |c: &str| c.len() == 3 && c.starts_with(['e', 'g', 'E']);
     STRAINS_HEADER

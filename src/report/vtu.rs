@@ -10,7 +10,7 @@ const LINE: u8 = 3;
 const TRIANGLE: u8 = 5;
 const QUAD: u8 = 9;
 
-/// Arrays are appended to the XML as raw little-endian bytes, each after its length in bytes (64 bit).
+/// Arrays that are appended to the XML as raw little-endian bytes, each after its length in bytes (64 bit).
 pub(super) struct AppendedArrays {
     pub(super) xml: String,
     offset: u64,
@@ -211,7 +211,7 @@ fn mesh(model: &Model) -> (AppendedArrays, Cells) {
     (a, cells)
 }
 
-/// The document up to the points.
+/// Returns the document up to the points.
 pub(super) fn begin(points: usize, cells: usize) -> AppendedArrays {
     let xml = format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \

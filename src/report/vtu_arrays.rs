@@ -3,14 +3,14 @@
 use super::vtu::{begin, finish};
 use std::io::{Result, Write};
 
-/// Points and cells as VTK has them.
+/// Points and cells in the form of VTK.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshArrays<'a> {
     /// `n x 3` by rows.
     pub points: &'a [f64],
     /// Points of all cells, cell after cell.
     pub connectivity: &'a [i64],
-    /// Where each cell's points end in `connectivity`.
+    /// Index in `connectivity` at which the points of each cell end.
     pub offsets: &'a [i64],
     /// VTK type of each cell.
     pub types: &'a [u8],
@@ -35,7 +35,7 @@ pub enum Numbers<'a> {
     Whole(&'a [i64]),
 }
 
-/// Writes mesh and numbers with all their digits. Shapes are the caller's to check.
+/// Writes mesh and numbers with all digits. The caller checks the shapes.
 ///
 /// # Errors
 /// Errors of `out`.

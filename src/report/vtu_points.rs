@@ -8,9 +8,9 @@ const VERTEX: u8 = 1;
 /// Numbers by point.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PointValues {
-    /// One each.
+    /// One number for each point.
     Scalars(Vec<f64>),
-    /// Three each.
+    /// Three numbers for each point.
     Vectors(Vec<[f64; 3]>),
     /// Ids.
     Ids(Vec<u32>),

@@ -8,11 +8,11 @@ use std::collections::HashMap;
 /// Loads at one instant or of one run, in the order of the response's columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadState {
-    /// Run, or time.
+    /// Name of the run, or time.
     pub label: String,
-    /// Values, job units.
+    /// Loads, job units.
     pub values: Vec<f64>,
-    /// How uncertain they are.
+    /// Uncertainty of the loads.
     pub spread: Spread,
 }
 
@@ -115,7 +115,7 @@ pub fn envelope(rows: &[ResponseRow], states: &[LoadState]) -> Vec<Peak> {
         .collect()
 }
 
-/// Stress `sxx, syy, sxy`, von Mises and its standard deviation in every state.
+/// Returns stress `sxx, syy, sxy`, von Mises stress and its standard deviation in every state.
 pub fn von_mises_history(row: &ResponseRow, states: &[LoadState]) -> Vec<([f64; 3], f64, f64)> {
     states
         .iter()

@@ -13,9 +13,9 @@ const PLANES: usize = 36;
 pub struct PlaceDamage {
     /// Damage on the plane where it is largest.
     pub value: f64,
-    /// Lower end of its 95 % interval.
+    /// Lower end of the 95 % interval.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub high: f64,
     /// Direction normal to the plane, from the x axis of the stress, degree.
     pub angle_deg: f64,

@@ -11,14 +11,14 @@ use crate::sensitivity::LoadCaseOf;
 pub enum Place {
     /// Centre of a shell's surface.
     Shell {
-        /// Which.
+        /// Shell of the place.
         shell: ShellIx,
         /// Side.
         surface: Surface,
     },
     /// Recovery point 0 to 3 (C D E F) of a bar or beam, at a share of its length.
     Beam {
-        /// Which.
+        /// The beam.
         beam: BeamIx,
         /// Point.
         point: usize,
@@ -31,13 +31,13 @@ pub enum Place {
 /// unit of load. A bar has only `sxx`. The row also contains the strain `exx, eyy, gxy` from which the stress is computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseRow {
-    /// Where.
+    /// Place of the row.
     pub place: Place,
     /// Element id.
     pub element: u32,
-    /// By load.
+    /// Stress per unit of each load.
     pub stress: Vec<[f64; 3]>,
-    /// By load.
+    /// Strain per unit of each load.
     pub strain: Vec<[f64; 3]>,
 }
 

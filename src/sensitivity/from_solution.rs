@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 pub struct LoadCaseOf<'a> {
     /// The column.
     pub load: Load,
-    /// Size in that case.
+    /// Size of the load in this case.
     pub applied: f64,
     /// Strain of the load case.
     pub case: &'a CaseResult,
@@ -63,7 +63,7 @@ impl NoStrain {
         }
     }
 
-    /// Returns what to do.
+    /// Returns the remedy.
     pub fn remedy(&self) -> &'static str {
         match self.why {
             NoStrainCause::Absent => {

@@ -12,7 +12,7 @@ pub struct Load {
     pub name: String,
     /// Expected size of the load, 1 sd, job units; `None` if it is not stated.
     pub expected: Option<f64>,
-    /// Asked for, or present but not asked for.
+    /// Whether the load is wanted as a result. Otherwise it is a nuisance load.
     pub wanted: bool,
     /// Force or moment, if known. Sizes of loads are compared within a kind.
     pub quantity: Option<Quantity>,
@@ -118,7 +118,7 @@ impl Sensitivity {
         })
     }
 
-    /// Returns S without the columns whose size is known beforehand ([`Load::prior`]): the loads that the gauges alone must separate.
+    /// Returns S with the columns of the loads that the gauges alone must separate. Loads with a known prior size ([`Load::prior`]) are left out.
     pub fn without_prior_loads(&self) -> Self {
         let free: Vec<usize> = (0..self.loads.len())
             .filter(|&l| self.loads[l].prior().is_none())

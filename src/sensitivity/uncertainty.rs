@@ -12,9 +12,9 @@ pub struct Uncertainty {
     pub scatter: Vec<f64>,
     /// `S' S / n` of all calibrated gauges, `k x k` by rows: `q(f)^2 = f' (S' S / n) f` is the mean square of the predicted strain.
     pub mean_square: Vec<f64>,
-    /// Factor on the sigma of recovered loads, from runs that were left out; 1 if their errors are as large as expected.
+    /// Factor on the sigma of recovered loads, from runs that were left out. It is 1 if the errors of these runs are as large as expected.
     pub scale: f64,
-    /// Degrees of freedom of scatter and scale: the 95 % interval takes Student's factor; infinite if nothing was estimated.
+    /// Degrees of freedom of scatter and scale. The 95 % interval uses Student's factor with these. Infinite if nothing was estimated.
     pub dof: f64,
     /// Degrees of freedom of the scatter in a pattern over the gauges that no loads make, such as a fault of one gauge. It exceeds `dof`, as the
     /// scatter of all such patterns was estimated together.
@@ -30,9 +30,10 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// Returns the uncertainty of a model. Each influence coefficient errs by `model_rel`, and by as much again for a load as a whole. It errs by
-    /// `off` (remaining mesh error, `n x k`), and by as much again by a factor common to all gauges of a load. It also errs by the share `own_rel`:
-    /// `Cov(S_gl, S_hm) = [l = m] ((off_gl off_hl + model_rel^2 S_gl S_hl) (1 + [g = h]) + own_rel^2 S_gl^2 [g = h])`.
+    /// Returns the uncertainty of a model. Each influence coefficient has an independent error `model_rel`, and an error of the same size that is
+    /// common to a load. It has an error `off` (remaining mesh error, `n x k`), and an error of the same size that is common to all gauges of a load.
+    /// It also has an independent error of the share `own_rel`: `Cov(S_gl, S_hm) = [l = m] ((off_gl off_hl + model_rel^2 S_gl S_hl) (1 + [g = h]) +
+    /// own_rel^2 S_gl^2 [g = h])`.
     pub fn of_model(s: &Matrix, model_rel: f64, (off, own_rel): (&Matrix, f64)) -> Self {
         let (n, k) = s.shape();
         let (rel2, own2) = (model_rel * model_rel, own_rel * own_rel);
@@ -263,7 +264,7 @@ impl Uncertainty {
     /// Returns the uncertainty of the combined column `S f` for the load combination `f`.
     pub fn combine_loads(&self, f: &[f64]) -> Self {
         if !self.center.is_empty() {
-            // Component of the center along `f`, and the remaining vector.
+            // `part` is the component of the center along `f`, and `rest` is the remaining vector.
             let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
             let part = dot(&self.center, f) / dot(f, f).max(f64::MIN_POSITIVE);
             let rest: Vec<f64> = (self.center.iter().zip(f))
@@ -311,7 +312,7 @@ impl Uncertainty {
     }
 }
 
-/// Variance of filtered readings as a function of the loads `f`, a part for each row of the filter.
+/// Variance of filtered readings as a function of the loads `f`, with a part for each row of the filter.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LoadForms {
     /// `k x k` matrix `B` by rows a row of the filter: `f' B f`.

@@ -34,7 +34,7 @@ pub struct Header {
     pub t0: f64,
     /// Time between samples, s.
     pub dt: f64,
-    /// Value of one unit (1e-6: microstrain).
+    /// Value of one unit. 1e-6 stands for microstrain.
     pub unit: f64,
 }
 
@@ -43,12 +43,12 @@ pub struct Header {
 #[error("{0}")]
 pub struct HeaderError(&'static str);
 
-/// Whether the bytes begin as such a record.
+/// Returns whether the bytes begin like such a record.
 pub fn is_record(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
 }
 
-/// The header, checked against the size of the file.
+/// Reads the header and compares it with the size of the file.
 ///
 /// # Errors
 /// Another version, numbers of another width, a cut header, fewer bytes than the samples it promises.
@@ -150,7 +150,7 @@ pub fn write_header(
     out.write_all(&vec![0; start - 56 - text])
 }
 
-/// Numbers of samples `from .. to`, appended in the order of `columns` (`None`: NaN).
+/// Appends the numbers of samples `from .. to` in the order of `columns` (`None` gives NaN).
 pub fn read_samples(
     h: &Header,
     bytes: &[u8],

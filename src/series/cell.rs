@@ -5,7 +5,7 @@ use std::borrow::Cow;
 /// Marks a text that a spreadsheet would take for a formula: an apostrophe before it makes it text there.
 const GUARD: char = '\'';
 
-/// The text with a guard where a spreadsheet would take it for a formula; [`remove_guard`] takes it off.
+/// Returns the text with a guard if a spreadsheet would read it as a formula. [`remove_guard`] removes the guard.
 ///
 /// # Reference
 /// OWASP, CSV injection: cells that begin with `=`, `+`, `-`, `@`, tab or carriage return.
@@ -17,7 +17,7 @@ pub fn guard_formula(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// The text as it was before [`guard_formula`].
+/// Returns the text without the guard of [`guard_formula`].
 pub fn remove_guard(text: &str) -> &str {
     text.strip_prefix(GUARD)
         .filter(|rest| is_formula(rest))

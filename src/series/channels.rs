@@ -25,7 +25,7 @@ pub struct Channels {
 }
 
 impl Channels {
-    /// A record of the given channels.
+    /// Creates a record of the given channels.
     ///
     /// # Errors
     /// [`SeriesError::Length`] when lengths differ, [`SeriesError::NoRate`] when the rate is not a positive number.
@@ -51,12 +51,12 @@ impl Channels {
         })
     }
 
-    /// Number of samples of each channel.
+    /// Returns the number of samples of each channel.
     pub fn n_samples(&self) -> usize {
         self.list.first().map_or(0, |c| c.samples.len())
     }
 
-    /// Duration, s.
+    /// Returns the duration, s.
     pub fn duration_s(&self) -> f64 {
         self.n_samples() as f64 / self.rate_hz
     }
@@ -66,7 +66,7 @@ impl Channels {
         self.list.iter().any(|c| c.name == name)
     }
 
-    /// Samples of a channel.
+    /// Returns the samples of a channel.
     ///
     /// # Errors
     /// [`SeriesError::Missing`] if no channel has this name.

@@ -85,8 +85,8 @@ impl ColumnContents {
     }
 }
 
-/// The samples about first and last sample `span` in which a column gives what it `gives` there, of those after and before `within`. A sample
-/// without a number neither begins nor ends a part of one value.
+/// Returns the extent of a part around the samples `span` in which a column gives the value or the gap `gives`. The part is within the samples
+/// `within`. A sample without a number neither begins nor ends a part with one value.
 ///
 /// # Errors
 /// Data that can't be decoded.

@@ -1,6 +1,6 @@
 //! Removing what does not vary.
 
-/// Arithmetic mean; 0 for an empty slice.
+/// Returns the arithmetic mean. It is 0 for an empty slice.
 pub fn mean(x: &[f64]) -> f64 {
     if x.is_empty() {
         0.0
@@ -9,7 +9,7 @@ pub fn mean(x: &[f64]) -> f64 {
     }
 }
 
-/// Root of the mean square; 0 for an empty slice.
+/// Returns the root of the mean square. It is 0 for an empty slice.
 pub fn rms(x: &[f64]) -> f64 {
     if x.is_empty() {
         0.0
@@ -18,7 +18,7 @@ pub fn rms(x: &[f64]) -> f64 {
     }
 }
 
-/// x less its mean.
+/// Returns x minus its mean.
 pub fn without_mean(x: &[f64]) -> Vec<f64> {
     let m = mean(x);
     x.iter().map(|v| v - m).collect()
@@ -49,7 +49,7 @@ pub fn line(x: &[f64]) -> (f64, f64) {
     (m - slope * middle, slope)
 }
 
-/// x less the mean of a zero record of the same channel.
+/// Returns x minus the mean of a zero record of the same channel.
 pub fn subtract_zero(x: &[f64], zero_record: &[f64]) -> Vec<f64> {
     let m = mean(zero_record);
     x.iter().map(|v| v - m).collect()

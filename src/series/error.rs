@@ -100,7 +100,7 @@ pub enum SeriesError {
     },
     /// Channels that were not sampled together.
     Apart {
-        /// Their names.
+        /// Names of these channels.
         names: Vec<String>,
     },
     /// A band that the sample rate can't represent.

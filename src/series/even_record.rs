@@ -3,7 +3,7 @@
 use super::error::SeriesError;
 use super::record::{Evenness, Record};
 
-/// Refuses a record whose samples are not the stored ones, all of them.
+/// Refuses a record whose samples are not exactly all stored samples.
 pub(super) fn check_even(record: &Record) -> Result<(), SeriesError> {
     if let Some(change) = record.clock.change {
         return Err(SeriesError::Broken {

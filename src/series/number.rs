@@ -1,6 +1,6 @@
 //! Numbers as loggers and spreadsheets write them, read fast and to the last digit; seven digits of a number, written fast.
 
-/// The mark between whole and fraction.
+/// The mark between the whole part and the fraction of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DecimalMark {
     /// `1.5`.

@@ -31,12 +31,12 @@ fn with_planner<T>(length: usize, plan: impl FnOnce(&mut RealFftPlanner<f64>) ->
     })
 }
 
-/// The plan of a transform of `length` real samples.
+/// Returns the plan of a transform of `length` real samples.
 pub fn forward(length: usize) -> Arc<dyn RealToComplex<f64>> {
     with_planner(length, |p| p.plan_fft_forward(length))
 }
 
-/// The plan of a transform to `length` real samples.
+/// Returns the plan of a transform to `length` real samples.
 pub fn inverse(length: usize) -> Arc<dyn ComplexToReal<f64>> {
     with_planner(length, |p| p.plan_fft_inverse(length))
 }

@@ -34,7 +34,7 @@ const SPIKE_SIGMA: f64 = 20.0;
 /// Relative tolerance on a mean that should be the acceleration of gravity.
 const GRAVITY_TOLERANCE: f64 = 0.15;
 
-/// Findings of every channel of a record; `gravity` in the record's units.
+/// Returns the findings on every channel of a record. `gravity` is in the units of the record.
 pub fn check_channels(
     record: &Channels,
     gravity: f64,
@@ -216,8 +216,8 @@ fn check_clipped(c: &Channel, kind: Kind) -> Option<Finding> {
 
 /// Returns the single samples that are far off the line through their neighbours, in ascending order, and the distance that a sample needs for it.
 ///
-/// The second difference of a single sample `h` off a smooth course is `h`, `-h / 2` at both neighbours and 0 next to these. Waves of any frequency
-/// differ from that.
+/// For a single sample that is off a smooth course by `h`, the second difference is `h`. It is `-h / 2` at both neighbours, and 0 at the samples next
+/// to them. Waves of any frequency have other second differences.
 pub fn find_spikes(x: &[f64]) -> (Vec<usize>, f64) {
     let bend: Vec<f64> = x.windows(3).map(|w| w[1] - 0.5 * (w[0] + w[2])).collect();
     let size = |limit: f64| {

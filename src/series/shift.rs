@@ -11,7 +11,7 @@ use crate::estimate::student_95;
 pub struct SampledSignals<'a> {
     /// Time of the first sample, s.
     pub start_s: f64,
-    /// Samples a second.
+    /// Samples per second.
     pub rate_hz: f64,
     /// The signals.
     pub signals: &'a [Vec<f32>],
@@ -20,9 +20,9 @@ pub struct SampledSignals<'a> {
 /// A value between samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InterpolatedValue {
-    /// By the cubic through the four nearest samples; next to a missing one, and at the ends, by the line.
+    /// Value from the cubic through the four nearest samples. Next to a missing sample and at the ends, it is the value from the line.
     pub value: f64,
-    /// By the straight line through two samples.
+    /// Value from the straight line through two samples.
     pub line: f64,
     /// Standard deviation of the value for independent noise of 1 in each sample.
     pub noise: f64,
@@ -33,13 +33,13 @@ pub struct InterpolatedValue {
 pub struct Shift {
     /// The shift, s.
     pub seconds: f64,
-    /// Half width of its 95 % interval, s.
+    /// Half width of the 95 % interval, s.
     pub half_width_s: f64,
     /// Mean correlation coefficient of the signals at the coarse shift.
     pub correlation: f64,
 }
 
-/// Why there is no shift.
+/// Reason why there is no shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoShift {
     /// No signal changes in both recordings.
@@ -50,20 +50,20 @@ pub enum NoShift {
     Ambiguous([f64; 2]),
 }
 
-/// How a shift is searched.
+/// Rules of the search for a shift.
 #[derive(Clone, Copy, Debug)]
 pub struct ShiftRules {
-    /// Bins of the coarse search at most: the transforms then take some megabytes for each signal.
+    /// Largest number of bins of the coarse search. The transforms then need some megabytes for each signal.
     pub most_bins: usize,
-    /// Share of the shorter recording that overlaps the other one at least: short overlaps correlate by chance.
+    /// Least overlap, as a share of the shorter recording. Short overlaps correlate by chance.
     pub overlap: f64,
-    /// Least correlation coefficient: below it more than three quarters of the variance differ at any shift.
+    /// Least correlation coefficient. Below this value, more than three quarters of the variance differ at every shift.
     pub correlation: f64,
     /// Share of the largest coefficient from which another shift is ambiguous. Periodic signals repeat themselves.
     pub alike: f64,
-    /// Samples of the fine search at most, spread evenly: more change the shift by less than its interval.
+    /// Largest number of samples of the fine search, spread evenly. More samples change the shift by less than its interval.
     pub most_samples: usize,
-    /// Blocks whose scatter gives the interval: Student's factor of twenty blocks is 7 % above the normal one.
+    /// Number of blocks whose scatter gives the interval. Student's factor of twenty blocks is 7 % above the factor of the normal distribution.
     pub blocks: usize,
 }
 
@@ -133,7 +133,7 @@ impl SampledSignals<'_> {
         self.signals.first().map_or(0, Vec::len)
     }
 
-    /// Means over bins of `width_s`, less the mean of all; zero in bins without samples.
+    /// Means over bins of `width_s`, minus the mean of all; zero in bins without samples.
     fn bins(&self, s: usize, width_s: f64, n: usize) -> Vec<f64> {
         let (mut sums, mut counts) = (vec![0.0; n], vec![0_u32; n]);
         let per_sample = 1.0 / (self.rate_hz * width_s);
@@ -314,11 +314,11 @@ struct FineSearch<'a> {
 
 /// Sums of one step.
 struct Sums {
-    /// By block: `sum r f'`.
+    /// `sum r f'` of each block.
     products: Vec<f64>,
     /// `sum m' f'`.
     slopes: f64,
-    /// By signal: number, sum and sum of squares of `fixed - moving`.
+    /// Number, sum and sum of squares of `fixed - moving`, for each signal.
     residuals: Vec<[f64; 3]>,
 }
 

@@ -30,7 +30,7 @@ pub struct Band {
 }
 
 impl Band {
-    /// Gain at a frequency, 0 to 1.
+    /// Returns the gain at a frequency, 0 to 1.
     pub fn gain(&self, f_hz: f64) -> f64 {
         let low = if self.low_hz > 0.0 {
             let r = f_hz / self.low_hz;
@@ -45,7 +45,7 @@ impl Band {
         low / (1.0 + h8)
     }
 
-    /// Seconds at either end of a record that carry the start and stop of the filter.
+    /// Returns the time at either end of a record that contains the end effect of the filter, s.
     pub fn settling_s(&self) -> f64 {
         if self.low_hz > 0.0 {
             2.0 / self.low_hz
@@ -56,7 +56,7 @@ impl Band {
 }
 
 impl Fourier {
-    /// Transform of x followed by zeros to at least twice its length (a power of two).
+    /// Returns the transform of x followed by zeros, to at least twice its length (a power of two).
     ///
     /// # Reference
     /// Brandt & Brincker, Integrating time signals in frequency domain, Measurement 58 (2014) 511; thesis equation 4.7.
@@ -77,7 +77,7 @@ impl Fourier {
         }
     }
 
-    /// Returns `sum of a(i + lag) b(i)` for the signals of two spectra of one length: lags from 0 on, negative ones from the end.
+    /// Returns `sum of a(i + lag) b(i)` for the signals of two spectra of one length. Lags from 0 on are at the beginning, negative lags at the end.
     pub fn correlation(&mut self, a: &Spectrum, b: &Spectrum) -> Vec<f64> {
         let plan = inverse(a.n_padded);
         let mut bins: Vec<Complex64> = a
@@ -97,7 +97,8 @@ impl Fourier {
         out
     }
 
-    /// Every `keep_every`-th sample of the signal of a spectrum (a power of two; frequencies above the new half rate are cut off).
+    /// Returns every `keep_every`-th sample of the signal of a spectrum. `keep_every` is a power of two. Frequencies above the new half rate are
+    /// removed.
     pub fn samples(&mut self, s: &Spectrum, keep_every: usize) -> Vec<f64> {
         let n = s.n_thinned(keep_every);
         let step = s.n_padded / n;
@@ -119,7 +120,7 @@ impl Fourier {
 }
 
 impl Spectrum {
-    /// Each bin times a response at its frequency (Hz).
+    /// Returns the spectrum with each bin multiplied by a response at its frequency (Hz).
     pub fn times(&self, response: impl Fn(f64) -> Complex64) -> Self {
         let step = self.rate_hz / self.n_padded as f64;
         let mut out = self.clone();
@@ -178,7 +179,7 @@ impl Spectrum {
 }
 
 impl Fourier {
-    /// The padded signal of a spectrum at `factor` times its rate.
+    /// Returns the padded signal of a spectrum at `factor` times its rate.
     pub fn denser_samples(&mut self, s: &Spectrum, factor: usize) -> Vec<f64> {
         let n = s.n_padded * factor.max(1);
         let plan = inverse(n);

@@ -5,7 +5,7 @@ use realfft::RealFftPlanner;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// Spectra of two signals, one value a frequency.
+/// Spectra of two signals, with one value for each frequency.
 #[derive(Clone, Debug)]
 pub struct CrossSpectra {
     /// Frequencies, Hz.
@@ -16,7 +16,7 @@ pub struct CrossSpectra {
     pub yy: Vec<f64>,
     /// One-sided cross density conj(X) Y. Its phase is the phase of y relative to x.
     pub xy: Vec<Complex64>,
-    /// How many segments were averaged.
+    /// Number of averaged segments.
     pub n_segments: usize,
 }
 

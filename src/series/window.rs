@@ -18,9 +18,9 @@ pub struct WindowedTransform {
 }
 
 impl WindowedTransform {
-    /// For signals of `n` samples at `rate_hz`; bins within the band.
+    /// Creates the transform for signals of `n` samples at `rate_hz`, with the bins within the band.
     ///
-    /// The last samples are left out where that makes the transform fast (factors 2, 3 and 5 alone).
+    /// The last samples are left out if this makes the transform fast (a length with only the factors 2, 3 and 5).
     pub fn new(n: usize, rate_hz: f64, band: Band) -> Self {
         let mut length = n;
         while length > 1 && !is_smooth(length) {
@@ -56,22 +56,22 @@ impl WindowedTransform {
         }
     }
 
-    /// The window, its power one: as long as the transform.
+    /// Returns the window. Its power is one and its length is the length of the transform.
     pub fn taper(&self) -> &[f64] {
         &self.window
     }
 
-    /// Number of the first bin in the band.
+    /// Returns the number of the first bin in the band.
     pub fn first_bin(&self) -> usize {
         self.first
     }
 
-    /// From one bin to the next, Hz.
+    /// Returns the distance between bins, Hz.
     pub fn step_hz(&self) -> f64 {
         self.step_hz
     }
 
-    /// Transform at any frequency f, Hz, of a signal at `rate_hz`: sum of x w exp(-2 pi i f t).
+    /// Returns the transform at any frequency f, Hz, of a signal at `rate_hz`: sum of x w exp(-2 pi i f t).
     pub fn transform_at(&self, x: &[f64], rate_hz: f64, f_hz: f64) -> Complex64 {
         let turn = Complex64::from_polar(1.0, -2.0 * PI * f_hz / rate_hz);
         let mut now = Complex64::new(1.0, 0.0);
@@ -83,7 +83,7 @@ impl WindowedTransform {
         sum
     }
 
-    /// Bins of a signal within the band; E|X|^2 of white noise is its variance.
+    /// Returns the bins of a signal within the band. For white noise, E|X|^2 is the variance of the noise.
     pub fn bins(&mut self, x: &[f64]) -> Vec<Complex64> {
         let plan = forward(self.window.len());
         let mut input = plan.make_input_vec();

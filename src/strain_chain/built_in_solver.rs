@@ -68,7 +68,7 @@ pub fn relief_of_job(job: &Job, model: &Model) -> Result<Option<Finding>, Faults
         .as_ref()
         .map_or(SupportChoice::Deck, |m| m.support);
     let support = support_of_job(job, model)?;
-    // A job whose deck has no PARAM,INREL has a free structure, as the reference of its keys states.
+    // Without PARAM,INREL in the deck, the structure of a job is free. The reference of the key `support` documents this.
     let limited = |f: &Finding| f.code == "tied-to-ground" || support.by_springs > 0;
     Ok(relief_finding(model, support, wanted).filter(limited))
 }
@@ -256,7 +256,7 @@ pub(super) fn cases_kept(
 
 /// Elastic modes of the structure of a deck.
 pub struct ElasticModes {
-    /// Ascending, cycles per unit of time.
+    /// Frequencies, ascending, cycles per unit of time.
     pub hz: Vec<f64>,
     /// Shapes of unit generalised mass, basic frame: translation and rotation by grid index.
     pub shapes: Vec<Vec<[f64; 6]>>,

@@ -15,15 +15,15 @@ use nastran::bdf::{Deck, IncludeRequest, LoadedFile, Loader, read_deck};
 use nastran::op2::Op2;
 use std::path::{Component, Path, PathBuf};
 
-/// A deck and what it means.
+/// A deck with its model.
 pub struct DeckModel {
     /// Path as given.
     pub given: String,
-    /// The deck; empty for an OP2.
+    /// Deck. Empty for an OP2.
     pub deck: Deck,
     /// Model of the deck.
     pub model: Model,
-    /// Files it was read from: the deck, then its INCLUDEs.
+    /// Files from which the deck was read: the deck, then its INCLUDEs.
     pub files: Vec<PathBuf>,
     /// All faults: in cards, then in the model.
     pub faults: FaultList,

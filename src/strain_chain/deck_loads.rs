@@ -433,7 +433,7 @@ mod tests {
             let named = found[0].contains(card) && found[0].contains("`bar.bdf`:");
             assert!(named && found[0].contains("alone"), "{found:?}");
         }
-        // Temperatures at the reference, equal ones before and after, and a set with the factor 0 do not act.
+        // Three loads do not act: temperatures at the reference, equal temperatures before and after, and a set with the factor 0.
         for subcase in [4, 13, 14] {
             assert!(faults(tip, subcase, "").is_empty(), "{subcase}");
         }

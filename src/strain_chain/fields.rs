@@ -33,10 +33,10 @@ use std::collections::BTreeSet;
 pub struct Fields {
     /// Deck and model.
     pub deck: DeckModel,
-    /// Result files, or one solved here.
+    /// Solutions from result files, or the solution of the built-in solver.
     pub solutions: Vec<Solution>,
     solved_here: bool,
-    /// By load: solution, case.
+    /// Solution and case of each load.
     of_load: Vec<(usize, usize)>,
     /// Mesh error that was subtracted from `solutions`, by load of the job. `None` if it was not computed.
     pub mesh_error: Option<MeshError>,

@@ -49,8 +49,8 @@ const MOST_ENTRIES: usize = 4_000;
 pub struct GaugeMeshError {
     /// Gauge or channel.
     pub name: String,
-    /// RMS mesh error (deck's mesh less the limit) over the RMS reading, both over the loads at their expected size. It is positive if the mesh
-    /// reads too much.
+    /// RMS mesh error divided by the RMS reading, both over the loads at their expected size. The mesh error is the reading on the deck's mesh minus
+    /// the limit. It is positive if the mesh reads too much.
     pub mesh_error_rel: f64,
     /// Mesh error by load.
     pub by_load: Vec<LoadMeshError>,
@@ -67,7 +67,7 @@ pub struct LoadMeshError {
 
 /// Error of the mesh in the strain of the unit loads.
 pub struct MeshError {
-    /// By load: strain on the deck's mesh less the limit.
+    /// Strain on the deck's mesh minus the limit, for each load.
     pub cases: Vec<CaseResult>,
     /// Share of the mesh error that may remain after the correction, 1 sd, separately for each entry of S and for the pattern of each load.
     pub left: f64,

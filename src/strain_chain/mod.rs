@@ -52,20 +52,20 @@ use crate::strain_chain::named_results::{MissingResults, check_named};
 use crate::units::MICROSTRAIN;
 use serde::Serialize;
 
-/// S of the job's gauges with all there is to know of them.
+/// S of the job's gauges, with all data that belong to S.
 pub struct JobSensitivity {
     /// S.
     pub sensitivity: Sensitivity,
-    /// Model and strain fields; `None` where S is given.
+    /// Model and strain fields. `None` if S is given.
     pub fields: Option<Fields>,
-    /// Gauges on the model; empty where S is given.
+    /// Gauges on the model. Empty if S is given.
     pub gauges: Vec<Gauge>,
     /// Mesh error by gauge; empty if it was not computed. S does not contain the mesh error.
     pub mesh_error: Vec<GaugeMeshError>,
 }
 
 impl JobSensitivity {
-    /// Keeps these rows of S, with what belongs to their gauges.
+    /// Keeps these rows of S with all data of their gauges, and removes all other rows.
     pub fn retain(&mut self, rows: &[usize]) {
         if rows.len() == self.sensitivity.gauges.len() {
             return;
@@ -191,9 +191,9 @@ pub fn has_covariance(job: &Job) -> bool {
 pub struct Conditioning {
     /// Rank.
     pub rank: usize,
-    /// S in strain per job unit.
+    /// Condition number of S in strain per job unit.
     pub condition_number: Option<f64>,
-    /// Columns times `expected`, else of unit norm.
+    /// Condition number of S with its columns multiplied by `expected`, or else normalised.
     pub condition_number_scaled: Option<f64>,
 }
 

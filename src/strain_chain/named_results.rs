@@ -7,7 +7,7 @@ use crate::job::host::unreadable_at;
 use crate::job::{EffectSource, HoldOut, Job, NamedFile};
 use nastran::results::{ResultsError, ResultsFile};
 
-/// Results that are not there.
+/// Treatment of missing results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MissingResults {
     /// The job is wrong.

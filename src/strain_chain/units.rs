@@ -12,7 +12,7 @@ pub struct LoadUnits {
     pub name: String,
     /// Name in the units of the job.
     pub of_job: String,
-    /// Report value = job value times this.
+    /// Factor from the job value to the report value.
     pub factor: f64,
 }
 

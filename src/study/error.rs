@@ -20,7 +20,7 @@ pub enum ErrorKind {
 }
 
 impl ErrorKind {
-    /// All of them.
+    /// All kinds of errors.
     pub const ALL: [Self; 7] = [
         Self::RelativeUniform,
         Self::RelativeNormal,

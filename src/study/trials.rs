@@ -10,10 +10,10 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// A gauge of the pool: its row of S, and how that changes with angle and place.
+/// A gauge of the pool: its row of S, and the changes of this row with angle and place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoolGauge {
-    /// Strain per job unit of each load.
+    /// Row of S: strain per job unit of each load.
     pub row: Vec<f64>,
     /// Row of the gauge if it is turned by 45 and by 90 degrees; `None` if it cannot be turned (on a bar).
     pub turned: Option<[Vec<f64>; 2]>,
@@ -49,9 +49,9 @@ pub struct StudySpec {
     pub prior: Vec<Option<f64>>,
     /// Sizes that scale the columns of S for its condition number; `None` scales them to unit norm.
     pub sizes: Option<Vec<f64>>,
-    /// Noise that the recovery assumes, strain: weights readings against priors.
+    /// Noise that the recovery assumes, strain. It weights readings relative to priors.
     pub noise: f64,
-    /// Trials a layout and error.
+    /// Number of trials for each layout and error.
     pub trials: usize,
     /// Seed, equal for all layouts, so that all layouts have the same random errors.
     pub seed: u64,
@@ -68,7 +68,7 @@ pub struct StudyRow {
     pub sigma: Vec<f64>,
     /// Share of 95 % intervals (noise from the residual, Student) that contain the load; NaN without spare gauges.
     pub coverage: Vec<f64>,
-    /// Layouts that do not separate the loads.
+    /// Number of layouts that do not separate the loads.
     pub singular: usize,
 }
 

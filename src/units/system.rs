@@ -33,7 +33,7 @@ pub enum UnitSystem {
 }
 
 impl UnitSystem {
-    /// All of them, as a job may name them.
+    /// All unit systems, as a job may name them.
     pub const ALL: [UnitSystem; 4] = [Self::MKgS, Self::MmTS, Self::MmKgS, Self::InLbfS];
 
     /// Returns the name of the system in a job.
@@ -65,7 +65,7 @@ impl UnitSystem {
         }
     }
 
-    /// Metres in its unit of length.
+    /// Returns the unit of length in metres.
     pub fn length_m(self) -> f64 {
         match self {
             Self::MKgS => 1.0,
@@ -74,7 +74,7 @@ impl UnitSystem {
         }
     }
 
-    /// Kilograms in its unit of mass.
+    /// Returns the unit of mass in kilograms.
     pub fn mass_kg(self) -> f64 {
         match self {
             Self::MKgS | Self::MmKgS => 1.0,

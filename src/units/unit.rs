@@ -16,7 +16,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// All of them.
+    /// All quantities.
     pub const ALL: [Self; 6] = [
         Self::Force,
         Self::Moment,
@@ -46,7 +46,7 @@ pub struct Unit {
     pub name: &'static str,
     /// Quantity of the unit.
     pub quantity: Quantity,
-    /// SI units in one of it.
+    /// Size of the unit in SI units.
     pub si: f64,
 }
 

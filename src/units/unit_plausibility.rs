@@ -203,7 +203,7 @@ fn find_implausible_value(
 /// Returns the system in which the numbers of a deck are most plausible. PARAM,UNITSYS decides if it names a system.
 ///
 /// Otherwise it is the system whose modulus and density are nearest to 100 GPa and 5,000 kg/m^3 on a logarithmic scale. These values are
-/// between those of steel, aluminium, titanium and plastics. Only systems whose Young's moduli [`check_units`] accepts count.
+/// between the values of steel, aluminium, titanium and plastics. Only systems whose Young's moduli [`check_units`] accepts count.
 /// `None` without a modulus, or if all systems contradict the deck.
 ///
 /// # Example

@@ -33,7 +33,7 @@ pub struct DeclaredErrors {
     pub sync_s: f64,
 }
 
-/// Expected misfit of a channel from sensor errors, and the largest misfit of 99 complete models of 100; in the channel's unit.
+/// Expected misfit of a channel from sensor errors, and the misfit that 99 of 100 complete models do not exceed. Both in the channel's unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelFloor {
     /// Channel.
@@ -42,13 +42,13 @@ pub struct ChannelFloor {
     pub expected: f64,
     /// RMS misfit from noise alone.
     pub noise: f64,
-    /// Largest RMS misfit of 99 complete models of 100.
+    /// RMS misfit that 99 of 100 complete models do not exceed.
     pub limit: f64,
 }
 
 /// Computes the floors of the misfit of every channel of a record by applying the declared errors a second time. It adds noise of the declared size,
-/// and changes gains and timing by one sd each. The change of the residuals is the part that these errors already have in them. Empty if no noise
-/// is declared.
+/// and changes gains and timing by one sd each. The change of the residuals is equal to the contribution of these errors to the present residuals.
+/// Empty if no noise is declared.
 ///
 /// # Errors
 /// Errors of [`motion`].
@@ -132,10 +132,10 @@ pub fn channel_floors(
         .collect())
 }
 
-/// Share of a channel's reading that noise leaves, from which nothing is read at all.
+/// Noise divided by the reading of a channel, from which on the channel gives no information.
 const DROWNED: f64 = 1.0;
 
-/// Error where a channel reads less than the stated noise leaves of it, `share` of what it reads.
+/// Returns an error if a channel reads less than the stated noise explains. `share` is noise divided by the reading.
 pub fn check_noise(channel: &str, share: f64, on: &str) -> Option<Finding> {
     (share >= DROWNED).then(|| {
         let message = format!(
@@ -152,7 +152,7 @@ pub fn check_noise(channel: &str, share: f64, on: &str) -> Option<Finding> {
 /// Share of a channel that a useful model may leave unexplained: half of it, whatever noise and tolerances are.
 const LOST: f64 = 0.5;
 
-/// Error where the model leaves most of a channel, though no floor is stated.
+/// Returns an error if the model does not explain most of a channel, although no floor is stated.
 pub fn check_lost(channel: &str, relative: f64, on: &str) -> Option<Finding> {
     if relative < LOST {
         return None;
@@ -166,7 +166,7 @@ pub fn check_lost(channel: &str, relative: f64, on: &str) -> Option<Finding> {
     Some(Finding::new(Severity::Error, code, channel, message, remedy).with_numbers(relative, LOST))
 }
 
-/// Error where the misfit of a channel is far above its floor.
+/// Returns an error if the misfit of a channel is far above its floor.
 pub fn check_adequacy(channel: &str, relative: f64, floor: [f64; 2], on: &str) -> Option<Finding> {
     let [expected, limit] = floor;
     if relative.is_nan() || relative <= FAR * limit {

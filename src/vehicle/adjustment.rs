@@ -16,7 +16,7 @@ pub struct Adjustment {
     pub delay_s: f64,
     /// Added delay by second of the record, s/s: the drift of its clock against the clock of the other channels.
     pub clock: f64,
-    /// Steps of its delay: samples that a logger lost or wrote twice.
+    /// Steps of the delay: samples that a logger lost or wrote twice.
     pub slips: Vec<Slip>,
     /// Low-passes of this channel alone.
     pub lags: Vec<Lag>,
@@ -29,7 +29,7 @@ pub struct Adjustment {
 pub struct Slip {
     /// Time of the step, s of the record's time.
     pub at_s: f64,
-    /// Added delay from then on, s; negative if samples were lost.
+    /// Added delay after the step, s. It is negative if samples were lost.
     pub by_s: f64,
 }
 
@@ -43,7 +43,7 @@ pub struct Lag {
 }
 
 impl Lag {
-    /// Returns truth over reading at an angular frequency.
+    /// Returns the ratio of the true value to the reading at an angular frequency.
     pub fn inverse_response(&self, w: f64) -> Complex64 {
         let x = w * self.time_s;
         match self.order {
@@ -72,7 +72,7 @@ impl Adjustment {
         }
     }
 
-    /// Both at once.
+    /// Adds the corrections of `other` to these corrections.
     pub fn join(&mut self, other: &Self) {
         self.gain *= other.gain;
         self.delay_s += other.delay_s;
@@ -82,7 +82,7 @@ impl Adjustment {
         self.lines_hz.extend(&other.lines_hz);
     }
 
-    /// All corrections of a channel in one; `None` where there are none.
+    /// Returns all corrections of a channel in one. `None` if there are none.
     pub fn of_channel(list: &[Self], name: &str) -> Option<Self> {
         let mut own = list.iter().filter(|a| a.channel == name);
         let mut out = own.next()?.clone();
@@ -90,7 +90,7 @@ impl Adjustment {
         Some(out)
     }
 
-    /// Corrections for another record: slips happened in the fitted one.
+    /// Returns the corrections for another record, without slips, which occurred only in the fitted record.
     pub fn without_slips(list: &[Self]) -> Vec<Self> {
         let kept = |a: &Self| Self {
             slips: vec![],
@@ -99,19 +99,19 @@ impl Adjustment {
         list.iter().map(kept).collect()
     }
 
-    /// How late the channel reads but for `delay_s`, s, at a time of the record that began at `start_s`.
+    /// Returns the delay of the channel without `delay_s` (s), at a time of the record that began at `start_s`.
     fn moving_lateness(&self, t_s: f64, start_s: f64) -> f64 {
         let slipped = self.slips.iter().filter(|s| t_s >= s.at_s);
         self.clock * (t_s - start_s) + slipped.map(|s| s.by_s).sum::<f64>()
     }
 
-    /// How late the channel reads slow motion, s, at a time of the record that began at `start_s`.
+    /// Returns the delay of the channel for slow motion, s, at a time of the record that began at `start_s`.
     pub fn lateness(&self, t_s: f64, start_s: f64) -> f64 {
         let lags: f64 = self.lags.iter().map(Lag::delay_s).sum();
         self.delay_s + lags + self.moving_lateness(t_s, start_s)
     }
 
-    /// Truth over reading at an angular frequency, but for what changes with time.
+    /// Returns the ratio of the true value to the reading at an angular frequency, without corrections that change with time.
     pub fn inverse_response(&self, w: f64) -> Complex64 {
         let delayed = Complex64::from_polar(1.0 / self.gain.abs(), w * self.delay_s);
         delayed * self.gain.signum() * self.lags_undone(w)
@@ -121,7 +121,7 @@ impl Adjustment {
         self.lags.iter().map(|l| l.inverse_response(w)).product()
     }
 
-    /// Samples with the clock's drift and slips taken out; those given where there are none.
+    /// Returns the samples with corrected clock drift and slips. Without these, it returns the given samples.
     pub fn correct_clock(&self, x: &[f64], start_s: f64, rate_hz: f64) -> Option<Vec<f64>> {
         if self.clock == 0.0 && self.slips.is_empty() {
             return None;
@@ -130,7 +130,7 @@ impl Adjustment {
         Some(remove_lateness(x, rate_hz, late))
     }
 
-    /// Returns the corrected samples; their mean is kept as read, over the gain.
+    /// Returns the corrected samples. Their mean is the mean of the readings, divided by the gain.
     pub fn correct_samples(&self, x: &[f64], start_s: f64, rate_hz: f64) -> Vec<f64> {
         let mut out = self
             .correct_clock(x, start_s, rate_hz)

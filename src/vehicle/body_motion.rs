@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 /// Redundant accelerometers may miss the rigid motion by this share of their signal before it is reported.
 const RIGID_LIMIT: f64 = 0.15;
 
-/// Transforms of the channels, corrected; displacements as accelerations.
+/// Transforms of the corrected channels. Displacements are converted to accelerations.
 pub(super) struct ChannelSpectra {
     pub sensors: Vec<Spectrum>,
     pub forces: Vec<Option<Spectrum>>,
@@ -98,7 +98,7 @@ pub(super) fn body_motions(
         .collect()
 }
 
-/// Motions of each body as weighted sums of its sensors.
+/// Returns the motions of each body as weighted sums of its sensors.
 pub(super) fn body_spectra(
     vehicle: &Vehicle,
     sensors: &[Spectrum],
@@ -136,7 +136,7 @@ pub(super) fn body_spectra(
     Ok(out)
 }
 
-/// Sensors of one body that don't move as one rigid body.
+/// Returns findings on sensors of one body that do not move as one rigid body.
 pub(super) fn check_rigid(
     vehicle: &Vehicle,
     sensors: &[Vec<f64>],

@@ -8,7 +8,7 @@ use super::preset::COUPLINGS;
 use crate::linalg::tall::left_inverse;
 use crate::series::detrend::rms;
 
-/// Force on one sprung body in the band, about its mean, upwards; samples as the motion.
+/// Force on one sprung body in the band, about its mean, upwards. It has one value for each sample of the motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChassisForce {
     /// The body.
@@ -17,9 +17,9 @@ pub struct ChassisForce {
     pub by_mass: Vec<f64>,
     /// Half width of the 95 % interval of `by_mass`: the inertia, noise and gains of the accelerometers.
     pub by_mass_half: Vec<f64>,
-    /// Minus the sum of its link forces (thesis 5.9, 5.12); empty where no link was identified.
+    /// Minus the sum of the link forces (thesis 5.9, 5.12). Empty if no link was identified.
     pub by_springs: Vec<f64>,
-    /// The share of each spring by its link.
+    /// Force of each spring, by its link.
     pub springs: Vec<SpringForce>,
 }
 
@@ -28,7 +28,7 @@ pub struct ChassisForce {
 pub struct SpringForce {
     /// The link.
     pub link: String,
-    /// Samples.
+    /// Samples of the force.
     pub force: Vec<f64>,
     /// Half width of the 95 % interval of `force`. It includes the uncertainty of the parameters and the residual of the body's balance.
     pub half: Vec<f64>,
@@ -181,7 +181,7 @@ pub struct LeafSeat {
     pub hanger_to_axle: f64,
     /// Distance from the axle to the shackle.
     pub axle_to_shackle: f64,
-    /// Angle of the shackle from the vertical, radians, positive when it pulls the spring's end away from the hanger.
+    /// Angle of the shackle from the vertical, radians. It is positive if the shackle pulls the end of the spring away from the hanger.
     pub shackle_angle_rad: f64,
 }
 

@@ -8,13 +8,13 @@ use serde::Serialize;
 /// Comparison of identified mass and weighed mass.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MassClosure {
-    /// Sprung and unsprung mass identified.
+    /// Identified sum of sprung and unsprung mass.
     pub identified: f64,
     /// Standard deviation of the identified mass.
     pub sigma: f64,
-    /// Mean wheel force over gravity.
+    /// Mean wheel force divided by gravity.
     pub weighed: f64,
-    /// Identified mass / weighed mass. The ratio is 1 if dynamics and statics agree.
+    /// Identified mass divided by weighed mass. The ratio is 1 if dynamics and statics agree.
     pub ratio: f64,
 }
 
@@ -64,12 +64,12 @@ pub fn check_mass_closure(
     Some((closure, Some(finding)))
 }
 
-/// Whether a mean wheel force, or its mass, contains the static load: less than a twentieth of the identified weight is a zeroed channel.
+/// Returns whether a mean wheel force, or its mass, contains the static load. Below a twentieth of the identified weight, the channel was zeroed.
 pub(super) fn is_static(weighed: f64, identified: f64) -> bool {
     weighed > 0.05 * identified && identified > 0.0
 }
 
-/// Parameters of the two sides of a vehicle that differ by more than wear would explain.
+/// Returns the parameters of the two sides of a vehicle that differ by more than wear would explain.
 ///
 /// Pairs are names that differ by `_other`, or by `l` against `r` before the axle letter.
 pub fn check_sides(parameters: &[Parameter], values: &[f64], sigmas: &[f64]) -> Vec<Finding> {
@@ -107,7 +107,7 @@ fn mirror_name(name: &str) -> Option<String> {
     name.contains("_sl").then(|| name.replacen("_sl", "_sr", 1))
 }
 
-/// A parameter that ended at its bound: the data ask for a value against nature.
+/// Returns a finding on a parameter that ended at its bound. Without the bound, its value would be physically impossible.
 pub fn at_bound(name: &str, bound: f64, is_damping: bool) -> Finding {
     let what = if is_damping {
         "Damping is indistinguishable from zero, or another effect changes the phase."

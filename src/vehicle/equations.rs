@@ -6,11 +6,11 @@ use super::motion::Motion;
 /// One equation over all samples: sum of parameter times column = target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equation {
-    /// Such as `body b` or `total`.
+    /// Name, such as `body b` or `total`.
     pub name: String,
-    /// Parameter index and its column, ascending.
+    /// Parameter indices with their columns, ascending.
     pub columns: Vec<(usize, Vec<f64>)>,
-    /// Measured outside force in the equation; zero where none acts.
+    /// Measured outside force in the equation. It is zero if no force acts.
     pub target: Vec<f64>,
     /// Whether an outside force acts.
     pub driven: bool,

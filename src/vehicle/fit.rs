@@ -19,11 +19,11 @@ pub enum ParameterRange {
 pub struct Fit {
     /// Value of each parameter; NaN if no equation contains it.
     pub values: Vec<f64>,
-    /// Weight of each equation: one over its residual RMS.
+    /// Weight of each equation: the reciprocal of its residual RMS.
     pub weights: Vec<f64>,
-    /// Residual RMS of each equation, in its own unit.
+    /// Residual RMS of each equation, in the unit of the equation.
     pub residual_rms: Vec<f64>,
-    /// Which parameters were estimated, in the order of `solution`.
+    /// Estimated parameters, in the order of `solution`.
     pub free: Vec<usize>,
     /// Parameters at a bound.
     pub active: Vec<usize>,
@@ -36,10 +36,10 @@ const ROUNDS: usize = 5;
 /// A residual counts for at least this share of an equation's largest term: noise-free records must not divide by zero.
 const RESIDUAL_FLOOR: f64 = 1e-6;
 
-/// The parameters that minimise the weighted squared residuals of all equations.
+/// Returns the parameters that minimise the weighted squared residuals of all equations.
 ///
-/// Each equation is weighted by one over its residual RMS, found by repeating the fit. Equations without outside force can't
-/// set a scale; the first round uses the driven ones alone where those suffice.
+/// Each equation is weighted by one over its residual RMS, found by repeating the fit. Equations without outside force can't set a scale. If the
+/// equations with outside force are sufficient, the first round uses only these.
 pub fn fit(equations: &[Equation], allowed: &[ParameterRange]) -> Fit {
     let n = allowed.len();
     let triangles: Vec<Triangle> = equations

@@ -8,7 +8,8 @@ const KNOWN_SHARE: f64 = 0.5;
 /// .. or moves the equations by less than this share of their forces (a damper that is truly zero).
 const IMMATERIAL_SHARE: f64 = 0.05;
 
-/// Whether a parameter with this value, standard deviation and effect of one sigma (share of the forces in its equations) is known.
+/// Returns whether a parameter is known, from its value, its standard deviation and the effect of one sigma (as a share of the forces in its
+/// equations).
 pub fn is_known(value: f64, sigma: f64, effect_of_sigma: f64) -> bool {
     value.is_finite()
         && sigma.is_finite()
@@ -26,7 +27,8 @@ pub fn scale_sentence(group: &[String], reference: &str, springs: &[String]) -> 
     )
 }
 
-/// Returns the sentence for parameters without a value: `unmeasured` wheel forces are in all of their equations, or none is and nothing fits.
+/// Returns the sentence on parameters without a value. Either all their equations contain `unmeasured` wheel forces, or no wheel force is missing and
+/// no value fits.
 pub fn absent_sentence(names: &[String], unmeasured: &[String]) -> String {
     let names = names.join(", ");
     if unmeasured.is_empty() {

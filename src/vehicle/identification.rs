@@ -16,7 +16,7 @@ pub struct IdentifyTask {
     pub vehicle: Vehicle,
     /// Parameters measured elsewhere.
     pub known: BTreeMap<String, f64>,
-    /// Limits; positive parameters are limited to 0 and up anyway.
+    /// Limits of the parameters. Positive parameters always have the lower limit 0.
     pub bounds: BTreeMap<String, [f64; 2]>,
     /// The band of every equation.
     pub band: Band,
@@ -28,11 +28,11 @@ pub struct IdentifyTask {
     pub sync_tolerance_s: f64,
     /// Names of the job's units.
     pub units: UnitNames,
-    /// Noise of accelerometers, 1 sd a sample, where declared.
+    /// Noise of accelerometers, 1 sd of a sample, if declared.
     pub noise_acc: Option<f64>,
-    /// Noise of wheel forces, 1 sd a sample, where declared.
+    /// Noise of wheel forces, 1 sd of a sample, if declared.
     pub noise_force: Option<f64>,
-    /// Known faults of channels, taken out before anything else.
+    /// Known faults of channels, which are corrected first.
     pub corrections: Vec<Adjustment>,
 }
 
@@ -43,15 +43,15 @@ pub struct Estimate {
     pub name: String,
     /// Value; `None` if it can't be determined.
     pub value: Option<f64>,
-    /// One standard deviation, coloured residuals and declared tolerances included.
+    /// One standard deviation, including coloured residuals and declared tolerances.
     pub sigma: Option<f64>,
     /// Unit as text.
     pub unit: String,
-    /// Whether record and model determine it.
+    /// Whether record and model determine the parameter.
     pub identifiable: bool,
     /// 95 % interval.
     pub interval: Option<[f64; 2]>,
-    /// Whether it was declared, not estimated.
+    /// Whether the parameter was declared and not estimated.
     pub known: bool,
 }
 
@@ -60,9 +60,9 @@ pub struct Estimate {
 pub struct ChannelFit {
     /// Channel.
     pub channel: String,
-    /// RMS of measured less predicted over RMS of measured, in band.
+    /// RMS of measured minus predicted signal, divided by the RMS of the measured signal, in the band.
     pub relative_rms: f64,
-    /// RMS of measured less predicted over RMS of measured, in band, on the fitted data.
+    /// RMS of measured minus predicted signal, divided by the RMS of the measured signal, in the band, on the fitted data.
     pub relative_rms_fitted: f64,
     /// Part of `relative_rms` from declared noise and tolerances, over the RMS of measured on its data; `None` if no noise is declared.
     pub floor: Option<f64>,
@@ -95,7 +95,7 @@ pub struct Identification {
     pub mass_closure: Option<MassClosure>,
     /// Shares of the signals in each wheel force that fit best.
     pub blend: Vec<Vec<f64>>,
-    /// RMS of the wheel force error in band, where measured (the larger of fitted and held-out).
+    /// RMS of the wheel force error in the band, if measured. It is the larger value of fitted and held-out record.
     pub wheel_force_sigma: Vec<Option<f64>>,
     /// Ratio of smallest to largest singular value, worst component, columns of unit norm.
     pub conditioning: f64,

@@ -124,7 +124,7 @@ fn declared_tolerances(task: &IdentifyTask) -> DeclaredErrors {
     }
 }
 
-/// Whether [`identify`] can begin with these records: their channels, rate and length, and the parameters that the task names.
+/// Checks that [`identify`] can begin with these records: channels, rate and length, and the parameters that the task names.
 ///
 /// # Errors
 /// Errors of [`identify`].

@@ -7,13 +7,13 @@ use crate::estimate::student_95;
 /// Covariance of the free parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spread {
-    /// By rows, in the order of `Fit::free`.
+    /// Covariance by rows, in the order of `Fit::free`.
     pub covariance: Vec<Vec<f64>>,
     /// Factor on sigma for 95 % (Student t with blocks - 1 degrees of freedom).
     pub coverage_factor: f64,
-    /// Blocks used.
+    /// Number of blocks.
     pub n_blocks: usize,
-    /// Independent samples that the residual of each equation is worth.
+    /// Number of independent samples to which the residual of each equation is equivalent.
     pub effective_samples: Vec<f64>,
 }
 
@@ -88,7 +88,7 @@ pub fn spread(equations: &[Equation], fit: &Fit, rate_hz: f64, memory_s: f64) ->
     }
 }
 
-/// Sum of parameter times column, less target.
+/// Returns the sum of parameter times column, minus the target.
 pub fn residual(e: &Equation, values: &[f64]) -> Vec<f64> {
     let mut r: Vec<f64> = e.target.iter().map(|t| -t).collect();
     for (i, column) in &e.columns {
@@ -102,7 +102,7 @@ pub fn residual(e: &Equation, values: &[f64]) -> Vec<f64> {
     r
 }
 
-/// How many independent samples carry the same information on power: n / sum of squared autocorrelations.
+/// Returns the number of independent samples with the same information on power: n / sum of squared autocorrelations.
 pub fn effective_samples(r: &[f64]) -> f64 {
     let n = r.len();
     let power: f64 = r.iter().map(|v| v * v).sum();

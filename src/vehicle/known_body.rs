@@ -36,7 +36,7 @@ pub(super) fn bodies_of_known_inertia(task: &IdentifyTask, record: &Channels) ->
     Some(out)
 }
 
-/// Returns the identification of [`bodies_of_known_inertia`]: the stated inertias, and nothing of links and wheels.
+/// Returns the identification of [`bodies_of_known_inertia`]: it contains the stated inertias, but no links and wheels.
 pub(super) fn identify_known(
     task: &IdentifyTask,
     vehicle: Vehicle,

@@ -2,7 +2,7 @@
 
 use super::term::{Quantity, Term, share_done};
 
-/// Which small rigid motions a body has; vertical displacement at (x, y) is q0 + x q_pitch + y q_roll.
+/// Small rigid motions of a body. The vertical displacement at (x, y) is q0 + x q_pitch + y q_roll.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// Up and down.
@@ -18,7 +18,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// The functions 1, x, y that apply, at a place.
+    /// Returns the functions 1, x, y that apply, at a place.
     pub fn functions(self, x: f64, y: f64) -> Vec<f64> {
         match self {
             Self::Heave | Self::Witness => vec![1.0],
@@ -28,7 +28,7 @@ impl Shape {
         }
     }
 
-    /// Letters of those functions: "", "x", "y".
+    /// Returns the letters of the functions of the shape: "", "x", "y".
     pub fn letters(self) -> &'static [&'static str] {
         match self {
             Self::Heave | Self::Witness => &[""],
@@ -38,12 +38,12 @@ impl Shape {
         }
     }
 
-    /// Number of motions.
+    /// Returns the number of motions.
     pub fn n(self) -> usize {
         self.letters().len()
     }
 
-    /// Number of inertia parameters: the upper triangle of its inertia.
+    /// Returns the number of inertia parameters: the upper triangle of its inertia.
     pub fn n_inertias(self) -> usize {
         match self {
             Self::Witness => 0,
@@ -52,18 +52,18 @@ impl Shape {
     }
 }
 
-/// A rigid body; its inertia is the integral of phi phi' dm over the functions phi of its shape.
+/// A rigid body. Its inertia is the integral of phi phi' dm over the functions phi of its shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// Suffix of its parameters, such as `b` in `m_b`.
+    /// Suffix of the parameters, such as `b` in `m_b`.
     pub name: String,
     /// Motions of the body.
     pub shape: Shape,
-    /// Coordinate x of a body without pitch (an axle).
+    /// Coordinate x of a body without pitch (an axle), along the vehicle.
     pub x: f64,
-    /// Coordinate y of a body without roll, across.
+    /// Coordinate y of a body without roll, across the vehicle.
     pub y: f64,
-    /// Whether springs carry it.
+    /// Whether springs carry the body.
     pub sprung: bool,
 }
 
@@ -72,9 +72,9 @@ pub struct Body {
 pub struct Point {
     /// Index of the body.
     pub body: usize,
-    /// Coordinate along.
+    /// Coordinate along the vehicle.
     pub x: f64,
-    /// Coordinate across.
+    /// Coordinate across the vehicle.
     pub y: f64,
 }
 
@@ -101,20 +101,20 @@ pub struct Sensor {
 /// A vertical force from outside: the road on a wheel, a shaker.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wheel {
-    /// Channel name of its force, whether measured or not.
+    /// Channel name of the wheel force, whether measured or not.
     pub channel: String,
     /// Position.
     pub at: Point,
 }
 
-/// A spring and damper; stretch d = sum of weight times displacement of its ends.
+/// A spring and damper. Its stretch d is the sum of weight times displacement over its ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
-    /// Suffix of its parameters, such as `s` in `k_s`.
+    /// Suffix of the parameters, such as `s` in `k_s`.
     pub name: String,
     /// Ends with weights: +1 body, -1 wheel.
     pub ends: Vec<(f64, Point)>,
-    /// Terms of its force; the force on each end is -weight times their sum.
+    /// Terms of the force. The force on each end is minus weight times the sum of the terms.
     pub terms: Vec<Term>,
 }
 
@@ -140,16 +140,16 @@ pub struct Vehicle {
 pub struct MassStep {
     /// Body.
     pub body: usize,
-    /// When the change begins, s of the record's time.
+    /// Begin of the change, s of the record's time.
     pub at_s: f64,
-    /// How long it takes, s.
+    /// Duration of the change, s.
     pub over_s: f64,
-    /// Acceleration of gravity that the change brings into the balance; 0 where it only adds inertia.
+    /// Acceleration of gravity with which the change enters the balance. It is 0 if the change only adds inertia.
     pub gravity: f64,
 }
 
 impl MassStep {
-    /// Share of the change that is done at a time.
+    /// Returns the share of the change that has occurred at a time.
     pub fn share_at(&self, t_s: f64) -> f64 {
         share_done(self.at_s, self.over_s, t_s)
     }
@@ -167,7 +167,7 @@ pub struct Parameter {
 }
 
 impl Vehicle {
-    /// All parameters: inertias body by body (upper triangle by rows), then coefficients link by link, then mass changes.
+    /// Returns all parameters: inertias body by body (upper triangle by rows), then coefficients link by link, then mass changes.
     pub fn parameters(&self) -> Vec<Parameter> {
         let mut out = Vec::new();
         for body in self.bodies.iter().filter(|b| b.shape != Shape::Witness) {
@@ -214,7 +214,7 @@ impl Vehicle {
         !self.steps.is_empty() || terms.any(Term::is_of_time)
     }
 
-    /// Lets every change of a mass or spring happen at once at a time: `f64::MIN` for done, `f64::MAX` for not begun.
+    /// Sets every change of a mass or spring to a single time: `f64::MIN` for a completed change, `f64::MAX` for a change that has not begun.
     pub fn settle_changes(&mut self, time_s: f64) {
         for s in &mut self.steps {
             (s.at_s, s.over_s) = (time_s, 0.0);
@@ -232,7 +232,7 @@ impl Vehicle {
         b.is_some_and(|b| b.shape == Shape::Witness)
     }
 
-    /// Indices of the masses of bodies, witnesses left out.
+    /// Returns the indices of the masses of bodies, witnesses left out.
     pub fn masses(&self, bodies: &[usize]) -> Vec<usize> {
         let own = bodies.iter().filter(|&&b| !self.is_witness(b));
         own.map(|&b| self.inertia_index(b, 0, 0)).collect()
@@ -243,12 +243,12 @@ impl Vehicle {
     pub fn rests_on_wheels(&self, bodies: &[usize]) -> bool {
         let own = |l: &&Link| l.ends.iter().any(|e| bodies.contains(&e.1.body));
         let heave = |l: &Link| l.ends.iter().map(|e| e.0).sum::<f64>();
-        // Weights are small whole numbers, so that their sum is exact.
+        // Weights are small whole numbers, so their sum is exact.
         let grounded = self.links.iter().filter(own).any(|l| heave(l) != 0.0);
         !grounded && self.steps.iter().all(|s| !bodies.contains(&s.body))
     }
 
-    /// Index of the parameter M(i, j) of a body that is no witness.
+    /// Returns the index of the parameter M(i, j) of a body that is not a witness.
     pub fn inertia_index(&self, body: usize, i: usize, j: usize) -> usize {
         let before: usize = self
             .bodies
@@ -261,7 +261,7 @@ impl Vehicle {
         before + i * n - i * (i + 1) / 2 + i + (j - i)
     }
 
-    /// Index of the parameter of a term of a link.
+    /// Returns the index of the parameter of a term of a link.
     pub fn term_index(&self, link: usize, term: usize) -> usize {
         let inertias: usize = self.bodies.iter().map(|b| b.shape.n_inertias()).sum();
         inertias
@@ -274,19 +274,19 @@ impl Vehicle {
             + term
     }
 
-    /// Index of the parameter of a mass change.
+    /// Returns the index of the parameter of a mass change.
     pub fn step_index(&self, step: usize) -> usize {
         self.term_index(self.links.len(), 0) + step
     }
 
-    /// Functions of a point's body at the point.
+    /// Returns the functions of a point's body at the point.
     pub fn functions(&self, p: &Point) -> Vec<f64> {
         self.bodies
             .get(p.body)
             .map_or(vec![], |b| b.shape.functions(p.x, p.y))
     }
 
-    /// Bodies in groups that links join, each group ascending, groups in order of their first body.
+    /// Returns the bodies in groups that links join. Each group is ascending. The groups are in the order of their first body.
     pub fn components(&self) -> Vec<Vec<usize>> {
         let mut group: Vec<usize> = (0..self.bodies.len()).collect();
         for link in &self.links {
@@ -307,7 +307,7 @@ impl Vehicle {
             .collect()
     }
 
-    /// The part of the vehicle made of the given bodies.
+    /// Returns the part of the vehicle made of the given bodies.
     pub fn part(&self, bodies: &[usize]) -> Self {
         let to = |p: &Point| {
             bodies

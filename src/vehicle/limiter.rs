@@ -6,7 +6,7 @@ use crate::series::detrend::without_mean;
 use crate::series::spectrum::{Band, Fourier, Spectrum};
 use crate::series::{Channels, SeriesError};
 
-/// Limits spectra to the band, thins and trims what they give.
+/// Limits spectra to the band, and thins and trims the resulting signals.
 pub(super) struct Limiter {
     pub fourier: Fourier,
     pub band: Band,
@@ -20,7 +20,7 @@ pub(super) struct Limiter {
 
 impl Limiter {
     /// # Errors
-    /// A band that the rate can't hold, a record that is shorter than the band needs.
+    /// A band that is too high for the sample rate, or a record that is too short for the band.
     pub fn new(
         vehicle: &Vehicle,
         record: &Channels,
@@ -70,7 +70,7 @@ impl Limiter {
         })
     }
 
-    /// Samples of a spectrum in the band, so many times integrated.
+    /// Returns the samples of a spectrum in the band, integrated the given number of times.
     pub fn samples_in_band(&mut self, s: &Spectrum, times: i32) -> Vec<f64> {
         /// Width of the omitted band about a line, one sd of its bell: mains wander by less, and its echo dies within a second.
         const WIDTH_HZ: f64 = 0.15;
@@ -86,7 +86,7 @@ impl Limiter {
         x[trim.min(x.len())..self.n_kept.saturating_sub(trim).max(trim).min(x.len())].to_vec()
     }
 
-    /// A signal at the record's rate, its mean taken off, in the band.
+    /// Returns a signal at the rate of the record, without its mean, limited to the band.
     pub fn limited_samples(&mut self, x: &[f64]) -> Vec<f64> {
         let s = self.fourier.spectrum(&without_mean(x), self.rate_hz);
         self.samples_in_band(&s, 0)

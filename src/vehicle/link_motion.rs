@@ -15,7 +15,7 @@ const WIDE: f64 = 0.5;
 /// Below this multiple of the lower band edge the stretch of nonlinear terms comes from force, where that is known.
 const SLOW: f64 = 1.4;
 
-/// Stretch of a link, its rate and its terms, in the band.
+/// Stretch of a link, its rate and its terms, limited to the band.
 pub(super) struct LinkMotion {
     pub stretch: Vec<f64>,
     pub rate: Vec<f64>,

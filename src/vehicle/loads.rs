@@ -6,7 +6,7 @@ use super::motion::Motion;
 use crate::estimate::LoadEstimate;
 use crate::linalg::tall::{left_inverse, solve, triangle};
 
-/// Shares of the signals that are added to the spring path of each wheel force: `share[wheel][signal]` over `signals`, missing shares being 0.
+/// Shares of the signals that are added to the spring path of each wheel force: `share[wheel][signal]` over `signals`. Missing shares are 0.
 pub type Blend = Vec<Vec<f64>>;
 
 /// A history of recovered loads, each with one standard deviation for all samples.
@@ -18,7 +18,7 @@ pub struct LoadHistory {
     pub start_s: f64,
     /// Load names.
     pub names: Vec<String>,
-    /// Samples, a list a load.
+    /// Samples, one list for each load.
     pub values: Vec<Vec<f64>>,
     /// One standard deviation of a sample of each load.
     pub sigma: Vec<f64>,
@@ -76,7 +76,7 @@ pub fn needed_forces(
         .collect()
 }
 
-/// Residuals of the equations of bodies without wheels.
+/// Returns the residuals of the equations of bodies without wheels.
 pub fn sprung_residuals(
     vehicle: &Vehicle,
     values: &[f64],

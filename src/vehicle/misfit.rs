@@ -6,7 +6,7 @@ use super::motion::Motion;
 use crate::linalg::tall::left_inverse;
 use crate::series::detrend::rms;
 
-/// Returns channel, RMS of measured less predicted and RMS of measured, from [`channel_residuals`].
+/// Returns for each channel the RMS of measured minus predicted signal and the RMS of the measured signal, from [`channel_residuals`].
 pub fn channel_misfits(
     part: &Vehicle,
     values: &[f64],

@@ -10,7 +10,7 @@ use crate::finding::{Finding, Severity};
 use crate::series::channels::Channels;
 use crate::series::detrend::{mean, rms};
 
-/// Band-limited, trimmed signals of a record, all of one length and rate.
+/// Band-limited, trimmed signals of a record. All have one length and rate.
 #[derive(Clone, Debug)]
 pub struct Motion {
     /// Samples per second.
@@ -19,13 +19,13 @@ pub struct Motion {
     pub start_s: f64,
     /// Acceleration of each sensor.
     pub sensors: Vec<Vec<f64>>,
-    /// Accelerations of each body in each of its motions.
+    /// Accelerations of each body, one for each of its motions.
     pub bodies: Vec<Vec<Vec<f64>>>,
     /// Stretch of each link.
     pub stretch: Vec<Vec<f64>>,
     /// Rate of stretch of each link.
     pub rate: Vec<Vec<f64>>,
-    /// Each term of each link for a coefficient of one, formed wide-band, then limited to the band.
+    /// Each term of each link for a coefficient of one, computed without the band and then limited to the band.
     pub terms: Vec<Vec<Vec<f64>>>,
     /// Column of each mass change: its active share times acceleration.
     pub steps: Vec<Vec<f64>>,
@@ -38,7 +38,7 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Number of samples.
+    /// Returns the number of samples.
     pub fn n_samples(&self) -> usize {
         self.sensors.first().map_or(0, Vec::len)
     }
@@ -53,7 +53,7 @@ impl Motion {
         self.forces.get(wheel)?.as_deref()
     }
 
-    /// The stretch of `length` samples from sample `from`; shorter where the motion ends.
+    /// Returns the stretch of `length` samples from sample `from`. It is shorter if the motion ends earlier.
     pub fn stretch_of(&self, from: usize, length: usize) -> Self {
         let cut =
             |x: &Vec<f64>| -> Vec<f64> { x.iter().skip(from).take(length).copied().collect() };
@@ -73,7 +73,7 @@ impl Motion {
         }
     }
 
-    /// The motion of the part of the vehicle made of the given bodies, in the order of [`Vehicle::part`].
+    /// Returns the motion of the part of the vehicle made of the given bodies, in the order of [`Vehicle::part`].
     pub fn part(&self, vehicle: &Vehicle, bodies: &[usize]) -> Self {
         let kept = |flags: Vec<bool>| {
             (0..flags.len())

@@ -25,7 +25,7 @@ pub(super) struct PartAnswer {
     pub motion: Motion,
 }
 
-/// Puts the answer of a part into the whole.
+/// Adds the answer of a part to the answer of the vehicle.
 pub(super) fn collect(
     task: &IdentifyTask,
     answer: &mut Identification,
@@ -172,7 +172,7 @@ fn put_unidentifiable(answer: &mut Identification, part: &PartAnswer) {
     }
 }
 
-/// How well each channel is explained, and whether a complete model would leave as much.
+/// Adds the residual of each channel, and whether a complete model would leave such a residual.
 fn put_fit(
     answer: &mut Identification,
     part: &PartAnswer,

@@ -50,7 +50,7 @@ impl PartProblem {
         })
     }
 
-    /// Whether there are equations, and something that sets their scale.
+    /// Returns whether there are equations and something that sets their scale.
     pub fn is_solvable(&self) -> bool {
         let has_scale = self.reference.is_some()
             || self

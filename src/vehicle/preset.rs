@@ -84,7 +84,7 @@ impl std::error::Error for PresetError {}
 pub struct PresetRequest {
     /// Name of the model.
     pub model: String,
-    /// Terms in it; empty: a spring and a damper on every link.
+    /// Terms of the links. If the list is empty, every link has a spring and a damper.
     pub terms: Vec<String>,
     /// Places (x, y): of wheels by their corner (`lf`, `front`), of springs (`spring_lf`; else at the wheel), of body
     /// accelerometers (`body_lf`; else at the spring).
@@ -392,7 +392,7 @@ fn oscillator() -> Vehicle {
     }
 }
 
-/// Links that couple bodies which the plain model leaves uncoupled. A term that names a link (`k_axle`) adds it.
+/// Links between bodies that the plain model does not couple. A term that names a link (`k_axle`) adds the link.
 pub const COUPLINGS: [&str; 5] = ["axle", "roll", "bar", "cross", "pitch"];
 
 /// Channel of the body over the next axle.

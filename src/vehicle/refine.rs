@@ -8,7 +8,7 @@ use crate::series::integrate::integrate_in_band;
 use crate::series::spectrum::{Band, Fourier};
 use crate::series::{Channels, SeriesError};
 
-/// Measured signals for comparison with a simulation, with its inputs.
+/// Measured signals for comparison with a simulation, and the inputs of the simulation.
 #[derive(Clone, Debug)]
 pub struct Comparison {
     drive: Drive,
@@ -25,13 +25,13 @@ pub struct Refinement {
     pub values: Vec<f64>,
     /// Constant force on each body (from the offset of a displacement sensor).
     pub constant: Vec<f64>,
-    /// RMS of measured less simulated of each compared sensor, before and after, in its unit.
+    /// RMS of measured minus simulated signal of each compared sensor, before and after, in the unit of the sensor.
     pub error_rms: Vec<(String, f64, f64)>,
-    /// The minimum in the free parameters (then constants, then offsets), of residuals over each sensor's RMS.
+    /// Minimum in the free parameters (then constants, then offsets). The residuals are divided by the RMS of each sensor.
     pub minimum: Minimum,
 }
 
-/// A band that lets everything through: residuals are taken as they are.
+/// Band without limits. Residuals are used unchanged.
 pub const OPEN: Band = Band {
     low_hz: 0.0,
     high_hz: f64::INFINITY,
@@ -143,7 +143,7 @@ fn in_band(x: &[f64], rate_hz: f64, band: Band, trim: usize) -> Vec<f64> {
 }
 
 impl Comparison {
-    /// Simulated less measured of each compared sensor, in band and trimmed.
+    /// Returns the simulated minus the measured signal of each compared sensor, in the band and trimmed.
     ///
     /// # Errors
     /// [`SimulationError`].
@@ -173,13 +173,13 @@ impl Comparison {
             .collect())
     }
 
-    /// Returns this comparison with `steps` integration steps a sample.
+    /// Returns this comparison with `steps` integration steps for each sample.
     pub fn with_steps(mut self, steps: usize) -> Self {
         self.drive.steps = steps;
         self
     }
 
-    /// Returns the RMS of each compared sensor, its mean included if it is compared.
+    /// Returns the RMS of each compared sensor. It includes the mean if the mean is compared.
     pub fn measured_rms(&self) -> Vec<(usize, f64)> {
         let size = |y: &[f64]| {
             let kept: Vec<f64> = y.iter().copied().filter(|v| v.is_finite()).collect();
@@ -211,8 +211,8 @@ pub fn sensor_signal(vehicle: &Vehicle, s: &SimulatedMotion, sensor: usize) -> V
         .collect()
 }
 
-/// Minimises the simulation error over the parameters `free`, starting at `values`; with displacement sensors also over a
-/// constant force on each body.
+/// Minimises the simulation error over the parameters `free`, starting at `values`. With displacement sensors it also estimates a constant force on
+/// each body.
 ///
 /// # Errors
 /// [`SimulationError`] when even the start can't be simulated.

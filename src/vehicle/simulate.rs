@@ -11,13 +11,13 @@ use thiserror::Error;
 pub struct Drive {
     /// Samples per second.
     pub rate_hz: f64,
-    /// Force of each wheel; `None` for none.
+    /// Force of each wheel. `None` for a wheel without force.
     pub forces: Vec<Option<Vec<f64>>>,
     /// Displacement and velocity of each motion of bodies with prescribed motion; `None` for bodies that move freely.
     pub given: Vec<Option<Vec<[Vec<f64>; 2]>>>,
     /// Constant force on the heave of each body.
     pub constant: Vec<f64>,
-    /// Integration steps a sample; 2 suffices where the fastest period is over 10 samples.
+    /// Integration steps for each sample. 2 steps are sufficient if the fastest period exceeds 10 samples.
     pub steps: usize,
 }
 
@@ -32,7 +32,7 @@ pub struct SimulatedMotion {
     pub acceleration: Vec<Vec<Vec<f64>>>,
 }
 
-/// Why a simulation gave nothing.
+/// Reason why a simulation gave no result.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SimulationError {
     /// A body without usable inertia.
@@ -45,7 +45,7 @@ pub enum SimulationError {
         "the simulated motion diverged at {at_s:.3} s: a parameter has the wrong sign or the steps are too long"
     )]
     Diverged {
-        /// When.
+        /// Time at which the motion diverges, s.
         at_s: f64,
     },
     /// A term that the simulation has no equation for.
@@ -85,8 +85,7 @@ struct Machine<'a> {
     constant: &'a [f64],
 }
 
-/// Simulates from rest with the classical Runge-Kutta method of order 4 at fixed steps; inputs between samples are band-limited
-/// interpolations.
+/// Simulates from rest with the classical Runge-Kutta method of order 4 and fixed steps. Inputs between samples are band-limited interpolations.
 ///
 /// # Errors
 /// [`SimulationError`] when inertia is missing, histories differ in length, or the motion runs away.

@@ -144,7 +144,7 @@ fn solve_stretch(
     for (i, &f) in force.iter().enumerate() {
         let t_s = record.start_s + i as f64 * h;
         let miss = |v: f64| law(d + h * v, v, t_s) - f;
-        // The law increases with v, so that the root is between the last points of either sign.
+        // The law increases with v, so the root is between the last points of either sign.
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         for _ in 0..STEPS {
             let g = miss(v);

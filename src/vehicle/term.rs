@@ -37,7 +37,7 @@ pub struct UnitNames {
 }
 
 impl UnitNames {
-    /// The names of a system of units.
+    /// Returns the names of a system of units.
     pub fn from_system(system: UnitSystem) -> Self {
         let name = |d: Dimension| system.unit(d).name.to_owned();
         Self {
@@ -47,7 +47,7 @@ impl UnitNames {
         }
     }
 
-    /// The unit of a speed.
+    /// Returns the unit of a speed.
     pub fn speed(&self) -> String {
         format!("{}/s", self.length)
     }
@@ -73,10 +73,10 @@ impl UnitNames {
     }
 }
 
-/// Which direction of stretch an end stop acts in.
+/// Direction of stretch in which an end stop acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Both.
+    /// Both sides.
     Both,
     /// Body and wheel approach.
     Compression,
@@ -102,7 +102,7 @@ impl Side {
     }
 }
 
-/// One term of a link force; d is the stretch (body less wheel), v its rate, d = 0 at rest.
+/// One term of a link force. d is the stretch (body minus wheel), v its rate. At rest d is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Term {
     /// k d.
@@ -124,7 +124,7 @@ pub enum Term {
     BumpStop {
         /// Free travel; 0 means to be found.
         gap: f64,
-        /// Where it acts.
+        /// Side on which the term acts.
         side: Side,
     },
     /// b d'': a mass that only relative acceleration moves, as in axles and bodies that turn. Not simulated.
@@ -142,13 +142,13 @@ pub enum Term {
     StiffnessChange {
         /// When the change begins, s of the record's time.
         at_s: f64,
-        /// How long it takes, s; 0: at once.
+        /// Duration of the change, s. 0 means at once.
         over_s: f64,
     },
 }
 
 impl Term {
-    /// Prefix of the coefficient's name.
+    /// Returns the prefix of the coefficient's name.
     pub fn symbol(&self) -> &'static str {
         match self {
             Self::Stiffness => "k",
@@ -167,8 +167,8 @@ impl Term {
     }
 
     /// Returns the term of a name in a job: a coefficient's prefix or an effect id. A constant may follow in brackets: `coulomb_friction(0.006)`
-    /// (velocity), `bump_stop(0.03 compression)` (gap, side); without it, the constant is automatic. `dead_zone(0.004)` (gap) and
-    /// `stiffness_drift(0 64)` (begin and length in s) need it.
+    /// (velocity), `bump_stop(0.03 compression)` (gap, side); without brackets, the program determines the constant. `dead_zone(0.004)` (gap) and
+    /// `stiffness_drift(0 64)` (begin and length in s) require a constant.
     pub fn from_name(name: &str) -> Option<Self> {
         if let Some((plain, rest)) = name.split_once('(') {
             let inside = rest.strip_suffix(')')?;
@@ -210,7 +210,7 @@ impl Term {
         })
     }
 
-    /// The term as a job writes it, its constant included: [`Term::from_name`] reads it.
+    /// Returns the term with its constant in the form of a job, which [`Term::from_name`] reads.
     pub fn text(&self) -> String {
         match self {
             Self::Friction { velocity } if *velocity > 0.0 => {
@@ -305,7 +305,7 @@ impl Term {
         }
     }
 
-    /// Returns the basis function at a time of the record, s: a term that changes with time has its share at that time.
+    /// Returns the basis function at a time of the record, s. For a term that changes with time, it includes the share at this time.
     pub fn basis_at(&self, d: f64, v: f64, t_s: f64) -> f64 {
         match *self {
             Self::StiffnessChange { at_s, over_s } => d * share_done(at_s, over_s, t_s),

@@ -98,23 +98,23 @@ impl From<SeriesError> for VehicleError {
     }
 }
 
-/// How channels are treated.
+/// Treatment of channels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Treatment {
     /// The band of every equation and channel.
     pub band: Band,
-    /// Keep every n-th sample of the band-limited signals (a power of two); 0: as few as the band allows.
+    /// Every n-th sample of the band-limited signals is kept, with this n (a power of two). 0 means as few samples as the band allows.
     pub keep_every: usize,
-    /// Corrections of channels, none for most.
+    /// Corrections of channels. Most channels have none.
     pub adjust: Vec<Adjustment>,
     /// Slow stretch of links, if known: nonlinear terms then need no double integration below the band.
     pub slow: Vec<SlowStretch>,
-    /// Time that is cut off at both ends, s; `None`: as little as the terms need.
+    /// Time that is cut off at both ends, s. `None` means as little as the terms need.
     pub settle_s: Option<f64>,
 }
 
 impl Treatment {
-    /// Returns the plain treatment: one band, samples thinned as far as it allows.
+    /// Returns the plain treatment: one band, and samples thinned as far as the band allows.
     pub fn from_band(band: Band) -> Self {
         Self {
             band,
@@ -126,11 +126,11 @@ impl Treatment {
     }
 }
 
-/// Stretch of a link as its own law gives it from the force through it, at every sample of a record.
+/// Stretch of a link, computed from the force through the link and its law, at every sample of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlowStretch {
     /// Index of the link.
     pub link: usize,
-    /// Stretch, mean force taken as rest.
+    /// Stretch of the link. The mean force defines the rest position.
     pub stretch: Vec<f64>,
 }

@@ -33,7 +33,7 @@ pub struct IdentifiedParameters {
     pub parameters: Vec<Estimate>,
     /// Descriptions of the parameters that the data do not determine.
     pub unidentifiable: Vec<String>,
-    /// How well each channel is explained.
+    /// Quality of the fit of each channel.
     pub fit: Vec<ChannelFit>,
     /// Ratio of the identified mass to the weighed mass.
     pub mass_closure: Option<f64>,
@@ -122,9 +122,9 @@ pub struct WheelLoad {
 pub struct ChassisForceOf {
     /// The body.
     pub body: String,
-    /// By its inertia.
+    /// Root mean square of the force from inertia.
     pub rms_by_mass: f64,
-    /// Root mean square by the springs and dampers, if they were identified.
+    /// Root mean square of the force from springs and dampers, if they were identified.
     pub rms_by_springs: Option<f64>,
     /// Root mean square of the difference between both forces, an estimate of the error of either; `None` if only one was identified.
     pub rms_difference: Option<f64>,
@@ -132,7 +132,7 @@ pub struct ChassisForceOf {
     pub unit: String,
 }
 
-/// Reads the vehicle and its records as [`identify`] does and begins with them, as far as nothing is fitted; the parameters are dropped.
+/// Reads the vehicle and its records as [`identify`] does, runs the checks before the fit, and discards the data.
 ///
 /// # Errors
 /// Every fault of the job and its records.

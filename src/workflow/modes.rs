@@ -23,9 +23,9 @@ use std::path::Path;
 /// One elastic mode.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModeRow {
-    /// 1, 2 ..
+    /// Number of the mode, from 1 on.
     pub mode: usize,
-    /// Cycles per unit of time.
+    /// Frequency, cycles per unit of time.
     pub hz: f64,
     /// Generalised mass of the written shape: 1 except for rounding.
     pub generalised_mass: f64,
@@ -38,7 +38,7 @@ pub struct ModeRow {
     pub gap: f64,
     /// Modal effective mass along x, y, z and about axes through the centre of gravity.
     pub effective_mass: [f64; 6],
-    /// Strain at each gauge of the job for a generalised coordinate of 1, microstrain; null where a gauge has none.
+    /// Strain at each gauge of the job for a generalised coordinate of 1, microstrain. Null for a gauge without strain.
     pub gauge_microstrain: Vec<Option<f64>>,
 }
 
@@ -49,7 +49,7 @@ fn or_null<S: Serializer>(x: &f64, s: S) -> Result<S::Ok, S::Error> {
 /// Elastic modes of a structure.
 #[derive(Serialize)]
 pub struct Modes {
-    /// Ascending.
+    /// Modes with ascending frequency.
     pub modes: Vec<ModeRow>,
     /// Description of the support of the structure.
     pub support: String,
@@ -61,7 +61,7 @@ pub struct Modes {
     pub model_units: StatedUnits,
     /// Mass of the model, WTMASS applied.
     pub mass: Option<f64>,
-    /// Unknowns.
+    /// Number of unknowns.
     pub dofs: usize,
     /// Shapes and their strain.
     #[serde(skip)]
@@ -248,7 +248,7 @@ fn compute_modes(
 }
 
 impl Modes {
-    /// The modes as cases without loads, for pictures.
+    /// Returns the modes as cases without loads, for pictures.
     pub fn cases(&self) -> Vec<LoadCase> {
         let all = self.solution.strain.cases.iter();
         all.map(|c| LoadCase {

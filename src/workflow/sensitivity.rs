@@ -25,14 +25,14 @@ pub struct ComputedSensitivity {
     pub conditioning: Conditioning,
     /// Number of gauges.
     pub gauges: usize,
-    /// Names of the loads, a column each.
+    /// Names of the loads, one for each column.
     pub loads: Vec<String>,
     /// Report unit of each load.
     pub report_units_of_loads: Vec<String>,
     /// Mesh error by gauge, if the job asks for it; S is corrected for it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub mesh_error: Vec<GaugeMeshError>,
-    /// S itself, with the model and the gauges it was made of.
+    /// S itself, with the model and the gauges from which it was computed.
     #[serde(skip)]
     pub prepared: JobSensitivity,
     /// The job.

@@ -33,25 +33,25 @@ use std::path::{Path, PathBuf};
 pub struct SolvedCases {
     /// Grids of the model.
     pub grids: usize,
-    /// Unknowns.
+    /// Number of unknowns.
     pub dofs: usize,
-    /// Entries of the factor.
+    /// Number of entries of the factor.
     pub factor_nonzeros: usize,
-    /// How the unknowns were ordered.
+    /// Ordering of the unknowns.
     pub ordering: Option<OrderingMethod>,
-    /// Smallest pivot over the largest entry of its row.
+    /// Smallest pivot divided by the largest entry of its row.
     pub smallest_pivot: f64,
     /// Nastran's epsilon of the worst case before and after refinement: |u'(f - K u)| / |u'f|.
     pub epsilon: [f64; 2],
     /// Units of mass, balance and reactions, from the job's system; null for a deck, which states no units.
     pub model_units: StatedUnits,
-    /// By load case: applied loads, inertia loads, remaining imbalance.
+    /// Applied loads, inertia loads and remaining imbalance of each load case.
     pub balance: Vec<Balance>,
-    /// Mass and its centre.
+    /// Mass and centre of gravity.
     pub mass: Option<MassAndCentre>,
     /// Description of the support of the structure under the unit loads of a job; `None` for a deck, whose subcases state their support.
     pub support: Option<String>,
-    /// By load case: resultants of the applied loads and of the reactions, and the reactions by grid, basic frame; empty without a support.
+    /// For each load case: resultants of the applied loads and of the reactions, and the reactions by grid, basic frame. Empty without a support.
     pub reactions: Vec<Reactions>,
     /// First elastic frequencies, per unit of time.
     pub elastic_modes_hz: Vec<f64>,
@@ -82,7 +82,7 @@ pub struct SolvedCases {
 pub struct MassAndCentre {
     /// Mass, the deck's units.
     pub mass: f64,
-    /// Centre.
+    /// Centre of gravity.
     pub cg: [f64; 3],
 }
 
@@ -109,7 +109,7 @@ impl Answer for SolvedCases {
 struct Task {
     read: DeckModel,
     cases: Vec<LoadCase>,
-    /// Where strain is wanted.
+    /// Places at which strain is computed.
     corners: Corners,
     /// Combinations of the load cases.
     combined: Vec<CombinedSubcase>,

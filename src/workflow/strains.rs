@@ -24,9 +24,9 @@ use std::path::{Path, PathBuf};
 pub struct Strains {
     /// Rows of `strains.csv`.
     pub rows: usize,
-    /// How many static subcases.
+    /// Number of static subcases.
     pub subcases: usize,
-    /// Their ids.
+    /// Ids of the subcases.
     pub subcase_ids: Vec<u32>,
     /// The deck as given.
     #[serde(skip)]

@@ -185,10 +185,10 @@ fn misspelt(file: &str, record: &Channels, model: &Vehicle) -> Option<Finding> {
 /// No acceleration or force of a vehicle is larger in any system of units.
 const LARGEST_SAMPLE: f64 = 1e15;
 
-/// Samples of the channels used that can be readings.
+/// Checks that the samples of the used channels are possible readings.
 ///
 /// # Errors
-/// One fault a channel with samples that can't.
+/// One fault for each channel with impossible samples.
 fn check_samples(file: &str, record: &Channels, used: impl Fn(&str) -> bool) -> Result<(), Faults> {
     let huge = |v: &f64| v.abs() > LARGEST_SAMPLE;
     let channels = record.list.iter().filter(|c| used(&c.name));
@@ -224,7 +224,7 @@ fn corrections_of(section: &VehicleJob) -> Vec<Adjustment> {
 /// `[vehicle]` of a job.
 ///
 /// # Errors
-/// A job that has none.
+/// A fault if the job has no `[vehicle]`.
 pub fn section_of(job: &Job) -> Result<&VehicleJob, Faults> {
     job.vehicle.as_ref().ok_or_else(|| {
         Faults::from(Fault::new(

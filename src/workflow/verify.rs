@@ -44,7 +44,7 @@ impl Answer for Recomputation {
 /// Difference between a result folder and its recomputation.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Difference {
-    /// Input as given, or file of the folder.
+    /// Input as stated in the result, or file of the folder.
     pub file: String,
     /// Key of result.json, or line of a table; empty for a file as a whole.
     pub at: String,
@@ -236,7 +236,7 @@ fn names(folder: &Path) -> Result<BTreeSet<String>, Fault> {
 }
 
 impl ResultProvenance {
-    /// The result files among the inputs of a command on deck and results.
+    /// Returns the result files among the inputs of a command on deck and results.
     pub fn results(&self) -> Vec<&str> {
         let is_result = |p: &&str| {
             let name = p.to_ascii_lowercase();

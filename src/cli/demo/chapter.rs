@@ -16,7 +16,7 @@ pub(super) struct Chapter {
     pub words: String,
     /// Heading of the card of the chapter.
     pub title: &'static str,
-    /// Two numbers with what they are.
+    /// Two numbers, each with its description.
     pub numbers: Vec<(String, String)>,
     pub command: &'static str,
     pub step: Step,
@@ -24,7 +24,7 @@ pub(super) struct Chapter {
 
 /// A command of the story, done and written.
 pub(super) struct Step {
-    /// The answer as `result.json` has it.
+    /// Answer in the form of `result.json`.
     pub result: Value,
     pub findings: Findings,
     /// The result in short, with a picture of its report.
@@ -32,17 +32,17 @@ pub(super) struct Step {
     pub seconds: f64,
 }
 
-/// A lower bound in percent, never rounded up.
+/// Returns a lower bound in percent, never rounded up.
 pub(super) fn percent_at_least(bound: f64) -> String {
     percent((1000.0 * bound).floor() / 1000.0)
 }
 
-/// A share in percent.
+/// Returns a share in percent.
 pub(super) fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
 }
 
-/// A number of a result with what it is.
+/// Returns a number of a result with its description.
 pub(super) fn number_of(value: &serde_json::Value, what: &str) -> (String, String) {
     let shown = match value.as_f64() {
         Some(v) if value.is_f64() => number(v),

@@ -92,7 +92,7 @@ fn runs() -> String {
     )
 }
 
-/// Unit loads and where gauges may go.
+/// Returns the part of the job with the unit loads and the places where gauges may go.
 pub(super) fn plan() -> String {
     let properties: Vec<String> = ZONES
         .iter()
@@ -130,7 +130,7 @@ pub(super) fn reconcile() -> String {
         )
 }
 
-/// Size and place of the payload.
+/// Returns the size and place of the payload.
 pub(super) fn payload(strain: &str) -> String {
     HEAD.to_owned()
         + &wheel_loads()

@@ -15,7 +15,7 @@ pub(super) struct Figures {
     pub payload: f64,
 }
 
-/// The truck with its gauges, then a card a step.
+/// Returns the page with the truck and its gauges, followed by a card for each step.
 pub(super) fn page(chapters: &[Chapter], figures: &Figures) -> Page {
     let sections = vec![
         Section::new("The truck", vec![Block::Cards(head(chapters, figures))]),

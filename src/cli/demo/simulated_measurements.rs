@@ -26,7 +26,7 @@ pub(super) struct InstalledGauge {
 }
 
 impl InstalledGauge {
-    /// The gauges of a placement's result.
+    /// Returns the gauges of a placement's result.
     pub(super) fn read_gauges(result: &Value) -> Vec<Self> {
         let number = |v: &Value| v.as_f64().unwrap_or(f64::NAN);
         result["gauges"]
@@ -55,9 +55,9 @@ impl InstalledGauge {
 pub(super) struct SimulatedMeasurements {
     pub strain_csv: String,
     pub runs_csv: String,
-    /// The effect that was hidden.
+    /// Effect that the demo hides in the readings.
     pub hidden: String,
-    /// By run: wheel loads, kN, and payload, kN.
+    /// Name, wheel loads (kN) and payload (kN) of each run.
     truth: Vec<(String, Vec<f64>, f64)>,
 }
 
@@ -78,7 +78,7 @@ impl SimulatedMeasurements {
         (off / size).sqrt()
     }
 
-    /// The recovered wheel loads of the run with the largest error, with their intervals, and the true ones in red.
+    /// Returns a figure of the recovered wheel loads with intervals, for the run with the largest error. The true loads are red.
     pub(super) fn figure_of(&self, result: &Value) -> Figure {
         let of_run = |(run, wheels, _): &(String, Vec<f64>, f64)| {
             let row = |((wheel, _), truth): (&(&str, u32), &f64)| {
@@ -115,7 +115,7 @@ impl SimulatedMeasurements {
         figure
     }
 
-    /// Root mean square over the runs of the relative error of the recovered payload.
+    /// Returns the root mean square over the runs of the relative error of the recovered payload.
     pub(super) fn payload_error_of(&self, result: &Value) -> f64 {
         let (mut off, mut n) = (0.0, 0.0);
         for p in result["payload"].as_array().into_iter().flatten() {

@@ -7,7 +7,7 @@ use crate::linalg::Matrix6;
 use crate::model::{GridIx, Mat3, Model, RigidElement};
 use nastran::cards::Dofs;
 
-/// Relations of the dependent dofs: with S the rows of rigid motions at each dof, u_dep = S_dep S_ind^-1 u_ind.
+/// Returns the relations of the dependent dofs: with S the rows of rigid motions at each dof, u_dep = S_dep S_ind^-1 u_ind.
 ///
 /// # Errors
 /// Independent dofs that are not six or do not fix the motion.

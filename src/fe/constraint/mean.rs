@@ -80,7 +80,7 @@ pub(super) fn relations(
             "add grids or dofs",
         ));
     };
-    // Rows of the reference in its displacement frame, with rotations in radians again.
+    // Rows for the dofs of the reference grid in its displacement frame. Rotations are converted back to radians.
     let back = {
         let mut b = rigid_matrix(&centre, &centre, &axes[reference.us()]);
         for mode in 3..6 {

@@ -22,12 +22,12 @@ pub(crate) enum State {
     Dependent(u32),
 }
 
-/// Equation of a dependent dof: its displacement by free, held and enforced dofs.
+/// Equation of a dependent dof: the displacement as a sum over free, held and enforced dofs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Row {
     /// Free dofs and their coefficients.
     pub(crate) free: Vec<(u32, f64)>,
-    /// Held dofs and their coefficients: the dof's force on supports.
+    /// Held dofs with their coefficients, through which the force at this dof acts on supports.
     pub(crate) held: Vec<(u32, f64)>,
     /// Displacement of the dof by enforced dofs.
     pub(crate) constant: f64,
@@ -44,7 +44,7 @@ pub(crate) struct Reduction {
 }
 
 impl Reduction {
-    /// u from q; both over all dofs, entries of q at other than free dofs are not read.
+    /// Returns the displacements `u` from `q`, both over all dofs. Only entries of `q` at free dofs are used.
     pub(crate) fn expand(&self, q: &[[f64; 6]]) -> Vec<[f64; 6]> {
         let value = |dof: u32| q[(dof / 6) as usize][(dof % 6) as usize];
         let one = |dof: usize| match self.state[dof] {
@@ -60,7 +60,7 @@ impl Reduction {
             .collect()
     }
 
-    /// T' f: forces at dependent dofs carried to the free ones; entries of held and dependent dofs are zero after.
+    /// Returns `T' f`: forces at dependent dofs are transferred to free dofs. Entries of held and dependent dofs are then zero.
     pub(crate) fn gather(&self, mut f: Vec<[f64; 6]>) -> Vec<[f64; 6]> {
         for (dof, state) in self.state.iter().enumerate() {
             if *state == State::Held {
@@ -82,7 +82,7 @@ impl Reduction {
 }
 
 impl Reduction {
-    /// Forces that arrive at held dofs: those there and those that dependent dofs put onto them; zero elsewhere.
+    /// Returns the forces at held dofs: forces that act there, and forces that dependent dofs transfer there. Other entries are zero.
     pub(crate) fn onto_held(&self, f: &[[f64; 6]]) -> Vec<[f64; 6]> {
         let mut out = vec![[0.0; 6]; f.len()];
         for (dof, state) in self.state.iter().enumerate() {
@@ -100,7 +100,7 @@ impl Reduction {
         out
     }
 
-    /// Holds at zero what SPC and SPCD move.
+    /// Sets the displacements that SPC and SPCD enforce to zero.
     pub(crate) fn forget_enforced(&mut self) {
         self.enforced.clear();
         self.rows.iter_mut().for_each(|r| r.constant = 0.0);
@@ -116,7 +116,7 @@ impl Reduction {
     }
 }
 
-/// The constraints of one SPC and one MPC set, with rigid elements and permanent supports.
+/// Returns the constraints of one SPC set and one MPC set, together with rigid elements and permanent supports.
 ///
 /// # Errors
 /// Unusable rigid elements; a dof claimed twice; circles.

@@ -2,7 +2,7 @@
 
 use nastran::place::Place;
 
-/// `dependent = sum of coefficient * other`; dofs are numbered 6 * grid index + (0 to 5), displacement frames of the grids.
+/// Relation `dependent = sum of coefficient * other`. Dofs are numbered 6 * grid index + (0 to 5), in the displacement frames of the grids.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Relation {
     pub(crate) dependent: u32,

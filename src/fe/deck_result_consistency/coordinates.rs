@@ -6,7 +6,7 @@ use crate::model::Model;
 /// Share of the model's size by which coordinates may differ: the rounding of single precision geometry blocks, with room.
 const COORDINATE_TOLERANCE: f64 = 1e-5;
 
-/// A finding if grids of one id have different coordinates in the deck and in the geometry of the result file `name`.
+/// Returns a finding if grids with one id have different coordinates in the deck and in the geometry of the result file `name`.
 pub fn check_coordinates(model: &Model, name: &str, geometry: &Model) -> Vec<Finding> {
     let size = size(model);
     let limit = COORDINATE_TOLERANCE * size;

@@ -5,7 +5,7 @@ use crate::model::Model;
 use nastran::results::{Analysis, Block, Quantity, ResultsFile};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Findings for ids of the file that the model lacks, and for grids and strained shells of the model that the file lacks.
+/// Returns findings on ids of the file that the model lacks, and on grids and strained shells of the model that the file lacks.
 ///
 /// One block of each quantity and element type is looked at, of the subcase with most rows.
 pub fn check_ids(model: &Model, name: &str, file: &ResultsFile) -> Vec<Finding> {

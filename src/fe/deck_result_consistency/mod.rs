@@ -22,7 +22,7 @@ use crate::finding::Finding;
 use crate::model::Model;
 use nastran::results::ResultsFile;
 
-/// Every check that needs no more than the tables of one result file; [`check_coordinates`] compares with its geometry.
+/// Runs every check that needs only the tables of one result file. [`check_coordinates`] also needs the geometry of this file.
 pub fn check_consistency(
     model: &Model,
     name: &str,

@@ -5,7 +5,7 @@ use crate::model::Model;
 use nastran::results::{Analysis, Quantity, ResultsFile};
 use std::collections::BTreeSet;
 
-/// Findings for static subcases without strain of shells or bars, and for PARAM,OMID.
+/// Returns the findings for static subcases without strain of shells or bars, and for PARAM,OMID.
 pub fn check_output(model: &Model, name: &str, file: &ResultsFile) -> Vec<Finding> {
     let mut findings = Vec::new();
     let subcases = |wanted: &[Quantity]| -> BTreeSet<u32> {

@@ -12,15 +12,16 @@ pub struct StrainDifference {
     pub mean: f64,
     /// Factor of the solved field that fits the results best (least squares).
     pub factor: f64,
-    /// Cosine of the angle between both fields: 1 if they differ by a positive factor alone.
+    /// Cosine of the angle between both fields. It is 1 if the fields differ only by a positive factor.
     pub cosine: f64,
-    /// Share of each shell in both fields that is strained at least half as much as the mean of all shells.
+    /// Shells of both fields that are strained at least half as much as the mean of all shells. The number is the sum of the
+    /// differences of a shell divided by the sum of its larger values, as in `share`.
     pub of_shells: Vec<(ShellIx, f64)>,
 }
 
 impl StrainDifference {
-    /// Compares the strain of shells at the centre of both surfaces, and of bars at their stations. Elements without strain in one of the
-    /// fields are not compared; `None` if no element with strain is in both.
+    /// Compares the strain of shells at the centre of both surfaces, and of bars at their stations. Elements without strain in one of the fields are
+    /// not compared. `None` if no element has strain in both fields.
     pub fn compare(results: &CaseResult, solved: &CaseResult) -> Option<Self> {
         let shells = sums_of_shells(&results.shells, &solved.shells);
         let mean = shells.iter().map(|s| s.1.larger).sum::<f64>() / shells.len().max(1) as f64;

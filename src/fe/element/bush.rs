@@ -3,7 +3,7 @@
 use super::ElementMatrix;
 use crate::model::Model;
 
-/// Stiffness of bush `i`, basic frame. The springs act at its location; rigid arms join it to the grids.
+/// Returns the stiffness of bush `i`, basic frame. The springs act at the location of the bush. Rigid arms join the location to the grids.
 pub(super) fn bush_stiffness(model: &Model, i: usize) -> ElementMatrix {
     let bush = &model.bushes[i];
     let grids: Vec<_> = [Some(bush.grids.0), bush.grids.1]

@@ -4,7 +4,7 @@ use super::ElementMatrix;
 use crate::linalg::{Matrix6, SMatrix};
 use crate::model::Joint;
 
-/// Dofs of its grids, a bit each: patches are held by their translations alone.
+/// Returns the dofs of the grids, one bit for each dof. Grids of patches are held by their translations only.
 pub(super) fn joint_dofs(joint: &Joint) -> u8 {
     let mut motion = joint.ends.iter().flat_map(|e| &e.motion);
     let turns = motion.any(|(_, m)| m.fixed_view::<6, 3>(0, 3).amax() > 0.0);

@@ -14,7 +14,7 @@ use crate::fe::prepared_model::PreparedModel;
 use crate::model::ElementRef;
 
 impl PreparedModel<'_> {
-    /// Dofs of an element's grids that it may give stiffness to, a bit each.
+    /// Returns the dofs of an element's grids that may get stiffness from the element, one bit for each dof.
     pub(crate) fn dofs(&self, element: ElementRef) -> u8 {
         match element {
             ElementRef::Solid(_) | ElementRef::ShearPanel(_) => 0b000_111,

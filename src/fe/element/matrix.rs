@@ -11,7 +11,7 @@ pub(crate) struct ElementMatrix {
 }
 
 impl ElementMatrix {
-    /// A zero matrix.
+    /// Returns a zero matrix.
     pub(crate) fn zeros(grids: Vec<GridIx>) -> Self {
         let n = 6 * grids.len();
         Self {
@@ -20,7 +20,7 @@ impl ElementMatrix {
         }
     }
 
-    /// From rows of fixed length.
+    /// Creates a matrix from rows of fixed length.
     pub(crate) fn from_rows<const M: usize>(grids: &[GridIx], rows: &[[f64; M]; M]) -> Self {
         Self {
             grids: grids.to_vec(),
@@ -28,12 +28,12 @@ impl ElementMatrix {
         }
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub(crate) fn n(&self) -> usize {
         6 * self.grids.len()
     }
 
-    /// K u, `u` by grid of this element.
+    /// Returns `K u`. `u` is by grid of this element.
     pub(crate) fn times(&self, u: &[f64]) -> Vec<f64> {
         self.values
             .chunks_exact(self.n().max(1))
@@ -42,7 +42,7 @@ impl ElementMatrix {
     }
 }
 
-/// 6 x 6 mass of a point at an offset, referred to its grid.
+/// Returns the 6 x 6 mass of a point at an offset from its grid, about the grid.
 pub(crate) fn point_mass(m: f64, offset: &Vec3) -> Matrix6<f64> {
     let c = offset.cross_matrix();
     let mut matrix = Matrix6::zeros();

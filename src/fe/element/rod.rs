@@ -12,10 +12,10 @@ fn name(rod: &Rod) -> &'static str {
     }
 }
 
-/// Stiffness of rod `i`, basic frame: EA/L along, GJ/L about its axis.
+/// Returns the stiffness of rod `i`, basic frame: EA/L along the axis, GJ/L about the axis.
 ///
 /// # Errors
-/// No length; a material that is no MAT1.
+/// A rod without length, or a material that is not MAT1.
 pub(super) fn rod_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, Refusal> {
     let rod = &model.rods[i];
     let refuse = |reason: String, remedy: &str| Refusal {
@@ -56,7 +56,7 @@ pub(super) fn rod_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, Re
     Ok(k)
 }
 
-/// Mass of rod `i`, before WTMASS.
+/// Returns the mass of rod `i`, before WTMASS.
 pub(crate) fn rod_mass(model: &Model, i: usize) -> f64 {
     let rod = &model.rods[i];
     let length = (model.grids[rod.grids[1].us()].x - model.grids[rod.grids[0].us()].x).norm();

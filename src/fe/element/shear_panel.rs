@@ -201,8 +201,8 @@ fn rod_area(panel: &ShearPanel, factor: f64, area: f64, lengths: f64) -> f64 {
     }
 }
 
-/// Returns the mass at the corners of shear panel `i`, before WTMASS. Each triangle of corners gives a third of its mass to each of its corners; both
-/// divisions of the panel count half.
+/// Returns the mass at the corners of shear panel `i`, before WTMASS. Each triangle of corners gives a third of its mass to each of its corners. The
+/// two ways to divide the panel into triangles have equal weight.
 pub(crate) fn shear_panel_mass(model: &Model, i: usize) -> [f64; 4] {
     let panel = &model.shear_panels[i];
     let x = panel.grids.map(|g| model.grids[g.us()].x);

@@ -11,7 +11,8 @@ pub(super) fn spring_stiffness(prepared: &PreparedModel<'_>, i: usize) -> Elemen
     between_dofs(prepared, &spring.ends, spring.k)
 }
 
-/// `factor` times the square of the difference of two dofs as a matrix, basic frame: stiffness of a spring, mass of a scalar mass.
+/// Returns `factor` times the square of the difference of two dofs as a matrix, basic frame. It is the stiffness of a spring or the mass of a scalar
+/// mass.
 pub(crate) fn between_dofs(
     prepared: &PreparedModel<'_>,
     ends: &[Option<(GridIx, u8)>; 2],

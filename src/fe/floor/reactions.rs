@@ -33,18 +33,18 @@ pub struct Floor {
 pub struct FloorLoad {
     /// Force along the axis.
     pub force: f64,
-    /// Moments about the two other axes, at the centre of the contacts.
+    /// Moments about the two horizontal axes, at the centre of the contacts.
     pub moment: [f64; 2],
     /// Displacement of each contact along the axis on the free structure.
     pub lift: Vec<f64>,
 }
 
-/// Why there are no reactions.
+/// Reason why there are no reactions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FloorError {
     /// Contacts on a line.
     OnALine {
-        /// How many.
+        /// Number of contacts.
         contacts: usize,
     },
     /// A case without displacements.
@@ -109,7 +109,8 @@ impl std::error::Error for FloorError {}
 const LINE: f64 = 1e-6;
 
 impl Floor {
-    /// Computes the floor under `contacts`. `lifts[i][j]` is the displacement along `axis` (0 x, 1 y, 2 z; up) of contact j under a unit force at i.
+    /// Computes the floor under `contacts`. `lifts[i][j]` is the displacement along `axis` (0 x, 1 y, 2 z; up) of contact j under a unit force at
+    /// contact i.
     ///
     /// `rate` is the stiffness between contact and floor (a tyre), force per length; `None`: rigid.
     ///
@@ -176,22 +177,22 @@ impl Floor {
         })
     }
 
-    /// The contacts, in the order of [`Self::reactions`].
+    /// Returns the contacts, in the order of [`Self::reactions`].
     pub fn contacts(&self) -> &[GridIx] {
         &self.contacts
     }
 
-    /// Locations of the contacts, basic frame.
+    /// Returns the locations of the contacts, basic frame.
     pub fn positions(&self) -> &[Vec3] {
         &self.x
     }
 
-    /// The axis that points up: 0 x, 1 y, 2 z.
+    /// Returns the axis that points up: 0 x, 1 y, 2 z.
     pub fn axis(&self) -> usize {
         self.axis
     }
 
-    /// Reactions (up positive) under a load; linear in it.
+    /// Returns the reactions (positive upwards) under a load. They are linear in the load.
     pub fn reactions(&self, load: &FloorLoad) -> Vec<f64> {
         let n = self.contacts.len();
         let mut right = Vector::zeros(n + 3);
@@ -205,7 +206,7 @@ impl Floor {
         all.iter().take(n).copied().collect()
     }
 
-    /// A force and a moment at a point as a load, `lift` the displacement of the contacts on the free structure.
+    /// Creates a load from a force and a moment at a point. `lift` is the displacement of the contacts on the free structure.
     pub fn load(&self, at: Vec3, force: Vec3, moment: Vec3, lift: Vec<f64>) -> FloorLoad {
         let m = moment + (at - self.centre).cross(&force);
         let (b, c) = ((self.axis + 1) % 3, (self.axis + 2) % 3);

@@ -5,12 +5,13 @@ use crate::fe::free_motions::springs_in_words;
 use crate::fe::{CaseResult, LoadCase, Relief, SolveOptions, Support, UnitLoad, solve_cases};
 use crate::model::{GridIx, Model, Vec3};
 
-/// A floor with the free solutions behind it.
+/// A floor with the solutions of the free structure from which it was computed.
 #[derive(Clone, Debug)]
 pub struct FloorSolution {
     /// Reactions of any load.
     pub floor: Floor,
-    /// Unit force up at each contact; displacements hold no rigid motion (in the sense of the mass), so that they are reciprocal.
+    /// Solutions under a unit force upwards at each contact. The displacements contain no rigid motion (orthogonal in the mass), so they are
+    /// reciprocal.
     pub contacts: Vec<CaseResult>,
     /// The further loads, in the order given.
     pub others: Vec<CaseResult>,
@@ -68,7 +69,7 @@ pub fn solve_standing(
     })
 }
 
-/// Displacement of the contacts along the axis in a case; `None` where it holds none.
+/// Returns the displacement of the contacts along the axis in a case. `None` if the solution has no displacement there.
 pub(crate) fn lift(case: &CaseResult, contacts: &[GridIx], axis: usize) -> Option<Vec<f64>> {
     contacts
         .iter()
@@ -82,13 +83,13 @@ pub(crate) fn lift(case: &CaseResult, contacts: &[GridIx], axis: usize) -> Optio
 }
 
 impl FloorSolution {
-    /// Displacement of the contacts in a case of the free structure, NaN where it holds none.
+    /// Returns the displacement of the contacts in a case of the free structure. NaN if the solution has no displacement there.
     pub fn lift(&self, case: &CaseResult) -> Vec<f64> {
         lift(case, self.floor.contacts(), self.floor.axis())
             .unwrap_or_else(|| vec![f64::NAN; self.floor.contacts().len()])
     }
 
-    /// Reactions to the structure's own weight.
+    /// Returns the reactions to the structure's own weight.
     pub fn under_weight(&self, model: &Model, gravity: f64) -> Vec<f64> {
         self.floor.reactions(&self.floor.weight(model, gravity))
     }

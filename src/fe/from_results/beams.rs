@@ -22,7 +22,7 @@ struct Station {
     axial: f64,
 }
 
-/// Collects the bar and beam rows of one subcase, block by block.
+/// Collector of the bar and beam rows of one subcase, block by block.
 pub(super) struct BeamCollector<'m> {
     model: &'m Model,
     stations: BTreeMap<BeamIx, Vec<Station>>,
@@ -43,8 +43,8 @@ impl<'m> BeamCollector<'m> {
 
     /// Adds a block of strain or stress rows.
     ///
-    /// CBAR rows contain bending alone at C D E F, and the axial part once: it is added. CBEAM rows contain the sum. The rows of a CBAR with stations
-    /// contain the sum or bending alone; their largest value shows which.
+    /// CBAR rows contain the bending strain at C D E F, and the axial strain once. The two are added. CBEAM rows contain the sum. The rows of a CBAR
+    /// with stations contain the sum or bending alone; their largest value shows which.
     pub(super) fn add(&mut self, block: &Block, rows: &Rows, tally: &mut Tally) {
         let mut ids = Ids::new(&self.model.beams, |b| b.id);
         let mut last: Option<u32> = None;
@@ -91,7 +91,7 @@ impl<'m> BeamCollector<'m> {
         }
     }
 
-    /// The field, elements and stations ascending.
+    /// Returns the field with ascending elements and stations.
     pub(super) fn finish(self) -> BeamField {
         let (elements, mut stations): (Vec<_>, Vec<Vec<Station>>) =
             self.stations.into_iter().unzip();

@@ -15,7 +15,7 @@ pub(super) fn is_shell_or_bar(block: &Block) -> bool {
             .is_some_and(|e| matches!(e.0, 33 | 64 | 70 | 74 | 75 | 82 | 144 | 227 | 228))
 }
 
-/// Number of corners of the shells of a block; `None` if it contains other elements.
+/// Returns the number of corners of the shells of a block; `None` if it contains other elements.
 pub(super) fn shell_corners(block: &Block) -> Option<usize> {
     match block.element?.0 {
         33 | 64 | 82 | 95 | 96 | 144 | 228 => Some(4),

@@ -1,6 +1,6 @@
 //! From ids of a file to indices of the model.
 
-/// Finds ids in an ascending list; ids asked for in the list's own order cost one comparison each.
+/// Lookup of ids in an ascending list. A sequence of ids in the order of the list costs one comparison for each id.
 pub(super) struct Ids<'a, T, F> {
     list: &'a [T],
     id: F,
@@ -12,7 +12,7 @@ impl<'a, T, F: Fn(&T) -> u32> Ids<'a, T, F> {
         Self { list, id, next: 0 }
     }
 
-    /// The index of `wanted` in the list.
+    /// Returns the index of `wanted` in the list.
     pub(super) fn find(&mut self, wanted: u32) -> Option<usize> {
         let here = self.next;
         let found = match self.list.get(here) {

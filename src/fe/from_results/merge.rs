@@ -4,8 +4,8 @@ use super::repeated_subcases::RepeatedSubcase;
 use crate::fe::{BeamField, CaseResult, ShellField, Solution};
 use std::sync::Arc;
 
-/// The cases of all files, subcases ascending, file order within a subcase. A subcase whose values differ between files stays a case for each
-/// of them.
+/// Returns the cases of all files, sorted by subcase, in file order within a subcase. If the values of a subcase differ between files, there is one
+/// case for each file.
 pub(super) fn merge(solutions: Vec<Solution>, repeated: &[RepeatedSubcase]) -> Solution {
     let differs = |subcase: u32| {
         let mut found = repeated.iter().filter(|r| r.subcase == subcase);

@@ -34,7 +34,7 @@ pub struct ReadOptions {
     pub displacements: Displacements,
     /// Subcases to read; `None` for all.
     pub subcases: Option<BTreeSet<u32>>,
-    /// Supports of the run, as the caller knows them.
+    /// Supports of the run that produced the results, as the caller knows them.
     pub supports: Supports,
 }
 
@@ -58,11 +58,11 @@ pub fn solution_from_results(
     all
 }
 
-/// The static subcases of one result file, subcases ascending; other analyses are named in a finding.
+/// Reads the static subcases of one result file, sorted by subcase. A finding names other analyses in the file.
 ///
-/// Shell strain is at Z1 and Z2 in the output frame of [`crate::fe::shell_frame`]. A subcase without shell strain takes shell stress and
-/// the isotropic material; the same holds for bars. Blocks that can't be decoded become findings, and so does what
-/// [`check_consistency`] sees.
+/// Shell strain is at Z1 and Z2 in the output frame of [`crate::fe::shell_frame`]. If a subcase has no shell strain, strain is computed from shell
+/// stress and the isotropic material. Bars are treated in the same way. Blocks that can't be decoded and the results of [`check_consistency`] become
+/// findings.
 pub fn solution_from_file(
     model: &Model,
     name: &str,
@@ -248,7 +248,7 @@ fn read_case(
     (case, tally, findings)
 }
 
-/// Returns LABEL, else SUBTITLE, of every subcase of a file that has one.
+/// Returns LABEL, or else SUBTITLE, of every subcase of a file that has one of them.
 pub fn subcase_labels(file: &ResultsFile) -> BTreeMap<u32, String> {
     let named = file.blocks().iter().filter_map(|b| {
         let [_, subtitle, label] = &b.titles;

@@ -13,22 +13,23 @@ const SHARE: f64 = 1e-6;
 /// Remedy for a file that contains a subcase more than once.
 pub const HOLD_ONCE: &str = "export results that contain each subcase once; of an optimisation, export the design that the deck describes";
 
-/// A subcase that is there more than once.
+/// A subcase that occurs more than once.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RepeatedSubcase {
     /// Id of the subcase.
     pub subcase: u32,
     /// Quantity whose values differ.
     pub quantity: Quantity,
-    /// Number of each file that holds it, with how many times.
+    /// Number of each file that contains the subcase, with the number of occurrences.
     pub files: Vec<(usize, usize)>,
 }
 
 /// Key of tables whose rows are comparable: subcase, quantity, card of the elements, form, table of vectors.
 type Key = (u32, Quantity, u32, Option<u8>, String);
 
-/// Returns the static subcases, `wanted` ones or all, whose strain or displacement occurs more than once with different values. Stress replaces
-/// strain if there is no strain. Elements that are spread over several tables or files are not a repetition, and neither are equal values.
+/// Returns the static subcases whose strain or displacement occurs more than once with different values. `wanted` limits the search to some subcases.
+/// Stress replaces strain if there is no strain. Elements that are spread over several tables or files are not a repetition, and neither are equal
+/// values.
 pub fn find_repeated_results(
     files: &[&ResultsFile],
     wanted: Option<&BTreeSet<u32>>,
@@ -86,7 +87,7 @@ fn key_of(block: &Block) -> Option<Key> {
         Quantity::Displacement => block.table.clone(),
         _ => return None,
     };
-    // One number for element types of the same card with and without corners.
+    // Element types of the same card, with and without corners, get the same number.
     let element = match block.element.map_or(0, |e| e.0) {
         144 => 33,
         228 => 82,
@@ -160,12 +161,12 @@ fn rows_to_compare(rows: &Rows) -> impl Iterator<Item = ((RowId, usize), &[f64])
 }
 
 impl RepeatedSubcase {
-    /// Whether the strain of gauges depends on it.
+    /// Returns whether the strain of gauges depends on the repeated quantity.
     pub fn is_of_strain(&self) -> bool {
         self.quantity != Quantity::Displacement
     }
 
-    /// Whether one of the files holds it more than once.
+    /// Returns whether a single file contains the subcase more than once.
     pub fn is_in_one_file(&self) -> bool {
         self.files.iter().any(|(_, times)| *times > 1)
     }

@@ -12,10 +12,10 @@ use std::sync::Arc;
 /// Fibre distances count as equal up to this share of the thickness: single precision with room for the deck's rounding.
 const FIBRE_TOLERANCE: f64 = 1e-4;
 
-/// Collects the shell rows of one subcase, block by block.
+/// Collector of the shell rows of one subcase, block by block.
 pub(super) struct ShellCollector<'m> {
     model: &'m Model,
-    /// By shell of the model: its slot.
+    /// Slot of each shell of the model.
     slots: Vec<u32>,
     elements: Vec<ShellIx>,
     centre: Vec<[PlaneStrain; 2]>,
@@ -78,7 +78,7 @@ impl<'m> ShellCollector<'m> {
         }
     }
 
-    /// Where and how rows of shell `ix` go; `None` where they can't be used.
+    /// Returns the target of the rows of shell `ix`. `None` if the rows cannot be used.
     fn target(
         &mut self,
         ix: usize,
@@ -170,7 +170,7 @@ impl<'m> ShellCollector<'m> {
         }
     }
 
-    /// The field, elements ascending.
+    /// Returns the field with ascending elements.
     pub(super) fn finish(self) -> ShellField {
         let mut order: Vec<usize> = (0..self.elements.len()).collect();
         let sorted = self.elements.is_sorted();
@@ -216,7 +216,7 @@ fn row(rows: &Rows, i: usize) -> [f64; 4] {
     }
 }
 
-/// Where the rows of an element go and what makes strain of them.
+/// Slot for the rows of an element, and the conversion of these rows to strain.
 #[derive(Clone, Copy)]
 struct Target {
     slot: usize,

@@ -43,7 +43,7 @@ impl Tally {
         }
     }
 
-    /// Counts an irregularity with a measured and an expected number; the largest difference remains.
+    /// Counts an irregularity with a measured and an expected number. Of all irregularities of a kind, the largest difference is kept.
     pub(super) fn add_measured(&mut self, met: Irregularity, id: u32, measured: f64, wanted: f64) {
         self.add(met, id);
         if let Some(entry) = self.0.get_mut(&met) {
@@ -70,7 +70,7 @@ impl Tally {
         }
     }
 
-    /// One finding a kind about the file `name`.
+    /// Returns one finding for each kind of irregularity in the file `name`.
     pub(super) fn findings(&self, name: &str) -> Vec<Finding> {
         self.0
             .iter()

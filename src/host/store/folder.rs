@@ -4,12 +4,12 @@ use super::{Key, SolutionStore};
 use crate::host::half_written;
 use std::path::{Path, PathBuf};
 
-/// Solutions kept in one folder; those not used for longest go first.
+/// Largest number of solutions in one folder. The solution that was not used for the longest time is removed first.
 const KEPT: usize = 64;
-/// Their bytes.
+/// Largest number of bytes of these solutions.
 const MOST_BYTES: u64 = 4 << 30;
 
-/// Folder that stores solutions of the built-in solver as `<key>.solution`. It removes the oldest ones above a fixed number and size.
+/// Folder that stores solutions of the built-in solver as `<key>.solution`. It removes the oldest solutions above a fixed number and size.
 ///
 /// # Example
 /// A second command on the same deck takes the stored solution:
@@ -39,13 +39,13 @@ const MOST_BYTES: u64 = 4 << 30;
 pub struct Folder(PathBuf);
 
 impl Folder {
-    /// Uses this folder. It is created when the first solution is stored.
+    /// Returns the store in this folder. The folder is created when the first solution is stored.
     pub fn new(folder: impl Into<PathBuf>) -> Self {
         Self(folder.into())
     }
 
-    /// Uses the folder `STRAINBRIDGE_CACHE`. Without this variable it is `strainbridge` in `XDG_CACHE_HOME`, in the cache folder of the
-    /// system, or in the folder for temporary files.
+    /// Returns the store in the folder `STRAINBRIDGE_CACHE`. Without this variable, the folder is `strainbridge` in `XDG_CACHE_HOME`, in the cache
+    /// folder of the system, or in the folder for temporary files.
     pub fn of_user() -> Self {
         let at = |name: &str| {
             let path = PathBuf::from(std::env::var_os(name)?);
@@ -68,13 +68,13 @@ impl Folder {
         &self.0
     }
 
-    /// Returns the number of stored solutions and their bytes.
+    /// Returns the number of stored solutions and their total size in bytes.
     pub fn size(&self) -> (usize, u64) {
         let kept = self.kept_solutions();
         (kept.len(), kept.iter().map(|k| k.1).sum())
     }
 
-    /// Removes every stored solution, and the folder if it is empty then. Returns their number and bytes.
+    /// Removes every stored solution, and the folder if it is then empty. Returns the number and the total size in bytes of the removed solutions.
     ///
     /// # Errors
     /// Returns the error of the first file that cannot be removed.
@@ -130,7 +130,7 @@ impl SolutionStore for Folder {
     fn read(&self, key: &Key) -> Result<Option<Vec<u8>>, String> {
         match std::fs::read(self.file(key)) {
             Ok(bytes) => {
-                // The file counts as used now, so that it is not among the first to be removed.
+                // The file counts as used now. It is then not among the first files to be removed.
                 let now = std::time::SystemTime::now();
                 let file = std::fs::File::options().write(true).open(self.file(key));
                 let _ = file.and_then(|f| f.set_modified(now));

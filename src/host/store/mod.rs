@@ -50,7 +50,7 @@ pub(crate) fn read_solution(
         .ok_or_else(|| "the stored solution is damaged".to_owned())
 }
 
-/// Keeps a solution.
+/// Stores a solution.
 ///
 /// # Errors
 /// Reason why the solution cannot be kept.
@@ -62,7 +62,7 @@ pub(crate) fn write_solution(
     store.write(key, solution_file::encode(solved, key))
 }
 
-/// Memory: solutions live as long as this value or a clone of it.
+/// Store in memory. Solutions exist as long as this value or one of its clones.
 #[derive(Clone, Debug, Default)]
 pub struct Memory(Arc<Mutex<HashMap<Key, Vec<u8>>>>);
 

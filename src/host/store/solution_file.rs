@@ -12,7 +12,7 @@ use sha2::{Digest, Sha256};
 
 const MARK: &[u8] = b"strainbridge solution 2\n";
 
-/// A solution as bytes.
+/// Returns a solution as bytes.
 pub(super) fn encode(solved: &DisplacementSolution, Key(hash): &Key) -> Vec<u8> {
     let fields = &solved.displacements;
     let numbers = fields.first().map_or(0, |f| 6 * f.len()) * fields.len();
@@ -93,7 +93,7 @@ fn reals(out: &mut Vec<u8>, values: &[f64]) {
         .for_each(|v| out.extend_from_slice(&v.to_le_bytes()));
 }
 
-/// `None` for bytes that are no solution of this hash, number of grids and of cases.
+/// Returns the stored solution. `None` if the bytes are not a solution with this hash, number of grids and number of cases.
 pub(super) fn decode(
     bytes: &[u8],
     Key(hash): &Key,

@@ -6,8 +6,8 @@ use crate::units::number;
 
 /// Returns the faults that the means of accelerometers show: minus gravity, or gravity in another unit.
 ///
-/// A unit counts only if every accelerometer shows gravity in it or in the unit that it is read in. The offset of a sensor that does not measure
-/// gravity may have that size as well.
+/// A unit counts only if every accelerometer shows gravity in this unit or in the unit of the job. The offset of a sensor that does not measure
+/// gravity may also have this size.
 pub fn faults_by_gravity(channels: &[MotionChannel], gravity: f64) -> Vec<MotionFault> {
     let mut signs = Vec::new();
     let mut units: Vec<MotionFault> = Vec::new();

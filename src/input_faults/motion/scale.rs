@@ -7,9 +7,9 @@ use crate::units::number;
 /// Masses from the equations, and other data that fix the scale of accelerations and forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionScale {
-    /// Identified mass over mean wheel force by gravity, if wheels carry the whole mass.
+    /// Identified mass divided by the mass from the mean wheel force and gravity, if wheels carry the whole mass.
     pub closure: Option<f64>,
-    /// Identified mass over the number of wheels, kg, of a vehicle on wheels.
+    /// Identified mass divided by the number of wheels, kg, for a vehicle on wheels.
     pub mass_kg: Option<f64>,
     /// Whether a parameter is stated, which the record would contradict.
     pub is_stated: bool,

@@ -92,7 +92,7 @@ pub(super) fn corrections(
         .collect()
 }
 
-/// Corrections name gauges of the job, combinations its loads, where the job itself lists these.
+/// Checks that corrections name gauges of the job and combinations name loads of the job, if the job lists them.
 pub fn check_names(job: &Job, faults: &mut FaultList) {
     // The legs of a rosette are channels too: `R1.a`.
     let mut channels: Vec<String> = job.gauges.iter().map(|g| g.name.clone()).collect();

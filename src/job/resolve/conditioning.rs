@@ -6,7 +6,7 @@ use super::super::raw_record::RawTemperature;
 use super::super::spanned_value::SpannedValue;
 use super::super::types::{ReadingConditioning, TemperatureCompensation};
 
-/// Checks the section. Times must be in order, and the corner of the high-pass filter must be below that of the low-pass filter.
+/// Checks the section. Times must be in order, and the corner of the high-pass filter must be below the corner of the low-pass filter.
 pub(super) fn resolve_conditioning(c: &mut Collector, job: &RawJob) -> Option<ReadingConditioning> {
     let section = job.conditioning.as_ref()?;
     let raw = section.value();

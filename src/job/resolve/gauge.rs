@@ -24,7 +24,7 @@ const ROLES: [(&str, Role); 3] = [
 ];
 const POINTS: [(&str, u8); 4] = [("C", 0), ("D", 1), ("E", 2), ("F", 3)];
 
-/// Wirings by their names.
+/// Returns the wirings by their names.
 pub(super) fn bridges() -> [(&'static str, Bridge); 4] {
     Bridge::ALL.map(|b| (b.name(), b))
 }
@@ -36,12 +36,12 @@ fn find_choice<T: Copy>(word: &str, choices: &[(&str, T)]) -> Option<T> {
         .map(|c| c.1)
 }
 
-/// `top` or `bottom`.
+/// Returns the surface of the name `top` or `bottom`.
 pub(crate) fn surface_from(word: &str) -> Option<Surface> {
     find_choice(word, &SURFACES)
 }
 
-/// Returns a wiring by its name; `full` and `half` mean bending.
+/// Returns a wiring by its name. `full` and `half` stand for the bending bridges.
 pub(crate) fn bridge_from(name: &str) -> Option<Bridge> {
     match name {
         "full" => Some(Bridge::FullBending),
@@ -50,7 +50,7 @@ pub(crate) fn bridge_from(name: &str) -> Option<Bridge> {
     }
 }
 
-/// `rectangular` or `delta`.
+/// Returns the rosette of the name `rectangular` or `delta`.
 pub(crate) fn rosette_from(word: &str) -> Option<Rosette> {
     find_choice(word, &ROSETTES)
 }
@@ -60,7 +60,7 @@ pub(crate) fn role_from(word: &str) -> Option<Role> {
     find_choice(word, &ROLES)
 }
 
-/// C, D, E, F as 0 to 3.
+/// Returns the recovery point C, D, E or F as 0 to 3.
 pub(crate) fn point_from(word: &str) -> Option<u8> {
     find_choice(word, &POINTS)
 }
@@ -178,13 +178,13 @@ fn gauge(c: &mut Collector, section: &SpannedValue<RawGauge>) -> Option<JobGauge
     Some(gauge)
 }
 
-/// Both pairs of a bridge at one place.
+/// Message on a bridge whose two pairs are at one place.
 pub const SAME_SIDE: &str = "both pairs are on the same side of the same element";
 /// Remedy of [`SAME_SIDE`].
 pub const SAME_SIDE_REMEDY: &str = "give the opposite side as `surface2`, or another `element2`";
 
-/// Returns the gauge with its second pair. The default of `surface2` is found on the model; the default of `element2`, where `surface2` is
-/// stated, is the element of the gauge.
+/// Returns the gauge with its second pair. The model determines the default of `surface2`. If only `surface2` is stated, the default of `element2` is
+/// the element of the gauge.
 pub(crate) fn with_pair(
     gauge: JobGauge,
     element2: Option<u32>,
@@ -252,7 +252,7 @@ fn is_kt(x: f64) -> bool {
     x.abs() < 0.5
 }
 
-/// Checks the values of a gauge, wherever it is written, and adds the faults.
+/// Checks the values of a gauge of the job or of a table, and adds faults.
 pub(crate) fn check_gauge(g: &JobGauge, faults: &mut FaultList) {
     let mut fault = |field: &str, wrong: &str, remedy: &str| {
         faults.push(Fault::with_line(

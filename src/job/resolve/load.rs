@@ -189,7 +189,7 @@ fn acts(c: &mut Collector, section: &SpannedValue<RawLoad>, behind: Behind) -> O
     }
 }
 
-/// The results file that a load names is one of the model's.
+/// Checks that the results file of each load is a results file of the model.
 pub(super) fn check_results(c: &mut Collector, model: Option<&ModelFiles>, loads: &[JobLoad]) {
     let Some(model) = model else { return };
     for load in loads {

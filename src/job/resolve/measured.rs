@@ -19,7 +19,7 @@ const DEFAULT_HOTTEST: usize = 20;
 /// Power of the load range in pseudo-damage if the job states none: usual for welded and cast parts of vehicles.
 const DEFAULT_SLOPE: f64 = 5.0;
 
-/// `[measured]`; where there is a `[fleet]`, its records replace the strain file.
+/// Resolves `[measured]`. With `[fleet]`, the records of the fleet replace the strain file.
 pub(super) fn resolve_measured(
     c: &mut Collector,
     raw: Option<&SpannedValue<RawMeasured>>,
@@ -138,7 +138,7 @@ fn noise(c: &mut Collector, raw: &S<NumberOrNumbers>) -> (f64, Vec<(String, f64)
     }
 }
 
-/// Seconds in one of the unit of time that a key states.
+/// Returns the length in seconds of the unit of time that a key states.
 pub(super) fn time_unit(c: &mut Collector, raw: &S<String>, key: &str) -> Option<f64> {
     let units = ["s", "ms", "us", "min", "h", "d"];
     let units = units.map(|unit| (unit, seconds_in(unit).unwrap_or(1.0)));

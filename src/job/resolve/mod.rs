@@ -30,7 +30,7 @@ use crate::host::fault::{Fault, FaultList};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The job, complete but for the gauges of its gauge file; faults are added to the list.
+/// Returns the job without the gauges of its gauge file. Faults are added to the list.
 pub(super) fn resolve_job(
     file: &str,
     text: &str,
@@ -119,12 +119,12 @@ fn one_source(c: &mut Collector, raw: &RawJob) {
     }
 }
 
-/// The candidates of a file of their own.
+/// Returns the candidates of a separate file.
 pub(super) fn candidates_of(c: &mut Collector, raw: &SpannedValue<RawCandidates>) -> Candidates {
     placement::candidates(c, Some(raw))
 }
 
-/// Refuses two channels of one name: a strain column then belongs to both. Names that differ by case or spaces alone count as one name.
+/// Refuses two channels with one name, because a strain column would then belong to both. Names that differ only by case or spaces count as one name.
 pub(super) fn check_names(job: &Job, faults: &mut FaultList) {
     check_names_of(job.gauges.iter(), faults);
     let spots = job.candidates.spots.iter().flatten();

@@ -6,7 +6,7 @@ use super::super::suggest;
 use crate::host::fault::Fault;
 use crate::units::{Quantity, ReportUnits, Unit, UnitSystem, find_unit, unit_names};
 
-/// The unit system, required; `parsed` is false where the job had faults before, which may have taken the key away.
+/// Returns the unit system, which is required. `parsed` is false if the job had earlier faults, because the key may be missing for this reason.
 pub(super) fn system(c: &mut Collector, raw: &S<String>, parsed: bool) -> UnitSystem {
     let choices: Vec<(&str, UnitSystem)> =
         UnitSystem::ALL.into_iter().map(|s| (s.name(), s)).collect();
@@ -23,7 +23,7 @@ pub(super) fn system(c: &mut Collector, raw: &S<String>, parsed: bool) -> UnitSy
     c.choose(raw, "units", &choices, UnitSystem::MKgS)
 }
 
-/// Units by quantity, `default` where not stated.
+/// Returns the units by quantity. `default` is used for quantities that are not stated.
 pub(super) fn units(
     c: &mut Collector,
     raw: Option<&RawUnits>,
@@ -56,7 +56,7 @@ pub(super) fn units(
     out
 }
 
-/// Quantities of which a unit is stated.
+/// Returns the quantities of which a unit is stated.
 pub(super) fn stated_quantities(raw: Option<&RawUnits>) -> Vec<Quantity> {
     let Some(raw) = raw else { return Vec::new() };
     let all = [

@@ -166,7 +166,7 @@ pub(super) fn vehicle(
     })
 }
 
-/// Where the axles sit on their leaf springs, by link.
+/// Returns the seats of the axles on their leaf springs, by link.
 fn seats(c: &mut Collector, section: &SpannedValue<RawVehicle>) -> BTreeMap<String, LeafSeat> {
     let mut leaf = BTreeMap::new();
     for (link, r) in &section.value().leaf {

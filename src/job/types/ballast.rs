@@ -6,17 +6,17 @@ use crate::job::shapes::PropertyIds;
 /// `[ballast]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ballast {
-    /// How many masses; default 1.
+    /// Number of masses. The default is 1.
     pub masses: usize,
     /// Region in which the masses may be.
     pub region: Option<Region>,
-    /// Properties whose grids may carry them; `None`: all shells (bars where there are none).
+    /// Properties whose grids may carry the masses. `None` means all shells, or bars if there are no shells.
     pub properties: Option<PropertyIds>,
-    /// The largest one.
+    /// Largest mass.
     pub max_mass: Option<f64>,
-    /// Run whose reactions count; default the first.
+    /// Run whose reactions are used. The default is the first run.
     pub run: Option<String>,
-    /// Gravity, m/s^2 whatever the unit system; default 9.80665.
+    /// Gravity in m/s^2 for every unit system. The default is 9.80665.
     pub gravity_m_s2: f64,
     /// Line of the job.
     pub line: u32,

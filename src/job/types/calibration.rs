@@ -13,17 +13,17 @@ pub enum Terms {
 /// `[calibration]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CalibrationKeys {
-    /// Runs that teach; `None`: every run whose loads are known.
+    /// Runs to calibrate with. `None` means every run with known loads.
     pub runs: Option<Vec<String>>,
     /// Columns of the runs file; runs with equal values in these columns are repeats.
     pub repeats: Vec<String>,
-    /// Column of the runs file that the scale may depend on.
+    /// Column of the runs file on which the scale may depend.
     pub depends_on: Option<String>,
     /// Stated relative error of the model's S, 1 sd: entry by entry, and common to a gauge.
     pub model_uncertainty_rel: f64,
-    /// How far a gauge may sit from its drawing along and across its axis, 1 sd, job length; 0: it sits there.
+    /// Distance of a gauge from its nominal position along and across its axis, 1 sd, job length. 0 means no distance.
     pub position_tolerance: f64,
-    /// How far it may be turned, 1 sd; 0: it is not.
+    /// Rotation of a gauge from its nominal direction, 1 sd. 0 means no rotation.
     pub angle_tolerance_deg: f64,
     /// Relative error that all known loads share, 1 sd; 0: none.
     pub scale_sd: f64,

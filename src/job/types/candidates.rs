@@ -7,7 +7,7 @@ use crate::fe::strain_tensor::Surface;
 use crate::gauge::{Bridge, Rosette};
 use crate::job::shapes::{Ids, PropertyIds};
 
-/// The angles of candidates as a job states them: a step, not the angles themselves ([`crate::placement::candidates::Angles`]).
+/// Angles of candidates as the job states them: a step. [`crate::placement::candidates::Angles`] contains the angles themselves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AngleStep {
     /// Every so many degrees from the element x axis.
@@ -29,25 +29,25 @@ pub struct Candidates {
     pub angles: AngleStep,
     /// Grid length of the gauges to be placed.
     pub grid_length: f64,
-    /// Wirings to choose from; default quarter bridges alone.
+    /// Wirings to choose from. The default is quarter bridges only.
     pub bridges: Vec<Bridge>,
-    /// Rosettes too.
+    /// Rosettes as additional candidates.
     pub rosette: Option<Rosette>,
-    /// SETs of the deck's case control that name the elements; `None`: not limited so.
+    /// SETs of the deck's case control with the allowed elements. `None` means no such limit.
     pub sets: Option<Ids>,
     /// Properties left out.
     pub exclude_properties: Option<PropertyIds>,
     /// Elements left out.
     pub exclude_elements: Option<Ids>,
-    /// Elements of which each gets a gauge.
+    /// Elements that must have a gauge each.
     pub wanted_elements: Option<Ids>,
     /// A TOML file with lists of properties and elements, or a table of named spots.
     pub file: Option<NamedFile>,
-    /// The spots of that table: gauges are chosen from these alone. `None`: the file is not a table.
+    /// Spots of the table. Gauges are chosen only from these spots. `None` if the file is not a table.
     pub spots: Option<Vec<NamedSpot>>,
-    /// Boxes in which gauges may sit; empty: anywhere.
+    /// Boxes in which gauges may be placed. An empty list means everywhere.
     pub boxes: Vec<Region>,
-    /// Boxes in which they may not.
+    /// Boxes in which gauges may not be placed.
     pub exclude_boxes: Vec<Region>,
     /// Least distances, job units.
     pub clear: Clearances,
@@ -55,10 +55,10 @@ pub struct Candidates {
     pub line: u32,
 }
 
-/// A named place with a fixed direction that a gauge may be chosen for.
+/// A named place with a fixed direction, at which a gauge may be placed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedSpot {
-    /// The gauge as it would be installed there.
+    /// Gauge as installed at the spot.
     pub gauge: JobGauge,
     /// Cost in the unit of `[placement] budget`; `None`: one for each channel.
     pub cost: Option<f64>,
@@ -71,17 +71,17 @@ impl Candidates {
     }
 }
 
-/// `clear_of` of `[candidates]`: least distances, 0 where not stated.
+/// `clear_of` of `[candidates]`: least distances, 0 by default.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Clearances {
-    /// From free edges; from rims of holes too, where `holes` is not stated.
+    /// Least distance from free edges. It also applies to rims of holes if `holes` is not stated.
     pub edges: f64,
-    /// From rims of holes.
+    /// Least distance from rims of holes.
     pub holes: Option<f64>,
-    /// From edges where plates meet: welds.
+    /// Least distance from edges where plates meet, such as welds.
     pub joints: f64,
-    /// From grids at which loads act.
+    /// Least distance from grids at which loads act.
     pub loads: f64,
-    /// From grids that rigid elements, RBE3 and bushes hold.
+    /// Least distance from grids that rigid elements, RBE3 or bushes connect.
     pub attachments: f64,
 }

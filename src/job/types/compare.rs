@@ -5,7 +5,7 @@ use super::runs::Runs;
 /// `[compare]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compare {
-    /// File of the recorded loads, its columns, units and noise.
+    /// File of the recorded loads, with its columns, units and noise.
     pub recorded: Runs,
     /// Time added to the times of the file.
     pub shift: TimeShift,

@@ -1,7 +1,7 @@
 //! `[[correction]]`.
 
-/// `[[correction]]`: all that is known to be wrong with a strain channel ([`crate::reconcile::effect::Correction`] is one step of what a
-/// hypothesis finds). It reads `sign gain strain + offset`.
+/// `[[correction]]`: all known faults of a strain channel. The channel reads `sign * gain * strain + offset`.
+/// [`crate::reconcile::effect::Correction`] is a single fault from a hypothesis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrainCorrection {
     /// Channel.
@@ -12,11 +12,11 @@ pub struct StrainCorrection {
     pub gain: f64,
     /// Reading without strain, microstrain.
     pub offset_microstrain: f64,
-    /// The channel with which it is exchanged.
+    /// Channel that is exchanged with this channel.
     pub exchanged_with: Option<String>,
     /// Rotation of the gauge from its stated angle, degrees.
     pub angle_deg: Option<f64>,
-    /// The channel is taken for silent.
+    /// Whether the channel is ignored.
     pub ignore: bool,
     /// Leg of a rosette whose correction the job states for the rosette as a whole.
     pub of_rosette: bool,

@@ -3,13 +3,13 @@
 /// `[dynamic]`: records of a structure that vibrates in its elastic modes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dynamic {
-    /// Loads are wanted up to here, Hz.
+    /// Highest frequency of the wanted loads, Hz.
     pub up_to_hz: f64,
     /// Damping of the modes.
     pub damping: Damping,
-    /// One standard deviation of the modes' frequencies, share of each.
+    /// Standard deviation of the frequency of each mode, as a share of the frequency.
     pub frequency_uncertainty_rel: f64,
-    /// One standard deviation of the damping, share of it.
+    /// Standard deviation of the damping, as a share of the damping.
     pub damping_uncertainty_rel: f64,
     /// Line of the section in the job.
     pub line: u32,

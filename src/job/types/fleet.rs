@@ -7,19 +7,19 @@ use super::named_file::NamedFile;
 pub struct Fleet {
     /// Form of file names, with `{vehicle}` and `{day}`.
     pub file_name: NamedFile,
-    /// Range below which the S-N line is flatter, report unit of each load; `None`: a straight line.
+    /// Range below which the S-N line is flatter, report unit of each load. `None` for a straight line.
     pub knee_range: Option<f64>,
-    /// Power below the knee; infinite where cycles below do no harm.
+    /// Power below the knee. It is infinite if cycles below the knee cause no damage.
     pub slope_below_knee: f64,
-    /// Day whose damage an hour is 1.
+    /// Day whose damage per hour is 1 in comparisons.
     pub reference: Option<ReferenceDay>,
-    /// Damage that is aimed at, by load.
+    /// Target damage of each load.
     pub target: Vec<TargetDamage>,
-    /// Kinds of days that a mission is mixed of; their shares sum to 1.
+    /// Kinds of days that a mission consists of. Their shares sum to 1.
     pub mission: Vec<MissionKind>,
     /// Hours of the mission.
     pub mission_hours: f64,
-    /// The job but for what damage is held against and what other commands ask: on so much of it a single record depends.
+    /// Text of the job without comparisons of damage and keys of other commands. The result of a single record depends only on this text.
     pub of_records: String,
 }
 
@@ -28,13 +28,13 @@ pub struct Fleet {
 pub struct ReferenceDay {
     /// The vehicle.
     pub vehicle: String,
-    /// The day, as its file name has it.
+    /// Day, as in the file name.
     pub day: String,
     /// Line of the job.
     pub line: u32,
 }
 
-/// The damage that a load is to do.
+/// Target damage of a load.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TargetDamage {
     /// The load.
@@ -52,9 +52,9 @@ pub struct MissionKind {
     pub name: String,
     /// Share of the hours.
     pub share: f64,
-    /// Names of its days, `*` for any text; none: every day.
+    /// Names of the days, with `*` for any text. An empty list means every day.
     pub days: Vec<String>,
-    /// Names of its vehicles likewise.
+    /// Names of the vehicles, with `*` for any text. An empty list means every vehicle.
     pub vehicles: Vec<String>,
     /// Line of the job.
     pub line: u32,

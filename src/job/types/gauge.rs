@@ -4,8 +4,7 @@ use crate::fe::strain_tensor::Surface;
 use crate::gauge::{Bridge, Rosette};
 use crate::placement::Role;
 
-/// Where a gauge sits as its user states it: by ids and axes of the deck, or not at all. [`crate::gauge::GaugePlace`] is the same found on a
-/// model.
+/// Place of a gauge as the user states it: ids and axes of the deck, or no place. [`crate::gauge::GaugePlace`] is the corresponding place on a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StatedPlace {
     /// At the centre of an element.
@@ -32,13 +31,13 @@ pub struct JobGauge {
     pub name: String,
     /// Stated place of the gauge.
     pub place: StatedPlace,
-    /// Location, job units, if stated in addition to the element. Compared with the element; selects the surface if none is stated.
+    /// Location in job units, if stated in addition to the element. It is compared with the element, and selects the surface if none is stated.
     pub position: Option<[f64; 3]>,
     /// Surface.
     pub surface: Surface,
-    /// Whether the job states the surface (else it is `top`, or the one nearest to the stated point).
+    /// Whether the job states the surface. Otherwise the surface is `top`, or the surface nearest to the stated point.
     pub surface_stated: bool,
-    /// Direction to be projected on the surface, in the basic frame or the frame of `cid`; `None`: the element x axis.
+    /// Direction to be projected onto the surface, in the basic frame or the frame of `cid`. `None` means the element x axis.
     pub direction: Option<[f64; 3]>,
     /// Coordinate system of the direction.
     pub cid: u32,
@@ -46,22 +45,22 @@ pub struct JobGauge {
     pub angle_deg: f64,
     /// Wiring.
     pub bridge: Bridge,
-    /// The sum of signed arm strains is divided by this.
+    /// Number that divides the sum of signed arm strains.
     pub bridge_factor: f64,
-    /// Length over which strain is averaged; 0: at the point.
+    /// Length over which strain is averaged. 0 means the strain at the point.
     pub grid_length: f64,
-    /// Element and surface of the other pair; without a surface: the side that faces away from the first pair.
+    /// Element and surface of the other pair. Without a surface, it is on the side that faces away from the first pair.
     pub pair: Option<(u32, Option<Surface>)>,
-    /// Three legs instead of one grid.
+    /// Rosette with three legs. `None` for a single grid.
     pub rosette: Option<Rosette>,
     /// Transverse sensitivity Kt, a fraction.
     pub transverse_sensitivity: f64,
-    /// Whether loads are estimated from it.
+    /// Whether loads are estimated from the gauge.
     pub role: Role,
     /// Free columns of the table, such as `member`.
     pub member: String,
-    /// File that states it.
+    /// File that states the gauge.
     pub file: String,
-    /// Line there.
+    /// Line of this file.
     pub line: u32,
 }

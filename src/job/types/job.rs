@@ -54,7 +54,7 @@ pub struct Job {
     pub file: String,
     /// Folder of the job: paths in the job are relative to it.
     pub folder: PathBuf,
-    /// The files it was read from: itself, then tables read with it.
+    /// Files from which the job was read: the job file first, then tables read with it.
     pub read: Vec<FileRead>,
     /// Title; the file's name if the job has no title.
     pub title: String,

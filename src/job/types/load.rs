@@ -17,7 +17,7 @@ pub enum Component {
 }
 
 impl Component {
-    /// All, in dof order.
+    /// All components in dof order.
     pub const ALL: [Component; 6] = [Self::FX, Self::FY, Self::FZ, Self::MX, Self::MY, Self::MZ];
 
     /// Returns the name in a job.
@@ -25,17 +25,17 @@ impl Component {
         ["FX", "FY", "FZ", "MX", "MY", "MZ"][self as usize]
     }
 
-    /// 0 to 5.
+    /// Returns the dof, 0 to 5.
     pub fn dof(self) -> usize {
         self as usize
     }
 
-    /// A force, not a moment.
+    /// Returns whether the component is a force and not a moment.
     pub fn is_force(self) -> bool {
         (self as usize) < 3
     }
 
-    /// Force or moment.
+    /// Returns force or moment.
     pub fn quantity(self) -> Quantity {
         if self.is_force() {
             Quantity::Force
@@ -70,7 +70,7 @@ pub enum LoadActs {
     Named,
 }
 
-/// Whether a load is asked for; what a placed gauge is for is [`crate::placement::Role`].
+/// Whether a load is wanted as a result. [`crate::placement::Role`] is the role of a placed gauge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum LoadRole {
@@ -83,13 +83,13 @@ pub enum LoadRole {
 pub struct JobLoad {
     /// Name.
     pub name: String,
-    /// Load as the job states it.
+    /// Place and direction of the load.
     pub acts: LoadActs,
-    /// The load in its subcase, job units, signed; not zero.
+    /// Size of the load in its subcase, job units, with sign. It is not zero.
     pub applied: f64,
     /// Results file of the load, if the job states one.
     pub result: Option<NamedFile>,
-    /// Subcase, if the job states one; else its number in job order.
+    /// Subcase, if the job states one. Otherwise the number of the load in the job is used.
     pub subcase: Option<u32>,
     /// Number in job order, from 1: the subcase of the load in the deck that `cases` writes.
     pub number: u32,
@@ -97,19 +97,19 @@ pub struct JobLoad {
     pub role: LoadRole,
     /// Prior standard deviation, job units.
     pub expected: Option<f64>,
-    /// How much its variance counts in criterion A; default 1.
+    /// Weight of the variance of the load in criterion A. The default is 1.
     pub weight: f64,
     /// Line of the job.
     pub line: u32,
 }
 
 impl JobLoad {
-    /// The subcase stated, else the one that `cases` gives.
+    /// Returns the stated subcase. Otherwise it is the number of the load in the job, which `cases` also uses.
     pub fn subcase(&self) -> u32 {
         self.subcase.unwrap_or(self.number)
     }
 
-    /// Force or moment; `None` for a load set.
+    /// Returns force or moment. `None` for a load set.
     pub fn quantity(&self) -> Option<Quantity> {
         match self.acts {
             LoadActs::AtGrid { component, .. } => Some(component.quantity()),
@@ -118,7 +118,7 @@ impl JobLoad {
         }
     }
 
-    /// The unit in which it is reported; `None` for a load set, which is counted in times the set.
+    /// Returns the unit of the load in reports. `None` for a load set, which is stated as a multiple of the set.
     pub fn report_unit(&self, units: &ReportUnits) -> Option<Unit> {
         Some(units.unit(self.quantity()?))
     }

@@ -31,17 +31,17 @@ pub struct Measured {
     pub strain: NamedFile,
     /// Record or runs whose mean is subtracted.
     pub zero: Option<NamedFile>,
-    /// Runs of the strain file at which no load acts: the zero is followed through them.
+    /// Runs of the strain file without load. The zero is interpolated between these runs.
     pub zero_runs: Vec<String>,
     /// Changes or totals.
     pub reference: Reference,
-    /// Noise, microstrain, 1 sd; default 1. Where it is stated by gauge, the root mean square over the gauges.
+    /// Noise, microstrain, 1 sd. The default is 1. If noise is stated by gauge, it is the root mean square over the gauges.
     pub noise_microstrain: f64,
-    /// Noise of each gauge, microstrain, 1 sd; empty where all gauges have the same.
+    /// Noise of each gauge, microstrain, 1 sd. Empty if all gauges have equal noise.
     pub noise_by_gauge: Vec<(String, f64)>,
     /// Correlation of the noise of any two gauges; default 0.
     pub noise_correlation: f64,
-    /// Whether the job states it.
+    /// Whether the job states the noise.
     pub states_noise: bool,
     /// Model uncertainty of the predicted strain, 1 sd; default 0.
     pub model_uncertainty_rel: f64,

@@ -14,7 +14,7 @@ pub struct ModelFiles {
     pub support: SupportChoice,
     /// Line of `support`, or of the section.
     pub support_line: u32,
-    /// Whether the error of the mesh is subtracted from the strain of the built-in solver and its remainder is in the covariance. `None`: for small
-    /// decks.
+    /// Whether the mesh error is subtracted from the strain of the built-in solver, with the remaining error in the covariance. `None` means: for
+    /// small decks only.
     pub mesh_error: Option<bool>,
 }

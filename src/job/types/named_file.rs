@@ -5,7 +5,7 @@
 pub struct NamedFile {
     /// Path as written, relative to the job's folder.
     pub given: String,
-    /// The key that names it, such as `model.deck`.
+    /// Key that names the file, such as `model.deck`.
     pub key: String,
     /// Line of the job.
     pub line: u32,

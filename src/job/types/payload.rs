@@ -6,25 +6,25 @@ use crate::payload::Place;
 /// `[payload]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Payload {
-    /// Grid where it acts.
+    /// Grid where the payload acts.
     pub grid: Option<u32>,
-    /// Whether its place is known or asked for; default known.
+    /// Whether the place of the payload is known or to be determined. The default is known.
     pub position: Place,
-    /// Gravity, m/s^2 whatever the unit system; default 9.80665.
+    /// Gravity in m/s^2 for every unit system. The default is 9.80665.
     pub gravity_m_s2: f64,
-    /// The payload's weight acts in the analyst's model.
+    /// Whether the payload's weight acts in the analyst's model.
     pub weight_in_model: bool,
     /// Region in which the payload may be.
     pub region: Option<Region>,
-    /// Use strain; default both where present.
+    /// Whether strain is used. By default strain and wheel forces are used if present.
     pub use_strain: bool,
-    /// Use reactions.
+    /// Whether reactions are used.
     pub use_reactions: bool,
-    /// Run without payload: its wheel forces (and its strain, without a zero file) are subtracted.
+    /// Run without payload. Its wheel forces are subtracted. Without a zero file, its strain is also subtracted.
     pub unloaded: Option<String>,
-    /// Nominal position, job units.
+    /// Nominal position along x, job units.
     pub nominal_x: Option<f64>,
-    /// Likewise across.
+    /// Nominal position along y, job units.
     pub nominal_y: Option<f64>,
     /// Line of the job.
     pub line: u32,

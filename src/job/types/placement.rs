@@ -3,7 +3,7 @@
 use crate::gauge::Bridge;
 use crate::placement::Loss;
 
-/// Gauges of the job that stay.
+/// Gauges of the job that remain in the layout.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Keep {
     /// No gauge: the layout is new.
@@ -49,11 +49,11 @@ impl Optimality {
 /// `[placement]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placement {
-    /// Number of gauges; `None` is twice the number of loads, which the command reports.
+    /// Number of gauges. `None` means twice the number of loads. The command reports this default.
     pub gauges: Option<usize>,
     /// Criterion; default `Ds` with nuisance loads, else `D`.
     pub criterion: Optimality,
-    /// Whether to try a proof that no layout is better. No key of a job: `init` tries its proposals without.
+    /// Whether `place` tries to prove that no layout is better. The job has no such key: `init` tries its proposals without a proof.
     pub proof: bool,
     /// Smallest distance between gauges; default 0.
     pub spacing: f64,
@@ -69,19 +69,19 @@ pub struct Placement {
     pub position_tolerance: f64,
     /// Tolerance of the gauge factor, 1 sd, a fraction; default 0.
     pub gauge_factor_rel: f64,
-    /// Noise of a wiring's reading, microstrain, where it is not `noise_microstrain`.
+    /// Noise of a reading of each wiring, microstrain, for wirings that differ from `noise_microstrain`.
     pub noise_by_bridge: Vec<(Bridge, f64)>,
     /// Whether the layout is optimal after the worst loss of a gauge.
     pub loss: Loss,
-    /// Gauges of the job that stay; `gauges` counts those to be added.
+    /// Gauges of the job that stay installed. `gauges` counts the added gauges.
     pub keep: Keep,
-    /// Pairs that mirror each other at the plane through 0 normal to this axis (0 to 2).
+    /// Axis (0 to 2) of the mirror plane through 0. Gauges are placed in pairs that mirror each other at this plane.
     pub symmetric: Option<usize>,
-    /// Cost of a wiring's name (`quarter`, .., `rosette`) in channels; default 1, a rosette 3.
+    /// Cost of each wiring by name (`quarter`, .., `rosette`), in channels. The default is 1, and 3 for a rosette.
     pub costs: Vec<(String, f64)>,
     /// Largest cost of a layout; default: `gauges`.
     pub budget: Option<f64>,
-    /// Numbers of gauges for the curve; empty: no curve.
+    /// Gauge counts for the curve. An empty list means no curve.
     pub curve: Vec<usize>,
     /// Gauges reserved for validation.
     pub reserve: usize,

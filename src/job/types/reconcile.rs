@@ -4,7 +4,7 @@ use super::named_file::NamedFile;
 use crate::job::shapes::{Ids, PropertyIds};
 use std::collections::BTreeMap;
 
-/// Which world `reconcile` compares.
+/// Kind of measurement that `reconcile` compares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum ReconcilePath {
@@ -15,7 +15,7 @@ pub enum ReconcilePath {
 /// `[reconcile]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reconcile {
-    /// Static or dynamic.
+    /// Path of the comparison: strain of static runs, or motion.
     pub path: ReconcilePath,
     /// Zone to property ids.
     pub zones: BTreeMap<String, PropertyIds>,
@@ -23,11 +23,11 @@ pub struct Reconcile {
     pub places: BTreeMap<String, u32>,
     /// Apparent strain per degree by bridge name.
     pub thermal_microstrain_per_degc: BTreeMap<String, f64>,
-    /// Temperature set of the deck whose pattern `thermal_gradient` has.
+    /// Temperature set of the deck with the pattern of `thermal_gradient`.
     pub temperature_set: Option<u32>,
     /// Effect ids; `None`: all.
     pub effects: Option<Vec<String>>,
-    /// Bushes whose stiffness may be wrong; `None`: all, where they are few.
+    /// Bushes whose stiffness may be wrong. `None` means all bushes if there are few.
     pub joints: Option<Ids>,
     /// Causes measured in addition to the readings: name, and column of the runs file.
     pub causes: BTreeMap<String, String>,
@@ -48,7 +48,7 @@ pub struct DescribedEffect {
     pub id: String,
     /// Change of the model at size one.
     pub source: EffectSource,
-    /// One standard deviation of its size before a run is seen.
+    /// Standard deviation of the size of the effect before the measurement.
     pub prior: f64,
     /// Line of the job.
     pub line: u32,
@@ -57,7 +57,7 @@ pub struct DescribedEffect {
 /// Change of the model by a described effect of size one.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EffectSource {
-    /// A table: the change of S, a row a gauge, a column a load.
+    /// A table of the change of S, with a row for each gauge and a column for each load.
     Signature(NamedFile),
     /// The thickness of a shell property times a factor.
     Thickness {

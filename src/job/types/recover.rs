@@ -31,10 +31,10 @@ impl LoadFile {
 /// `[recover]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recover {
-    /// Files asked for; `None`: all, but for long histories.
+    /// Requested files. `None` means all files, except for long histories.
     pub files: Option<Vec<LoadFile>>,
     /// Power of the load range in pseudo-damage.
     pub slope: f64,
-    /// Every how many samples `loads.csv` has a row; default 1.
+    /// `loads.csv` has a row for every n-th sample, with this n. The default is 1.
     pub csv_every: usize,
 }

@@ -1,4 +1,4 @@
 //! Where something may be.
 
-/// A box in plan, and in height where stated: low and high by axis.
+/// Box in plan, and in height if stated: lower and upper bound for each axis.
 pub type Region = Vec<[f64; 2]>;

@@ -6,9 +6,9 @@ use crate::job::shapes::Ids;
 /// `[respond]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Respond {
-    /// Elements to report; `None`: the hottest.
+    /// Elements to report. `None` means the elements with the largest stress.
     pub elements: Option<Ids>,
-    /// How many of the hottest; default 20.
+    /// Number of reported elements with the largest stress. The default is 20.
     pub hottest: usize,
     /// Load histories; `None`: recovered from `[measured]`.
     pub loads: Option<NamedFile>,

@@ -10,17 +10,17 @@ use std::collections::BTreeMap;
 pub struct Runs {
     /// The file.
     pub file: NamedFile,
-    /// Section of the job that names it: `runs`, `compare`, or `respond`.
+    /// Section of the job that names the file: `runs`, `compare` or `respond`.
     pub section: &'static str,
-    /// Load name or `payload_force`, `payload_mass`, `payload_x`, `payload_y` to the column's name.
+    /// Column of each load, and of `payload_force`, `payload_mass`, `payload_x`, `payload_y`.
     pub columns: BTreeMap<String, String>,
-    /// Units of the file; the report units where not stated.
+    /// Units of the file. The default is the report units.
     pub units: ReportUnits,
     /// Quantities whose unit the job states.
     pub stated_units: Vec<Quantity>,
     /// 1 sd by quantity, in the file's units.
     pub noise: RunNoise,
-    /// Measured or computed.
+    /// Whether wheel forces were measured or computed.
     pub wheel_forces: WheelForces,
     /// Usual change of a computed wheel force by ground that is not flat, 1 sd, in the file's unit of force.
     pub ground: Option<f64>,

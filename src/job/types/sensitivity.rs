@@ -7,17 +7,17 @@ use std::collections::BTreeMap;
 /// `[sensitivity]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GivenSensitivity {
-    /// A row a gauge, a column a load.
+    /// File with a row for each gauge and a column for each load.
     pub file: NamedFile,
-    /// Microstrain per these units.
+    /// Units of load to which the microstrain refers.
     pub per: ReportUnits,
-    /// Load name and column name, in job order; if empty, every column is a load of the same name.
+    /// Name and column of each load, in job order. If the list is empty, every column is a load with the name of the column.
     pub columns: Vec<(String, String)>,
     /// Signature files.
     pub signatures: Signatures,
-    /// Covariance of S, as `calibrate` writes it.
+    /// Covariance of S in the format of `calibrate`.
     pub covariance: Option<NamedFile>,
-    /// Strain that the gauges read without load, as `calibrate` writes it with `terms = "intercept"`.
+    /// Strain that the gauges read without load, in the format that `calibrate` writes with `terms = "intercept"`.
     pub common_zero: Option<NamedFile>,
     /// Smallest and largest load of the calibration by name, in the units of [`Self::per`].
     pub range: BTreeMap<String, [f64; 2]>,
@@ -36,7 +36,7 @@ pub struct Signatures {
     pub payload: Option<NamedFile>,
     pub unaccounted_mass: Option<NamedFile>,
     pub gauge_angle: Option<NamedFile>,
-    /// Zone to file.
+    /// File of each zone.
     pub rail_stiffness: BTreeMap<String, NamedFile>,
 }
 

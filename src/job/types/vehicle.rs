@@ -16,7 +16,7 @@ pub struct Vehicle {
     pub data: NamedFile,
     /// Held-out record.
     pub hold_out: Option<NamedFile>,
-    /// Hz; `None`: from the time column.
+    /// Sampling rate, Hz. `None` means the rate of the time column.
     pub sample_rate: Option<f64>,
     /// Known parameters, units of the job.
     pub known: BTreeMap<String, f64>,
@@ -30,7 +30,7 @@ pub struct Vehicle {
     pub tolerance_sync: Option<f64>,
     /// Band in which to compare, Hz.
     pub band_hz: Option<[f64; 2]>,
-    /// Channel to column, where the file names them otherwise.
+    /// Column of each channel, if the file uses another name for the channel.
     pub columns: BTreeMap<String, String>,
     /// Places (x, y) of wheels (`lf`), springs (`spring_lf`) and body accelerometers (`body_lf`), job unit of length.
     pub places: BTreeMap<String, [f64; 2]>,
@@ -49,29 +49,29 @@ pub struct Vehicle {
 /// Known faults of a channel of the records, one of each kind; [`crate::vehicle::adjustment::Adjustment`] combines several.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChannelCorrection {
-    /// Reading over truth.
+    /// Reading divided by true value.
     pub gain: f64,
-    /// How late it reads, s.
+    /// Delay of the channel, s.
     pub delay_s: f64,
-    /// How much later it reads with every second of a record, millionths.
+    /// Increase of the delay in each second of the record, millionths.
     pub clock_ppm: f64,
     /// Samples lost or written twice, in the fitted record.
     pub slip: Option<Slip>,
-    /// A low-pass that it alone went through.
+    /// Low-pass filter in this channel only.
     pub lag: Option<Lag>,
-    /// A mains line on it, Hz.
+    /// Frequency of a mains line in the channel, Hz.
     pub line_hz: Option<f64>,
 }
 
-/// `mass_change` of `[vehicle]`, by the name of the body; on a vehicle it is a [`crate::vehicle::layout::MassStep`].
+/// Key `mass_change` of `[vehicle]`, which names the body. [`crate::vehicle::layout::MassStep`] is the corresponding change of a vehicle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MassChange {
     /// Body, such as `b`.
     pub body: String,
-    /// When it begins, s.
+    /// Begin of the change, s.
     pub at_s: f64,
-    /// How long it takes, s.
+    /// Duration of the change, s.
     pub over_s: f64,
-    /// Whether its weight comes with it (else its inertia alone).
+    /// Whether the weight of the mass changes too. Otherwise only its inertia changes.
     pub weight: bool,
 }

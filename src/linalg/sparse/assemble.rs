@@ -109,7 +109,7 @@ impl BlockMatrix {
     }
 }
 
-/// Where the blocks of a matrix are.
+/// Places of the blocks of a matrix.
 struct Shape<'a> {
     symbolic: &'a Symbolic,
     column: &'a [usize],

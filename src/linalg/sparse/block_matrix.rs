@@ -4,15 +4,15 @@ use super::graph::BlockGraph;
 use super::symbolic::Symbolic;
 use rayon::prelude::*;
 
-/// Groups of a task.
+/// Number of groups of a task.
 pub(super) const GROUPS: usize = 4096;
 
-/// Lower triangle of a symmetric matrix by block columns; a block is stored by columns, diagonal blocks in full.
+/// Lower triangle of a symmetric matrix by block columns. Each block is stored by columns. Diagonal blocks are stored in full.
 #[derive(Clone, Debug, Default)]
 pub struct BlockMatrix {
     /// First block of each block column, and the total.
     pub(super) column: Vec<usize>,
-    /// Block row, ascending in a column; the first is the diagonal block.
+    /// Row of each block, ascending within a block column. The first block of a column is the diagonal block.
     pub(super) row: Vec<u32>,
     /// First value of each block, and the total.
     pub(super) value_start: Vec<usize>,
@@ -31,7 +31,7 @@ pub struct DenseTerm {
 }
 
 impl BlockMatrix {
-    /// A zero matrix with a block wherever the graph has an edge.
+    /// Returns a zero matrix with a block wherever the graph has an edge.
     pub fn zeros(symbolic: &Symbolic, graph: &BlockGraph) -> Self {
         let n = graph.n();
         let size = |g: u32| symbolic.start[g as usize + 1] - symbolic.start[g as usize];
@@ -66,7 +66,7 @@ impl BlockMatrix {
         }
     }
 
-    /// Block rows of a group's column with their blocks, by columns; both numberings in elimination order.
+    /// Returns the blocks in the column of a group, each with its block row, by columns. Both numberings are in elimination order.
     pub(super) fn column_of(&self, g: usize) -> impl Iterator<Item = (u32, &[f64])> {
         let blocks = self.column[g]..self.column[g + 1];
         blocks.map(|b| {
@@ -75,7 +75,7 @@ impl BlockMatrix {
         })
     }
 
-    /// Scales rows and columns in place; `scale` in elimination order.
+    /// Scales rows and columns in place. `scale` is in elimination order.
     pub(super) fn scale(&mut self, symbolic: &Symbolic, scale: &[f64]) {
         let (column, row, value_start) = (&self.column, &self.row, &self.value_start);
         let mut rest = self.values.as_mut_slice();
@@ -104,7 +104,8 @@ impl BlockMatrix {
         });
     }
 
-    /// r -= A y, where `r` holds `M` columns row by row, and `y` holds those, from the one numbered `c`, among `k`; elimination order.
+    /// Subtracts a product: `r -= A y`. `r` contains `M` columns row by row. `y` contains `k` columns, of which the `M` columns from number `c` on
+    /// are used. Elimination order.
     pub(super) fn subtract_product<const M: usize>(
         &self,
         symbolic: &Symbolic,
@@ -151,7 +152,7 @@ impl BlockMatrix {
         self.values[self.value_start[self.column[group]] + i * m + i] += value;
     }
 
-    /// The diagonal in elimination order.
+    /// Returns the diagonal in elimination order.
     pub(super) fn diagonal(&self, symbolic: &Symbolic) -> Vec<f64> {
         let mut d = Vec::with_capacity(symbolic.n_unknowns());
         for g in 0..symbolic.order.len() {
@@ -162,7 +163,7 @@ impl BlockMatrix {
         d
     }
 
-    /// The diagonal in the caller's numbering.
+    /// Returns the diagonal in the caller's numbering.
     pub fn diagonal_values(&self, symbolic: &Symbolic) -> Vec<f64> {
         let d = self.diagonal(symbolic);
         let mut out = vec![0.0; d.len()];
@@ -174,7 +175,7 @@ impl BlockMatrix {
         out
     }
 
-    /// The product with a vector, both in the caller's numbering.
+    /// Returns the product with a vector, both in the caller's numbering.
     pub fn times(&self, symbolic: &Symbolic, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
         for g in 0..symbolic.order.len() {
@@ -198,7 +199,7 @@ impl BlockMatrix {
         y
     }
 
-    /// The lower triangle in the caller's numbering: rows, columns, values; for files and comparisons.
+    /// Returns the lower triangle in the caller's numbering (rows, columns, values), for files and comparisons.
     pub fn lower_triplets(&self, symbolic: &Symbolic) -> Vec<(usize, usize, f64)> {
         let mut all = Vec::new();
         for g in 0..symbolic.order.len() {
@@ -225,7 +226,7 @@ impl BlockMatrix {
 }
 
 impl BlockMatrix {
-    /// The diagonal block of a group (caller's numbering), row by row.
+    /// Returns the diagonal block of a group (caller's numbering), row by row.
     pub fn diagonal_block(&self, symbolic: &Symbolic, group: usize) -> &[f64] {
         let g = symbolic.position[group] as usize;
         let b = self.column[g];

@@ -10,36 +10,36 @@ const SHARE: f64 = 1.0 / 24.0;
 /// Tasks that branches are shared out into.
 const TASKS: usize = 16;
 
-/// A supernode with all that is below it.
+/// A supernode with all its descendants.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Branch {
     /// Supernodes of the branch.
     pub(super) supernodes: Range<usize>,
-    /// Their groups.
+    /// Groups of these supernodes.
     pub(super) groups: Range<usize>,
-    /// Their unknowns, elimination order.
+    /// Unknowns of these supernodes, in elimination order.
     pub(super) unknowns: Range<usize>,
-    /// Multiplications to factor it.
+    /// Number of multiplications to factor the branch.
     pub(super) weight: f64,
 }
 
-/// The tree in two parts.
+/// Tree in two parts: branches, and the top above them.
 #[derive(Debug, Default)]
 pub(super) struct Branches {
-    /// Ascending.
+    /// Branches, ascending.
     pub(super) list: Vec<Branch>,
-    /// Supernodes above them, ascending.
+    /// Supernodes above the branches, ascending.
     pub(super) top: Vec<usize>,
-    /// First place of each group among the unknowns of the top; `OUTSIDE` elsewhere.
+    /// First position of each group among the unknowns of the top. `OUTSIDE` for other groups.
     pub(super) in_top: Vec<u32>,
-    /// Unknowns of the top.
+    /// Number of unknowns of the top.
     pub(super) n_top: usize,
 }
 
 pub(super) const OUTSIDE: u32 = u32::MAX;
 
 impl Branches {
-    /// `start` is the first unknown of each group.
+    /// Divides the tree of supernodes. `start` is the first unknown of each group.
     pub(super) fn from_supernodes(nodes: &Supernodes, start: &[usize]) -> Self {
         let n = nodes.len();
         let groups = |s: &Range<usize>| nodes.first[s.start] as usize..nodes.first[s.end] as usize;
@@ -92,7 +92,7 @@ impl Branches {
         }
     }
 
-    /// Indices into `top` of supernodes whose children are done, level by level; `parent` of each supernode.
+    /// Returns indices into `top` of supernodes whose children are complete, level by level. `parent` contains the parent of each supernode.
     pub(super) fn levels(&self, parent: &[u32]) -> Vec<Vec<usize>> {
         let mut level = vec![0_usize; self.top.len()];
         let mut levels: Vec<Vec<usize>> = Vec::new();
@@ -121,7 +121,7 @@ impl Branches {
         bins.into_iter().map(|b| b.1).collect()
     }
 
-    /// Indices into `list`.
+    /// Returns the indices into `list`.
     pub(super) fn heaviest_first(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.list.len()).collect();
         order.sort_by(|&a, &b| self.list[b].weight.total_cmp(&self.list[a].weight));
@@ -129,7 +129,7 @@ impl Branches {
     }
 }
 
-/// Multiplications to eliminate so many unknowns from a matrix with so many rows below them.
+/// Returns the number of multiplications to eliminate the given number of unknowns from a matrix with the given number of rows below them.
 pub(super) fn work(own: usize, below: usize) -> f64 {
     let (w, m) = (own as f64, below as f64);
     w * w * w / 6.0 + w * w * m / 2.0 + w * m * m / 2.0

@@ -25,7 +25,7 @@ pub(super) enum Tiles {
     Shared,
 }
 
-/// The factor of the first `w` columns, of which `panel` holds all rows.
+/// Factors the first `w` columns in place. `panel` contains all rows of these columns.
 ///
 /// # Errors
 /// The column whose pivot is not positive.
@@ -99,7 +99,7 @@ fn half(n: usize) -> usize {
     (n / 2).next_multiple_of(narrow_blocks::MOST)
 }
 
-/// The lower triangle of `update -= below below'`; `Accum::Replace` does not read what `update` holds.
+/// Computes the lower triangle of `update -= below below'`. With `Accum::Replace`, the previous content of `update` is not read.
 pub(super) fn take_out(
     update: MatMut<'_, f64>,
     begin: Accum,

@@ -1,6 +1,6 @@
 //! Why a factor can't be made.
 
-/// Why a factor could not be made.
+/// Reason why a factor could not be made.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FactorError {
     /// A pivot is not a number: an entry of the matrix is infinite or not a number.

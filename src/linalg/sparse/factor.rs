@@ -40,16 +40,16 @@ pub struct Factor<'a> {
     pub(super) values: Vec<f64>,
     /// Scale by unknown, elimination order.
     pub(super) scale: Vec<f64>,
-    /// Unknowns (caller's numbering) whose pivot was lost: held by nothing, kept at zero.
+    /// Unknowns (caller's numbering) with a lost pivot. No stiffness holds them, and their values stay zero.
     pub lost: Vec<usize>,
-    /// Smallest pivot that was not lost, of the scaled matrix: how near the structure is to a mechanism.
+    /// Smallest pivot of the scaled matrix that was not lost. It shows how near the structure is to a mechanism.
     pub smallest_pivot: f64,
-    /// The scaled matrix, which the residual of a solution is formed with.
+    /// Scaled matrix, from which the residual of a solution is computed.
     pub(super) matrix: BlockMatrix,
 }
 
 impl<'a> Factor<'a> {
-    /// The factor of a symmetric positive (semi)definite matrix, which is scaled in place and kept.
+    /// Returns the factor of a symmetric positive (semi)definite matrix, which is scaled in place and kept.
     ///
     /// # Errors
     /// An entry that is not a number, or a factor that memory doesn't hold.

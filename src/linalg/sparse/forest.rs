@@ -5,18 +5,18 @@ use super::graph::{BlockGraph, NONE, inverse};
 /// An order in postorder, with its elimination tree.
 #[derive(Debug)]
 pub(super) struct EliminationForest {
-    /// New to old group.
+    /// Old group of each new group.
     pub(super) order: Vec<u32>,
     /// Parent of each new group.
     pub(super) parent: Vec<u32>,
-    /// Unknowns in the factor's rows below each new group's own.
+    /// Number of unknowns in the rows of the factor below each new group.
     pub(super) below: Vec<u32>,
-    /// Entries of the factor in unknowns, without merged supernodes.
+    /// Number of entries of the factor, counted in unknowns, without merged supernodes.
     pub(super) nonzeros: usize,
 }
 
 impl EliminationForest {
-    /// Elimination tree (Liu 1990) of an order, its postorder, and the entries of its factor.
+    /// Returns the elimination tree (Liu 1990) of an order, its postorder, and the number of entries of the factor.
     pub(super) fn new(graph: &BlockGraph, order: &[u32], sizes: &[u8]) -> Self {
         let position = inverse(order);
         let n = order.len();

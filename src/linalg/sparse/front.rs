@@ -13,7 +13,7 @@ use rayon::prelude::*;
 /// Pivots of the scaled matrix below this are lost to rounding: nothing supports the unknown. Rounding leaves as much in a mechanism that moves other
 /// unknowns a thousand times as far. Any support at all is a thousand times stiffer (Nastran stops at a ratio of 1e7).
 const TINY_PIVOT: f64 = 1e-12;
-/// Largest number of lost pivots of a front that are held one by one; with more, all its unknowns are held.
+/// Largest number of lost pivots of a front that springs hold one by one. If more pivots are lost, springs hold all unknowns of the front.
 pub(super) const MOST_LOST: usize = 12;
 
 /// Contribution of a supernode to its parent: the lower triangle of a matrix over its rows, by columns.
@@ -53,7 +53,7 @@ impl Spare {
     }
 }
 
-/// A supernode eliminated.
+/// Result of the elimination of a supernode.
 #[derive(Debug)]
 pub(super) struct EliminatedSupernode {
     pub(super) update: Update,
@@ -101,7 +101,8 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// Eliminates the supernode: its columns of the factor, each from its diagonal down, into `packed`, and the remainder for its parent.
+    /// Eliminates the supernode. The columns of the factor, each from the diagonal down, are written to `packed`. The result is the contribution to
+    /// the parent.
     ///
     /// A lost pivot is held by a spring, and the front is formed again: only for structures that are refused anyway.
     ///
@@ -201,7 +202,7 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// Where the rows of a child are in this front; no run crosses from its own rows to those below.
+    /// Returns the places of the rows of a child in this front. No run of rows contains both own rows of the front and rows below.
     fn runs(&self, child: usize) -> Vec<Run> {
         let mut runs: Vec<Run> = Vec::new();
         let groups = self.symbolic.nodes.groups(self.node);

@@ -1,6 +1,6 @@
 //! The graph of groups of unknowns: who shares an entry of the matrix with whom.
 
-/// No vertex: a root has no parent, and a vertex that no walk has reached has no component.
+/// Mark for no vertex: a root has no parent, and a vertex that no search has reached has no component.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// An undirected graph, both directions stored, no loops, neighbours ascending.
@@ -11,7 +11,7 @@ pub struct BlockGraph {
 }
 
 impl BlockGraph {
-    /// The graph in which the members of each clique are joined, over `n` vertices.
+    /// Returns the graph in which the members of each clique are joined, over `n` vertices.
     ///
     /// `cliques` is walked twice: first to count, then to fill.
     pub fn from_cliques<'a, I>(n: usize, cliques: impl Fn() -> I) -> Self
@@ -62,17 +62,17 @@ impl BlockGraph {
         }
     }
 
-    /// Number of vertices.
+    /// Returns the number of vertices.
     pub fn n(&self) -> usize {
         self.start.len().saturating_sub(1)
     }
 
-    /// Neighbours of a vertex, ascending.
+    /// Returns the neighbours of a vertex, ascending.
     pub fn neighbours(&self, v: usize) -> &[u32] {
         &self.neighbours[self.start[v]..self.start[v + 1]]
     }
 
-    /// Component number of every vertex, and how many components there are.
+    /// Returns the component number of every vertex, and how many components there are.
     pub fn components(&self) -> (Vec<u32>, usize) {
         let mut of = vec![NONE; self.n()];
         let mut count = 0;
@@ -97,7 +97,7 @@ impl BlockGraph {
     }
 }
 
-/// Inverse of a permutation.
+/// Returns the inverse of a permutation.
 pub(super) fn inverse(order: &[u32]) -> Vec<u32> {
     let mut position = vec![0; order.len()];
     for (new, &old) in order.iter().enumerate() {

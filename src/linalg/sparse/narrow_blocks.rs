@@ -3,12 +3,12 @@
 use faer::prelude::ReborrowMut;
 use faer::{MatMut, MatRef};
 
-/// Unknowns of a block at most.
+/// Largest number of unknowns of a block.
 pub(super) const MOST: usize = 6;
 /// Rows handled at a time.
 const ROWS: usize = 8;
 
-/// The factor of a block of at most [`MOST`] unknowns, its lower triangle.
+/// Computes the lower triangle of the factor of a block with at most [`MOST`] unknowns.
 ///
 /// # Errors
 /// The column whose pivot is not positive.
@@ -35,7 +35,7 @@ pub(super) fn cholesky(mut a: MatMut<'_, f64>) -> Result<(), usize> {
     Ok(())
 }
 
-/// x in x l' = b, which `x` holds by columns, where `l` has at most [`MOST`] unknowns.
+/// Solves `x l' = b` for `x` in place. `x` contains `b` by columns. `l` has at most [`MOST`] unknowns.
 pub(super) fn solve(l: MatRef<'_, f64>, x: MatMut<'_, f64>) {
     match l.nrows() {
         1 => solve_columns::<1>(l, x),

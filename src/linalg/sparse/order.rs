@@ -7,7 +7,7 @@ use faer::sparse::linalg::amd;
 use feral_metis::{CscPattern, MetisOptions, metis_order_full};
 use serde::Serialize;
 
-/// Which ordering was kept.
+/// Ordering that was kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum OrderingMethod {
@@ -17,7 +17,7 @@ pub enum OrderingMethod {
     MinimumDegree,
 }
 
-/// Orders (new to old) worth comparing, each with its name; nested dissection is left out for graphs too small or too large for it.
+/// Returns orders (new to old) to compare, each with its name. Nested dissection is left out for graphs of unsuitable size.
 pub(super) fn candidates(graph: &BlockGraph) -> Vec<(OrderingMethod, Vec<u32>)> {
     let (metis, degree) = rayon::join(|| nested_dissection(graph), || minimum_degree(graph));
     let mut all = Vec::new();

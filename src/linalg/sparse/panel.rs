@@ -7,11 +7,11 @@ const TOGETHER: usize = 4;
 /// A supernode's columns of the factor.
 #[derive(Clone, Copy)]
 pub(super) struct Panel<'a> {
-    /// By columns, each from its diagonal down.
+    /// Values by columns, each column from its diagonal down.
     pub(super) values: &'a [f64],
-    /// Rows: its own and those below.
+    /// Rows of the supernode, then the rows below.
     pub(super) rows: usize,
-    /// Columns, as many as own rows.
+    /// Number of columns, equal to the number of the supernode's rows.
     pub(super) own: usize,
 }
 
@@ -55,12 +55,12 @@ impl<const K: usize> pulp::WithSimd for Backward<'_, '_, K> {
 }
 
 impl Panel<'_> {
-    /// Solves L11 x = b on the supernode's own rows, the first of `work`, and subtracts L21 x from the other rows.
+    /// Solves `L11 x = b` on the rows of the supernode, which are the first rows of `work`. Then subtracts `L21 x` from the other rows.
     pub(super) fn forward<const K: usize>(self, work: &mut [[f64; K]]) {
         pulp::Arch::new().dispatch(Forward(self, work));
     }
 
-    /// Solves L11' x = b - L21' y on the supernode's own rows, the first of `work`; y are the other rows.
+    /// Solves `L11' x = b - L21' y` on the rows of the supernode, which are the first rows of `work`. `y` are the other rows.
     pub(super) fn backward<const K: usize>(self, work: &mut [[f64; K]]) {
         pulp::Arch::new().dispatch(Backward(self, work));
     }

@@ -8,7 +8,7 @@ use super::panel::Panel;
 use super::symbolic::Symbolic;
 use rayon::prelude::*;
 
-/// Which triangle is solved with.
+/// Triangle of the substitution.
 #[derive(Clone, Copy, PartialEq)]
 enum Way {
     Forward,
@@ -38,7 +38,7 @@ impl Rows<'_> {
 }
 
 impl Factor<'_> {
-    /// Replaces `k` right-hand sides of L L' by solutions.
+    /// Replaces `k` right-hand sides of `L L'` by solutions.
     pub(super) fn substitute(&self, y: &mut [f64], k: usize) {
         let branches = &self.symbolic.branches;
         let mut above = self.take_top_rows(y, k);

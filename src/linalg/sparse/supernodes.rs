@@ -17,9 +17,9 @@ const ZEROS: [(usize, f64); 4] = [(24, 0.6), (48, 0.3), (96, 0.12), (usize::MAX,
 /// Supernodes in elimination order: children before parents, subtrees contiguous.
 #[derive(Debug, Default)]
 pub(super) struct Supernodes {
-    /// First group of each, and the total.
+    /// First group of each supernode, and the total.
     pub(super) first: Vec<u32>,
-    /// Parent of each.
+    /// Parent of each supernode.
     pub(super) parent: Vec<u32>,
     /// First of the rows of each, and the total.
     row_start: Vec<usize>,
@@ -32,7 +32,7 @@ pub(super) struct Supernodes {
 }
 
 impl Supernodes {
-    /// The supernodes of a forest and the order (new to old group) that makes merged ones contiguous.
+    /// Returns the supernodes of a forest, and the order (new to old group) in which merged supernodes are contiguous.
     pub(super) fn new(
         graph: &BlockGraph,
         forest: &EliminationForest,
@@ -49,17 +49,17 @@ impl Supernodes {
         self.parent.len()
     }
 
-    /// Own groups.
+    /// Returns the groups of supernode `s`.
     pub(super) fn groups(&self, s: usize) -> Range<usize> {
         self.first[s] as usize..self.first[s + 1] as usize
     }
 
-    /// Groups below its own.
+    /// Returns the groups below the groups of supernode `s`.
     pub(super) fn rows(&self, s: usize) -> &[u32] {
         &self.rows[self.row_start[s]..self.row_start[s + 1]]
     }
 
-    /// Unknowns of the rows below.
+    /// Returns the unknowns of the rows below.
     pub(super) fn n_below(&self, s: usize) -> usize {
         self.below[s] as usize
     }
@@ -69,7 +69,7 @@ impl Supernodes {
         self.value_start[s.start]..self.value_start[s.end]
     }
 
-    /// Values of the factor, explicit zeros of merged supernodes included.
+    /// Returns the values of the factor, explicit zeros of merged supernodes included.
     pub(super) fn n_values(&self) -> usize {
         self.value_start.last().copied().unwrap_or(0)
     }

@@ -10,9 +10,9 @@ use super::supernodes::Supernodes;
 /// The symbolic factor.
 #[derive(Debug)]
 pub struct Symbolic {
-    /// New to old group.
+    /// Old group of each new group.
     pub(super) order: Vec<u32>,
-    /// Old to new group.
+    /// New group of each old group.
     pub(super) position: Vec<u32>,
     /// First unknown by new group, and the total.
     pub(super) start: Vec<usize>,
@@ -25,7 +25,7 @@ pub struct Symbolic {
 }
 
 impl Symbolic {
-    /// The smaller factor of the orders compared; `sizes` are the unknowns in each group.
+    /// Returns the smallest factor of the compared orders. `sizes` contains the number of unknowns of each group.
     ///
     /// # Errors
     /// More unknowns than 32-bit indices count.
@@ -52,38 +52,38 @@ impl Symbolic {
         })
     }
 
-    /// Which ordering was kept.
+    /// Returns the ordering that was kept.
     pub fn method(&self) -> OrderingMethod {
         self.method
     }
 
-    /// Entries of the factor, explicit zeros of merged supernodes included.
+    /// Returns the entries of the factor, explicit zeros of merged supernodes included.
     pub fn factor_nonzeros(&self) -> usize {
         self.nodes.n_values()
     }
 
-    /// Number of unknowns.
+    /// Returns the number of unknowns.
     pub fn n_unknowns(&self) -> usize {
         self.old_start.last().copied().unwrap_or(0)
     }
 
-    /// First unknown of each group in the caller's numbering, and the total.
+    /// Returns the first unknown of each group in the caller's numbering, and the total.
     pub fn unknown_start(&self) -> &[usize] {
         &self.old_start
     }
 
-    /// Unknowns of a supernode's own, elimination order.
+    /// Returns the unknowns of a supernode's own, elimination order.
     pub(super) fn unknowns(&self, s: usize) -> std::ops::Range<usize> {
         let groups = self.nodes.groups(s);
         self.start[groups.start]..self.start[groups.end]
     }
 
-    /// Unknowns of a group, elimination order.
+    /// Returns the unknowns of a group, elimination order.
     pub(super) fn of_group(&self, g: u32) -> std::ops::Range<usize> {
         self.start[g as usize]..self.start[g as usize + 1]
     }
 
-    /// The unknown, caller's numbering, at a place of the elimination order.
+    /// Returns the unknown, caller's numbering, at a place of the elimination order.
     pub(super) fn old_unknown(&self, new: usize) -> usize {
         let g = self.start.partition_point(|&s| s <= new) - 1;
         self.old_start[self.order[g] as usize] + new - self.start[g]

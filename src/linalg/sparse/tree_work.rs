@@ -10,8 +10,8 @@ use super::symbolic::Symbolic;
 pub struct TreeWork {
     /// Multiplications of the whole factorisation.
     pub total: f64,
-    /// Multiplications of the longest sequential chain: a branch by one thread, then every front above it up to the root, column
-    /// block after column block. No number of threads is faster.
+    /// Multiplications of the longest sequential chain. One thread computes a branch. The fronts above this branch follow up to the root, one column
+    /// block after another. No number of threads can be faster than this chain.
     pub longest: f64,
 }
 

@@ -21,7 +21,7 @@ use std::collections::HashSet;
 const COINCIDENT: f64 = 1e-6;
 
 impl Builder<'_> {
-    /// CWELD, CFAST, CGAP. After shells, bushes, masses and rigid elements.
+    /// Builds CWELD, CFAST and CGAP. It must run after shells, bushes, masses and rigid elements.
     pub(super) fn joints(&mut self) {
         let mut patches = Patches::default();
         // Piercing grids that already follow a patch.

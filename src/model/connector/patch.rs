@@ -70,7 +70,8 @@ impl Patch {
         [sum(0), sum(1), sum(2)]
     }
 
-    /// The foot of `p`, where its normal meets the patch; `None` where that is outside by more than [`OUTSIDE`].
+    /// Returns the foot of `p`: the point of the patch whose normal passes through `p`. `None` if the foot is outside the patch by more than
+    /// [`OUTSIDE`].
     pub(super) fn foot(&self, p: Vec3) -> Option<Foot> {
         let (mut r, mut s) = if self.x.len() == 3 {
             (1.0 / 3.0, 1.0 / 3.0)
@@ -116,7 +117,7 @@ impl Patch {
     }
 }
 
-/// Shells by property and by grid, made once where they are asked for.
+/// Shells by property and by grid. The lists are computed on the first request.
 #[derive(Default)]
 pub(super) struct Patches {
     by_property: HashMap<u32, Vec<(usize, Vec3, f64)>>,
@@ -138,7 +139,7 @@ impl Patches {
         })
     }
 
-    /// Where `p` meets the nearest shell of a property.
+    /// Returns the foot of `p` on the nearest shell of a property.
     pub(super) fn on_property(
         &mut self,
         model: &Model,
@@ -157,7 +158,7 @@ impl Patches {
         find_nearest_foot(model, near, p)
     }
 
-    /// Where `p` meets shell `i` or one that shares a grid with it.
+    /// Returns the foot of `p` on shell `i` or on a shell that shares a grid with `i`.
     pub(super) fn find_foot_near_shell(
         &mut self,
         model: &Model,

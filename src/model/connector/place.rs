@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 /// Largest number of halvings of the diameter until the auxiliary points find the patch (NREDIA of SWLDPRM, which allows up to 4).
 const HALVINGS: u8 = 4;
 
-/// Shells that an end may pierce.
+/// Shells that an end of a connector may pierce.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Where {
     /// A shell, by index.
@@ -23,7 +23,7 @@ pub(super) enum Where {
     Property(u32),
 }
 
-/// A connector as its card states it, on shells.
+/// A connector on shells, as its card states it.
 pub(super) struct StatedConnector<'a> {
     pub(super) name: &'a str,
     pub(super) at: Place,
@@ -36,7 +36,7 @@ pub(super) struct StatedConnector<'a> {
     pub(super) patches: [Where; 2],
 }
 
-/// Both ends, where the line between them goes, thicknesses of the plates.
+/// Both ends and the axes of a connector, the thicknesses of its plates, and the way in which it was placed.
 pub(super) struct ConnectorGeometry {
     pub(super) ends: [JointEnd; 2],
     pub(super) axes: Mat3,
@@ -44,7 +44,7 @@ pub(super) struct ConnectorGeometry {
     pub(super) placed: Placement,
 }
 
-/// Angle between two sheets of these normals, degrees, whichever way the normals point.
+/// Returns the angle between two sheets of these normals, degrees, whichever way the normals point.
 pub(super) fn between_deg(a: Vec3, b: Vec3) -> f64 {
     a.dot(&b).abs().min(1.0).acos().to_degrees()
 }
@@ -79,7 +79,7 @@ impl Builder<'_> {
         None
     }
 
-    /// The point of GS or XS, YS, ZS, where one is stated; `None`, with a fault, where it names a grid that is missing.
+    /// Returns the point of GS, or of XS, YS, ZS, if one is stated. `None`, with a fault, if GS names a missing grid.
     pub(super) fn connector_point(
         &mut self,
         (gs, xs): (Option<u32>, Option<[f64; 3]>),
@@ -96,7 +96,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Grids GA and GB where they are stated; `None`, with a fault each, where one is missing.
+    /// Returns the grids GA and GB if they are stated. `None`, with a fault for each missing grid, if a grid is missing.
     pub(super) fn find_piercing_grids(
         &mut self,
         grids: [Option<u32>; 2],
@@ -128,7 +128,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Projects, and ties each end. A fault where a point finds no patch.
+    /// Projects the connector and ties each end. It adds a fault if a point finds no patch.
     pub(super) fn pierce(
         &mut self,
         patches: &mut Patches,
@@ -233,7 +233,7 @@ impl Builder<'_> {
         None
     }
 
-    /// Makes the piercing grids follow their ends; one that is a grid of its patch, or follows one already, is left as it is.
+    /// Makes the piercing grids follow their ends. A grid that is a grid of its patch, or that already follows a patch, is not changed.
     pub(super) fn tie_piercing(
         &mut self,
         card: &'static str,

@@ -44,8 +44,8 @@ pub(super) fn by_slopes(patch: &Patch, foot: &Foot) -> Option<JointEnd> {
     })
 }
 
-/// Returns the motion at `x` that fits the translations of auxiliary points best. Each point moves by the shape functions of its patch, the end as an
-/// RBE3 of equal weights over the points.
+/// Returns the motion at `x` with the best fit to the translations of auxiliary points. Each point moves by the shape functions of its patch. The end
+/// is an RBE3 with equal weights over the points.
 ///
 /// # Reference
 /// MSC Nastran Quick Reference Guide, CFAST and CWELD (auxiliary points of the formats PROP, ELEM, PARTPAT, ELPAT).
@@ -78,7 +78,7 @@ pub(super) fn by_points(x: Vec3, points: &[(Patch, Foot)]) -> Option<JointEnd> {
     })
 }
 
-/// The equations that make grid `g` follow an end with a rigid arm, all in displacement frames, the dependent term first.
+/// Returns the equations that make grid `g` follow an end with a rigid arm, all in displacement frames, the dependent term first.
 pub(super) fn equations(model: &Model, g: GridIx, end: &JointEnd) -> Vec<Vec<(GridIx, u8, f64)>> {
     let x = model.grids.get(g.us()).map_or(end.x, |g| g.x);
     let mut arm = Matrix6::identity();

@@ -9,7 +9,7 @@ use nastran::cards::{IdList, Pload4};
 use nastran::place::{Place, PlacedCard};
 
 impl Builder<'_> {
-    /// The shells of a list: each named one must exist, of a range those that do.
+    /// Returns the shells of a list. Each shell named alone must exist. From a range, the existing shells are used.
     pub(super) fn shells_of(&mut self, ids: &IdList, name: &str, at: Place) -> Vec<ShellIx> {
         match ids {
             IdList::Thru(a, b) => {
@@ -38,7 +38,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Pressure on shells, or on faces of solids.
+    /// Adds the pressure of a PLOAD4 on shells, or on faces of solids.
     pub(super) fn pload4(&mut self, p: &PlacedCard<Pload4>) -> Vec<Load> {
         let name = format!("PLOAD4 {}", p.sid);
         if !(p.sorl.is_empty() || p.sorl == "SURF") {
@@ -132,7 +132,7 @@ impl Builder<'_> {
         out
     }
 
-    /// A face whose normal points into its solid, one numbered as its mirror image too.
+    /// Returns the grids of `face` in the order in which its normal points into the solid. A solid may be numbered as its mirror image.
     pub(super) fn inward(&self, s: &Solid, face: [Option<GridIx>; 4]) -> [Option<GridIx>; 4] {
         let mean = |list: &mut dyn Iterator<Item = GridIx>| {
             let x: Vec<Vec3> = list.map(|g| self.x(g)).collect();
@@ -156,7 +156,7 @@ impl Builder<'_> {
 }
 
 impl Direction {
-    /// The unit vector at the basic location `x`; zero where it has no length.
+    /// Returns the unit vector at the basic location `x`. It is zero if the vector has no length.
     pub fn vector_at(&self, model: &Model, x: Vec3) -> Vec3 {
         let frame = model.frames.get(self.frame.us());
         frame

@@ -4,7 +4,7 @@ use crate::model::fault::ModelFault;
 use crate::model::types::UnsupportedCard;
 use nastran::place::Place;
 
-/// Cards that are not carried, and faults.
+/// Unsupported cards, and faults.
 #[derive(Debug, Default)]
 pub(in crate::model) struct MaterialFaults {
     pub refused: Vec<UnsupportedCard>,

@@ -14,10 +14,11 @@ use temperature_dependence::{TemperatureDependentMaterial, dependent_materials};
 use temperature_selection::selected_set;
 use uses::Uses;
 
-/// Gives every element whose MAT1 has a MATT1 the material at its temperature: the mean of its grids, or what TEMPP1 and TEMPRB state.
+/// Gives every element whose MAT1 has a MATT1 the material at its temperature. This temperature is the mean over its grids, or the temperature that
+/// TEMPP1 or TEMPRB states.
 ///
-/// TEMPERATURE(MATERIAL), (BOTH), or no option selects the temperatures. If none of these is there, TEMPERATURE(INITIAL) does. Without a
-/// selection the values of MAT1 hold: TEMPERATURE(LOAD) alone changes no material in linear statics.
+/// TEMPERATURE(MATERIAL), (BOTH), or no option selects the temperatures. Without these, TEMPERATURE(INITIAL) selects them. Without any selection the
+/// values of MAT1 apply: TEMPERATURE(LOAD) alone changes no material in linear statics.
 ///
 /// # Reference
 /// MSC Nastran Quick Reference Guide, case control command TEMPERATURE, remarks; Autodesk Nastran Reference Guide, MATT1, remark 1 (no

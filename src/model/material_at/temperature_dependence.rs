@@ -22,7 +22,7 @@ pub(super) struct TemperatureDependentMaterial<'a> {
     tables: [Option<&'a MaterialTable>; CARRIED],
 }
 
-/// Returns the materials with a MATT1 by their index in the model. Refused cards and faults go to `found`.
+/// Returns the materials with a MATT1 by their index in the model. Refused cards and faults are added to `found`.
 pub(super) fn dependent_materials<'a>(
     model: &Model,
     deck: &'a Deck,

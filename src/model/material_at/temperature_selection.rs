@@ -5,7 +5,8 @@ use crate::model::fault::{FaultKind, ModelFault};
 use crate::model::types::*;
 use nastran::bdf::{Deck, SubcaseKind};
 
-/// Returns the temperature set of materials; `None` if none is selected, or if `found` gets the reason why it is not usable.
+/// Returns the temperature set of materials. `None` if no set is selected or the set is not usable. In the second case the reason is added to
+/// `found`.
 pub(super) fn selected_set(
     model: &Model,
     deck: &Deck,

@@ -8,7 +8,7 @@ use crate::model::own_property::change_properties;
 use crate::model::types::*;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Temperatures (as bits) of the elements whose material depends on it, kind by kind; `None` for all other elements.
+/// Temperatures (as bits) of elements whose material depends on temperature, by kind of element. `None` for all other elements.
 #[derive(Debug, Default)]
 pub(super) struct Uses {
     shells: Vec<Option<u64>>,
@@ -64,7 +64,7 @@ impl Uses {
         uses
     }
 
-    /// Returns the materials of `dependent` with each temperature at which an element has them.
+    /// Returns the materials of `dependent`, each with every temperature at which an element uses it.
     pub(super) fn materials(
         &self,
         model: &Model,
@@ -97,7 +97,7 @@ impl Uses {
         list.get(i).copied().flatten()
     }
 
-    /// Gives the elements their materials: `own` by material and temperature.
+    /// Assigns materials to the elements. `own` contains the materials by material and temperature.
     pub(super) fn apply(&self, model: &mut Model, own: &BTreeMap<(u32, u64), MaterialIx>) {
         let heat = |material: &mut MaterialIx, t: u64| {
             if let Some(hot) = own.get(&(material.0, t)) {

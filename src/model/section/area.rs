@@ -34,7 +34,7 @@ pub(super) fn of_rectangles(parts: &[Rectangle]) -> Area {
     of_polygons(&polygons)
 }
 
-/// The area of polygons (y, z) that don't overlap, corners in either turn.
+/// Returns the area of polygons (y, z) that don't overlap, corners in either turn.
 ///
 /// Sums over the sides of a polygon (Green's theorem) about the origin, moved to the centroid at the end.
 pub(super) fn of_polygons(polygons: &[Vec<[f64; 2]>]) -> Area {

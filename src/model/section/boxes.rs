@@ -9,8 +9,8 @@ fn wall(from: usize, to: usize, t: f64) -> Wall {
     Wall { from, to, t }
 }
 
-/// Width of the plate, height over all, width of the crown, thickness of the hat, of the plate. The brims lie on the plate and end with
-/// it.
+/// Computes the section from the width of the plate, the total height, the width of the crown, and the thicknesses of hat and plate. The brims are on
+/// the plate and end with it.
 pub(super) fn hat_on_plate([w, h, crown, t, plate]: [f64; 5]) -> Option<Shape> {
     if !(w > crown && crown > 2.0 * t && h > plate + t) {
         return None;

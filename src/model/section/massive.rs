@@ -40,7 +40,7 @@ pub(super) fn bar(w: f64, h: f64) -> Option<Shape> {
     )
 }
 
-/// Width, height, thickness of top, bottom, right, left wall.
+/// Computes a box from width, height, and thickness of top, bottom, right and left wall.
 pub(super) fn box1([w, h, top, bottom, right, left]: [f64; 6]) -> Option<Shape> {
     if !(w > left + right && h > top + bottom) {
         return None;
@@ -60,7 +60,8 @@ pub(super) fn box1([w, h, top, bottom, right, left]: [f64; 6]) -> Option<Shape> 
     finish(a, a.centroid, j, k, corners([0.0, h], [0.0, w]))
 }
 
-/// Free width of the lying bar (both sides together), thickness of the standing one, height, thickness of the lying one.
+/// Computes the section from the free width of the horizontal bar (both sides together), the thickness of the vertical bar, the height, and the
+/// thickness of the horizontal bar.
 pub(super) fn cross(free: f64, standing: f64, h: f64, lying: f64) -> Option<Shape> {
     if !(h > lying) {
         return None;
@@ -86,7 +87,8 @@ pub(super) fn cross(free: f64, standing: f64, h: f64, lying: f64) -> Option<Shap
     )
 }
 
-/// Width of a pointed side, overall width, height. Torsion as the rectangle of the mean width.
+/// Computes a hexagon from the width of a pointed side, overall width and height. The torsion constant is the constant of the rectangle of mean
+/// width.
 pub(super) fn hexagon(point: f64, w: f64, h: f64) -> Option<Shape> {
     if !(w > 2.0 * point) {
         return None;

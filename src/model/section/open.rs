@@ -4,7 +4,7 @@ use super::area::of_rectangles;
 use super::parts::{RECTANGLE_SHEAR, Shape, corners, finish, open_torsion, rectangle};
 use super::thin::{Wall, open_walls};
 
-/// Height, width of bottom and top flange, thickness of web, bottom and top flange.
+/// Computes an I section from height, width of bottom and top flange, and thickness of web, bottom and top flange.
 pub(super) fn i_section(
     h: f64,
     bottom_w: f64,
@@ -55,7 +55,7 @@ pub(super) fn i_section(
     finish(a, centre, j, k, recovery).map(|s| s.with_warping(cw))
 }
 
-/// Web on the left, flanges to the right: width, height, thickness of web and flanges.
+/// Computes a channel with the web on the left and flanges to the right, from width, height, and thickness of web and flanges.
 pub(super) fn channel(w: f64, h: f64, web: f64, flange: f64) -> Option<Shape> {
     if !(h > 2.0 * flange && w > web && flange > 0.0) {
         return None;
@@ -94,7 +94,7 @@ pub(super) fn channel(w: f64, h: f64, web: f64, flange: f64) -> Option<Shape> {
     finish(a, centre, j, k, corners([0.0, h], [0.0, w])).map(|s| s.with_warping(cw))
 }
 
-/// Web at the bottom, legs up: thickness of legs and web, height, width.
+/// Computes a channel with the web at the bottom and legs up, from thickness of legs and web, height and width.
 pub(super) fn channel2(leg: f64, web: f64, h: f64, w: f64) -> Option<Shape> {
     if !(w > 2.0 * leg && h > web) {
         return None;
@@ -134,7 +134,8 @@ pub(super) fn channel2(leg: f64, web: f64, h: f64, w: f64) -> Option<Shape> {
     finish(a, centre, j, k, corners([0.0, h], [-half, half])).map(|s| s.with_warping(cw))
 }
 
-/// Flange on top: width, height, thickness of flange and web. C top middle, D right end of the flange, E foot, F left end.
+/// Computes a T with the flange on top, from width, height, and thickness of flange and web. C top middle, D right end of the flange, E foot, F left
+/// end.
 pub(super) fn tee(w: f64, h: f64, flange: f64, web: f64) -> Option<Shape> {
     if !(h > flange && w > web) {
         return None;
@@ -158,7 +159,8 @@ pub(super) fn tee(w: f64, h: f64, flange: f64, web: f64) -> Option<Shape> {
     )
 }
 
-/// Flange standing on the right, web to the left: height of the flange, length of the web, thickness of flange and web.
+/// Computes a T with a vertical flange on the right and the web to the left, from height of the flange, length of the web, and thickness of flange
+/// and web.
 pub(super) fn tee1(h: f64, reach: f64, flange: f64, web: f64) -> Option<Shape> {
     if !(h > web) {
         return None;
@@ -188,7 +190,7 @@ pub(super) fn tee1(h: f64, reach: f64, flange: f64, web: f64) -> Option<Shape> {
     )
 }
 
-/// Flange at the bottom: width, height, thickness of flange and web.
+/// Computes a T with the flange at the bottom, from width, height, and thickness of flange and web.
 pub(super) fn tee2(w: f64, h: f64, flange: f64, web: f64) -> Option<Shape> {
     if !(h > flange && w > web) {
         return None;
@@ -217,7 +219,7 @@ pub(super) fn tee2(w: f64, h: f64, flange: f64, web: f64) -> Option<Shape> {
     )
 }
 
-/// Corner at the lower left: width, height, thickness of the lying and of the standing leg.
+/// Computes an angle with the corner at the lower left, from width, height, and thickness of the horizontal and of the vertical leg.
 pub(super) fn angle(w: f64, h: f64, lying: f64, standing: f64) -> Option<Shape> {
     if !(w > standing && h > lying) {
         return None;
@@ -242,7 +244,7 @@ pub(super) fn angle(w: f64, h: f64, lying: f64, standing: f64) -> Option<Shape> 
     )
 }
 
-/// Two standing flanges joined by a lying web: inner width, thickness of a flange, height, thickness of the web.
+/// Computes an H of two vertical flanges and a horizontal web, from inner width, thickness of a flange, height, and thickness of the web.
 pub(super) fn h_section(inner: f64, flange: f64, h: f64, web: f64) -> Option<Shape> {
     if !(h > web) {
         return None;
@@ -270,7 +272,8 @@ pub(super) fn h_section(inner: f64, flange: f64, h: f64, web: f64) -> Option<Sha
     .map(|s| s.with_warping(cw))
 }
 
-/// Top flange to the left, bottom flange to the right: free width of a flange, thickness of the web, inner and outer height.
+/// Computes a Z with the top flange to the left and the bottom flange to the right, from free width of a flange, thickness of the web, inner and
+/// outer height.
 pub(super) fn z_section(free: f64, web: f64, inner: f64, h: f64) -> Option<Shape> {
     let t = (h - inner) / 2.0;
     if !(t > 0.0) {
@@ -312,7 +315,7 @@ pub(super) fn z_section(free: f64, web: f64, inner: f64, h: f64) -> Option<Shape
     .map(|s| s.with_warping(cw))
 }
 
-/// Crown on top, brims at the bottom: height, wall thickness, width of the crown, width of a brim.
+/// Computes a hat with the crown on top and brims at the bottom, from height, wall thickness, width of the crown, and width of a brim.
 pub(super) fn hat(h: f64, t: f64, crown: f64, brim: f64) -> Option<Shape> {
     if !(h > 2.0 * t && crown > 2.0 * t) {
         return None;

@@ -3,7 +3,7 @@
 use super::area::{Area, Rectangle};
 use crate::model::types::Section;
 
-/// A section and its shear factors.
+/// A section with its shear factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model) struct Shape {
     pub section: Section,
@@ -22,24 +22,24 @@ impl Shape {
 /// Share of a rectangle that carries its transverse shear.
 pub(super) const RECTANGLE_SHEAR: f64 = 5.0 / 6.0;
 
-/// A rectangle between two heights and two widths.
+/// Returns a rectangle between two heights and two widths.
 pub(super) fn rectangle(y: [f64; 2], z: [f64; 2]) -> Rectangle {
     Rectangle { y, z }
 }
 
-/// Torsion constant of thin open walls: sum of length times thickness cubed over three.
+/// Returns the torsion constant of thin open walls: sum of length times thickness cubed over three.
 pub(super) fn open_torsion(walls: &[(f64, f64)]) -> f64 {
     walls.iter().map(|(b, t)| b * t * t * t / 3.0).sum()
 }
 
-/// Torsion constant of a rectangle (Roark, table 20, case 4).
+/// Returns the torsion constant of a rectangle (Roark, table 20, case 4).
 pub(super) fn rectangle_torsion(w: f64, h: f64) -> f64 {
     let (long, short) = if w > h { (w, h) } else { (h, w) };
     let r = short / long;
     long * short.powi(3) * (1.0 / 3.0 - 0.21 * r * (1.0 - r.powi(4) / 12.0))
 }
 
-/// Puts a section together: recovery points and neutral axis from the shear centre.
+/// Completes a section: recovery points and neutral axis from the shear centre.
 pub(super) fn finish(
     a: Area,
     centre: [f64; 2],
@@ -69,7 +69,7 @@ pub(super) fn finish(
     })
 }
 
-/// Corners: C upper right, D lower right, E lower left, F upper left.
+/// Returns the corners: C upper right, D lower right, E lower left, F upper left.
 pub(super) fn corners(y: [f64; 2], z: [f64; 2]) -> [[f64; 2]; 4] {
     [[y[1], z[1]], [y[0], z[1]], [y[0], z[0]], [y[1], z[0]]]
 }

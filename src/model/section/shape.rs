@@ -15,7 +15,7 @@ use super::open::{
 };
 use super::parts::Shape;
 
-/// Why dimensions give no section.
+/// Reason why dimensions give no section.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) enum SectionFault {
     Unknown,
@@ -23,7 +23,7 @@ pub(in super::super) enum SectionFault {
     Shape,
 }
 
-/// The section of that type.
+/// Returns the section of that type.
 pub(in super::super) fn bar_section(kind: &str, dims: &[f64]) -> Result<Shape, SectionFault> {
     let expected = match kind {
         "ROD" => 1,

@@ -1,7 +1,7 @@
 //! Shear centre and warping constant of an open thin-walled section.
 
-/// A straight wall between two points of the midline (indices), with its thickness. Walls are listed so that each begins where an
-/// earlier one has been (the first anywhere): a tree.
+/// A straight wall between two points of the midline (indices), with its thickness. The walls form a tree: each wall begins at a point of an earlier
+/// wall, and the first wall begins anywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Wall {
     pub from: usize,
@@ -71,7 +71,7 @@ pub(super) fn shear_centre(points: &[[f64; 2]], walls: &[Wall]) -> Option<[f64; 
     Some([centroid[0] + pole[0] + a, centroid[1] + pole[1] + b])
 }
 
-/// Shear centre (y, z) and warping constant: integral over the walls of w^2 dA, w the sectorial coordinate about the shear centre less
+/// Returns the shear centre (y, z) and warping constant: integral over the walls of w^2 dA, w the sectorial coordinate about the shear centre less
 /// its mean.
 pub(super) fn open_walls(points: &[[f64; 2]], walls: &[Wall]) -> Option<([f64; 2], f64)> {
     let centre = shear_centre(points, walls)?;

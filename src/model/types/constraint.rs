@@ -4,7 +4,7 @@ use super::index::GridIx;
 use nastran::cards::Dofs;
 use nastran::place::Place;
 
-/// A rigid element; dofs are in the displacement frames of their grids.
+/// A rigid element. Dofs are in the displacement frames of the grids.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub struct RigidElement {
@@ -18,7 +18,7 @@ pub struct RigidElement {
 pub enum RigidKind {
     /// RBE2, RBAR and RBE1: dependent dofs follow the rigid motion given by the independent ones.
     Body {
-        /// Which of the three.
+        /// Card of the element.
         card: &'static str,
         /// Independent dofs, six in all.
         independent: Vec<(GridIx, Dofs)>,
@@ -58,7 +58,7 @@ impl RigidKind {
         }
     }
 
-    /// The field of its card that names its dependent dofs.
+    /// Returns the field of the card that names the dependent dofs.
     pub fn field(&self) -> &'static str {
         match self {
             Self::Body { card: "RBAR", .. } => "CMA",
@@ -123,7 +123,7 @@ impl RigidKind {
     }
 }
 
-/// The equations of one MPC set id (MPCADD resolved): terms grid, dof (0-based), coefficient; the first is dependent.
+/// Equations of one MPC set id (MPCADD resolved). Each term has grid, dof (0-based) and coefficient. The first term is dependent.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub struct MpcSet {
@@ -131,7 +131,7 @@ pub struct MpcSet {
     pub equations: Vec<(Vec<(GridIx, u8, f64)>, Place)>,
 }
 
-/// The constraints of one SPC set id (SPCADD resolved): grid, dofs, enforced value.
+/// Constraints of one SPC set id (SPCADD resolved): grid, dofs, enforced value.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub struct SpcSet {

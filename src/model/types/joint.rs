@@ -9,32 +9,32 @@ use nastran::place::Place;
 pub struct Joint {
     /// Element id.
     pub id: u32,
-    /// Which card.
+    /// Card of the joint.
     pub card: JointCard,
     /// Ends A and B.
     pub ends: [JointEnd; 2],
     /// Element axes by rows, basic frame; the first leads from A to B.
     pub axes: Mat3,
-    /// Where the springs act, basic frame; rigid arms join them to the ends.
+    /// Location of the springs, basic frame. Rigid arms join it to the ends.
     pub location: Vec3,
     /// Stiffness by component: three translations, three rotations.
     pub k: [f64; 6],
-    /// How it came onto its patches.
+    /// Way in which the connector was placed on its patches.
     pub placed: Placement,
     /// Place of the card in the deck.
     pub at: Place,
 }
 
-/// How a connector came onto its patches.
+/// Way in which a connector was placed on its patches.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Placement {
-    /// How often its diameter was halved until the auxiliary points found the patch, the greater of both sides.
+    /// Number of times that the diameter was halved until the auxiliary points met the patch. It is the larger number of both sides.
     pub halvings: u8,
-    /// Angle between the normals of the patches, degrees, at most 90; 0 where an end is a grid.
+    /// Angle between the normals of the patches, degrees, at most 90. It is 0 if an end is a grid.
     pub angle_deg: f64,
 }
 
-/// Which card a joint came from.
+/// Card from which a joint was made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JointCard {
     /// CWELD.
@@ -51,7 +51,7 @@ pub enum JointCard {
 }
 
 impl JointCard {
-    /// The name of the card.
+    /// Returns the name of the card.
     pub fn name(self) -> &'static str {
         match self {
             Self::Cweld => "CWELD",
@@ -66,7 +66,7 @@ impl JointCard {
 pub struct JointEnd {
     /// Point of the joint, basic frame.
     pub x: Vec3,
-    /// Grids, each once, and what each of them adds.
+    /// Grids, each once, with the contribution of each grid to the motion.
     pub motion: Vec<(GridIx, Matrix6<f64>)>,
 }
 
@@ -79,7 +79,7 @@ impl JointEnd {
         }
     }
 
-    /// The translations of a grid, whatever its rotation.
+    /// Returns the motion of an end from the translations of a grid only.
     pub fn translations(g: GridIx, x: Vec3) -> Self {
         let mut motion = Matrix6::zeros();
         motion.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(1.0);

@@ -22,13 +22,13 @@ pub struct TemperatureSet {
     pub grids: Vec<(GridIx, f64)>,
     /// Temperatures of single elements by id (TEMPP1, TEMPRB): they take precedence over the temperatures of their grids.
     pub elements: std::collections::HashMap<u32, ElementTemperature>,
-    /// Cards of this set that ask for more than is carried.
+    /// Cards of this set that are not fully supported.
     pub unsupported: Vec<(String, Place)>,
     pub at: Place,
 }
 
 impl TemperatureSet {
-    /// Temperature of each of the `n` grids of the model.
+    /// Returns the temperature of each of the `n` grids of the model.
     pub fn by_grid(&self, n: usize) -> Vec<f64> {
         let mut all = vec![self.default.unwrap_or(0.0); n];
         for (g, t) in &self.grids {
@@ -59,7 +59,7 @@ pub enum ElementTemperature {
     },
 }
 
-/// A direction in a coordinate system: of a cylindrical or spherical one it differs from place to place.
+/// A direction in a coordinate system. In a cylindrical or spherical system it depends on the place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Direction {
     /// The system.
@@ -77,7 +77,7 @@ pub enum Load {
     Moment(GridIx, Vec3),
     /// Pressure on shells along their normal (corner values).
     ShellPressure {
-        /// Which shells.
+        /// Shells with this load.
         shells: Vec<ShellIx>,
         /// Pressure at the corners.
         pressure: [f64; 4],
@@ -111,7 +111,7 @@ pub enum Load {
     },
     /// Force or moment along a CBAR or CBEAM (PLOAD1).
     Line {
-        /// Which one.
+        /// Element with this load.
         beam: BeamIx,
         /// Share of the length, offsets included, where it begins and ends; equal: concentrated there.
         span: [f64; 2],

@@ -40,7 +40,7 @@ pub struct Frame {
     pub kind: nastran::cards::CoordKind,
     /// Origin, basic frame.
     pub origin: Vec3,
-    /// Rows are its x, y, z axes in basic.
+    /// Axes x, y, z by rows, in basic.
     pub axes: Mat3,
 }
 
@@ -51,7 +51,7 @@ pub struct Shell {
     pub id: u32,
     /// Shape.
     pub shape: ShellShape,
-    /// Grids, corners first; the first `n_grids` count, a missing mid-side grid repeats its corner.
+    /// Grids, corners first. Only the first `n_grids` are used. A missing mid-side grid repeats its corner.
     pub grids: [GridIx; 8],
     /// Property.
     pub property: ShellPropertyIx,
@@ -59,7 +59,7 @@ pub struct Shell {
     pub material_angle_rad: f64,
     /// Offset of the reference plane along the normal.
     pub zoffs: f64,
-    /// Corner thicknesses (the property's where the card has none).
+    /// Thickness at each corner. It is the thickness of the property if the card states none.
     pub thickness: [f64; 4],
     /// Place of the card in the deck.
     pub at: Place,
@@ -70,7 +70,7 @@ pub struct Shell {
 pub struct Beam {
     /// Element id.
     pub id: u32,
-    /// A CBEAM.
+    /// Whether the element is a CBEAM.
     pub is_beam: bool,
     /// Ends A, B.
     pub grids: [GridIx; 2],
@@ -84,7 +84,7 @@ pub struct Beam {
     pub pins: [Dofs; 2],
     /// Scalar points of the warping dtheta/dx at A, B (CBEAM with SA and SB, and a property with CW).
     pub warping: Option<[GridIx; 2]>,
-    /// SA and SB are stated, and the property has no CW: it twists without warping, and they stay where they are.
+    /// Whether SA and SB are stated but the property has no CW. The beam then twists without warping, and the points do not move.
     pub idle_points: bool,
     /// Place of the card in the deck.
     pub at: Place,
@@ -106,7 +106,7 @@ pub struct Rod {
     pub at: Place,
 }
 
-/// Which card a rod came from.
+/// Card from which a rod was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum RodCard {
@@ -120,17 +120,17 @@ pub enum RodCard {
 pub struct Bush {
     /// Element id.
     pub id: u32,
-    /// Ends; B is `None` when grounded.
+    /// Ends. B is `None` if the element is grounded.
     pub grids: (GridIx, Option<GridIx>),
     /// Element axes, basic frame.
     pub axes: Mat3,
     /// Location of the spring, basic frame.
     pub location: Vec3,
-    /// Stiffness by component; 0 for a RIGID component of the property, which equations constrain.
+    /// Stiffness by component. It is 0 for a RIGID component of the property, which equations constrain.
     pub k: [f64; 6],
     /// Components that are RIGID in the property.
     pub rigid: [bool; 6],
-    /// Neither CID nor the line of its grids gives its axes, and the stiffness differs by direction: the basic frame is taken.
+    /// Whether the basic frame is assumed, because neither CID nor the line of the grids gives the axes, and the stiffness differs by direction.
     pub frame_assumed: bool,
     /// Stress and strain recovery coefficients SA, ST, EA, ET.
     pub recovery: [f64; 4],
@@ -145,7 +145,7 @@ pub struct Spring {
     pub id: u32,
     pub k: f64,
     pub stress_coefficient: f64,
-    /// Grid and dof (0-based, displacement frame of the grid); `None` ground.
+    /// Grid and dof (0-based, displacement frame of the grid) of both ends. `None` for ground.
     pub ends: [Option<(GridIx, u8)>; 2],
     pub at: Place,
 }
@@ -156,7 +156,7 @@ pub struct Spring {
 pub struct Solid {
     pub id: u32,
     pub shape: SolidShape,
-    /// Corners first; `None`: no mid-side grid.
+    /// Grids, corners first. `None` for a missing mid-side grid.
     pub grids: [Option<GridIx>; 20],
     /// Index into `Model::solid_properties`.
     pub property: u32,
@@ -192,14 +192,14 @@ pub struct PointMass {
     pub at: Place,
 }
 
-/// CMASS1 to CMASS4: kinetic energy `mass (a - b)^2 / 2` for velocities a and b of its ends, before WTMASS.
+/// CMASS1 to CMASS4. The kinetic energy is `mass (a - b)^2 / 2` for velocities a and b of the ends, before WTMASS.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScalarMass {
     /// Element id.
     pub id: u32,
     /// Mass, or moment of inertia of a rotation.
     pub mass: f64,
-    /// Grid and dof (0-based, displacement frame of the grid); `None` ground.
+    /// Grid and dof (0-based, displacement frame of the grid) of both ends. `None` for ground.
     pub ends: [Option<(GridIx, u8)>; 2],
     /// Place of the card in the deck.
     pub at: Place,
@@ -208,9 +208,9 @@ pub struct ScalarMass {
 /// SNORM: the normal that shells share at a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GridNormal {
-    /// Grid.
+    /// Grid of the normal.
     pub grid: GridIx,
-    /// Unit vector, basic frame; its sign does not matter.
+    /// Unit vector, basic frame. The sign of the vector has no effect.
     pub n: Vec3,
     /// Place of the card in the deck.
     pub at: Place,

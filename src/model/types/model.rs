@@ -13,12 +13,12 @@ use super::property::{BeamProperty, Material, ShellProperty, SolidProperty};
 use super::unsupported_card::UnsupportedCard;
 use nastran::cards::Dofs;
 
-/// A structure as the deck means it.
+/// A structure as described by the deck.
 #[derive(Clone, Debug, Default)]
 pub struct Model {
     /// Grids by ascending id.
     pub grids: Vec<Grid>,
-    /// Coordinate systems; the first is basic.
+    /// Coordinate systems. The first one is the basic system.
     pub frames: Vec<Frame>,
     /// Shells by ascending id.
     pub shells: Vec<Shell>,
@@ -27,7 +27,7 @@ pub struct Model {
     pub shell_properties: Vec<ShellProperty>,
     /// CBAR and CBEAM by ascending id.
     pub beams: Vec<Beam>,
-    /// Their properties.
+    /// Properties of beams.
     pub beam_properties: Vec<BeamProperty>,
     /// CROD, CTUBE, CONROD.
     pub rods: Vec<Rod>,
@@ -51,15 +51,15 @@ pub struct Model {
     pub scalar_masses: Vec<ScalarMass>,
     /// SNORM, ascending grid.
     pub normals: Vec<GridNormal>,
-    /// RBE1, RBE2, RBE3, RBAR, RSPLINE; the equations of rigid components of bushes and for grids that pierce a connector's patch.
+    /// RBE1, RBE2, RBE3, RBAR and RSPLINE, and further equations: of rigid components of bushes, and of grids that pierce the patch of a connector.
     pub rigids: Vec<RigidElement>,
     /// MPC sets.
     pub mpcs: Vec<MpcSet>,
-    /// The set that holds under unit loads: [`nastran::bdf::CaseControl::mpc_of_structure`].
+    /// MPC set that is active under unit loads: [`nastran::bdf::CaseControl::mpc_of_structure`].
     pub mpc: Option<u32>,
-    /// SPC sets that the subcases of the deck's case control select, ascending, each once; empty for a model made without a deck.
+    /// SPC sets that the subcases of the deck's case control select, ascending, each once. Empty for a model without a deck.
     pub selected_spcs: Vec<u32>,
-    /// SPC sets, SPCADD resolved; enforced displacements included.
+    /// SPC sets. SPCADD is resolved, and enforced displacements are included.
     pub spcs: Vec<SpcSet>,
     /// SUPORT and SUPORT1 (set id, `None` for SUPORT).
     pub suports: Vec<(Option<u32>, Vec<(GridIx, Dofs)>)>,
@@ -67,9 +67,9 @@ pub struct Model {
     pub load_sets: Vec<LoadSet>,
     /// Temperature sets by id: default, grid values.
     pub temperatures: Vec<TemperatureSet>,
-    /// Temperature set that materials with MATT1 are taken at; `None`: they have the values of MAT1.
+    /// Temperature set for materials with MATT1. With `None` these materials have the values of MAT1.
     pub material_temperature: Option<u32>,
-    /// Cards of the deck that change stiffness, mass, constraints or loads and have no place above: a solver must refuse them.
+    /// Unsupported cards of the deck that change stiffness, mass, constraints or loads. A solver must refuse them.
     pub unsupported_cards: Vec<UnsupportedCard>,
     /// Parameters that affect the model, its solution or its output.
     pub params: Params,

@@ -12,7 +12,7 @@ pub struct ShellProperty {
     pub kind: ShellKind,
     /// Non-structural mass per area.
     pub nsm: f64,
-    /// Stated fibre distances Z1 (bottom), Z2 (top) from the reference plane; `None`: half the local thickness ([`ShellProperty::fibres`]).
+    /// Stated fibre distances Z1 (bottom), Z2 (top) from the reference plane. `None` stands for half the local thickness ([`ShellProperty::fibres`]).
     pub z: [Option<f64>; 2],
     /// Place in the deck.
     pub at: Place,
@@ -69,15 +69,15 @@ pub struct BeamProperty {
     pub id: u32,
     /// Material.
     pub material: MaterialIx,
-    /// Sections, x/xb ascending; a uniform bar has two equal ones.
+    /// Sections with ascending x/xb. A uniform bar has two equal sections.
     pub sections: Vec<(f64, Section)>,
     /// Shear area factors K1, K2 (0: rigid in shear).
     pub k: [f64; 2],
     /// Section type of PBARL and PBEAML, empty for numbers.
     pub section_type: String,
-    /// Centroid of a PBARL section, (y, z) from its shear centre; zero for other cards. The element axis of a CBAR is both.
+    /// Centroid of a PBARL section, (y, z) from its shear centre. It is zero for other cards. The element axis of a CBAR passes through both points.
     pub bar_centroid: [f64; 2],
-    /// Warping constant CW at A and B (integral omega^2 dA); it counts for elements with warping points.
+    /// Warping constant CW at A and B (integral omega^2 dA). Only elements with warping points use it.
     pub warping: [f64; 2],
     /// Place of the card in the deck.
     pub at: Place,
@@ -88,9 +88,9 @@ pub struct BeamProperty {
 pub struct Section {
     /// Area.
     pub area: f64,
-    /// For bending in plane 1 (x-y): integral y^2 dA.
+    /// Moment of inertia for bending in plane 1 (x-y): integral y^2 dA.
     pub i1: f64,
-    /// For bending in plane 2 (x-z): integral z^2 dA.
+    /// Moment of inertia for bending in plane 2 (x-z): integral z^2 dA.
     pub i2: f64,
     /// Product integral y z dA.
     pub i12: f64,

@@ -2,7 +2,7 @@
 
 use nastran::place::Place;
 
-/// A card that the model does not carry.
+/// A card that the model does not support.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnsupportedCard {
     /// Name of the unsupported card.

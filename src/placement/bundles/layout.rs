@@ -7,23 +7,23 @@ use crate::placement::layout::PlaceError;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Bundles chosen.
+/// A layout of chosen bundles.
 #[derive(Clone, Debug)]
 pub struct BundleLayout {
-    /// Which, ascending.
+    /// Chosen bundles, ascending.
     pub bundles: Vec<usize>,
     /// The criterion.
     pub log_det: f64,
-    /// No layout within the budget has a larger one.
+    /// Upper bound of the criterion of all layouts within the budget.
     pub upper_bound: f64,
-    /// At least this share of the best possible.
+    /// Lower bound on the efficiency, relative to the best possible layout.
     pub efficiency_bound: f64,
 }
 
-/// The best layout found within the budget, with its bound.
+/// Returns the best layout found within the budget, with its bound.
 ///
 /// # Errors
-/// Where no layout within the budget separates the loads, or nothing fits.
+/// An error if no layout within the budget separates the loads, or if there is no bundle.
 pub fn place_bundles(bundles: &Bundles, spec: &BundleSpec) -> Result<BundleLayout, PlaceError> {
     let k = bundles.k;
     let singular = || PlaceError::Singular {

@@ -20,7 +20,7 @@ pub(super) struct BundleRelaxation {
     weights: Vec<f64>,
     /// Price over cost of every bundle.
     worth: Vec<f64>,
-    /// The prior with a small weight of every bundle in use: regular wherever their rows are.
+    /// Prior plus a small weight of every bundle in use. It is regular for all combinations of their rows.
     pub(super) ridge: Vec<f64>,
     /// Upper bound of the criterion of any layout within the budget.
     pub(super) upper: f64,
@@ -77,7 +77,7 @@ fn point(bundles: &Bundles, spec: &BundleSpec, active: &[usize], weights: &[f64]
     spec.criterion.evaluate_at(&m, bundles.k)
 }
 
-/// Weights that spend the budget, over as many bundles as the bound needs; `None` where all of them together are singular.
+/// Returns weights that use the whole budget, over as many bundles as the bound requires. `None` if all bundles together give a singular matrix.
 pub(super) fn relax(bundles: &Bundles, spec: &BundleSpec) -> Option<BundleRelaxation> {
     let k = bundles.k;
     let degree = spec.criterion.degree(k) as f64;

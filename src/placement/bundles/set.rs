@@ -10,13 +10,13 @@ use crate::placement::spacing;
 pub struct Bundles {
     /// Number of columns.
     pub k: usize,
-    /// Rows over their standard deviations, bundle after bundle.
+    /// Rows divided by their standard deviations, bundle after bundle.
     pub rows: Vec<f64>,
-    /// First row of each bundle; one more entry than there are bundles.
+    /// First row of each bundle, followed by the number of rows.
     pub start: Vec<u32>,
     /// Cost of each bundle.
     pub cost: Vec<f64>,
-    /// Places of each bundle, one or two (one place is listed twice).
+    /// Places of each bundle. A bundle with one place lists it twice.
     pub seats: Vec<[u32; 2]>,
     /// Positions of the places.
     pub positions: Vec<[f64; 3]>,
@@ -42,28 +42,28 @@ impl Bundles {
         self.seats.push(seats);
     }
 
-    /// How many.
+    /// Returns the number of bundles.
     pub fn len(&self) -> usize {
         self.cost.len()
     }
 
-    /// True without bundles.
+    /// Returns whether there are no bundles.
     pub fn is_empty(&self) -> bool {
         self.cost.is_empty()
     }
 
-    /// Rows of a bundle.
+    /// Returns the rows of a bundle.
     pub fn rows_of(&self, u: usize) -> impl Iterator<Item = &[f64]> {
         let (a, b) = (self.start[u] as usize, self.start[u + 1] as usize);
         self.rows[a * self.k..b * self.k].chunks_exact(self.k)
     }
 
-    /// `m += weight R_u' R_u`.
+    /// Computes `m += weight R_u' R_u`.
     pub(super) fn add_to(&self, m: &mut [f64], u: usize, weight: f64) {
         self.rows_of(u).for_each(|r| spd::add_outer(m, r, weight));
     }
 
-    /// `tr(R_u G R_u')`, `G` the slope of the criterion.
+    /// Returns `tr(R_u G R_u')`, with `G` the slope of the criterion.
     pub(super) fn price(&self, u: usize, slope: &[f64], work: &mut [f64]) -> f64 {
         self.rows_of(u)
             .map(|r| {
@@ -73,7 +73,7 @@ impl Bundles {
             .sum()
     }
 
-    /// Whether two can't be in one layout: they share a place, or two of theirs are closer than `apart`.
+    /// Returns whether two bundles exclude each other: they share a place, or two of their places are closer than `apart`.
     pub(super) fn exclude(&self, a: usize, b: usize, apart: f64) -> bool {
         a == b
             || self.seats[a].iter().any(|&x| {
@@ -95,7 +95,7 @@ impl Bundles {
 pub struct BundleSpec {
     /// Largest sum of the costs of a layout.
     pub budget: f64,
-    /// Least distance between places of two bundles; 0: none.
+    /// Least distance between places of two bundles. 0 means no limit.
     pub spacing: f64,
     /// Prior information.
     pub prior: Vec<f64>,

@@ -4,9 +4,9 @@
 /// scrub the same way each time the truck drives up. The other part differs in every run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Amplitudes {
-    /// One pattern over the gauges each: microstrain per unit amplitude.
+    /// Patterns over the gauges: microstrain per unit amplitude.
     pub patterns: Vec<Vec<f64>>,
-    /// The kind of each pattern: patterns of a kind share their sizes.
+    /// Kind of each pattern. Patterns of one kind share their sizes.
     pub kinds: Vec<usize>,
     /// Usual scatter (prior sd from run to run) of each kind, in `unit`.
     pub usual: Vec<f64>,
@@ -17,7 +17,7 @@ pub struct Amplitudes {
     pub correlation: f64,
     /// Unit for reports.
     pub unit: &'static str,
-    /// By kind: above this root mean square an amplitude is not plausible.
+    /// Largest plausible root mean square of the amplitudes of each kind.
     pub plausible: Vec<f64>,
 }
 
@@ -26,7 +26,7 @@ pub struct Amplitudes {
 pub struct SizedAmplitudes {
     /// Patterns.
     pub amplitudes: Amplitudes,
-    /// By kind: standard deviation from run to run; then, by kind again, of the part that repeats in all runs.
+    /// For each kind, the standard deviation from run to run. These are followed by the standard deviation of the repeating part of each kind.
     pub sizes: Vec<f64>,
 }
 

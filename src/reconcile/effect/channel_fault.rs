@@ -12,7 +12,7 @@ pub struct FaultScope<'a> {
     pub run: usize,
     /// Gauges of the fault.
     pub gauges: &'a [usize],
-    /// Part of the fault that applies: all of it with offsets and limits, or the linear part alone.
+    /// Part of the fault that applies: the whole fault with offsets and limits, or only its linear part.
     pub part: Part,
 }
 

@@ -7,7 +7,7 @@ use crate::reconcile::strain::StrainFrame;
 /// Reading = strain + share times the strain at the neighbour in file order.
 #[derive(Clone, Debug)]
 pub struct CrossSensitivity {
-    /// The gauge that leaks in.
+    /// Gauge whose strain contributes to the reading.
     pub neighbour: usize,
 }
 

@@ -117,7 +117,7 @@ pub enum Extension {
     },
     /// Nuisance loads to be found in every run.
     NuisanceLoads {
-        /// Where they come from.
+        /// Source of the patterns.
         source: Nuisance,
         /// Names of the patterns, with their usual size.
         loads: Vec<(String, f64)>,

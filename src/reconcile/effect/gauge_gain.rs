@@ -51,7 +51,7 @@ impl ChannelFault for GaugeGain {
     }
 }
 
-/// Multiplies the cells of the gauges by the first parameter.
+/// Multiplies the entries of the gauges by the first parameter.
 pub(super) fn scale(at: FaultScope<'_>, parameters: &[f64], row: &mut [f64]) {
     let Some(gain) = parameters.first() else {
         return;

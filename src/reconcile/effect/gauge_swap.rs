@@ -4,7 +4,7 @@ use super::channel_fault::{ChannelFault, FaultScope, OnGauges};
 use super::{Correction, Extension};
 use crate::reconcile::strain::StrainFrame;
 
-/// Channel a reads what b feels, and the other way round.
+/// Exchange of two gauges: channel a reads the strain of gauge b, and channel b reads the strain of gauge a.
 #[derive(Clone, Debug)]
 pub struct GaugeSwap;
 

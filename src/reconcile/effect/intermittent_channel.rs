@@ -7,7 +7,7 @@ use crate::reconcile::strain::{StrainFrame, predict};
 /// Effect of a loose contact: the channel reads zero in some runs, and strain in the other runs.
 #[derive(Clone, Debug)]
 pub struct IntermittentChannel {
-    /// By run: is the contact open?
+    /// Whether the contact is open, by run.
     pub open: Vec<bool>,
 }
 

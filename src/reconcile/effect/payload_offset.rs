@@ -6,11 +6,11 @@ use crate::reconcile::strain::{PayloadWeight, StrainFrame, StrainState};
 /// Direction in which the payload may be off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
-    /// Forward or back.
+    /// Offset forward or back.
     Along,
-    /// To a side.
+    /// Offset to a side.
     Across,
-    /// Both.
+    /// Offset in both directions.
     Both,
 }
 

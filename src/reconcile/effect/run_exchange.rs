@@ -3,7 +3,7 @@
 use super::{Extension, Stage, StrainEffect};
 use crate::reconcile::strain::{StrainFrame, StrainState};
 
-/// Loads and payload of run a act in run b, and the other way round.
+/// Exchange of two runs: loads and payload of run a act in run b, and loads and payload of run b act in run a.
 #[derive(Clone, Debug)]
 pub struct RunExchange {
     /// The two runs.

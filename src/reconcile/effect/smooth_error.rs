@@ -16,7 +16,7 @@ pub struct SmoothError {
     amplitude: f64,
     /// L, metres.
     pub length_m: f64,
-    /// By mode: sqrt(lambda) times its vector over the gauges.
+    /// sqrt(lambda) times the vector over the gauges, for each mode.
     modes: Arc<Vec<Vec<f64>>>,
     /// One for all loads, or one for each and one for the payload.
     n_factors: usize,

@@ -11,9 +11,9 @@ pub struct Stiffness {
     pub signature: usize,
     /// Kind of change: zone, joint, small region, or change that the user described.
     pub of: StiffnessOf,
-    /// Zone, joint, element or grid; of a described change its id.
+    /// Zone, joint, element or grid. For a described change it is the id of the change.
     pub name: String,
-    /// Prior standard deviation of its size.
+    /// Prior standard deviation of the size.
     pub prior: f64,
 }
 

@@ -15,7 +15,7 @@ pub enum Pattern {
 /// Strain = strain + temperature of the run times the pattern.
 #[derive(Clone, Debug)]
 pub struct ThermalStrain {
-    /// Which pattern.
+    /// Pattern of the temperature.
     pub pattern: Pattern,
 }
 

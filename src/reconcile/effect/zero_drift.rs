@@ -4,10 +4,10 @@ use super::channel_fault::{ChannelFault, FaultScope, OnGauges};
 use super::{Amplitudes, Correction, Extension, FaultKind, Parameter};
 use crate::reconcile::strain::{Part, StrainFrame};
 
-/// How the zero moves.
+/// Way in which the zero changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ZeroDrift {
-    /// By the same amount in all runs.
+    /// Drift by an equal amount in all runs.
     Step,
     /// Creep in proportion to the number of the run. The size is the drift at the last run.
     Creep,

@@ -12,7 +12,7 @@ pub(super) const STATIC: std::ops::Range<f64> = 0.5..2.0;
 /// Factor on the velocity in the band that accounts for slower motion between the ends of a record.
 const SLOWER: f64 = 2.0;
 
-/// Balance of weight as one more row of the least squares: g (sum of masses) = sum of mean wheel forces.
+/// Balance of weight as an additional row of the least squares: g (sum of masses) = sum of mean wheel forces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RestRow {
     /// Parameters with the acceleration that each is multiplied by.
@@ -60,8 +60,8 @@ pub fn rest_row(frame: &MotionFrame, design: &Design, values: &[f64]) -> Option<
     }
     let weight: f64 = masses.iter().map(|&(i, g)| g * value(i)).sum();
     let force: f64 = forces.iter().map(|f| f.1).sum();
-    // A force that was zeroed reads less than the weight. A force that stays well above zero was not zeroed. Masses near zero together with such a
-    // force are from a wrong fit. Masses and springs of zero also satisfy the equations of a body without outside force.
+    // A force that was zeroed reads less than the weight. A force that stays well above zero was not zeroed. If the
+    // identified mass is near zero and the force is not, the fit is wrong: masses and springs of zero also satisfy the equations of a free body.
     let ratio = weight / force;
     let astray = force > 0.0 && ratio < STATIC.start && stays_above_nothing(frame, v);
     if !(STATIC.contains(&ratio) || astray) {

@@ -7,11 +7,11 @@ use super::change::Change;
 pub struct Candidate {
     /// Id with place, such as `accel_gain:a_body`.
     pub id: String,
-    /// Place alone.
+    /// Place without the id.
     pub place: Option<String>,
     /// Possible forms; the data determine which one applies.
     pub shapes: Vec<Change>,
-    /// Log prior odds against a plain effect.
+    /// Logarithm of the prior odds of a plain effect to this candidate. It is subtracted from the evidence of the candidate.
     pub handicap: f64,
     /// Sign that the first parameter must have.
     pub sign: Sign,
@@ -61,7 +61,7 @@ impl Candidate {
         self.shapes.first().is_some_and(own)
     }
 
-    /// Returns the link whose spring the effect bends: its force over stretch is not a straight line.
+    /// Returns the link whose spring becomes nonlinear by the effect. Its force is then not proportional to its stretch.
     pub fn bends_spring(&self) -> Option<usize> {
         match self.shapes.first()? {
             Change::Terms { link, terms } if terms.iter().all(|t| t.bends_spring()) => Some(*link),
@@ -69,7 +69,7 @@ impl Candidate {
         }
     }
 
-    /// Returns whether the effect can be so large that nothing in a record is explained without it. More effects may be found in addition.
+    /// Returns whether the effect can be so large that no other effect explains the record alone. Other effects may be present in addition.
     pub fn overturns(&self) -> bool {
         matches!(
             self.shapes.first(),

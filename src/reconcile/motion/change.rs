@@ -63,7 +63,7 @@ pub enum Change {
     Swap {
         /// One channel.
         a: String,
-        /// The other.
+        /// The other channel.
         b: String,
     },
 }

@@ -171,7 +171,7 @@ pub fn nuisance(
     out
 }
 
-/// Equations of a column list, one slice each.
+/// Returns the equations of a list of columns, one slice for each column.
 pub fn slices(column: &[Bins]) -> Vec<&[Complex64]> {
     column.iter().map(Vec::as_slice).collect()
 }

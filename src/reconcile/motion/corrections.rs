@@ -5,7 +5,8 @@ use super::frame::MotionFrame;
 use super::part::Part;
 use crate::vehicle::adjustment::{Adjustment, Lag, Slip};
 
-/// Returns the corrections of the job joined with the corrections of a set. Mains lines of the set are columns of the fit and stay in the record.
+/// Returns the corrections of the job joined with the corrections of a set. Mains lines of the set are columns of the fit, so they are not
+/// removed from the record.
 pub fn adjustments(frame: &MotionFrame, parts: &[Part]) -> Vec<Adjustment> {
     let mut out = frame.corrections.clone();
     for p in parts {

@@ -11,17 +11,17 @@ use crate::vehicle::motion::{Motion, Treatment, VehicleError, motion};
 use crate::vehicle::treatment::SlowStretch;
 use rustfft::num_complex::Complex64;
 
-/// Transform of a signal within the band, a value a bin.
+/// Transform of a signal within the band, with a value for each bin.
 pub type Bins = Vec<Complex64>;
 
 /// One equation of a compared body.
 #[derive(Clone, Debug)]
 pub struct BinEquation {
-    /// Such as `body b`.
+    /// Name, such as `body b`.
     pub name: String,
     /// Body.
     pub body: usize,
-    /// Which of its motions.
+    /// Motion of the body.
     pub motion: usize,
     /// Parameter index and column.
     pub columns: Vec<(usize, Bins)>,
@@ -40,7 +40,7 @@ pub struct BinChannel {
     pub noise: Option<f64>,
     /// Gain by which the readings were divided.
     pub gain: f64,
-    /// Low-passes that were corrected: the noise grows as the readings do.
+    /// Corrected low-pass filters. Their correction amplifies the noise like the readings.
     pub lags: Vec<Lag>,
 }
 
@@ -53,11 +53,11 @@ pub struct Design {
     pub equations: Vec<BinEquation>,
     /// Channels of the compared bodies.
     pub channels: Vec<BinChannel>,
-    /// Samples of the record to one of the thinned signals.
+    /// Factor of thinning: number of samples of the record for each sample of the thinned signals.
     pub thinning: f64,
     /// Time of the record's first sample, s.
     pub record_start_s: f64,
-    /// The band of its bins.
+    /// Frequency band of the bins.
     pub band: Band,
     /// The vehicle.
     pub vehicle: Vehicle,
@@ -235,7 +235,7 @@ impl Design {
         out
     }
 
-    /// Samples of a channel within the band.
+    /// Returns the samples of a channel within the band.
     pub fn signal(&self, channel: &str) -> Option<&[f64]> {
         self.motion.signal(&self.vehicle, channel)
     }

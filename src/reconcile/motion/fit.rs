@@ -20,7 +20,7 @@ use crate::vehicle::stretch::slow_stretches;
 use rustfft::num_complex::Complex64;
 use std::sync::Arc;
 
-/// How much a fit is worth.
+/// Effort of a fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {
     /// Covariance, slow stretch and corrections until they settle.

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 /// The analyst's vehicle, the records, and the declared quality of the records. All quantities are in job units.
 #[derive(Clone, Debug)]
 pub struct MotionFrame {
-    /// The analyst's model; bodies beyond those compared are witnesses (the other side of an axle).
+    /// Model of the analyst. Bodies that are not compared serve as witnesses (the other side of an axle).
     pub vehicle: Vehicle,
     /// Bodies whose equations are compared.
     pub bodies: Vec<usize>,
@@ -28,9 +28,9 @@ pub struct MotionFrame {
     pub band: Band,
     /// Acceleration of gravity.
     pub gravity: f64,
-    /// Noise of accelerometers, one sd a sample, where declared.
+    /// Noise of accelerometers, one sd of a sample, if declared.
     pub noise_acc: Option<f64>,
-    /// Noise of force channels, one sd a sample, where declared.
+    /// Noise of force channels, one sd of a sample, if declared.
     pub noise_force: Option<f64>,
     /// Gain tolerance of every channel, one sd, a share.
     pub gain_tolerance: f64,
@@ -42,7 +42,7 @@ pub struct MotionFrame {
     pub units: UnitNames,
     /// Thresholds for naming effects.
     pub rules: MotionRules,
-    /// Stops the search early; its result is then of no use.
+    /// Request to stop the search early. Its result must then not be used.
     pub stop: Stop,
 }
 

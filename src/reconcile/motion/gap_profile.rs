@@ -12,7 +12,7 @@ const CLASSES: usize = 5;
 /// Share of the record at each end that the taper spoils.
 const END: f64 = 0.075;
 
-/// Local gap: RMS of the residual there over RMS of the measured quantity in the whole record.
+/// Local gap: RMS of the residual in a part of the record, divided by the RMS of the measured quantity in the whole record.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GapProfile {
     /// End of the stretch, seconds; gap.

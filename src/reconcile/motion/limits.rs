@@ -112,14 +112,14 @@ pub fn beyond_tolerance(frame: &MotionFrame, fit: &MotionFit) -> bool {
     })
 }
 
-/// Returns the lateness of a channel from a timing fault of size one, RMS over the record about its mean, s. This lateness is compared with the
-/// tolerance of synchronisation, which applies to one delay.
+/// Returns the delay of a channel from a timing fault of size one, RMS over the record about its mean, s. This delay is compared with the tolerance
+/// of synchronisation, which applies to one delay.
 pub(super) fn late_on_average(shape: &Change, fit: &MotionFit) -> f64 {
     let [begin, end] = fit.design.span_s();
     match shape {
-        // The lateness grows evenly from begin to end.
+        // The delay grows linearly from begin to end, so its RMS about the mean is the duration over the root of 12.
         Change::Clock { .. } => (end - begin) / 12f64.sqrt(),
-        // The lateness differs from its mean by half a step in either direction.
+        // Before and after the slip, the delay is taken as half a step away from its mean.
         Change::Slip { .. } => 0.5,
         _ => 1.0,
     }

@@ -26,7 +26,7 @@ pub struct MotionFit {
     pub sizes: Vec<Vec<[f64; 2]>>,
     /// Joint covariance of all sizes in this order, by rows.
     pub covariance: Vec<Vec<f64>>,
-    /// Squared residual over its covariance, the balance of weight included.
+    /// Squared residual divided by its covariance, including the balance of weight.
     pub chi2: f64,
     /// Squared nuisance over its prior.
     pub penalty: f64,
@@ -46,11 +46,11 @@ pub struct MotionFit {
     pub columns: Arc<Vec<PriorColumn>>,
     /// Parameter, fault, line or tolerance of each column.
     pub column_of: Vec<ColumnOf>,
-    /// Estimate of each column in the last round; for a fault, the step by which it moved.
+    /// Estimate of each column in the last round. For a fault, it is the last step of its parameter.
     pub estimates: Vec<f64>,
-    /// Whitened residual, priors at its end.
+    /// Whitened residual, followed by the rows of the priors.
     pub residual: Arc<Vec<f64>>,
-    /// Residual of each equation with nuisance at its estimate.
+    /// Residual of each equation, with the nuisance at its estimate.
     pub left: Arc<Vec<Bins>>,
 }
 

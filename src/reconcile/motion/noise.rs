@@ -15,7 +15,7 @@ pub struct Background {
     pub power: Vec<Vec<f64>>,
 }
 
-/// Bands over which background is taken as even.
+/// Number of bands in which the background is assumed to be constant.
 pub const BANDS: usize = 10;
 
 /// Returns the band of a frequency. Bands are even in the logarithm of frequency.
@@ -117,7 +117,7 @@ pub fn log_determinant(
 }
 
 impl Whitener {
-    /// Factors of covariances.
+    /// Creates the whitener from covariances, one for each bin.
     pub fn from_covariance(covariance: &[Vec<Complex64>], n: usize) -> Self {
         Self {
             n,

@@ -11,11 +11,11 @@ use crate::vehicle::adjustment::Adjustment;
 pub struct MotionEffect {
     /// Id with place.
     pub id: String,
-    /// Place alone.
+    /// Place without the id.
     pub place: Option<String>,
     /// Change of the vehicle or of a channel.
     pub change: Change,
-    /// Sizes of its parameters.
+    /// Sizes of the parameters of the effect.
     pub size: Vec<f64>,
     /// One sd of each size.
     pub sigma: Vec<f64>,
@@ -41,7 +41,7 @@ pub struct MotionDetectionLimit {
 pub struct MotionOutcome {
     /// Verdict.
     pub verdict: Verdict,
-    /// Named effects; empty unless named.
+    /// Named effects. Empty unless the verdict is `named`.
     pub effects: Vec<MotionEffect>,
     /// Effects of the best attempt.
     pub best_attempt: Vec<MotionEffect>,
@@ -51,7 +51,7 @@ pub struct MotionOutcome {
     pub corrections: Vec<Adjustment>,
     /// Other explanations, nearest first.
     pub rivals: Vec<AlternativeExplanation>,
-    /// Log evidence of the best set less the log evidence without effects.
+    /// Log evidence of the best set minus the log evidence without effects.
     pub evidence: f64,
     /// Log evidence needed to name an effect.
     pub decisive: f64,

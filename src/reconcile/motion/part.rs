@@ -2,7 +2,7 @@
 
 use super::change::Change;
 
-/// One effect of a set, in the form that was chosen.
+/// One effect of a set in the chosen form.
 #[derive(Clone, Debug)]
 pub struct Part {
     /// Number of the candidate.

@@ -6,7 +6,7 @@ use crate::reconcile::search::ScoredSet;
 
 /// Result of a search: all scored sets, best first, and the best one.
 pub(super) struct RankedEffectSets {
-    /// The analyst's model under sensor noise alone.
+    /// Fit of the analyst's model with sensor noise only.
     pub null: MotionFit,
     /// Every set, best first.
     pub all: Vec<ScoredSet<MotionFit>>,

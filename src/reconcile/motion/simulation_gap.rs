@@ -35,14 +35,14 @@ pub struct SimulatedChannel {
     pub after: f64,
 }
 
-/// Both models after simulation.
+/// Gaps of both models, computed by simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulatedGap {
-    /// By sensor that was simulated.
+    /// Result for each simulated sensor.
     pub channels: Vec<SimulatedChannel>,
     /// Parameters of the named model: name, by regression, by simulation.
     pub parameters: Vec<(String, f64, f64)>,
-    /// Data on which both were simulated: the held-out record, or else the fitted record.
+    /// Data on which both models were simulated: the held-out record, or else the fitted record.
     pub judged_by: Proof,
 }
 

@@ -6,13 +6,13 @@ use serde::Serialize;
 /// Stretch of frequency, time or size, and the gap there.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Stretch {
-    /// Where it begins.
+    /// Begin of the stretch: Hz, s, or size of the motion.
     pub from: f64,
-    /// Where it ends.
+    /// End of the stretch, in the unit of `from`.
     pub to: f64,
-    /// The gap there, over what was measured in the whole record.
+    /// Gap in the stretch, divided by the measured size in the whole record.
     pub gap: f64,
-    /// The smallest gap of all such stretches.
+    /// Smallest gap of all stretches of this kind.
     pub least: f64,
 }
 
@@ -29,7 +29,7 @@ pub struct GapSits {
     pub band_hz: Option<Stretch>,
     /// Stretch of the record, s.
     pub time_s: Option<Stretch>,
-    /// Size of what was measured, over its root mean square.
+    /// Size of the measured quantity, divided by its root mean square.
     pub size_over_rms: Option<Stretch>,
 }
 

@@ -14,7 +14,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 pub struct Adequacy {
     /// Reduced chi-square of the fit runs.
     pub fit: f64,
-    /// Readings less parameters.
+    /// Number of readings minus number of parameters.
     pub n_fit: f64,
     /// Reduced chi-square of the held-out runs given the fit runs; if no run is held out, of the fit runs.
     pub held_out: f64,

@@ -114,7 +114,7 @@ pub fn covariance(
             wander.push((correlation, own));
         }
         for (pattern, &kind) in u.amplitudes.patterns.iter().zip(&u.amplitudes.kinds) {
-            // The model error applies to these patterns as to all others.
+            // The model error applies to these patterns as well.
             let own: Vec<f64> = pattern
                 .iter()
                 .zip(&doubt)

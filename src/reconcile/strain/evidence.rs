@@ -6,7 +6,7 @@ use crate::linalg::precision::Precision;
 use crate::reconcile::search::{Addition, ScoredSet};
 
 impl Likelihood<'_> {
-    /// Fits `set`, from scratch or from a fit of its neighbour.
+    /// Fits `set`, starting from the neutral parameters or from a fit of a neighbouring set.
     pub(super) fn evidence_of(
         &mut self,
         set: &[usize],

@@ -208,8 +208,8 @@ fn without_needless_noise(
         .unwrap_or(best)
 }
 
-/// Returns the set without unnecessary effects. Without them, the other effects reach the expected residual, and the prediction of the proof runs is
-/// no worse.
+/// Returns the set without unnecessary effects. Without them, the other effects reach the expected residual, and the prediction of the held-out runs
+/// is no worse.
 fn without_needless_names(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],

@@ -64,7 +64,7 @@ pub fn is_unmodelled(candidates: &[Candidate], set: &[usize]) -> Option<&'static
     })
 }
 
-/// Returns the ids with places of the effects of a set, without noise.
+/// Returns the ids with places of the effects of a set. Effects that describe only noise are left out.
 pub fn ids(candidates: &[Candidate], set: &[usize]) -> Vec<String> {
     let named = named_part(candidates, set);
     named

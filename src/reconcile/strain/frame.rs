@@ -7,7 +7,7 @@ use crate::reconcile::rules::StrainRules;
 use crate::sensitivity::{GaugeNoise, Uncertainty};
 use crate::stop::Stop;
 
-/// How a gauge's arms are wired, as far as an angle error is concerned.
+/// Wiring of a gauge, as far as it affects an angle error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wiring {
     /// One active arm.
@@ -25,9 +25,9 @@ pub struct GaugeFacts {
     pub name: String,
     /// Wiring.
     pub wiring: Wiring,
-    /// Angle from the direction its `tensor` refers to, degrees.
+    /// Angle from the direction to which `tensor` refers, degrees.
     pub angle_deg: f64,
-    /// Place, metres, where known: gauges at one place form a rosette.
+    /// Place, metres, if known. Gauges at one place form a rosette.
     pub position: Option<[f64; 3]>,
 }
 
@@ -52,7 +52,7 @@ pub enum StiffnessOf {
 pub struct StiffnessSignature {
     /// Kind of the change.
     pub of: StiffnessOf,
-    /// Zone, joint or element; for a described change, its id.
+    /// Zone, joint or element. For a described change it is the id of the change.
     pub place: String,
     /// Sizes in ascending order, without zero, and the change of the influence matrix (`n_gauges x n_columns`) at each.
     pub at_percent: Vec<(f64, Vec<f64>)>,
@@ -174,7 +174,7 @@ pub struct StrainFrame {
     pub learnt: Option<Uncertainty>,
     /// Thresholds for identified effects.
     pub rules: StrainRules,
-    /// Request to stop the search; its results are then of no use.
+    /// Request to stop the search. Its results must then not be used.
     pub stop: Stop,
 }
 

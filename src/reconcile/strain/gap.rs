@@ -34,7 +34,7 @@ pub struct ValidationResiduals {
     pub after: Vec<f64>,
     /// Root mean square residual that a right model would leave, microstrain.
     pub floor: Vec<f64>,
-    /// Residual on the analyst's mesh less the residual on the finer mesh, microstrain.
+    /// Residual on the analyst's mesh minus the residual on the finer mesh, microstrain.
     pub mesh: Vec<f64>,
 }
 
@@ -176,12 +176,12 @@ impl Patterns {
     }
 }
 
-/// Fit runs with a set of active effects, and the covariance that predicts the proof runs from them.
+/// Fit runs with a set of active effects, and the covariance that predicts the held-out runs from them.
 struct ValidationPredictor<'a> {
     frame: &'a StrainFrame,
     members: &'a [Member<'a>],
     unknown: &'a [SizedAmplitudes],
-    /// Readings of the fit runs, then readings of the proof runs.
+    /// Readings of the fit runs, then readings of the held-out runs.
     both: Selection,
     /// Covariance of the residual of `both`, microstrain^2.
     joint: Vec<f64>,
@@ -293,23 +293,23 @@ fn given_fit(told: &ValidationPredictor<'_>, run: &Selection) -> (Vec<f64>, Vec<
     (mean, out)
 }
 
-/// Proof runs given the fit runs, with one model.
+/// Held-out runs given the fit runs, with one model.
 struct Proof<'a> {
     told: &'a ValidationPredictor<'a>,
     patterns: Patterns,
 }
 
-/// One proof run.
+/// One held-out run.
 struct ProofRun<'a> {
     proof: &'a Proof<'a>,
     all: Selection,
     /// Residual of the model on the analyst's mesh.
     residual: Vec<f64>,
-    /// Innovation: residual on the finer mesh less its mean given the fit runs.
+    /// Innovation: residual on the finer mesh minus its mean given the fit runs.
     innovation: Vec<f64>,
-    /// Mean given the fit runs less the mean of the patterns, plus `mesh`: model errors that the fit runs show, and the mesh difference.
+    /// Mean given the fit runs minus the mean of the patterns, plus `mesh`: model errors that the fit runs show, and the mesh difference.
     offset: Vec<f64>,
-    /// Residual on the analyst's mesh less the residual on the finer mesh.
+    /// Residual on the analyst's mesh minus the residual on the finer mesh.
     mesh: Vec<f64>,
     /// Covariance of the innovation, `n x n`.
     spread: Vec<f64>,
@@ -405,10 +405,10 @@ impl ProofRun<'_> {
     }
 }
 
-/// Returns the residuals of the proof runs by the analyst's model and with `members`, and their expected residual.
+/// Returns the residuals of the held-out runs by the analyst's model and with `members`, and their expected residual.
 ///
 /// Each tested reading j is predicted from the readings u of the other half of its run. K i_u is subtracted, with K = J_j V J_u' G_uu^-1. The
-/// innovation i is the residual less its mean given the fit runs. G is the covariance of i, and J V J' the part of G from the patterns. Given i_u, a
+/// innovation i is the residual minus its mean given the fit runs. G is the covariance of i, and J V J' the part of G from the patterns. Given i_u, a
 /// right model leaves the mean square (m_j + (G_ju G_uu^-1 - K) i_u)^2 + G_jj - G_ju G_uu^-1 G_uj. The vector m contains the model errors that the
 /// fit runs show. The residual before has no effects. Its only patterns are the nuisance loads and, if `anew` includes them, the wheel loads.
 pub fn proof_residuals(
@@ -421,7 +421,7 @@ pub fn proof_residuals(
     verdict_after_removal(finer, members, unknown, &[(anew, before)])?.pop()
 }
 
-/// Returns the residuals of the proof runs by the analyst's model, for each of `anew`. They do not depend on the active effects.
+/// Returns the residuals of the held-out runs by the analyst's model, for each of `anew`. They do not depend on the active effects.
 pub(super) fn proof_residuals_before(
     finer: &StrainFrame,
     anew: &[ReestimatedUnknowns],

@@ -45,7 +45,7 @@ pub struct Likelihood<'a> {
     pub(super) runs: Vec<usize>,
     /// Covariance run by run.
     pub(super) blocks: RunBlocks,
-    /// Are general forms of discrepancy left out of the search?
+    /// Whether general forms of discrepancy are left out of the search.
     pub(super) names_only: bool,
 }
 

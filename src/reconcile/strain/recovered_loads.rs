@@ -12,7 +12,7 @@ use crate::linalg::Matrix;
 use crate::reconcile::effect::{Member, SizedAmplitudes};
 use crate::reconcile::outcome::LoadShift;
 
-/// Returns the wheel loads recovered from the strain of each proof run, by generalised least squares, without and with the effects.
+/// Returns the wheel loads recovered from the strain of each held-out run, by generalised least squares, without and with the effects.
 pub fn loads_before_after(
     frame: &StrainFrame,
     members: &[Member<'_>],

@@ -228,7 +228,7 @@ impl Likelihood<'_> {
         };
         for mut theta in starts {
             let mut log_width = 0.0;
-            // Two sweeps over the parameters, one at a time.
+            // Two sweeps over the parameters. Each step changes one parameter.
             for _ in 0..2 {
                 log_width = 0.0;
                 for (k, p) in described.iter().enumerate() {

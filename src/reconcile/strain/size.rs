@@ -21,7 +21,7 @@ struct RunBlock {
     covariance: Vec<f64>,
 }
 
-/// Run with its precision, scatter of amplitudes included, for fast sums.
+/// Run with its precision, including the scatter of amplitudes, for fast sums.
 pub struct RunPrecision<'a> {
     /// Places of the readings in the selection.
     pub at: &'a [usize],
@@ -218,7 +218,7 @@ pub fn run_by_run_log_likelihood(
 
 /// Draws on each size by the usual one and by its family.
 mod draw {
-    /// The usual size counts as much as this many amplitudes seen.
+    /// Number of observed amplitudes whose weight equals the weight of the usual size.
     pub(super) const NU: f64 = 1.0;
     /// Weight of the common scale of a family against the amplitudes of one kind.
     pub(super) const SHARED: f64 = 0.5;

@@ -10,7 +10,7 @@ use crate::reconcile::effect_removal::{ReducedEffectSet, Useless, without_useles
 use crate::reconcile::search::ScoredSet;
 use rayon::prelude::*;
 
-/// Set of effects without the ones that do not reduce the gap on the validation runs.
+/// Set of effects without the effects that do not reduce the gap on the validation runs.
 pub(super) struct ProvenEffects {
     /// Smaller set, with at least one identified effect.
     pub set: ScoredSet<Fit>,

@@ -9,29 +9,31 @@ use std::ops::Range;
 /// Blocks in memory at a time.
 const GROUP: usize = 16;
 
-/// A block at rest; errors and sums are of every `step`-th sample, often enough for the band.
+/// Quasi-static block of a record. Errors and sums contain every `step`-th sample, which is often enough for the band.
 pub(super) struct Block {
     /// First sample.
     pub first: usize,
-    /// By gauge that reads.
+    /// Readings of each gauge that reads.
     pub readings: Vec<Vec<f64>>,
     /// Samples between two samples with computed errors.
     pub step: usize,
     /// First sample with computed errors.
     pub first_told: usize,
-    /// By error, by gauge that reads: both quarters of its course at these samples, strain; it is as large as the mean of their squares.
+    /// Both quarters of the time history of each error, by error and by gauge that reads, at these samples, strain. The mean of their squares is the
+    /// size of the error.
     pub errors: Vec<Vec<[Vec<f64>; 2]>>,
-    /// By load: what loads recovered as if at rest are off by, and the loads, at these samples.
+    /// Error of the quasi-static recovery of each load, at the samples with computed errors.
     pub motion: Vec<Vec<f64>>,
+    /// Each load, at the same samples.
     pub loads: Vec<Vec<f64>>,
 }
 
-/// Spectrum of a channel: one value a frequency of the filter.
+/// Spectrum of a channel: one value for each frequency of the filter.
 pub(super) type Spectrum = Vec<Complex<f64>>;
 
 impl Kernel {
-    /// The readings `from` of the samples `span`, a channel each, put at rest and handed to `sink` in blocks. Samples nearer than the reach to an
-    /// end of `span` are left out.
+    /// Computes quasi-static readings from the readings `from` of the samples `span`, one channel for each gauge, and passes them to `sink` in
+    /// blocks. Samples nearer than the reach to an end of `span` are left out.
     pub fn apply(&self, from: &[&[f64]], span: &Range<usize>, mut sink: impl FnMut(&Block)) {
         let hop = self.length - 2 * self.reach;
         let firsts: Vec<usize> = (span.start + self.reach..span.end.saturating_sub(self.reach))
@@ -66,7 +68,7 @@ impl Kernel {
         // Use the shortest transform that contains the band.
         let short = (2 * self.bins.len()).next_power_of_two().min(self.length);
         let step = self.length / short;
-        // The range contains at least one sample, which may be before the first wanted one.
+        // The range contains at least one sample, which may be before the first wanted sample.
         let first_told = self.reach / step;
         let told = first_told..kept.end.div_ceil(step);
         let thin = |bins: &[Complex<f64>]| back(bins, short)[told.clone()].to_vec();
@@ -91,7 +93,7 @@ impl Kernel {
         }
     }
 
-    /// `G eps` by load.
+    /// Returns `G eps` by load.
     pub fn loads_of(&self, spectra: &[Spectrum]) -> Vec<Spectrum> {
         let of_load = |l: usize| -> Spectrum {
             let bins = self.bins.iter().enumerate();
@@ -159,7 +161,7 @@ impl Kernel {
         out
     }
 
-    /// By load: what loads recovered as if at rest are off by.
+    /// Returns the error of quasi-static recovery, for each load.
     fn motion_of(&self, loads: &[Spectrum]) -> Vec<Spectrum> {
         let (k, n) = self.at_rest.shape();
         let of_load = |l: usize| -> Spectrum {
@@ -176,7 +178,7 @@ impl Kernel {
         (0..k).map(of_load).collect()
     }
 
-    /// By load: the static gain on readings at rest.
+    /// Returns the loads that the static gain computes from quasi-static readings.
     fn at_rest_of(&self, at_rest: &[Spectrum]) -> Vec<Spectrum> {
         let of_load = |l: usize| -> Spectrum {
             let row = self.at_rest.row(l);
@@ -189,7 +191,7 @@ impl Kernel {
     }
 }
 
-/// The transform of `length` samples.
+/// Returns the transform of `length` samples.
 pub(super) fn spectrum(length: usize, sample: impl Fn(usize) -> f64) -> Spectrum {
     let plan = forward(length);
     let mut input = plan.make_input_vec();
@@ -203,7 +205,7 @@ pub(super) fn spectrum(length: usize, sample: impl Fn(usize) -> f64) -> Spectrum
     out
 }
 
-/// The course over `length` samples of what has the first `bins` of a transform of `of` samples, nothing above them.
+/// Returns the time history over `length` samples from the first `bins` of a transform of `of` samples. Higher bins are zero.
 pub(super) fn time_history(bins: &[Complex<f64>], length: usize, of: usize) -> Vec<f64> {
     let back = inverse(length);
     let mut input = back.make_input_vec();

@@ -11,22 +11,22 @@ use std::ops::Range;
 
 /// Sets of gauges that read: samples of any further set are blank.
 const MOST_SETS: usize = 8;
-/// Numbers that the filters of all sets may hold: 256 MB.
+/// Largest count of numbers in the filters of all sets: 256 MB.
 pub(super) const MOST_NUMBERS: usize = 32_000_000;
 
 /// Quasi-static readings of a record, with their errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AtRest {
-    /// By gauge, every sample; NaN where nothing is known.
+    /// Every sample of each gauge. NaN if nothing is known.
     pub readings: Vec<Vec<f64>>,
-    /// Samples of which something was read.
+    /// Samples with at least one reading.
     pub read: usize,
     /// Samples with a known quasi-static reading.
     pub known: usize,
     /// Samples without a known gauge although the gauges that read determine the loads. They are at the ends of stretches,
     /// and in stretches that are too short.
     pub blank: usize,
-    /// Samples to either side that a quasi-static sample depends on, if all gauges read.
+    /// Number of samples on either side on which a quasi-static sample depends, if all gauges read.
     pub reach: usize,
     /// Variance of the noise of a quasi-static reading over the variance of a reading's noise, mean of the gauges, if all gauges read.
     pub noise_share: f64,
@@ -38,11 +38,11 @@ pub struct AtRest {
     pub load: Vec<f64>,
 }
 
-/// Stretches of a record by the gauges that read in them.
+/// Stretches of a record with the same active gauges.
 pub(super) struct Stretches {
-    /// Gauges that read, all of them first, then by how long they do.
+    /// Sets of active gauges. The set of all gauges is the first, the others are sorted by the duration of their samples.
     sets: Vec<Vec<usize>>,
-    /// Set and samples; those without any reading are left out.
+    /// Index of the set, and samples. Samples without any reading are left out.
     list: Vec<(usize, Range<usize>)>,
 }
 
@@ -124,13 +124,13 @@ pub fn readings_at_rest(
     })
 }
 
-/// Samples over which errors are taken together: a period of the highest frequency wanted.
+/// Returns the number of samples over which errors are averaged: a period of the highest wanted frequency.
 pub fn window(dynamics: &Dynamics, rate_hz: f64) -> usize {
     ((rate_hz / dynamics.up_to_hz) as usize).max(1)
 }
 
 impl Stretches {
-    /// Stretches in which the same gauges read.
+    /// Returns the stretches in which the same gauges read.
     pub fn from_readings(readings: &[Vec<f64>], samples: usize) -> Self {
         let reads = |i: usize| readings.iter().map(move |c| c[i].is_finite());
         let mut numbers: BTreeMap<Vec<bool>, usize> = BTreeMap::new();
@@ -195,7 +195,7 @@ impl Squares {
         told
     }
 
-    /// Returns the mean squares of the motion errors of the loads, and of the loads less their means.
+    /// Returns the mean squares of the motion errors of the loads, and of the loads minus their means.
     fn means(&self) -> (Vec<f64>, Vec<f64>) {
         let load = self.load.iter().zip(&self.sum);
         let load = load.map(|(q, s)| (q / self.told - (s / self.told).powi(2)).max(0.0));

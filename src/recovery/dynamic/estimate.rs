@@ -30,12 +30,13 @@ pub struct Deviation {
     pub log: f64,
     /// One standard deviation of `log`.
     pub sd: f64,
-    /// One standard deviation that was stated.
+    /// Stated standard deviation.
     pub stated_sd: f64,
 }
 
 impl Deviation {
-    /// Returns the deviation in units of the standard deviation that it has if the stated one is right; `None` if the record does not determine it.
+    /// Returns the deviation in units of the standard deviation that it has if the stated standard deviation is right. `None` if the record does not
+    /// determine the parameter.
     ///
     /// The estimate shrinks towards 0. Under a prior of variance `p` and an estimate of variance `v` its variance is `p - v`.
     pub fn standard_deviations_off(&self) -> Option<f64> {
@@ -44,21 +45,22 @@ impl Deviation {
     }
 }
 
-/// Modes as the record shows them.
+/// Modes as determined from the record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EstimatedModes {
     /// The model with estimated frequencies and damping, and the standard deviations that remain.
     pub dynamics: Dynamics,
     /// Deviation of frequency and of damping by mode; `None` for a parameter that was not estimated.
     pub deviations: Vec<[Option<Deviation>; 2]>,
-    /// Mean square of the residual that the modes do not explain, over the mean square without any mode, both less noise.
+    /// Mean square of the residual that the modes do not explain, over the mean square without any mode, both minus noise.
     pub unexplained: f64,
     /// Mean square of the residual with the modes, over the mean square of noise.
     pub over_noise: f64,
 }
 
 /// Estimates frequencies and damping of the modes from a record. Arguments as in [`super::readings_at_rest`]; with `open_damping` the damping of
-/// `dynamics` is not used. `model_rel` is one standard deviation of the strain of a mode at a gauge, share of it; at least 1 % is assumed.
+/// `dynamics` is not used. `model_rel` is one standard deviation of the strain of a mode at a gauge, as a share of this strain. At least 1 % is
+/// assumed.
 ///
 /// Returns `None` where the record contains no information: no more gauges than loads, no mode in the band, or no stretch of the record with all
 /// gauges that is long enough.
@@ -282,7 +284,7 @@ impl Problem<'_> {
             }
         };
         let scatter: Vec<f64> = (0..p).map(scatter).collect();
-        // Covariance of the gradient; a parameter that the residual does not contain has none.
+        // Covariance of the gradient. A parameter without effect on the residual has zeros.
         let mut gradient = Matrix::from_fn(p, p, |i, j| {
             normal.matrix[(i, j)] * variance * scatter[i] * scatter[j] + normal.by_shape[(i, j)]
         });

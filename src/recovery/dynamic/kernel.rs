@@ -22,11 +22,11 @@ const WORTH_ITS_TIME: f64 = 1e-3;
 /// Frequencies whose noise is added up together.
 const TOGETHER: usize = 256;
 
-/// `T(w) = B (1 - Psi a C G)`, `n x n`, a matrix a frequency.
+/// Filter `T(w) = B (1 - Psi a C G)`, with an `n x n` matrix for each frequency.
 pub(super) struct Kernel {
     /// Samples of a transform.
     pub length: usize,
-    /// Samples to either side that a sample at rest hangs on.
+    /// Number of samples on either side on which a quasi-static sample depends.
     pub reach: usize,
     pub bins: Vec<Bin>,
     /// Static displacement of each uncertain mode by a unit of each load, `C`.
@@ -41,15 +41,15 @@ pub(super) struct Kernel {
 
 /// Filter at one frequency.
 pub(super) struct Bin {
-    /// B.
+    /// Factor `B` of the band.
     pub band: f64,
-    /// G, `k x n`.
+    /// Gain `G`, `k x n`.
     pub gain: ComplexMatrix,
     /// Strain that motion adds to the strain of unit loads, B Psi a C, `n x k`.
     pub added: ComplexMatrix,
     /// Error of quasi-static readings by uncertain mode, `T psi`, if the response of the mode exceeds the assumed response by 1.
     pub spread: Vec<Vec<Complex<f64>>>,
-    /// Increase of the response by uncertain mode, for one standard deviation more of its frequency and of its damping.
+    /// Increase of the response for each uncertain mode, if its frequency or its damping is larger by one standard deviation.
     pub errors: Vec<[Complex<f64>; 2]>,
     /// Error of quasi-static readings for unit loads from modes outside the model, `T (S - Psi C) a`, `n x k`; `None` without such modes.
     pub further: Option<ComplexMatrix>,
@@ -63,7 +63,7 @@ impl Bin {
 }
 
 impl Kernel {
-    /// For samples at `rate_hz`, of `most_numbers` numbers at most.
+    /// Creates the filter for samples at `rate_hz`. It may contain at most `most_numbers` numbers.
     ///
     /// # Errors
     /// See [`Unfit`].

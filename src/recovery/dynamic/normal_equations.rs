@@ -6,7 +6,7 @@ use std::ops::Range;
 /// Sums of products over part of the record. Columns are the derivatives by parameter, the residual, and the residual without modes.
 #[derive(Clone)]
 pub(super) struct Products {
-    /// Loads and motions of the `m` modes with one another, `(k + m) x (k + m)`.
+    /// Products of loads and motions of the `m` modes with each other, `(k + m) x (k + m)`.
     pub loads: Matrix,
     /// Loads and motions with columns by gauge, `(k + m) x (p + 2)`.
     pub by_gauge: Vec<Matrix>,
@@ -20,7 +20,7 @@ pub(super) struct Normal {
     /// Derivatives with derivatives, and with the residual.
     pub matrix: Matrix,
     pub right: Vector,
-    /// Sum of squares of the residual, without modes too.
+    /// Sum of squares of the residual, also without the modes.
     pub squares: f64,
     pub squares_without: f64,
     /// Sum of squares of the part of the residual that the modes remove.
@@ -37,15 +37,15 @@ pub(super) struct Normal {
 
 /// Strain of the modes with parameters at the gauges.
 pub(super) struct Shapes {
-    /// By gauge, by mode.
+    /// Strain of each mode at each gauge.
     pub strain: Vec<Vec<f64>>,
-    /// One standard deviation, share of the strain.
+    /// One standard deviation, as a share of the strain.
     pub sd: f64,
     pub n_loads: usize,
 }
 
 impl Products {
-    /// Sums over the samples `part`. `columns` are by gauge the courses of the derivatives and of the residual.
+    /// Computes the sums over the samples `part`. `columns` contains by gauge the time histories of the derivatives and of the residual.
     pub fn new(
         loads: &[Vec<f64>],
         columns: &[Vec<Vec<f64>>],
@@ -94,7 +94,7 @@ impl Products {
         }
     }
 
-    /// Returns the products of columns less their regression on the loads, with the coefficients `regression` by gauge, `k x (p + 2)`.
+    /// Returns the products of columns minus their regression on the loads. `regression` contains the coefficients by gauge, `k x (p + 2)`.
     pub fn orthogonal(&self, regression: &[Matrix]) -> Matrix {
         let mut out = self.columns.clone();
         let k = regression.first().map_or(0, Matrix::nrows);
@@ -165,9 +165,9 @@ impl Normal {
         Some(normal)
     }
 
-    /// Returns the parameters' change that minimises the linearised residual, the shortest of all.
+    /// Returns the shortest change of the parameters that minimises the linearised residual.
     pub fn step(&self) -> Vector {
-        // Scaled to a diagonal of 1; combinations that the residual does not contain stay as they are.
+        // The matrix is scaled to a diagonal of 1. Combinations of parameters without effect on the residual get no step.
         let n = self.right.len();
         let scale = |i: usize| self.matrix[(i, i)].max(f64::MIN_POSITIVE).sqrt();
         let scaled = Matrix::from_fn(n, n, |i, j| self.matrix[(i, j)] / (scale(i) * scale(j)));
@@ -179,7 +179,7 @@ impl Normal {
         Vector::from_fn(n, |i, _| step[i] / scale(i))
     }
 
-    /// Returns the variance of one residual: of noise, or what the best linear step leaves if that is larger.
+    /// Returns the variance of one residual. It is the variance of the noise, or of the remainder after the best linear step if this is larger.
     pub fn variance(&self, noise: f64) -> f64 {
         let left = (self.squares - self.right.dot(&self.step())).max(0.0) / self.freedom;
         (noise * noise * self.band).max(left).max(f64::MIN_POSITIVE)

@@ -6,7 +6,7 @@ use crate::linalg::{Complex, Matrix};
 use crate::sensitivity::Sensitivity;
 use std::f64::consts::PI;
 
-/// Loads, modes and the gauges that read, with the gains at a frequency.
+/// Loads, modes and active gauges, with the gains at a frequency.
 pub(super) struct Plant<'a> {
     dynamics: &'a Dynamics,
     /// `n x k`.

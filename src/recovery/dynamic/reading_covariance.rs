@@ -48,7 +48,7 @@ pub fn triangle(n: usize) -> usize {
 }
 
 impl ReadingCovariance {
-    /// Nothing yet, of `n` gauges and so many samples.
+    /// Creates an empty covariance for `n` gauges and the given number of samples.
     pub(super) fn new(n: usize, samples: usize, window: usize) -> Self {
         let windows = samples.div_ceil(window.max(1));
         Self {
@@ -143,7 +143,7 @@ impl ReadingCovariance {
         Matrix::from_fn(n, n, |a, b| noise[(at[a], at[b])])
     }
 
-    /// Both parts at a sample in which the gauges `used` read.
+    /// Returns both parts at a sample in which the gauges `used` read.
     pub fn covariances_at(&self, sample: usize, used: &[usize]) -> AddedCovariance {
         let own = self.of_noise(used);
         let mut noise = Matrix::zeros(self.n, self.n);

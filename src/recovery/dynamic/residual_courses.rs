@@ -14,11 +14,11 @@ use std::ops::Range;
 pub(super) struct Record<'a> {
     pub s: &'a Sensitivity,
     pub noise: f64,
-    /// One standard deviation of the strain of a mode at a gauge, share of it.
+    /// One standard deviation of the strain of a mode at a gauge, as a share of this strain.
     pub shape_sd: f64,
     pub readings: &'a [Vec<f64>],
     pub rate_hz: f64,
-    /// Mean of the finite readings by gauge: motion has none, and it may be the zero of the gauge.
+    /// Mean of the finite readings by gauge. Motion has no mean, and the mean may be the zero of the gauge.
     pub means: Vec<f64>,
     /// Stretches in which all gauges read.
     pub spans: Vec<Range<usize>>,
@@ -28,7 +28,7 @@ pub(super) struct Record<'a> {
 pub(super) struct ModeAt {
     /// `B (1 - H G) psi_j`, by gauge.
     pub spread: Vec<Complex<f64>>,
-    /// Response beyond the static one, `a_j`.
+    /// Response beyond the static response, `a_j`.
     pub response: Complex<f64>,
     /// Derivatives of the response by the logarithms of frequency and damping.
     pub slopes: [Complex<f64>; 2],
@@ -42,7 +42,7 @@ pub(super) struct View<'a> {
     /// Modes with parameters, and the static displacement of each by a unit of each load.
     pub modes: Vec<usize>,
     pub displacement: Vec<Vec<f64>>,
-    /// By frequency, by entry of `modes`.
+    /// Values by frequency and by entry of `modes`.
     pub at: Vec<Vec<ModeAt>>,
     /// Share of white noise in the band.
     pub band: f64,

@@ -2,7 +2,7 @@
 
 /// Limits of the estimate of modes.
 pub struct EstimateRules {
-    /// Steps of the method of Gauss and Newton at most: from twice a frequency or damping off, five suffice.
+    /// Largest number of steps of the method of Gauss and Newton. From twice a frequency or damping, five steps are sufficient.
     pub steps: usize,
     /// A step below this share of every standard deviation ends the search.
     pub converged: f64,
@@ -12,21 +12,24 @@ pub struct EstimateRules {
     pub starts: [f64; 4],
     /// One standard deviation of the logarithm of a damping without a stated value: a factor of 4.5 either way, which joins the starts.
     pub open_sd: f64,
-    /// Least standard deviation of the strain of a mode at a gauge, share of it: the error of a mesh that was not fitted to measured shapes.
+    /// Least standard deviation of the strain of a mode at a gauge, as a share of this strain. It is the error of a mesh that was not fitted to
+    /// measured shapes.
     pub shape_sd: f64,
-    /// Blocks of the record that are used, evenly spaced: with more, the errors of the strain of the modes dominate.
+    /// Number of blocks of the record that are used, evenly spaced. With more blocks, the errors of the strain of the modes dominate.
     pub blocks: usize,
     /// Parts of the record whose gradients are compared: their scatter is then known to a tenth.
     pub parts: usize,
-    /// Largest number of parameters, those of the lowest modes: more take minutes, and neighbouring modes are then indistinguishable.
+    /// Largest number of parameters. Only the lowest modes are estimated. More parameters take minutes, and neighbouring modes are then
+    /// indistinguishable.
     pub parameters: usize,
     /// Largest damping, share of critical: a mode beyond does not vibrate.
     pub largest_damping: f64,
-    /// Standard deviations by which a mode may differ from its stated frequency or damping: 3 in 1,000 modes differ by more if these are right.
+    /// Standard deviations by which a mode may differ from its stated frequency or damping. If the stated values are right, 3 in 1,000 modes differ
+    /// by more.
     pub contradicted_sd: f64,
-    /// Share of the mean square of the vibration in the residual that the modes may leave: a third of its amplitude.
+    /// Largest share of the mean square of the vibration that may remain in the residual. It corresponds to a third of the amplitude.
     pub unexplained: f64,
-    /// Mean square of the residual over that of the noise from which on the residual is vibration.
+    /// Mean square of the residual, divided by the mean square of the noise, from which the residual counts as vibration.
     pub over_noise: f64,
 }
 

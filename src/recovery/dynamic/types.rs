@@ -8,15 +8,15 @@ pub const BAND_END: f64 = 1.5;
 pub struct ElasticMode {
     /// Frequency, Hz.
     pub hz: f64,
-    /// Strain at every gauge of S for a generalised coordinate of 1, its shape of unit generalised mass.
+    /// Strain at every gauge of S for a generalised coordinate of 1. The shape has unit generalised mass.
     pub strain: Vec<f64>,
-    /// Work of a unit of every load of S on that shape.
+    /// Work of a unit of every load of S on the shape.
     pub work: Vec<f64>,
     /// Damping, share of critical.
     pub damping: f64,
-    /// One standard deviation of the frequency, share of it.
+    /// One standard deviation of the frequency, as a share of the frequency.
     pub frequency_sd: f64,
-    /// One standard deviation of the damping, share of it.
+    /// One standard deviation of the damping, as a share of the damping.
     pub damping_sd: f64,
 }
 
@@ -27,7 +27,7 @@ pub struct Dynamics {
     pub modes: Vec<ElasticMode>,
     /// Frequency from which on further modes exist, Hz; their dynamic response is part of the uncertainty. `None` without further modes.
     pub further_hz: Option<f64>,
-    /// Damping of those further modes, share of critical.
+    /// Damping of the modes from `further_hz` on, as a share of critical damping.
     pub further_damping: f64,
     /// Highest frequency of the wanted loads, Hz.
     pub up_to_hz: f64,

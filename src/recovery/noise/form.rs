@@ -5,11 +5,11 @@ use crate::sensitivity::GaugeNoise;
 
 /// Sample covariance of residuals.
 pub(super) struct Sample {
-    /// `m x n`: orthonormal rows that no load passes.
+    /// Orthonormal rows to which no load contributes, `m x n`.
     pub t: Matrix,
-    /// `m x m`: covariance of `T y`.
+    /// Covariance of `T y`, `m x m`.
     pub covariance: Matrix,
-    /// Effective degrees of freedom behind it.
+    /// Effective degrees of freedom of the form.
     pub dof: f64,
 }
 
@@ -127,7 +127,7 @@ impl Form {
         out
     }
 
-    /// Returns Rao's score statistic of equal and independent noise against this form: about what a fit gains in twice the log likelihood.
+    /// Returns Rao's score statistic of equal and independent noise against this form. It is about the gain of a fit in twice the log likelihood.
     pub fn score_statistic(self, r: &Sample) -> Option<f64> {
         let (score, information) = self.score(r, &Parameters::with_equal_noise(r), 0.0)?;
         let step = solve(&information, &score)?;

@@ -63,7 +63,7 @@ const RULES: Rules = Rules {
 /// Noise that residuals show.
 #[derive(Default)]
 pub(super) struct ShownNoise {
-    /// Noise of all gauges of S; `None` where it is as stated.
+    /// Noise of all gauges of S. `None` if it equals the stated noise.
     pub noise: Option<GaugeNoise>,
     /// Finding on the noise, or on noise that can't be determined.
     pub finding: Option<Finding>,
@@ -72,8 +72,8 @@ pub(super) struct ShownNoise {
 /// Returns the noise from samples without load, with a finding. Each row is a sample of strain by gauge of S. `None` if the noise agrees with the
 /// stated noise.
 ///
-/// With at least `Rules::runs_per_gauge` effective samples it may be their covariance itself. The mean over the gauges is never below the stated
-/// noise, because readings under load can have more noise than at rest.
+/// With at least `Rules::runs_per_gauge` effective samples for each gauge, the noise may be the covariance of the samples. The mean over the gauges
+/// is never below the stated noise, because readings under load can have more noise than at rest.
 pub fn noise_without_load(
     s: &Sensitivity,
     rows: &[Vec<f64>],
@@ -244,7 +244,7 @@ impl Parts {
         Some(Self { used, z, t, with })
     }
 
-    /// Returns the residuals less their parts along the columns [`Self::with`], `runs x m`, and the number of these columns.
+    /// Returns the residuals minus their parts along the columns [`Self::with`], `runs x m`, and the number of these columns.
     fn of_noise(&self) -> Option<(Matrix, usize)> {
         let basis = dense::svd(&dense::unit_columns(&self.with))?;
         let kept = basis.s.iter().filter(|v| **v > dense::RANK_TOLERANCE);

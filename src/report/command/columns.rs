@@ -3,10 +3,10 @@
 use crate::host::fault::Fault;
 use crate::host::output::Output;
 
-/// States the units of a table that was written, column by column of its header; empty: a name or a plain number.
+/// States the units of a written table, column by column. An empty unit stands for a name or a plain number.
 ///
 /// # Errors
-/// Where the table can't be read back.
+/// A fault if the written table cannot be read back.
 pub(super) fn declare_written(
     out: &mut Output,
     table: &str,

@@ -10,7 +10,8 @@ use serde_json::{Value, json};
 /// Rows of the figure for one choice, the largest.
 const MOST_ROWS: usize = 24;
 
-/// Damage an hour by vehicle, the largest first: all loads against the mean of the fleet, then each load in its unit. `None` without vehicles.
+/// Returns a section with the damage per hour of each vehicle, the largest first: all loads relative to the mean of the fleet, then each load in its
+/// unit. `None` without vehicles.
 pub(super) fn damage_section(o: &Outcome<Fleet>) -> Option<Section> {
     let per_hour = |l: &VehicleLoadAnswer, scale: f64| {
         [l.damage_low, l.damage, l.damage_high].map(|d| d * scale)

@@ -17,7 +17,7 @@ const VEHICLES_WITH_FIGURES: usize = 12;
 /// Digits of a digest on the page; pointed at, it shows all.
 const SHORT: usize = 16;
 
-/// The report.
+/// Returns the report.
 pub(super) fn page(o: &Outcome<Fleet>) -> Page {
     let hours: f64 = o.vehicles.iter().map(|v| v.hours).sum();
     let lead = format!(

@@ -72,10 +72,9 @@ pub trait Report {
     fn console(&self) -> Console;
 }
 
-/// Refuses a folder where files of an outcome to come have the names of files that no command wrote.
+/// Refuses a folder in which files of the outcome would overwrite files that no command wrote.
 ///
-/// # Errors
-/// A fault for each.
+/// # Errors A fault for each such file.
 pub fn check_folder<A>(folder: &Path) -> Result<(), Faults>
 where
     Outcome<A>: Report,
@@ -83,7 +82,8 @@ where
     Output::check_free(folder, <Outcome<A> as Report>::FILES)
 }
 
-/// Writes an outcome into a folder, `result.json` last; its name does not exist before all is written. The text of `result.json`.
+/// Writes an outcome into a folder and returns the text of `result.json`. This file is written last. It gets its name after all other files are
+/// complete.
 ///
 /// # Errors
 /// The first file that can't be written.
@@ -97,7 +97,7 @@ where
     finish(outcome, out)
 }
 
-/// Adds `result.json` to the files of an outcome and puts all of them in place. The text of `result.json`.
+/// Adds `result.json` to the files of an outcome, moves all files to their place, and returns the text of `result.json`.
 ///
 /// # Errors
 /// The first file that can't be written.
@@ -110,7 +110,7 @@ pub fn finish<A: Answer>(outcome: &Outcome<A>, mut out: Output) -> Result<String
     Ok(json)
 }
 
-/// The text of `result.json` of an outcome that is not written.
+/// Returns the text of `result.json` of an outcome that is not written.
 ///
 /// # Errors
 /// An answer without a JSON form, which is a mistake of the program.

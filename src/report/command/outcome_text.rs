@@ -5,7 +5,7 @@ use crate::finding::Severity;
 use crate::host::outcome::{Answer, Outcome};
 use crate::report::console::{Console, LINES, Room, Texts, WIDTH, lay_out};
 
-/// Returns the content of a terminal for an outcome. Errors come before any other next step.
+/// Returns the text of an outcome for a terminal. If there are errors, they are the next step.
 pub fn console_of<A: Answer>(outcome: &Outcome<A>) -> Console
 where
     Outcome<A>: Report,

@@ -12,8 +12,8 @@ use crate::report::page::{Block, Card, FirstScreen, Page, Section, Table};
 use crate::report::spreadsheet::{Sheet, UnitOf, WorkbookDescription, spreadsheet};
 use crate::units::Quantity;
 
-/// Writes `report.html` if the outcome has a page, and `report.pdf` with the feature `pdf` if the page is meant for paper. Where the folder
-/// contains results of other commands too, `index.html` lists all of them.
+/// Writes `report.html` if the outcome has a page, and `report.pdf` with the feature `pdf` if the page is meant for paper. If the folder also
+/// contains results of other commands, `index.html` lists all results.
 ///
 /// # Errors
 /// A file that can't be written.

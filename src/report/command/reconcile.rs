@@ -123,7 +123,7 @@ fn fields(found: &Outcome<Reconciliation>) -> Vec<(&'static str, String)> {
     out
 }
 
-/// How sure the named set is: resampled runs, and the distance of the next explanation.
+/// Returns the confidence in the identified set: resampled runs, and the distance of the next explanation.
 fn confidence(found: &Reconciliation) -> Option<String> {
     let runs = found.strain.as_ref().filter(|_| !found.named.is_empty());
     let runs = runs.map(|s| format!("{} of 100 resampled run sets agree", s.wins_of_100));

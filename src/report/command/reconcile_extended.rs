@@ -12,7 +12,7 @@ use crate::workflow::reconcile::extended_model::{
 use crate::workflow::reconcile::{Reconciliation, extended_job};
 use std::fmt::Write;
 
-/// Writes the extended job and what it names, where there is one.
+/// Writes the extended job and the files that it names, if the outcome has one.
 pub(super) fn write_extended(found: &Reconciliation, out: &mut Output) -> Result<(), Faults> {
     let Some(extended) = &found.extended_model else {
         return Ok(());

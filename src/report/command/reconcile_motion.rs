@@ -22,7 +22,7 @@ use crate::vehicle::term::UnitNames;
 use crate::workflow::reconcile::{MotionPart, Reconciliation, SimulationFound};
 use std::fmt::Write;
 
-/// Writes the tables; `units` are the job's.
+/// Writes the tables. `units` are the units of the job.
 pub(super) fn write_motion(
     found: &MotionPart,
     units: &UnitNames,
@@ -51,7 +51,7 @@ fn gap_unit(column: &str) -> String {
     .to_owned()
 }
 
-/// The page.
+/// Returns the page.
 pub(super) fn motion_page(outcome: &Outcome<Reconciliation>, found: &MotionPart) -> Page {
     let curves = match &found.identified {
         Some((id, moved)) => restoring_curves(id, moved),
@@ -156,7 +156,7 @@ fn verdict_section(outcome: &Outcome<Reconciliation>, found: &MotionPart) -> Sec
     Section::new("Verdict", vec![Block::Stressed(verdict, words)])
 }
 
-/// By equation: in which band, when and at which size of the motion the gap is largest, before and after.
+/// Returns the section with the place of the largest gap of each equation: band, time and size of the motion, before and after.
 fn where_section(found: &MotionPart) -> Section {
     let stretch = |s: &Option<Stretch>| match s {
         Some(s) => format!("{:.2} to {:.2}: {:.2}", s.from, s.to, 100.0 * s.gap),

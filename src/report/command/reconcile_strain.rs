@@ -30,7 +30,7 @@ pub(super) fn write_strain(found: &StrainPart, out: &mut Output) -> Result<(), F
     Ok(())
 }
 
-/// The page.
+/// Returns the page.
 pub(super) fn strain_page(outcome: &Outcome<Reconciliation>, found: &StrainPart) -> Page {
     let job = &outcome.job;
     let metres = match found.fields {

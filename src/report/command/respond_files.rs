@@ -8,7 +8,7 @@ use std::io::Write;
 /// Places whose histories are written.
 const MOST_HISTORIES: usize = 40;
 
-/// A row a state: strain (microstrain), stress, von Mises with its 95 % interval, at every place listed.
+/// Writes a table with a row for each state: strain (microstrain), stress, and von Mises stress with its 95 % interval, at every listed place.
 pub(super) fn histories(
     w: &mut dyn Write,
     rows: &[ResponseRow],
@@ -72,7 +72,7 @@ pub(super) fn histories(
     Ok(())
 }
 
-/// Envelope by element for ParaView: largest von Mises on the bottom and the top (bars: anywhere), its sd, and the state.
+/// Returns the envelope by element for ParaView: the largest von Mises stress on the bottom and the top (for bars anywhere), its sd, and its state.
 pub(super) fn arrays(
     model: &Model,
     rows: &[ResponseRow],

@@ -95,7 +95,7 @@ impl Report for Outcome<ComputedSensitivity> {
     }
 }
 
-/// Columns of sensitivity.csv with their units: microstrain per job unit of the load.
+/// Returns the columns of sensitivity.csv with their units: microstrain per job unit of the load.
 pub(super) fn columns(job: &Job, s: &Sensitivity) -> Vec<(String, String)> {
     let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
     let units = load_units(job, &names).into_iter().map(|u| {

@@ -2,7 +2,7 @@
 
 use crate::finding::Finding;
 
-/// Content of a terminal, before it is laid out.
+/// Content of a terminal before its layout.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Console {
     /// Tables of the same result, the most detailed first. The first one that fits is shown.
@@ -18,14 +18,14 @@ pub struct Console {
 pub struct ConsoleTable {
     /// Line over the table: quantity, units, meaning of `±`.
     pub title: String,
-    /// Names of the columns; empty for a list of fields and values.
+    /// Names of the columns. Empty for a list of fields and values.
     pub head: Vec<String>,
     /// Cells by row.
     pub rows: Vec<Vec<String>>,
 }
 
 impl ConsoleTable {
-    /// A table with these columns.
+    /// Creates a table with these columns.
     pub fn new(title: impl Into<String>, head: &[&str], rows: Vec<Vec<String>>) -> Self {
         Self {
             title: title.into(),
@@ -34,7 +34,7 @@ impl ConsoleTable {
         }
     }
 
-    /// A list of fields, each with its value.
+    /// Creates a list of fields, each with its value.
     pub fn of_fields(title: impl Into<String>, fields: &[(&str, String)]) -> Self {
         let row = |(name, value): &(&str, String)| vec![(*name).to_owned(), value.clone()];
         Self::new(title, &[], fields.iter().map(row).collect())
@@ -42,7 +42,7 @@ impl ConsoleTable {
 }
 
 impl Console {
-    /// A terminal with one table, whose rows are all in `file`.
+    /// Creates a terminal with one table. `file` contains all rows of the table.
     pub fn new(table: ConsoleTable, file: Option<&'static str>) -> Self {
         Self {
             tables: vec![table],
@@ -59,7 +59,7 @@ impl Console {
         }
     }
 
-    /// Adds a shorter table of the same result, for lack of room.
+    /// Adds a shorter table of the same result, which is used if there is not enough room.
     pub fn or(mut self, table: ConsoleTable) -> Self {
         self.tables.push(table);
         self

@@ -11,7 +11,7 @@ use crate::host::words::finding_text;
 pub struct FindingLines {
     /// Severity of the finding; `None` for a remark.
     pub severity: Option<Severity>,
-    /// The lines, the later ones indented.
+    /// Lines of the finding. All lines after the first are indented.
     pub lines: Vec<String>,
 }
 
@@ -32,7 +32,7 @@ const ATTEMPTS: [(Severity, usize); 10] = [
     (Severity::Error, 1),
 ];
 
-/// Returns the lines of all findings and remarks; with a limit, of those that fit.
+/// Returns the lines of all findings and remarks. With a limit, it returns only the findings and remarks that fit.
 pub(super) fn lines(
     texts: &Texts,
     width: usize,

@@ -8,9 +8,9 @@ use super::wrap::wrap_lines;
 /// Room for the lines of a command.
 #[derive(Clone, Copy, Debug)]
 pub struct Room {
-    /// Columns.
+    /// Number of columns.
     pub width: usize,
-    /// Lines; `None`: as many as there are.
+    /// Number of lines. `None` means no limit.
     pub lines: Option<usize>,
     /// Whether the terminal shows characters beyond ASCII.
     pub is_utf8: bool,

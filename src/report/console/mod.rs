@@ -13,9 +13,9 @@ pub use findings::FindingLines;
 pub use layout::{Layout, Room, ascii, lay_out};
 pub use wrap::wrap_lines;
 
-/// Lines of a command, the table and the findings included: a terminal shows them without scrolling.
+/// Number of lines of a command, including table and findings, that a terminal shows without scrolling.
 pub const LINES: usize = 25;
-/// Columns where standard output is not a terminal.
+/// Number of columns if standard output is not a terminal.
 pub const WIDTH: usize = 100;
 
 #[cfg(test)]

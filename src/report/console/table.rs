@@ -51,7 +51,7 @@ impl Columns {
             let all = cells(c).chain(table.head.get(c));
             all.map(|t| t.chars().count()).max().unwrap_or(0)
         };
-        // The values of a list of fields differ in kind, so that no column is aligned as numbers.
+        // The values of a list of fields differ in kind. No column is therefore aligned as numbers.
         let is_list = table.head.is_empty();
         let is_number = |c: usize| c > 0 && !is_list && cells(c).all(|t| is_number(t));
         Self {

@@ -52,7 +52,7 @@ const BAND: &str = "rgba(214,137,16,.16)";
 /// Widest group of bars, mm.
 const WIDEST: f64 = 20.0;
 
-/// The choices of a figure that are meant for paper, each a picture.
+/// Returns the choices of a figure that are meant for paper, each a picture.
 pub(in crate::report) fn pictures(figure: &Figure) -> Vec<Picture> {
     let shown = figure.choices.iter().take(figure.on_paper);
     shown
@@ -69,7 +69,7 @@ pub(in crate::report) fn pictures(figure: &Figure) -> Vec<Picture> {
         .collect()
 }
 
-/// The first choice of a figure for a card or a phone; a map as on paper.
+/// Draws the first choice of a figure for a card or a phone. A map is drawn as on paper.
 pub(in crate::report) fn card_picture(figure: &Figure) -> Option<Picture> {
     let (_, traces) = figure.choices.first()?;
     match traces.iter().any(|t| t["type"] == "heatmap") {

@@ -13,7 +13,7 @@ const HOLDS: f64 = 12.0;
 const RANGE: &str =
     "Colours: blue −100 %, white 0, red 100 % of the largest magnitude in the column.";
 
-/// The map in pictures of at most [`ROWS`] rows.
+/// Returns the map in pictures of at most [`ROWS`] rows.
 pub(in crate::report) fn heat(map: &Value) -> Vec<Picture> {
     let names = |v: &Value| -> Vec<String> {
         let list = v.as_array().into_iter().flatten();

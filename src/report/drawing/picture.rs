@@ -74,7 +74,7 @@ pub(in crate::report) const INK: &str = "#1c2530";
 /// Width of a drawing, mm. It equals the text width of A4 with margins of 18 mm.
 pub(in crate::report) const UPRIGHT: f64 = 174.0;
 
-/// Characters of a name in a drawing.
+/// Largest number of characters of a name in a drawing.
 pub(in crate::report) const LONGEST: usize = 40;
 
 impl Picture {
@@ -84,12 +84,12 @@ impl Picture {
         self.shapes.iter().any(is_face)
     }
 
-    /// A line from `a` to `b`.
+    /// Adds a line from `a` to `b`.
     pub(in crate::report) fn line(&mut self, a: [f64; 2], b: [f64; 2], colour: &str, pen: f64) {
         self.strokes(vec![vec![a, b]], colour, pen);
     }
 
-    /// Lines of one pen.
+    /// Adds lines with one pen.
     pub(in crate::report) fn strokes(&mut self, lines: Vec<Vec<[f64; 2]>>, colour: &str, pen: f64) {
         self.shapes.push(Shape::Strokes {
             lines,
@@ -98,7 +98,7 @@ impl Picture {
         });
     }
 
-    /// A circle: an outline of this pen, filled where it is 0.
+    /// Adds a circle. It is an outline with the width of the pen, or filled if the width is 0.
     pub(in crate::report) fn circle(&mut self, at: [f64; 2], radius: f64, colour: &str, pen: f64) {
         self.shapes.push(Shape::Circle {
             at,
@@ -128,7 +128,7 @@ impl Picture {
     }
 }
 
-/// At most `most` characters on one line, marked where some are left out.
+/// Returns at most `most` characters on one line. A mark shows an omitted end.
 pub(in crate::report) fn shorten_to(text: &str, most: usize) -> String {
     if text.chars().count() <= most {
         return text.to_owned();

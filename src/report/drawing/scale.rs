@@ -1,6 +1,6 @@
 //! An axis on paper: from values to millimetres, with ticks at round numbers.
 
-/// Linear, or by powers of ten.
+/// Scale of an axis: linear, or logarithmic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::report) struct Scale {
     /// Ends of the values; of their logarithms where `by_powers`.
@@ -11,7 +11,7 @@ pub(in crate::report) struct Scale {
 }
 
 impl Scale {
-    /// A scale on which all `values` are between the places; with a little room at both ends where they are `roomy`.
+    /// Creates a scale on which all `values` are between the ends, with some room at both ends if `roomy`.
     pub(in crate::report) fn from_values(
         values: impl Iterator<Item = f64>,
         place: [f64; 2],
@@ -40,7 +40,7 @@ impl Scale {
         }
     }
 
-    /// Position of a value; `None` if it has no place.
+    /// Returns the position of a value. `None` if the value is not on the scale.
     pub(in crate::report) fn position_of_value(&self, value: f64) -> Option<f64> {
         let v = if self.by_powers { value.log10() } else { value };
         let share = (v - self.ends[0]) / (self.ends[1] - self.ends[0]);
@@ -76,7 +76,7 @@ impl Scale {
     }
 }
 
-/// 1, 2 or 5 times a power of ten, at least `x`.
+/// Returns the smallest of 1, 2 or 5 times a power of ten that is at least `x`.
 pub(in crate::report) fn round_step(x: f64) -> f64 {
     let power = 10f64.powf(x.abs().max(1e-300).log10().floor());
     let steps = [1.0, 2.0, 5.0, 10.0].map(|s| s * power);

@@ -156,7 +156,7 @@ fn outline(lines: &[[Vec3; 2]], place: &dyn Fn(Vec3) -> [f64; 2]) -> Vec<Vec<[f6
         .collect()
 }
 
-/// How points and directions of the basic frame lie on the paper.
+/// Projection of points and directions of the basic frame onto the paper.
 pub(in crate::report) struct Look<'a> {
     pub(in crate::report) place: &'a dyn Fn(Vec3) -> [f64; 2],
     pub(in crate::report) turn: &'a dyn Fn(Vec3) -> [f64; 2],

@@ -9,7 +9,7 @@ use std::fmt::Write;
 const POINT: f64 = 25.4 / 72.0;
 const CAPITAL: f64 = 0.7;
 
-/// The drawing; `label` is what it is called where it can't be seen.
+/// Returns the drawing as SVG. `label` is the text for readers who can't see the drawing.
 pub(in crate::report) fn to_svg(picture: &Picture, label: &str) -> Markup {
     let [wide, high] = picture.size.map(round_to_tenths);
     let mut body = String::new();

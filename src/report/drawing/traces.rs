@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-/// How a series is drawn.
+/// Style in which a series is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::report) enum Kind {
     /// Upright bars from the axis.
@@ -20,7 +20,7 @@ pub(in crate::report) enum Kind {
 /// A series of a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::report) struct Series {
-    /// Name; empty where it has none.
+    /// Name of the series. Empty if it has none.
     pub(in crate::report) name: String,
     /// Kind of drawing.
     pub(in crate::report) kind: Kind,
@@ -39,22 +39,22 @@ pub(in crate::report) struct Series {
 }
 
 impl Series {
-    /// Number of points.
+    /// Returns the number of points.
     pub(in crate::report) fn len(&self) -> usize {
         self.values[0].len().min(self.values[1].len())
     }
 
-    /// Name on axis `k`, where that has names.
+    /// Returns the name of a point on axis `k`, if this axis has names.
     pub(in crate::report) fn name_at(&self, k: usize, i: usize) -> Option<&str> {
         self.values[k].get(i)?.as_str()
     }
 
-    /// Value on axis `k`.
+    /// Returns the value on axis `k`.
     pub(in crate::report) fn value_at(&self, k: usize, i: usize) -> Option<f64> {
         self.values[k].get(i)?.as_f64()
     }
 
-    /// Interval about a value to the right.
+    /// Returns the interval about a value to the right.
     pub(in crate::report) fn interval_at(&self, i: usize) -> Option<[f64; 2]> {
         let v = self.value_at(0, i)?;
         let [below, above] = &self.errors;
@@ -81,7 +81,7 @@ impl Series {
     }
 }
 
-/// Returns a colour as `#rrggbb`: `#rrggbb` as it is, `rgba(r,g,b,a)` as it looks on white.
+/// Returns a colour as `#rrggbb`. For `rgba(r,g,b,a)` it is the colour on a white background.
 pub(in crate::report) fn on_white(colour: &str) -> Option<String> {
     if colour.starts_with('#') {
         return Some(colour.to_owned());
@@ -95,7 +95,7 @@ pub(in crate::report) fn on_white(colour: &str) -> Option<String> {
     Some(format!("#{:02x}{:02x}{:02x}", mixed[0], mixed[1], mixed[2]))
 }
 
-/// The series of traces; `colours` in turn for those without.
+/// Returns the series of the traces. Traces without a colour take the next one of `colours`.
 pub(in crate::report) fn series_of(traces: &[Value], colours: &[&str]) -> Vec<Series> {
     let list = |v: &Value| v.as_array().cloned().unwrap_or_default();
     let word = |v: &Value| v.as_str().unwrap_or("").to_owned();
@@ -139,7 +139,7 @@ pub(in crate::report) fn series_of(traces: &[Value], colours: &[&str]) -> Vec<Se
     out
 }
 
-/// Names on axis `k` in the order in which they come; `None` where it has numbers.
+/// Returns the names on axis `k` in order of occurrence. `None` if the axis has numbers.
 pub(in crate::report) fn names_of(series: &[Series], k: usize) -> Option<Vec<String>> {
     let mut names: Vec<String> = Vec::new();
     let mut seen = std::collections::BTreeSet::new();

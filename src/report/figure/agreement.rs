@@ -16,12 +16,12 @@ pub struct GaugePoints {
     pub name: String,
     /// Residual, microstrain rms.
     pub residual: f64,
-    /// By kind.
+    /// Points of each kind.
     pub points: [Vec<(f64, f64)>; 2],
 }
 
-/// Measured (up) against predicted (right) strain about the line of equality: all gauges, then each, the largest residual first.
-/// `kinds` names the two kinds of points, `runs` the points of each kind.
+/// Draws measured (up) against predicted (right) strain about the line of equality: all gauges, then each gauge, the largest residual first. `kinds`
+/// names the two kinds of points, `runs` the points of each kind.
 pub fn agreement(gauges: &[GaugePoints], kinds: [&str; 2], runs: [&[String]; 2]) -> Figure {
     let mut order: Vec<&GaugePoints> = gauges.iter().collect();
     order.sort_by(|a, b| b.residual.total_cmp(&a.residual));

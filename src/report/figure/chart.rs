@@ -12,11 +12,11 @@ pub struct Figure {
     pub caption: String,
     /// Name and traces of each choice. A single choice is drawn without a selector. `ytitle` of a trace is its axis title, if this differs by choice.
     pub choices: Vec<(String, Vec<Value>)>,
-    /// Axes. `equal` draws both axes with one range and one length; `band` is a range of the x axis that is shaded, with its name.
+    /// Axes. With `equal`, both axes have the same range and length. `band` is a shaded range of the x axis, with its name.
     pub layout: Value,
-    /// Pixels.
+    /// Height in pixels.
     pub height: usize,
-    /// Choices drawn on paper, from the first.
+    /// Number of choices drawn on paper, from the first.
     pub on_paper: usize,
 }
 
@@ -39,7 +39,7 @@ impl Render for Figure {
     }
 }
 
-/// Data of a figure inside the page. `<` can only be inside a string there and is written as its code, so that nothing ends early.
+/// Returns the data of a figure for embedding in the page. `<` occurs only in strings. It is written as its code, so that no text can end the script.
 pub(in crate::report) fn embed_data(data: &Value) -> Markup {
     let text = data.to_string().replace('<', "\\u003c");
     html! { script type="application/json" { (PreEscaped(text)) } }

@@ -13,13 +13,13 @@ pub struct CountPoint {
     pub efficiency: f64,
     /// Efficiency after the worst loss of a gauge, 0..1.
     pub after_loss: f64,
-    /// One standard deviation by load.
+    /// One standard deviation of each load.
     pub sigma: Vec<f64>,
 }
 
 const EFFICIENCY: &str = "efficiency, %";
 
-/// Sigma of every load, by its unit, and efficiency against the number of gauges.
+/// Draws sigma of every load, by its unit, and the efficiency against the number of gauges.
 pub fn curve(points: &[CountPoint], loads: &[(String, String)]) -> Figure {
     let counts: Vec<usize> = points.iter().map(|p| p.gauges).collect();
     let mut units: Vec<&str> = loads.iter().map(|l| l.1.as_str()).collect();

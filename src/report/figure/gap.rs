@@ -4,7 +4,7 @@ use super::chart::Figure;
 use super::packed_numbers::round_numbers;
 use serde_json::json;
 
-/// Draws the gap of each channel before and after, with its noise floor if known: name and numbers in `unit`, on what was held out.
+/// Draws the gap of each channel before and after, with its noise floor if known, on the held-out data. The unit of names and numbers is `unit`.
 pub fn gap_by_channel(channels: &[(String, [f64; 3])], unit: &str) -> Figure {
     let names: Vec<&String> = channels.iter().map(|c| &c.0).collect();
     let of = |k: usize| round_numbers(channels.iter().map(|c| c.1[k]));

@@ -4,7 +4,8 @@ use super::chart::Figure;
 use super::packed_numbers::round_number;
 use serde_json::{Value, json};
 
-/// Rows and columns coloured by their share of the largest in their column: blue negative, red positive; the value itself on pointing.
+/// Draws a table in which each field has the colour of its share of the largest value in its column: blue negative, red positive. The value is shown
+/// on pointing.
 pub fn heat_map(
     rows: &[String],
     columns: &[String],

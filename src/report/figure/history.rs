@@ -4,7 +4,7 @@ use super::chart::Figure;
 use super::packed_numbers::round_numbers;
 use serde_json::{Value, json};
 
-/// One load over time, thinned: by span of time the smallest, mean and largest sample, report unit.
+/// One load over time, thinned, in the report unit: smallest, mean and largest sample of each span of time.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct LoadTrace {
     /// Name.
@@ -13,13 +13,14 @@ pub struct LoadTrace {
     pub unit: String,
     /// First and last time of each span, s.
     pub times: Vec<[f64; 2]>,
-    /// Half of the 95 % interval of a sample.
+    /// Half width of the 95 % interval of a sample.
     pub half: f64,
-    /// Spans: smallest, mean, largest; NaN where nothing was measured.
+    /// Smallest, mean and largest value of each span. NaN if nothing was measured.
     pub spans: Vec<[f64; 3]>,
 }
 
-/// Histories of loads, shown one at a time. Each span of time has a band from smallest to largest sample, the 95 % interval around it, and the mean.
+/// Draws histories of loads, shown one at a time. Each span of time has a band from smallest to largest sample, the 95 % interval around it, and the
+/// mean.
 pub fn history(traces: &[LoadTrace]) -> Figure {
     let ends = traces
         .first()

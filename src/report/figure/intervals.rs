@@ -28,7 +28,7 @@ impl Ends {
     }
 }
 
-/// Values with their ends, one group (a run) at a time.
+/// Draws values with the ends of their intervals, one group (a run) at a time.
 pub fn intervals(
     groups: &[(String, Vec<IntervalRow>)],
     unit: &str,
@@ -52,7 +52,7 @@ pub fn intervals(
     }
 }
 
-/// Rows as one trace.
+/// Returns rows as one trace.
 pub fn interval_trace(rows: &[IntervalRow], unit: &str, ends: Ends) -> Value {
     let names: Vec<&String> = rows.iter().map(|r| &r.0).collect();
     json!({

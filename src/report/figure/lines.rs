@@ -13,9 +13,9 @@ const COLOURS: [&str; 3] = ["#9aa7b5", "#1f618d", "#c0392b"];
 pub struct Line<'a> {
     /// Name.
     pub name: &'a str,
-    /// Right.
+    /// Values along the horizontal axis.
     pub x: &'a [f64],
-    /// Up.
+    /// Values along the vertical axis.
     pub y: &'a [f64],
 }
 
@@ -28,7 +28,7 @@ pub enum Scale {
     LogY,
 }
 
-/// Groups of curves, shown one group at a time. In a group, the first curve is drawn first, below the others.
+/// Draws groups of curves, shown one group at a time. In a group, the first curve is drawn first, below the others.
 pub fn lines(
     groups: &[(String, Vec<Line>)],
     x: &str,

@@ -15,8 +15,8 @@ pub struct CrossPlot<'a> {
     pub points: &'a [[f64; 2]],
 }
 
-/// Recovered values (vertical) against recorded values (horizontal) of one load at a time. The line of equality spans both axes, which have equal
-/// ranges.
+/// Draws recovered values (vertical) against recorded values (horizontal) of one load at a time. The line of equality spans both axes, which have
+/// equal ranges.
 pub fn cross_plot(loads: &[CrossPlot]) -> Figure {
     let picture = |load: &CrossPlot| {
         let all = load.points.iter().flatten();

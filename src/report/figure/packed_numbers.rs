@@ -40,7 +40,7 @@ pub fn packed_deltas(values: &[i64], columns: usize) -> Value {
 /// Number of steps between zero and the largest value in [`steps_of`].
 pub const STEPS: f64 = 2047.0;
 
-/// Returns reals as shares of `most`, in [`STEPS`]; one step below the least for a number that is not finite.
+/// Returns numbers as shares of `most`, in [`STEPS`]. A number that is not finite gives one step below the smallest value.
 pub fn steps_of(values: impl Iterator<Item = f64>, most: f64) -> Vec<i64> {
     let step = |v: f64| {
         if !v.is_finite() {

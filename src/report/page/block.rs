@@ -16,15 +16,15 @@ pub struct Page {
     pub title: String,
     /// Sentence that states the result.
     pub summary: String,
-    /// Kind of report.
+    /// Text that states the kind of report.
     pub lead: String,
-    /// In any order: the worst are shown first.
+    /// Findings in any order. The page shows the worst first.
     pub findings: Vec<Finding>,
     /// Content of the first screen.
     pub first: FirstScreen,
     /// Parts.
     pub sections: Vec<Section>,
-    /// Whether it is also written as `report.pdf`.
+    /// Whether the page is also written as `report.pdf`.
     pub paper: Paper,
 }
 
@@ -40,7 +40,7 @@ pub enum Paper {
 }
 
 impl Page {
-    /// A page with `lead` under its title.
+    /// Creates a page with `lead` below its title.
     pub fn new(title: &str, lead: &str, findings: &[Finding], sections: Vec<Section>) -> Self {
         Self {
             title: title.to_owned(),
@@ -80,13 +80,13 @@ impl Page {
         self
     }
 
-    /// Whether it leads to other reports, which have their findings.
+    /// Returns whether the page leads to other reports, which contain their own findings.
     pub(super) fn is_of_cards(&self) -> bool {
         let mut blocks = self.sections.iter().flat_map(|s| &s.blocks);
         blocks.any(|b| matches!(b, Block::Cards(_)))
     }
 
-    /// The findings, the worst first, else in the order of the stages.
+    /// Returns the findings sorted by severity, the worst first. Findings of one severity keep the order of the stages.
     pub fn worst_first(&self) -> Vec<&Finding> {
         let mut sorted: Vec<&Finding> = self.findings.iter().collect();
         sorted.sort_by_key(|f| std::cmp::Reverse(f.severity));
@@ -119,7 +119,7 @@ pub struct Section {
 }
 
 impl Section {
-    /// A part with these blocks.
+    /// Creates a part with these blocks.
     pub fn new(title: impl Into<String>, blocks: Vec<Block>) -> Self {
         Self {
             title: title.into(),
@@ -128,7 +128,7 @@ impl Section {
     }
 }
 
-/// One thing of a section.
+/// One part of a section.
 #[derive(Clone, Debug)]
 pub enum Block {
     /// A paragraph.
@@ -159,7 +159,7 @@ pub enum Block {
 }
 
 impl Block {
-    /// A table with a heading line, or without where `head` is empty.
+    /// Creates a table with a heading line. If `head` is empty, it has no heading line.
     pub fn table(head: &[&str], rows: Vec<Vec<String>>) -> Self {
         Self::Table(Table {
             head: head.iter().map(|h| (*h).to_owned()).collect(),
@@ -176,21 +176,21 @@ impl Block {
         }
     }
 
-    /// Names and their values, without a heading line.
+    /// Creates a list of names and values without a heading line.
     pub fn pairs(numbers: &[(String, String)]) -> Self {
         let row = |(name, value): &(String, String)| vec![name.clone(), value.clone()];
         Self::table(&[], numbers.iter().map(row).collect())
     }
 }
 
-/// A result in short: its picture, a sentence, a few numbers, where to read more.
+/// Short form of a result: its picture, a sentence, a few numbers, and a link to the report.
 #[derive(Clone, Debug)]
 pub struct Card {
     /// Heading.
     pub title: String,
     /// Sentence.
     pub text: String,
-    /// Numbers with what they are.
+    /// Numbers, each with its description.
     pub numbers: Vec<(String, String)>,
     /// Link texts and paths of files.
     pub links: Vec<(String, String)>,
@@ -200,7 +200,7 @@ pub struct Card {
 }
 
 impl Card {
-    /// A card with nothing but a picture.
+    /// Returns a card with nothing but a picture.
     pub(in crate::report) fn of_picture(picture: Picture) -> Self {
         Self {
             title: String::new(),
@@ -248,10 +248,10 @@ impl Card {
     }
 }
 
-/// A table; rows as long as its heading line where there is one.
+/// A table. All rows are as long as the heading line, if there is one.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Table {
-    /// Heading line; empty for none.
+    /// Heading line. Empty for no heading line.
     pub head: Vec<String>,
     /// Cells.
     pub rows: Vec<Vec<String>>,
@@ -272,12 +272,12 @@ pub struct CellLink {
     pub title: String,
 }
 
-/// A part that is a table with a note under it.
+/// Returns a section that consists of a table with a note below it.
 pub fn table_section(title: &str, head: &[&str], rows: &[Vec<String>], note: &str) -> Section {
     section_with_note(title, Block::table(head, rows.to_vec()), note)
 }
 
-/// A part that is a figure with a note under it.
+/// Returns a section that consists of a figure with a note below it.
 pub fn figure_section(title: &str, figure: Figure, note: &str) -> Section {
     section_with_note(title, Block::Figure(figure), note)
 }

@@ -40,7 +40,7 @@ pub(in crate::report) fn reliability(findings: &[&Finding]) -> Markup {
     }
 }
 
-/// The findings by severity and code.
+/// Returns the findings by severity and code.
 pub(super) fn groups_of<'a>(findings: &[&'a Finding]) -> Vec<Vec<&'a Finding>> {
     let mut groups: Vec<Vec<&Finding>> = Vec::new();
     for &f in findings {
@@ -56,7 +56,7 @@ pub(super) fn groups_of<'a>(findings: &[&'a Finding]) -> Vec<Vec<&'a Finding>> {
     groups
 }
 
-/// Findings of one code.
+/// Returns the findings of one code.
 pub(super) fn group(findings: &[&Finding]) -> Markup {
     let more = findings.len().saturating_sub(1);
     html! {
@@ -92,7 +92,7 @@ fn subjects(subject: &str) -> Markup {
     }
 }
 
-/// The conditions that a command tests and that are not among the findings.
+/// Returns the conditions that a command tests and that are not among the findings.
 pub(super) fn passed_conditions(command: &str, findings: &[Finding]) -> Vec<&'static Code> {
     let tests = |c: &&Code| {
         let serious = c.severity.iter().any(|s| *s != Severity::Info);

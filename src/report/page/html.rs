@@ -12,7 +12,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 const STYLE: &str = include_str!("page.css");
 
 impl Page {
-    /// `report.html`: works from the file, without a network.
+    /// Returns `report.html`, which works from the file, without a network.
     pub fn to_html(&self) -> String {
         let findings = FindingsBySeverity::from_findings(&self.findings);
         let sections = html! {
@@ -59,7 +59,7 @@ fn is_pair(blocks: &[Block]) -> bool {
     figures && tables.count() == 1
 }
 
-/// A block as a page has it.
+/// Returns a block as HTML of the page.
 pub(in crate::report) fn block(b: &Block) -> Markup {
     match b {
         Block::Text(t) => html! { p { (t) } },

@@ -16,7 +16,7 @@ const MOST_ROWS: usize = 14;
 /// Groups of errors shown open above the picture. Further groups follow below it.
 const OPEN_ERRORS: usize = 2;
 
-/// The first screen as HTML.
+/// Returns the first screen as HTML.
 pub(super) fn first_screen(page: &Page, findings: &FindingsBySeverity) -> Markup {
     let picture = first_picture(page);
     let (class, sign, word) = mark(findings);
@@ -82,7 +82,7 @@ fn codes_in_words(groups: &[Vec<&Finding>]) -> String {
     words.join(", ")
 }
 
-/// Notes, and the conditions that the command tested and did not find.
+/// Returns the notes, and the conditions that the command tested and did not find.
 pub(super) fn notes_and_tests(page: &Page, findings: &FindingsBySeverity) -> Markup {
     let passed = passed_conditions(page.first.command, &page.findings);
     let notes = groups_of(&findings.notes);

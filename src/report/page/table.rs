@@ -3,7 +3,7 @@
 use super::block::Table;
 use maud::{Markup, html};
 
-/// A table that scrolls sideways on narrow screens; its first column names the rows.
+/// Returns a table that scrolls sideways on narrow screens. The first column names the rows.
 pub(super) fn table(t: &Table, caption: &str) -> Markup {
     html! {
         div.scroll tabindex="0" {
@@ -58,7 +58,7 @@ fn reference(path: &str) -> String {
     out
 }
 
-/// Links in one line.
+/// Returns links in one line.
 pub(super) fn list_of_links(links: &[(String, String)]) -> Markup {
     html! {
         @for (i, (words, path)) in links.iter().enumerate() {

@@ -20,7 +20,7 @@ const GUTTER: f64 = 8.0;
 /// Longest word that is not broken.
 pub(super) const LONGEST_WORD: usize = 22;
 
-/// A table, or some of its columns, as it is set.
+/// Layout of a table, or of some of its columns.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct TableLayout {
     /// Columns shown.
@@ -33,7 +33,7 @@ pub(super) struct TableLayout {
     pub(super) halved: bool,
 }
 
-/// Returns the table in one piece if a size of type allows it, or else in pieces that repeat the first column. A table without columns has no piece.
+/// Returns the table in one piece if a font size allows this, or else in pieces that repeat the first column. A table without columns gives no piece.
 pub(super) fn fit_table(table: &Table) -> Vec<TableLayout> {
     let n = table.rows.iter().map(Vec::len).max().unwrap_or(0);
     let n = n.max(table.head.len());

@@ -10,7 +10,7 @@ use crate::report::drawing::{STROKES, pictures, views};
 use crate::report::page::{Block, Card, Page, Paper, Section, Table};
 use serde_json::{Value, json};
 
-/// Where a report comes from.
+/// Origin of a report.
 #[derive(Clone, Copy, Debug)]
 pub struct Origin<'a> {
     /// Program and version.

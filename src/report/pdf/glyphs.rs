@@ -8,7 +8,7 @@ use typst::text::Font;
 /// Families used: text, and hashes and lines of one width.
 const FAMILIES: [&str; 2] = ["Libertinus Serif", "DejaVu Sans Mono"];
 
-/// Both families in the styles that the crate `typst-assets` has.
+/// Returns both font families in the styles that the crate `typst-assets` has.
 pub(super) fn fonts() -> &'static [Font] {
     static FONTS: OnceLock<Vec<Font>> = OnceLock::new();
     FONTS.get_or_init(|| {
@@ -19,8 +19,8 @@ pub(super) fn fonts() -> &'static [Font] {
     })
 }
 
-/// Returns the text as it can be printed. A character without a font is written as its number, `[U+4E2D]`. So is a character that is invisible or
-/// reverses the reading direction. A signed document must not contain empty boxes.
+/// Returns the text as it can be printed. A character is written as its number, `[U+4E2D]`, if it has no font, is invisible, or reverses the reading
+/// direction. A signed document must not contain empty boxes.
 pub(super) fn make_printable(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -56,7 +56,7 @@ pub(super) fn make_breakable(text: &str, longest: usize) -> String {
     out
 }
 
-/// At most `most` characters of printable text, marked where some are left out.
+/// Returns at most `most` characters of printable text. A mark shows an omitted end.
 pub(super) fn short_printable(text: &str, most: usize) -> String {
     shorten_to(&make_printable(text), most)
 }

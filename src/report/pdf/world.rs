@@ -28,10 +28,10 @@ pub enum PdfError {
     Write(String),
 }
 
-/// Bytes of `report.pdf`: A4, the same for the same page and origin.
+/// Returns the bytes of `report.pdf` in A4. The same page and origin give the same bytes.
 ///
 /// # Errors
-/// Only where the template is wrong.
+/// An error only if the template is wrong.
 pub fn write_pdf(page: &Page, origin: &Origin) -> Result<Vec<u8>, PdfError> {
     let paper = Paper::new(content(page, origin).to_string())?;
     let laid: PagedDocument = typst::compile(&paper)

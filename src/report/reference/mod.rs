@@ -11,7 +11,7 @@ const COLUMNS: &str = include_str!("columns.txt");
 /// The line under the title of each page.
 const MADE: &str = "Made from the code by `strainbridge explain --reference docs/reference`: edit the tables there.\n\n";
 
-/// File name and text of each page.
+/// Returns the file name and text of each page.
 pub fn pages() -> [(&'static str, String); 3] {
     [
         ("job-keys.md", key_page()),
@@ -20,12 +20,12 @@ pub fn pages() -> [(&'static str, String); 3] {
     ]
 }
 
-/// Fields of `result.json` by command; `*` as command: of every one.
+/// Returns the fields of `result.json` by command. The command `*` stands for every command.
 pub fn fields() -> Vec<[&'static str; 4]> {
     rows(FIELDS)
 }
 
-/// Columns of tables by command and file.
+/// Returns the columns of tables by command and file.
 pub fn columns() -> Vec<[&'static str; 5]> {
     rows(COLUMNS)
 }

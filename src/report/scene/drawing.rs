@@ -12,7 +12,8 @@ use crate::report::figure::embed_data;
 use crate::report::page::{Block, Section};
 use maud::{Markup, html};
 
-/// The section. Colour of strain: the largest principal one by magnitude at the surfaces of shells, at the centre of solids.
+/// Returns the section with the scene. The colour of strain is the largest principal strain by magnitude, at the surfaces of shells and at the centre
+/// of solids.
 pub fn scene_section(title: &str, scene: &Scene) -> Section {
     let finest = match scene.pointing {
         PickTargets::Places(_) => Finest::Always,

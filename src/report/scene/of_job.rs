@@ -18,7 +18,7 @@ const MOST_RUNS: usize = 100;
 /// Arrows of one load set.
 const MOST_OF_SET: usize = 60;
 
-/// The scene of a job with a model: its gauges, its unit loads.
+/// Returns the scene of a job with a model, its gauges and its unit loads.
 pub fn scene_of_job<'a>(job: &Job, prepared: &'a JobSensitivity) -> Option<Scene<'a>> {
     let fields = prepared.fields.as_ref()?;
     let mark = |g| Mark::from_gauge(g, String::new());
@@ -29,7 +29,7 @@ pub fn scene_of_job<'a>(job: &Job, prepared: &'a JobSensitivity) -> Option<Scene
     ))
 }
 
-/// The scene of a job's model with these gauges.
+/// Returns the scene of a job's model with these gauges.
 pub fn scene_of<'a>(job: &Job, fields: &'a Fields, marks: Vec<Mark>) -> Scene<'a> {
     Scene {
         marks,
@@ -40,7 +40,7 @@ pub fn scene_of<'a>(job: &Job, fields: &'a Fields, marks: Vec<Mark>) -> Scene<'a
     }
 }
 
-/// The scene of a model with the loads of a job, before any strain is known.
+/// Returns the scene of a model with the loads of a job, before any strain is known.
 pub fn scene_of_loads<'a>(job: &Job, model: &'a Model) -> Scene<'a> {
     let arrows = job.loads.iter().flat_map(|l| match l.acts {
         LoadActs::Set(sid) => arrows_of_set(model, sid),
@@ -80,7 +80,7 @@ fn list_unless_empty(set: ArrowSet) -> Vec<ArrowSet> {
     }
 }
 
-/// Strain per unit load, microstrain per report unit.
+/// Returns the strain per unit load, microstrain per report unit.
 pub fn fields_of<'a>(job: &Job, fields: &'a Fields) -> Vec<Field<'a>> {
     let names: Vec<String> = job.loads.iter().map(|l| l.name.clone()).collect();
     let units: Vec<LoadUnits> = load_units(job, &names);
@@ -102,7 +102,7 @@ pub fn fields_of<'a>(job: &Job, fields: &'a Fields) -> Vec<Field<'a>> {
         .collect()
 }
 
-/// Where load `name` acts, its unit vector in the basic frame, its kind; `None` for a load set.
+/// Returns the place of load `name`, its unit vector in the basic frame and its kind. `None` for a load set.
 fn locate_load(job: &Job, model: &Model, name: &str) -> Option<(Vec3, Vec3, Twist)> {
     let load = job.loads.iter().find(|l| l.name == name)?;
     let LoadActs::AtGrid {
@@ -133,7 +133,7 @@ pub enum LoadRange {
     Extremes,
 }
 
-/// Recovered loads as arrows.
+/// Returns the recovered loads as arrows.
 pub fn run_arrows(
     job: &Job,
     model: &Model,
@@ -207,7 +207,7 @@ fn arrow_at(model: &Model, grid: GridIx, v: Vec3, twist: Twist) -> Option<Arrow>
     })
 }
 
-/// The scene of a solution: strain and loads of every case, in the deck's units.
+/// Returns the scene of a solution: strain and loads of every case, in the deck's units.
 pub fn scene_of_solution<'a>(
     model: &'a Model,
     cases: &[LoadCase],
@@ -249,7 +249,7 @@ pub fn scene_of_solution<'a>(
     }
 }
 
-/// The scene of a model alone, for planning where gauges may go.
+/// Returns the scene of a model alone, to plan where gauges may go.
 pub fn scene_of_model<'a>(model: &'a Model, places: Places) -> Scene<'a> {
     Scene {
         model,
@@ -262,7 +262,7 @@ pub fn scene_of_model<'a>(model: &'a Model, places: Places) -> Scene<'a> {
     }
 }
 
-/// A gauge of a plan.
+/// Returns a gauge of a plan.
 pub fn placed_mark(p: &PlacedGauge) -> Mark {
     let kept = if p.role == Role::Validation {
         ", for validation"
@@ -276,7 +276,7 @@ pub fn placed_mark(p: &PlacedGauge) -> Mark {
     Mark::from_gauge(&p.gauge, note)
 }
 
-/// A gauge with its gap.
+/// Returns the mark of a gauge with its gap.
 pub fn mark_of_gap(at: Vec3, gap: &ChannelGap) -> Mark {
     Mark {
         name: gap.channel.clone(),

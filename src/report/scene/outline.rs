@@ -8,7 +8,7 @@ const MOST_EDGES: usize = 12_000;
 /// Elements up to which every edge of the mesh is drawn.
 const SMALL: usize = 3_000;
 
-/// Edges of shells at which the outline shows: free edges, edges of three and more shells, folds. Of a small model, all edges.
+/// Returns the edges of shells at which the outline shows: free edges, edges of three and more shells, folds. Of a small model, all edges.
 pub(super) fn outline(model: &Model, faces: impl Iterator<Item = [GridIx; 4]>) -> Vec<[Vec3; 2]> {
     let mut edges: BTreeMap<[u32; 2], (usize, Vec3, bool)> = BTreeMap::new();
     let at = |g: GridIx| model.grids.get(g.us()).map(|g| g.x);
@@ -42,7 +42,7 @@ pub(super) fn outline(model: &Model, faces: impl Iterator<Item = [GridIx; 4]>) -
     )
 }
 
-/// Axes of bars, beams and rods.
+/// Returns the axes of bars, beams and rods.
 pub(super) fn bars(model: &Model) -> Vec<[Vec3; 2]> {
     let at = |g: GridIx| model.grids.get(g.us()).map(|g| g.x);
     let beams = model.beams.iter().map(|b| b.grids);

@@ -43,7 +43,7 @@ impl Raster {
     }
 }
 
-/// All that `page/scene.js` draws.
+/// Returns all data that `page/scene.js` draws.
 pub(super) fn packed_scene(
     scene: &Scene,
     parts: &[Part],

@@ -18,16 +18,16 @@ pub(super) enum Owner {
 pub(super) struct Part {
     /// Name of the part.
     pub name: String,
-    /// Grids of its faces.
+    /// Grids of the faces.
     pub grids: Vec<GridIx>,
-    /// Faces: owner, indices into `grids`; triangles repeat the third.
+    /// Faces: owner, and indices into `grids`. Triangles repeat the third index.
     pub faces: Vec<(Owner, [u32; 4])>,
     /// Drawn geometry of these faces.
     pub drawn: PartMesh,
 }
 
 impl Part {
-    /// Triangles of its faces.
+    /// Returns the number of triangles of the faces.
     pub(super) fn n_triangles(&self) -> usize {
         let quads = self.faces.iter().filter(|f| f.1[2] != f.1[3]).count();
         self.faces.len() + quads
@@ -37,12 +37,12 @@ impl Part {
 /// Drawn geometry of a part: its own faces, or a coarser version of them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PartMesh {
-    /// By grid of the part: its vertex.
+    /// Vertex of each grid of the part.
     pub vertex_of: Vec<u32>,
-    /// By vertex: the grid of the part that it represents.
+    /// Grid of the part that each vertex represents.
     pub vertices: Vec<u32>,
-    /// Corners, indices into `vertices`.
+    /// Corners of the triangles, as indices into `vertices`.
     pub triangles: Vec<[u32; 3]>,
-    /// Whether every face of the part is drawn as it is.
+    /// Whether every face of the part is drawn unchanged.
     pub whole: bool,
 }

@@ -4,7 +4,7 @@ use super::types::PickTargets;
 use maud::{Markup, html};
 use serde_json::{Map, Value, json};
 
-/// Returns the data for the page's script: null without pointing, else the lists and the file of picked places.
+/// Returns the data for the script of the page. It is null without pointing, otherwise the lists and the file of picked places.
 pub(super) fn script_data(pointing: &PickTargets) -> Value {
     match pointing {
         PickTargets::Nothing => Value::Null,
@@ -19,7 +19,7 @@ pub(super) fn script_data(pointing: &PickTargets) -> Value {
     }
 }
 
-/// Tools above the picture.
+/// Returns the tools above the picture.
 pub(super) fn tools(pointing: &PickTargets, gauges: usize) -> Markup {
     let faces = matches!(pointing, PickTargets::Places(_));
     if *pointing == PickTargets::Nothing || !faces && gauges == 0 {
@@ -54,7 +54,7 @@ pub(super) fn tools(pointing: &PickTargets, gauges: usize) -> Markup {
     }
 }
 
-/// Properties to pick, and the lines to copy, below the picture.
+/// Returns the part of the page below the picture: the properties to pick, and the lines to copy.
 pub(super) fn result(pointing: &PickTargets) -> Markup {
     let written = |kind: &str, about: Markup| {
         html! {

@@ -16,7 +16,7 @@ const FEW_FIELDS: usize = 6;
 /// Properties that are switched on and off one by one; the smallest beyond go together.
 const MOST_PARTS: usize = 40;
 
-/// When the picture is as fine as it gets.
+/// Level of detail of the finest picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Finest {
     /// Where single elements are picked on it.
@@ -25,7 +25,8 @@ pub(super) enum Finest {
     FewFields,
 }
 
-/// Faces by property, coarsened so that all together stay below a limit: small parts unchanged, large ones with the remaining triangles.
+/// Returns faces by property, coarsened so that their total stays below a limit. Small parts are unchanged, large parts share the remaining
+/// triangles.
 pub(super) fn skin(model: &Model, fields: usize, finest: Finest) -> Vec<Part> {
     let limit = match finest {
         Finest::Always => MOST_TRIANGLES,
@@ -34,7 +35,7 @@ pub(super) fn skin(model: &Model, fields: usize, finest: Finest) -> Vec<Part> {
     skin_within(model, limit.max(LEAST_TRIANGLES))
 }
 
-/// Faces by property, at most so many triangles in all.
+/// Returns the faces by property, with a limit on the total number of triangles.
 pub(super) fn skin_within(model: &Model, most: usize) -> Vec<Part> {
     let mut parts = merge_small_parts(collect_faces(model));
     let mut order: Vec<usize> = (0..parts.len()).collect();

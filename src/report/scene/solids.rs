@@ -3,7 +3,7 @@
 use crate::model::{GridIx, Model, solid_faces};
 use std::collections::HashMap;
 
-/// Solid index and corners of each outer face; a triangle repeats its third corner.
+/// Returns solid index and corners of each outer face. A triangle repeats its third corner.
 pub(super) fn outer_faces(model: &Model) -> Vec<(usize, [GridIx; 4])> {
     let mut seen: HashMap<[u32; 4], (usize, [GridIx; 4], usize)> = HashMap::new();
     for (i, solid) in model.solids.iter().enumerate() {

@@ -39,7 +39,7 @@ struct Face {
     colour: [u8; 3],
 }
 
-/// The picture: faces from the farthest to the nearest, the first field as colour, the first loads as arrows, all gauges.
+/// Returns the picture: faces from the farthest to the nearest, the first field as colour, the first loads as arrows, all gauges.
 pub(in crate::report) fn draw_still(scene: &Scene) -> Picture {
     let eye = Vec3::from(EYE).normalize();
     let right = Vec3::new(-eye.y, eye.x, 0.0).normalize();

@@ -40,7 +40,7 @@ pub enum PickTargets {
 /// Places where gauges may go, before any pointing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Places {
-    /// The file of picked lists, as the job names it.
+    /// File of picked lists, as the job names it.
     pub file: String,
     /// Keys of `[candidates]` with the ids that the job states, from and to.
     pub lists: Vec<(&'static str, Vec<[u32; 2]>)>,
@@ -95,9 +95,9 @@ pub struct Mark {
     pub name: String,
     /// Place, basic frame.
     pub at: Vec3,
-    /// Unit vectors along its axis and out of the side that it sits on, where known.
+    /// Unit vectors along the axis of the gauge and out of its side, if known.
     pub axes: Option<[Vec3; 2]>,
-    /// Side, where known.
+    /// Side of the gauge, if known.
     pub surface: Option<Surface>,
     /// Further text shown when the gauge is picked.
     pub note: String,
@@ -134,7 +134,7 @@ pub struct Field<'a> {
     pub unit: String,
     /// Strain, or numbers by element.
     pub values: FieldValues<'a>,
-    /// Number shown per value.
+    /// Factor from a value to the shown number.
     pub scale: f64,
 }
 
@@ -154,7 +154,7 @@ impl FieldValues<'_> {
     }
 }
 
-/// Force or moment.
+/// Kind of a load: force or moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Twist {
     /// Force.
@@ -163,16 +163,16 @@ pub enum Twist {
     Moment,
 }
 
-/// One load.
+/// Arrow for one load.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arrow {
-    /// Where it acts, basic frame.
+    /// Place where the load acts, basic frame.
     pub at: Vec3,
-    /// Unit vector.
+    /// Unit vector of the load.
     pub along: Vec3,
-    /// Kind.
+    /// Kind of the load.
     pub twist: Twist,
-    /// Size, signed; lengths compare within a kind.
+    /// Size with sign. Lengths of arrows are comparable within a kind.
     pub value: f64,
     /// Text of the load's label.
     pub label: String,

@@ -8,7 +8,7 @@ use maud::Markup;
 /// A scene ready to be shown.
 #[derive(Clone, Debug)]
 pub struct SceneView {
-    /// In three dimensions, for a browser.
+    /// Markup of the three-dimensional scene for a browser.
     pub markup: Markup,
     /// Caption of the scene.
     pub caption: String,

@@ -43,14 +43,14 @@ impl From<u32> for Cell {
 pub struct Sheet {
     /// Name of the sheet, at most 31 characters.
     pub name: String,
-    /// Names of the columns, with the unit where they have one.
+    /// Names of the columns, with the unit if they have one.
     pub columns: Vec<String>,
     /// Rows.
     pub rows: Vec<Vec<Cell>>,
 }
 
 impl Sheet {
-    /// A sheet without rows.
+    /// Creates a sheet without rows.
     pub fn new(name: &str, columns: &[&str]) -> Self {
         Self {
             name: name.to_owned(),

@@ -7,7 +7,8 @@ use crate::sensitivity::Sensitivity;
 use crate::strain_chain::LoadSigma;
 use crate::workflow::place::{PlacedGauge, WorstLoss};
 
-/// Sheets `Gauges` (basic frame, the model's length unit), `Gluing sheet`, `Loads` and `Sensitivity` (microstrain per job unit of each load).
+/// Returns the sheets `Gauges` (basic frame, the model's length unit), `Gluing sheet`, `Loads` and `Sensitivity` (microstrain per job unit of each
+/// load).
 pub fn gauge_sheets(
     placed: &[PlacedGauge],
     model: &Model,

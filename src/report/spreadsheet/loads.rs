@@ -18,11 +18,11 @@ pub struct HistoryLoad {
     pub max: f64,
     /// Root mean square.
     pub rms: f64,
-    /// One standard deviation of a sample at the rms of all loads.
+    /// One standard deviation of a sample at the root mean square of all loads.
     pub sigma: f64,
 }
 
-/// Sheet `Loads`: a row a run; value and 95 % interval of each load.
+/// Returns the sheet `Loads` with a row for each run: value and 95 % interval of each load.
 pub fn runs_sheet(runs: &[RecoveredRun]) -> Sheet {
     let mut columns = vec!["run".to_owned()];
     for (name, _, unit) in runs.first().map_or(&[][..], |r| &r.loads) {
@@ -49,7 +49,7 @@ pub fn runs_sheet(runs: &[RecoveredRun]) -> Sheet {
     }
 }
 
-/// Sheet `Loads` of a history: a row a load.
+/// Returns the sheet `Loads` of a history, with a row for each load.
 pub fn history_sheet(loads: &[HistoryLoad]) -> Sheet {
     let mut sheet = Sheet::new(
         "Loads",
@@ -66,7 +66,7 @@ pub fn history_sheet(loads: &[HistoryLoad]) -> Sheet {
     sheet
 }
 
-/// Sheet `Gauges`: residual (microstrain rms) and leverage of each.
+/// Returns the sheet `Gauges` with residual (microstrain rms) and leverage of each gauge.
 pub fn residual_sheet(gauges: &[(String, f64, f64)]) -> Sheet {
     let mut sheet = Sheet::new(
         "Gauges",

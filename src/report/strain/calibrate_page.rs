@@ -238,7 +238,7 @@ fn left_out(answer: &CalibratedSensitivity) -> Section {
     )
 }
 
-/// Where gauges sit; `None` where no tolerance was stated.
+/// Returns the section with the installed positions. `None` if no tolerance was stated.
 fn installed_positions_section(answer: &CalibratedSensitivity) -> Option<Section> {
     let all = &answer.calibration.gauges;
     all.iter().find(|g| g.as_glued.is_some())?;

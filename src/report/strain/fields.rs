@@ -11,7 +11,7 @@ use crate::report::scene::{scene_of_solution, scene_section};
 const MOST_CASES: usize = 40;
 const HOTTEST: usize = 10;
 
-/// Page of the strain fields of `solution`: numbers of elements by subcase, then the hottest elements of each.
+/// Returns the page of the strain fields of `solution`: numbers of elements by subcase, then the hottest elements of each.
 pub fn strains_page(title: &str, model: &Model, solution: &Solution, findings: &[Finding]) -> Page {
     let of_case = |case: &crate::fe::CaseResult| {
         vec![

@@ -9,7 +9,7 @@ use crate::report::figure::{Ends, GaugePoints, IntervalRow, agreement, gap_by_ch
 use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::report::scene::{Scene, scene_section};
 
-/// Heading over what was added to the model.
+/// Heading over the changes of the model.
 pub const ADDED: &str = "What was added";
 
 /// Strain of the runs predicted by the model, without and with the effects.
@@ -41,7 +41,7 @@ pub struct GapReport<'a> {
     pub findings: &'a [Finding],
 }
 
-/// The page: verdict, where the gap sits, what was added, gap and scatter before and after, the gap on the model; notes behind.
+/// Returns the page: verdict, place of the gap, changes of the model, gap and scatter before and after, the gap on the model, and notes.
 pub fn reconcile_page(report: &GapReport<'_>) -> Page {
     let outcome = report.outcome;
     let mut sections = vec![

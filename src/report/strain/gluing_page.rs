@@ -16,7 +16,7 @@ const AROUND: f64 = 5.0;
 /// Minimum cosine between two normals: the element then faces the same way as the element of the gauge.
 const SAME_FACE: f64 = 0.7;
 
-/// `gluing_sheet.html`: the model with all gauges, then a card each. The sketch looks at the gauge from outside.
+/// Returns `gluing_sheet.html`: the model with all gauges, then a card for each gauge. The sketch shows the gauge from outside.
 pub fn gluing_page(title: &str, placed: &[PlacedGauge], scene: &Scene) -> Page {
     let model = scene.model;
     let overview = Card {
@@ -105,7 +105,7 @@ fn format_tenths(v: f64) -> String {
     format!("{:.1}", (v * 10.0).round() / 10.0 + 0.0)
 }
 
-/// How one looks at a gauge from outside: to the right, and up.
+/// Directions to the right and up, for a view of the gauge from outside.
 struct View {
     right: Vec3,
     up: Vec3,
@@ -281,7 +281,7 @@ fn sketch(model: &Model, p: &PlacedGauge, view: &View) -> Picture {
     let end = |s: f64| [0, 1].map(|k| SKETCH[k] / 2.0 + s * along[k]);
     picture.line(end(-7.0), end(7.0), "#b2182b", 0.9);
     picture.circle(end(0.0), 1.0, "#b2182b", 0.0);
-    // Right and up of the view, and the length of a bar.
+    // Two arrows show the directions right and up of the view. A bar shows the scale.
     let corner = [6.0, SKETCH[1] - 6.0];
     let tips = [[corner[0] + 12.0, corner[1]], [corner[0], corner[1] - 12.0]];
     for (tip, v) in tips.iter().zip([view.right, view.up]) {

@@ -39,7 +39,7 @@ fn head(length: &str) -> [String; 12] {
     ]
 }
 
-/// The gluing sheet in markdown; `length` is the model's unit.
+/// Returns the gluing sheet in markdown. `length` is the unit of the model.
 pub fn gluing_sheet_md(title: &str, placed: &[PlacedGauge], model: &Model, length: &str) -> String {
     let head = head(length);
     let mut t = format!("# Gluing sheet: {title}\n\n{FRAME}\n{STRAIN}\n\n{BUDGETS}\n\n");
@@ -58,7 +58,7 @@ pub fn gluing_sheet_md(title: &str, placed: &[PlacedGauge], model: &Model, lengt
     t
 }
 
-/// Gluing sheet as a section of a report; `length` is the model's unit.
+/// Returns the gluing sheet as a section of a report. `length` is the unit of the model.
 pub(super) fn gluing_section(placed: &[PlacedGauge], model: &Model, length: &str) -> Section {
     let head = head(length);
     let head: Vec<&str> = head.iter().map(String::as_str).collect();

@@ -7,7 +7,7 @@ use crate::workflow::calibrate::{
 };
 use std::io::{self, Write};
 
-/// Columns with their units; `L` is the job's length.
+/// Columns with their units. `L` stands for the job's unit of length.
 pub const COLUMNS: [(&str, &str); 26] = [
     ("name", ""),
     ("element", ""),

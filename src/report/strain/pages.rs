@@ -47,7 +47,7 @@ fn sensitivity_section(s: &Sensitivity) -> Section {
     Section::new("Sensitivity", blocks)
 }
 
-/// The page of `sensitivity`.
+/// Returns the page of `sensitivity`.
 pub fn sensitivity_page(
     title: &str,
     s: &Sensitivity,
@@ -64,7 +64,7 @@ pub fn sensitivity_page(
     )
 }
 
-/// The page of `place`; `counts` is what other numbers of gauges give.
+/// Returns the page of `place`. `counts` contains the results for other gauge counts.
 pub fn place_page(
     title: &str,
     scene: &Scene,
@@ -152,7 +152,7 @@ pub struct RecoveryPage<'a> {
     pub sensitivity: &'a Sensitivity,
     /// Runs.
     pub runs: &'a [RecoveredRun],
-    /// Points of static runs: predicted by all gauges, and by all others.
+    /// Points of static runs: strain predicted from all gauges, and from all other gauges.
     pub points: &'a [GaugePoints],
     /// Loads of a history.
     pub traces: &'a [LoadTrace],
@@ -160,7 +160,7 @@ pub struct RecoveryPage<'a> {
     pub by_gauge: &'a [(String, f64, f64)],
     /// First table.
     pub numbers: &'a [(String, String)],
-    /// Loads of static runs, a row a run and load: run, load, low, value, high, share of the typical size.
+    /// Table of the loads of static runs, with a row for each run and load: run, load, low, value, high, share of the typical size.
     pub table: Vec<Vec<String>>,
     /// Whether the table lacks runs.
     pub is_cut: bool,
@@ -169,7 +169,7 @@ pub struct RecoveryPage<'a> {
 /// Maximum number of runs whose loads are drawn. `loads.csv` contains all runs.
 const MOST_RUNS: usize = 200;
 
-/// The page of `recover`.
+/// Returns the page of `recover`.
 pub fn recover_page(
     title: &str,
     scene: Option<&Scene>,

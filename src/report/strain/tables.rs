@@ -59,8 +59,9 @@ const OF_SPOTS: [SpotColumn; 7] = [
     }),
 ];
 
-/// Writes gauges as a job can name them: `dir` is the axis itself, so that `angle_deg` is 0. Gauges have the grid length of the candidates, named
-/// spots their own. A spot stated by its position has a blank `element`: the position decides where its strain is taken.
+/// Writes gauges as a job can name them: `dir` is the axis itself, so that `angle_deg` is 0. Gauges have the grid length of the candidates, and named
+/// spots have their stated grid length. A spot stated by its position has a blank `element`, because the position determines where its strain is
+/// taken.
 ///
 /// # Errors
 /// Errors of `out`.
@@ -114,7 +115,7 @@ pub fn gauges_csv(out: &mut dyn Write, placed: &[PlacedGauge], grid_length: f64)
     Ok(())
 }
 
-/// Grids of the element under a gauge, with its distance from each.
+/// Returns the grids of the element under a gauge, with the distance of the gauge from each grid.
 pub(in crate::report) fn corner_distances(model: &Model, g: &Gauge) -> Vec<(u32, f64)> {
     let Some(shell) = model
         .shell_ix(g.element)

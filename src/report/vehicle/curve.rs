@@ -4,7 +4,7 @@ use crate::report::figure::{Line, Scale, lines};
 use crate::report::page::Block;
 use serde_json::json;
 
-/// A signal recovered and measured over one axis; `measured` is empty where it was not measured.
+/// A recovered and a measured signal over one axis. `measured` is empty if the signal was not measured.
 pub struct Curve {
     /// Load or link name.
     pub name: String,
@@ -16,7 +16,7 @@ pub struct Curve {
     pub measured: Vec<f64>,
 }
 
-/// Curves one at a time, what was measured below what was recovered; `band` is shaded on the x axis and named.
+/// Draws curves one at a time, with the measured curve below the recovered curve. `band` is a shaded and named range of the x axis.
 pub(super) fn plots(
     curves: &[Curve],
     [x_label, y_label]: [&str; 2],

@@ -14,15 +14,15 @@ use crate::vehicle::term::UnitNames;
 pub struct Curves {
     /// Wheel forces over time.
     pub histories: Vec<Curve>,
-    /// Their spectra.
+    /// Spectra of the wheel forces.
     pub spectra: Vec<Curve>,
-    /// Forces of links over their stretch.
+    /// Forces of links against their stretch.
     pub restoring: Vec<Curve>,
     /// Band of the equations, Hz.
     pub band_hz: [f64; 2],
 }
 
-/// Parameters, verdicts, fit, a stretch of wheel force over time, spectra, restoring forces; in job units.
+/// Returns the page of `identify` in job units: parameters, verdicts, fit, a part of the wheel forces over time, spectra, restoring forces.
 pub fn identify_page(
     title: &str,
     units: &UnitNames,

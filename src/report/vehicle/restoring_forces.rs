@@ -71,7 +71,7 @@ pub fn restoring_curves(found: &Identification, motion: &Motion) -> Vec<Curve> {
     out
 }
 
-/// The curves as a section of a page.
+/// Returns the curves as a section of a page.
 pub fn restoring_section(curves: &[Curve], units: &UnitNames) -> Section {
     let stretch = format!("stretch, {}", units.length);
     let force = format!("force, {}", units.force);
@@ -87,7 +87,7 @@ pub fn restoring_section(curves: &[Curve], units: &UnitNames) -> Section {
     )
 }
 
-/// The unit of a column of `restoring_force.csv`; empty: a name or a count.
+/// Returns the unit of a column of `restoring_force.csv`. It is empty for a name or a count.
 pub fn restoring_unit(column: &str, units: &UnitNames) -> String {
     match column {
         "stretch" => units.length.clone(),

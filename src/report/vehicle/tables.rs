@@ -29,7 +29,7 @@ pub fn write_parameters(found: &Identification) -> String {
     out
 }
 
-/// `loads.csv`: time, then each wheel force in the band (about its mean) with its 95 % interval, and what was measured.
+/// Returns `loads.csv`: time, then each wheel force in the band (about its mean) with its 95 % interval, and the measured force.
 pub fn write_wheel_forces(
     found: &Identification,
     history: &LoadHistory,

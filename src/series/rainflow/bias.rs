@@ -27,10 +27,10 @@ pub(super) struct Bias {
 }
 
 impl Bias {
-    /// Returns the bias of the first of the damages that are counted with once, twice and three times the noise ([`NOISE`]). The curve
-    /// `L(q) = L(0) + a rise(q x)` goes through their logarithms (Cook and Stefanski's simulation extrapolation). `x` is the noise relative to the
-    /// curvature of the peaks that do the damage, `a` their weight. A parabola, or a line, through the logarithms removes a fifth to two thirds
-    /// too much. The bias grows by less than a square and more than in proportion.
+    /// Returns the bias of the first of three damages, which were counted with once, twice and three times the noise ([`NOISE`]). The curve `L(q) =
+    /// L(0) + a rise(q x)` goes through their logarithms (Cook and Stefanski's simulation extrapolation). `x` is the noise relative to the curvature
+    /// of the peaks that do the damage, `a` their weight. A parabola, or a line, through the logarithms removes a fifth to two thirds too much. The
+    /// bias grows by less than a square and more than in proportion.
     ///
     /// # Reference
     /// J.R. Cook, L.A. Stefanski, Simulation-extrapolation estimation in parametric measurement error models, JASA 89 (1994) 1314-1328.
@@ -81,7 +81,7 @@ fn share(log_x: f64) -> f64 {
     begin / first
 }
 
-/// Where the steps have a ratio, by halving.
+/// Returns the sharpness at which the steps have this ratio, found by bisection.
 fn sharpness(ratio: f64) -> f64 {
     let [mut low, mut high] = ENDS;
     for _ in 0..50 {

@@ -12,21 +12,21 @@ pub struct Point {
 /// A counted cycle (`count` 1) or half cycle (0.5).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cycle {
-    /// The reversal that came first.
+    /// First reversal of the cycle.
     pub from: Point,
-    /// The other.
+    /// Value of the second reversal of the cycle.
     pub to: Point,
-    /// 1 or 0.5.
+    /// Count of the cycle: 1, or 0.5 for a half cycle.
     pub count: f64,
 }
 
 impl Cycle {
-    /// Largest less smallest.
+    /// Returns the range: largest minus smallest value.
     pub fn range(&self) -> f64 {
         (self.to.value - self.from.value).abs()
     }
 
-    /// Middle between both.
+    /// Returns the mean of both values.
     pub fn mean(&self) -> f64 {
         0.5 * (self.to.value + self.from.value)
     }
@@ -112,7 +112,7 @@ impl<T> Default for Rainflow<T> {
 }
 
 impl<T> Rainflow<T> {
-    /// Takes the next sample. A value that is not finite is passed over.
+    /// Takes the next sample. A value that is not finite is ignored.
     #[inline(always)]
     pub(super) fn push_tagged(&mut self, point: Point, listener: &mut impl Listener<T>) {
         if !point.value.is_finite() {
@@ -136,8 +136,8 @@ impl<T> Rainflow<T> {
         self.latest = Some(point);
     }
 
-    /// Takes samples that follow each other, the first being number `first` of the record; as [`Rainflow::push_tagged`] of each.
-    /// `turns` is room for as many numbers.
+    /// Takes consecutive samples, of which the first is sample `first` of the record. The result equals [`Rainflow::push_tagged`] for each sample.
+    /// `turns` is working memory for as many numbers.
     #[inline(always)]
     pub(super) fn push_block(
         &mut self,
@@ -183,7 +183,7 @@ impl<T> Rainflow<T> {
         }
     }
 
-    /// The residue: the reversals that are still open and the last sample, in time order.
+    /// Returns the residue: the reversals that are still open and the last sample, in time order.
     pub fn residue(mut self, tag: &mut impl FnMut(Point) -> T) -> Vec<Reversal<T>> {
         if let Some(latest) = self.latest
             && self.open.last().is_none_or(|r| r.point != latest)
@@ -194,7 +194,7 @@ impl<T> Rainflow<T> {
         self.open
     }
 
-    /// The latest sample, if it is not a reversal yet.
+    /// Returns the latest sample if it is not yet a reversal.
     pub fn latest_sample(&self) -> Option<Point> {
         self.latest
     }
@@ -217,7 +217,8 @@ impl<T> Rainflow<T> {
 }
 
 impl<T: Clone> Rainflow<T> {
-    /// The residue of histories that follow each other, from theirs; `counted` gets the cycles that close across their borders.
+    /// Returns the residue of consecutive histories from the residues of the single histories. `counted` gets the cycles that close across their
+    /// borders.
     pub fn join_residues(
         residues: &[Vec<Reversal<T>>],
         counted: &mut impl FnMut(&Reversal<T>, &Reversal<T>),
@@ -241,7 +242,7 @@ impl<T: Clone> Rainflow<T> {
 }
 
 impl Rainflow {
-    /// Takes the next sample; `counted` gets every full cycle that closes. A value that is not finite is passed over.
+    /// Takes the next sample. `counted` gets every full cycle that closes. A value that is not finite is ignored.
     pub fn push(&mut self, point: Point, counted: &mut impl FnMut(Cycle)) {
         let closed = |b: &Reversal<()>, c: &Reversal<()>| {
             counted(Cycle {
@@ -253,7 +254,7 @@ impl Rainflow {
         self.push_tagged(point, &mut FunctionListener(|_| (), closed));
     }
 
-    /// Counts the residue by ASTM E1049: the last sample is a reversal, and every open range half a cycle.
+    /// Counts the residue by ASTM E1049. The last sample counts as a reversal, and every open range as half a cycle.
     pub fn finish(self, counted: &mut impl FnMut(Cycle)) {
         for cycle in half_cycles(&self.residue(&mut |_| ())) {
             counted(cycle);
@@ -261,7 +262,7 @@ impl Rainflow {
     }
 }
 
-/// The ranges of a residue as half cycles.
+/// Returns the ranges of a residue as half cycles.
 pub fn half_cycles<T>(residue: &[Reversal<T>]) -> impl Iterator<Item = Cycle> {
     residue.windows(2).filter_map(|w| match w {
         [a, b] => Some(Cycle {

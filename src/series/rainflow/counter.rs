@@ -91,7 +91,7 @@ struct Room {
 }
 
 impl Counter {
-    /// A count of load number `load` of `n_loads`, whose samples carry white noise of standard deviation `noise`.
+    /// Creates a count of load number `load` of `n_loads`, whose samples carry white noise of standard deviation `noise`.
     pub fn new(load: usize, n_loads: usize, noise: f64, width: f64, law: Law) -> Self {
         Self {
             load,
@@ -122,7 +122,7 @@ impl Counter {
         }
     }
 
-    /// Takes the next samples, all loads of each, row by row, and the marks of these (`Marks`).
+    /// Takes the next samples row by row, each with all loads, and the marks of these samples (`Marks`).
     pub fn push(&mut self, rows: &[f64], marks: &[u64]) {
         let k = self.carried.len();
         if self.load < k {
@@ -206,7 +206,7 @@ impl Counter {
         }
     }
 
-    /// The tally.
+    /// Returns the tally.
     pub fn finish(self) -> Tally {
         let ClosedCycles {
             width,
@@ -402,7 +402,7 @@ fn white_noise(mark: u64) -> f64 {
     (f64::from(sum) - 131_070.0) / 37_837.227_237
 }
 
-/// A number without likeness to its neighbours (splitmix64).
+/// Returns a number that is independent of its neighbours (splitmix64).
 #[inline(always)]
 pub(super) fn mix_bits(x: u64) -> u64 {
     let mut z = x.wrapping_add(0x9E37_79B9_7F4A_7C15);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 /// Places of the small table; a power of two.
 const PLACES: usize = 1024;
 
-/// A class, or a pair of them.
+/// A class, or a pair of classes.
 pub(super) trait Key: Copy + Ord {
     /// A number that neighbours don't share.
     fn number(self) -> u32;
@@ -21,20 +21,20 @@ impl Key for i32 {
 impl Key for (i32, i32) {
     #[inline(always)]
     fn number(self) -> u32 {
-        // Loads are seldom more than 37 classes from one reversal to the next.
+        // Successive reversals of a load seldom differ by more than 37 classes.
         let (a, b) = (self.0.cast_unsigned(), self.1.cast_unsigned());
         a.wrapping_mul(37).wrapping_add(b)
     }
 }
 
-/// Number of occurrences of each class. A load stays in a few classes for a while, which the small table finds fast.
+/// Number of occurrences of each class. A load stays in a few classes for some time. The small table finds these classes fast.
 pub(super) struct Counts<K> {
     lately: Vec<Option<(K, u64)>>,
     all: BTreeMap<K, u64>,
 }
 
 impl<K: Key> Counts<K> {
-    /// Nothing yet.
+    /// Creates empty counts.
     pub(super) fn new() -> Self {
         Self {
             lately: vec![None; PLACES],
@@ -42,7 +42,7 @@ impl<K: Key> Counts<K> {
         }
     }
 
-    /// Counts one.
+    /// Adds one to the count.
     #[inline(always)]
     pub(super) fn add(&mut self, key: K) {
         let Some(slot) = self.lately.get_mut(key.number() as usize % PLACES) else {
@@ -58,7 +58,7 @@ impl<K: Key> Counts<K> {
         }
     }
 
-    /// Classes in order, with how often each was met.
+    /// Returns the classes in order, with the number of occurrences of each class.
     pub(super) fn sort_classes(mut self) -> BTreeMap<K, u64> {
         for (k, n) in self.lately.into_iter().flatten() {
             *self.all.entry(k).or_insert(0) += n;

@@ -9,11 +9,11 @@ const BINS: usize = 64;
 /// Cycles of ranges between two limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bin {
-    /// Cycles; a half cycle is 0.5.
+    /// Number of cycles. A half cycle counts 0.5.
     pub cycles: f64,
-    /// Sum of their means, each times its count.
+    /// Sum of the means of the cycles, each times its count.
     pub sum_of_means: f64,
-    /// Their part of the damage.
+    /// Damage of these cycles.
     pub damage: f64,
 }
 
@@ -25,15 +25,15 @@ pub struct Damage {
     pub slope: f64,
     /// Cycles by range, `BINS` of equal width up to [`Damage::limit`].
     pub bins: Vec<Bin>,
-    /// The largest range that bins reach to.
+    /// Largest range of the bins.
     pub limit: f64,
     /// Cycles counted.
     pub cycles: f64,
     /// The largest range.
     pub largest: f64,
-    /// Damage of the ranges as they are.
+    /// Damage of the ranges without change.
     pub value: f64,
-    /// Damage with all ranges at the lower ends of their 95 % intervals; no range falls below zero.
+    /// Damage with all ranges at the lower ends of their 95 % intervals. No range is below zero.
     pub low: f64,
     /// Damage with all ranges at the upper ends of their 95 % intervals.
     pub high: f64,
@@ -56,8 +56,8 @@ impl Damage {
 
     /// Adds a cycle; `sigma` is one standard deviation of its range.
     ///
-    /// The ends of the interval move all ranges the same way. That is right for errors of the model, which last through the record,
-    /// and wide for noise.
+    /// At an end of the interval, all ranges change in the same direction. This is right for errors of the model, which are constant over the record.
+    /// For noise, the interval is too wide.
     pub fn add(&mut self, cycle: &Cycle, sigma: f64) {
         let range = cycle.range();
         let half = NORMAL_95 * sigma;
@@ -81,7 +81,7 @@ impl Damage {
         }
     }
 
-    /// The range of one cycle that does the damage `d`, in the unit of the ranges.
+    /// Returns the range of a single cycle with the damage `d`, in the unit of the ranges.
     pub fn one_cycle(&self, d: f64) -> f64 {
         d.powf(1.0 / self.slope)
     }

@@ -9,13 +9,13 @@ use serde::Serialize;
 /// does not average out. The scatter of noise averages out. The bias of noise does not (noise widens every range), and is subtracted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DamageInterval {
-    /// Damage, the bias of noise subtracted.
+    /// Damage after subtraction of the bias of noise.
     pub value: f64,
     /// Lower end of the 95 % interval.
     pub low: f64,
     /// Upper end of the 95 % interval.
     pub high: f64,
-    /// Damage as counted.
+    /// Damage as counted, with the bias of noise.
     pub counted: f64,
     /// Mean damage that noise added to [`Self::counted`].
     pub noise_bias: f64,
@@ -27,12 +27,12 @@ pub struct DamageInterval {
     pub sigma_bias: f64,
 }
 
-/// Damage, or a weighted sum of damages, with its errors by kind, so that the errors that two of them share are known.
+/// Damage, or a weighted sum of damages, with its errors by kind. The errors that two damages share can therefore be taken into account.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DamageParts {
-    /// Damage, the bias of noise subtracted; negative where noise makes all of it.
+    /// Damage after subtraction of the bias of noise. It is negative if noise causes all of the damage.
     pub value: f64,
-    /// Damage as counted.
+    /// Damage as counted, with the bias of noise.
     pub counted: f64,
     /// Change of the damage with the scale error of each load.
     pub by_load: Vec<f64>,
@@ -59,7 +59,7 @@ const OFF: f64 = 0.15;
 /// A number with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Ratio {
-    /// The number.
+    /// Value of the ratio.
     pub value: f64,
     /// Lower end of the 95 % interval.
     pub low: f64,
@@ -109,8 +109,8 @@ impl DamageParts {
         }
     }
 
-    /// Adds `weight` times another damage: both share the errors of S and the bias of noise, not their scatter. If the covariances of S
-    /// differ (a gauge that died), each is weighted with its share of the damage.
+    /// Adds `weight` times another damage. Both damages have common errors of S and a common bias of noise, but independent scatter. If the
+    /// covariances of S differ (a gauge that died), each is weighted with its share of the damage.
     pub fn add(&mut self, weight: f64, other: &Self) {
         let [own, new] = [self.counted, weight * other.counted];
         let share = if own + new > 0.0 {
@@ -220,7 +220,7 @@ impl DamageParts {
 }
 
 impl Ratio {
-    /// The number and its ends times a factor.
+    /// Returns the number and its ends, multiplied by a factor.
     pub fn times(self, factor: f64) -> Self {
         Self {
             value: self.value * factor,

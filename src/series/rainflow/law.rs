@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 /// Bend of an S-N line: the range at the bend, and the slope below it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Knee {
-    /// Range at the bend: smaller ranges do less damage than the power gives.
+    /// Range at the bend. Smaller ranges cause less damage than the power gives.
     pub range: f64,
-    /// The power below; infinite for no damage at all.
+    /// Power below the knee. Infinite if cycles below the knee cause no damage.
     #[serde(deserialize_with = "super::nullable_numbers::number_or_infinity")]
     pub slope: f64,
 }
@@ -38,12 +38,12 @@ pub struct Law {
 }
 
 impl Law {
-    /// A straight line.
+    /// Creates a straight line.
     pub fn from_slope(slope: f64) -> Self {
         Self { slope, knee: None }
     }
 
-    /// Damage of one cycle of a range.
+    /// Returns the damage of one cycle with this range.
     #[inline(always)]
     pub fn damage(&self, range: f64) -> f64 {
         match self.knee {
@@ -54,7 +54,7 @@ impl Law {
         }
     }
 
-    /// Change of the damage with the range.
+    /// Returns the change of the damage with the range.
     #[inline(always)]
     pub fn derivative(&self, range: f64) -> f64 {
         match self.knee {

@@ -6,7 +6,7 @@ use super::counter::mix_bits;
 /// noise are in different parts.
 const FINE: f64 = 1024.0;
 
-/// Computes a number for each sample from its loads, which seeds the noise that is added to it.
+/// Function that computes a number for each sample from its loads. The number is the seed of the noise that is added to the sample.
 pub struct Marks {
     per_noise: Vec<f64>,
     /// An odd factor for each load.
@@ -21,7 +21,7 @@ struct MarkKernel<'a> {
 }
 
 impl Marks {
-    /// Returns the marks for loads with noise of these standard deviations; a load without noise distinguishes no samples.
+    /// Returns the marks for loads with noise of these standard deviations. A load without noise has no effect on the marks.
     pub fn new(noise: &[f64]) -> Self {
         let per_noise = noise.iter().map(|n| if *n > 0.0 { FINE / n } else { 0.0 });
         Self {

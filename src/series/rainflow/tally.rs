@@ -6,20 +6,20 @@ use super::law::Law;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Standard deviations of the noise in the counted histories, in units of the noise of the loads. The first is without added noise; added
-/// noise doubles and triples it.
+/// Standard deviations of the noise in the counted histories, in units of the noise of the loads. The first history has no added noise. In the
+/// others, added noise doubles and triples the noise.
 pub const NOISE: [f64; 3] = [1.0, 2.0, 3.0];
 
 /// Extreme value of a history, and its sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Extreme {
-    /// The value.
+    /// Extreme value.
     pub value: f64,
     /// Sample of the extreme value.
     pub at: usize,
 }
 
-/// A reversal of a residue: its sample, its value, all loads at that time (empty if they are not needed).
+/// A reversal of a residue: its sample, its value, and all loads at that sample (empty if not needed).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ResidueReversal {
     /// Sample.
@@ -34,7 +34,7 @@ pub struct ResidueReversal {
 /// Sums over closed cycles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sums {
-    /// Damage, by [`NOISE`].
+    /// Damage of each history of [`NOISE`].
     pub damage: [f64; 3],
     /// Change of the damage with each scale error: `sum of d'(R) sign(dF) dF_m`, by load m.
     #[serde(deserialize_with = "super::nullable_numbers::numbers")]
@@ -48,28 +48,28 @@ pub struct Sums {
 pub struct Tally {
     /// Width of a class, in the unit of the load. Class i reaches from i to i + 1 widths.
     pub width: f64,
-    /// Harm of a cycle.
+    /// Law of the damage of a cycle.
     pub law: Law,
     /// Closed cycles by class of their first and second reversal, in order.
     pub cycles: Vec<(i32, i32, u64)>,
-    /// How often the load rose through the lower border of a class.
+    /// Number of times that the load rose through the lower border of each class.
     pub levels: Vec<(i32, u64)>,
     /// Largest value.
     pub max: Option<Extreme>,
     /// Smallest value.
     pub min: Option<Extreme>,
-    /// Samples, those without a value among them.
+    /// Number of samples, including samples without a value.
     pub samples: usize,
     /// Samples without a value.
     pub missing: usize,
-    /// Reversals that no cycle has closed, by [`NOISE`].
+    /// Reversals that no cycle has closed, for each history of [`NOISE`].
     pub residues: [Vec<ResidueReversal>; 3],
     /// Sums over closed cycles.
     pub sums: Sums,
 }
 
 impl Sums {
-    /// Adds a cycle, or a share of one, from a value to another; `from` and `to` are all loads then.
+    /// Adds a cycle, or a share of a cycle, between two values. `from` and `to` contain all loads at both times.
     #[inline(always)]
     pub(super) fn add(&mut self, law: &Law, count: f64, change: f64, from: &[f64], to: &[f64]) {
         let range = change.abs();
@@ -86,8 +86,7 @@ impl Sums {
 }
 
 impl Tally {
-    /// The tally of times that follow each other; samples are counted through. `None` without parts, or where classes or laws
-    /// differ.
+    /// Returns the tally of consecutive times, with consecutive sample numbers. `None` without parts, or if classes or laws differ.
     pub fn join_parts(parts: &[&Self]) -> Option<Self> {
         let first = parts.first()?;
         let same = |t: &&&Self| {
@@ -191,7 +190,7 @@ impl Tally {
         Some(all)
     }
 
-    /// Sums over closed cycles and, as half cycles, the ranges of the residue.
+    /// Returns the sums over closed cycles and over the ranges of the residue, which count as half cycles.
     pub fn sums_with_residue(&self) -> Sums {
         let mut sums = self.sums.clone();
         for (level, residue) in self.residues.iter().enumerate() {
@@ -209,7 +208,7 @@ impl Tally {
         sums
     }
 
-    /// Range-pair counts: cycles by range in class widths (class i: ranges whose ends lie i classes apart), residue as half cycles.
+    /// Returns the range-pair counts: cycles by range in class widths (class i: ranges whose ends lie i classes apart), residue as half cycles.
     pub fn range_pairs(&self) -> Vec<(u32, f64)> {
         let mut out: BTreeMap<u32, f64> = BTreeMap::new();
         for (a, b, n) in &self.cycles {
@@ -229,7 +228,7 @@ impl Tally {
         out.into_iter().collect()
     }
 
-    /// Number of cycles. Cycles of the residue count as half cycles.
+    /// Returns the number of cycles. Cycles of the residue count as half cycles.
     pub fn n_cycles(&self) -> f64 {
         let closed: u64 = self.cycles.iter().map(|c| c.2).sum();
         let open = self
@@ -250,7 +249,7 @@ fn reversal(l: &ResidueReversal) -> Reversal<Vec<f64>> {
     }
 }
 
-/// The class of a value.
+/// Returns the class of a value.
 #[inline(always)]
 pub fn class(value: f64, width: f64) -> i32 {
     (value / width).floor() as i32
@@ -269,7 +268,7 @@ pub(super) fn extremes(max: &mut Option<Extreme>, min: &mut Option<Extreme>, p: 
     }
 }
 
-/// The borders that a rise from one class to another goes through, by the class above.
+/// Returns the borders that a rise from one class to another crosses, each by the class above it.
 pub(super) fn risen_borders(from: i32, to: i32) -> impl Iterator<Item = i32> {
     // A step through more borders than this is not a real load.
     (from.saturating_add(1)..=to).take(1 << 20)

@@ -16,7 +16,7 @@ const HEADER: usize = 2;
 /// Columns in columns that are read at most.
 const DEPTH: usize = 32;
 
-/// How the values of a column are stored.
+/// Storage of the values of a column.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum ColumnStorage {
     /// A bit each.
@@ -40,16 +40,16 @@ pub(super) enum ColumnStorage {
 #[derive(Clone)]
 pub(super) struct Field {
     pub name: String,
-    /// Unit that the notes on the column state; empty where they state none.
+    /// Unit that the notes on the column state. Empty if they state none.
     pub unit: String,
     pub stored: ColumnStorage,
     /// Number of buffers of the column in a batch, without the buffers of its children. For views it counts only the fixed buffers.
     pub buffers: usize,
-    /// Whether it has as many more buffers as each batch states.
+    /// Whether each batch states the number of additional buffers of the column.
     pub is_view: bool,
-    /// Whether its first buffer marks missing values.
+    /// Whether the first buffer of the column marks missing values.
     pub has_validity: bool,
-    /// Identifier and storage of the dictionary that its values count in.
+    /// Identifier and storage of the dictionary, if the values are indices into a dictionary.
     pub dictionary: Option<(usize, ColumnStorage)>,
     pub children: Vec<Field>,
 }
@@ -127,7 +127,7 @@ pub(super) fn content(buffer: Buffer<'_>, message: usize) -> Option<(u8, usize)>
     Some((kind, buffer.child(message, HEADER)?))
 }
 
-/// Returns the columns of a schema; `None` where it is damaged, or its numbers are not in little-endian order.
+/// Returns the columns of a schema. `None` if the schema is damaged, or if its numbers are not in little-endian order.
 pub(super) fn fields(buffer: Buffer<'_>, schema: usize) -> Option<Vec<Field>> {
     let order = buffer.field(schema, 0);
     let is_little = order.is_none_or(|at| buffer.half(at) == Some(0));
@@ -256,7 +256,7 @@ fn read_storage(buffer: Buffer<'_>, kind: u8, details: usize) -> Option<ColumnSt
     })
 }
 
-/// RFC 4648, section 4.
+/// Decodes base64 (RFC 4648, section 4).
 pub(super) fn from_base64(text: &str) -> Option<Vec<u8>> {
     let digit = |c: u8| match c {
         b'A'..=b'Z' => Some(c - b'A'),

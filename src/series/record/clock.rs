@@ -13,7 +13,7 @@ const RATE: f64 = 1e-3;
 const MOST_ADDED: f64 = 100.0;
 const ALWAYS_ALLOWED: f64 = 3.6e6;
 
-/// Whether samples are at their stored times.
+/// Relation of the samples to their stored times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Evenness {
     /// Every sample is the stored one.
@@ -27,12 +27,12 @@ pub enum Evenness {
     },
 }
 
-/// Where the logger's rate changes.
+/// Change of the logger's rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateChange {
-    /// When, s.
+    /// Time of the change, s.
     pub at_s: f64,
-    /// Samples a second before and after.
+    /// Samples per second before and after the change.
     pub rates_hz: [f64; 2],
 }
 
@@ -61,40 +61,40 @@ impl RateChange {
     }
 }
 
-/// When samples were taken.
+/// Times of the samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clock {
-    /// Time of the first sample, s; 0 for a file with absolute times.
+    /// Time of the first sample, s. It is 0 for a file with absolute times.
     pub start_s: f64,
-    /// Samples a second.
+    /// Samples per second.
     pub rate_hz: f64,
-    /// Samples on even steps, missing ones among them.
+    /// Number of samples on even steps, including missing samples.
     pub samples: usize,
     /// Rows in the file.
     pub rows: usize,
-    /// Even or resampled.
+    /// Whether the samples are even or resampled.
     pub evenness: Evenness,
-    /// The first change of rate: samples are then at the fastest one, or between the two where these are less than a half apart.
+    /// First change of the rate. The record then has the fastest rate, or a rate in between if the rates differ by less than a half.
     pub change: Option<RateChange>,
-    /// Samples missing in gaps.
+    /// Number of samples that are missing in gaps.
     pub missing: usize,
     /// The first thousand gaps.
     pub gaps: Vec<Gap>,
-    /// How many gaps there are.
+    /// Number of gaps.
     pub n_gaps: usize,
-    /// Absolute time of the first sample, s since 1970, where the file has it.
+    /// Absolute time of the first sample, s since 1970, if the file states it.
     pub epoch_s: Option<f64>,
-    /// Unit of the stored times, recognised by their size; `None` where the file states it or their size does not show it.
+    /// Unit of the stored times, recognised by their size. `None` if the file states the unit, or if the size does not show it.
     pub unit: Option<TimeUnit>,
 }
 
 impl Clock {
-    /// Span of the record, s.
+    /// Returns the span of the record, s.
     pub fn duration_s(&self) -> f64 {
         self.samples as f64 / self.rate_hz
     }
 
-    /// Time of sample `i`, s.
+    /// Returns the time of sample `i`, s.
     pub fn time_s(&self, i: usize) -> f64 {
         self.start_s + i as f64 / self.rate_hz
     }
@@ -105,12 +105,12 @@ impl Clock {
 pub(super) struct Steps {
     /// Steps and gaps of each piece.
     pub spans: Vec<Span>,
-    /// Steps for comparison; infinite if the record has a single time.
+    /// Steps for comparison. They are infinite if the record has a single time.
     pub scale: Scale,
 }
 
 impl Steps {
-    /// Samples missing between two times that follow each other.
+    /// Returns the number of samples that are missing between two successive times.
     pub(super) fn missing_between(&self, a: f64, b: f64) -> usize {
         if self.scale.is_gap(b - a) {
             ((b - a) / self.scale.typical).round() as usize - 1
@@ -162,7 +162,7 @@ pub(super) fn clock_of(
     }
 }
 
-/// Rows of each piece.
+/// Returns the rows of each piece.
 pub(super) fn counts(reader: &dyn RecordReader) -> Result<Vec<usize>, SeriesError> {
     (0..reader.n_pieces())
         .into_par_iter()

@@ -8,12 +8,12 @@ use crate::units::{Quantity, find_unit, microstrain_in};
 pub struct Column {
     /// Name, without the unit.
     pub name: String,
-    /// Unit as the file states it; empty where it doesn't.
+    /// Unit as the file states it. Empty if the file states none.
     pub unit: String,
     /// Header of the channel in the file.
     pub header: Header,
-    /// The unit that the file states outside the brackets after the name: in a row below, for the channel, or for all of its numbers. Empty if it
-    /// states none. It is the column's unit if the brackets are part of a name.
+    /// Unit that the file states outside the brackets after the name: in a row below, for the channel, or for all numbers. Empty without such a unit.
+    /// If the brackets are part of a name, this is the unit of the column.
     pub stated: String,
 }
 
@@ -80,7 +80,7 @@ impl Header {
         !is_label && (!sizes(&self.bracket).is_empty() || is_other_unit(&self.bracket))
     }
 
-    /// Whether both headers differ only in the kind of bracket and the blanks before it, as `SG1(left)` and `SG1 (left)`.
+    /// Returns whether both headers are equal except for the kind of bracket and blanks before it, as `SG1(left)` and `SG1 (left)`.
     pub fn is_like(&self, other: &Self) -> bool {
         self.name == other.name && self.bracket == other.bracket
     }
@@ -92,7 +92,7 @@ fn strip_quotes(header: &str) -> &str {
     inside.map_or(header, str::trim)
 }
 
-/// Name and unit of a header such as `P01 [um/m]` or `a_body (m/s2)`; the last bracket is the unit's: `SG1 (left) (um/m)`.
+/// Returns name and unit of a header such as `P01 [um/m]` or `a_body (m/s2)`. The last bracket contains the unit: `SG1 (left) (um/m)`.
 pub fn name_and_unit(header: &str) -> Column {
     let header = Header::parse(header);
     let unit = match unit_of_time_name(&header.whole) {
@@ -108,7 +108,7 @@ pub fn name_and_unit(header: &str) -> Column {
 }
 
 impl Column {
-    /// A channel of a format that keeps units apart from names.
+    /// Returns a channel of a format that keeps units apart from names.
     pub fn of_channel(name: &str, unit: &str) -> Self {
         let unit = match unit_of_time_name(name) {
             Some(of_name) if unit.is_empty() => of_name,
@@ -172,8 +172,8 @@ impl Column {
     }
 }
 
-/// Gives a column the unit in the row below its header. If the brackets after the name contain an equal unit, the column keeps it. Any other text
-/// in these brackets is part of the name, `SG1 (left)`, or a unit that clashes with the one below ([`Column::clash`]).
+/// Gives a column the unit in the row below its header. If the brackets after the name contain an equal unit, the column keeps this unit. Any other
+/// text in these brackets is part of the name, `SG1 (left)`, or a unit that contradicts the unit in the row ([`Column::clash`]).
 pub fn take_unit_below(column: &mut Column, below: &str) {
     if states_no_unit(below) {
         return;

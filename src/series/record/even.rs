@@ -60,7 +60,7 @@ impl Record {
         })
     }
 
-    /// Whether the file states the unit of its times, or its format does.
+    /// Returns whether the file or its format states the unit of its times.
     pub fn is_time_unit_stated(&self) -> bool {
         match self.reader.times() {
             Times::Stored {
@@ -73,7 +73,7 @@ impl Record {
         }
     }
 
-    /// The last line of the file, where it may be cut and is left out.
+    /// Returns the last line of the file if it may be cut and is therefore left out.
     pub fn left_out(&self) -> Option<usize> {
         self.reader.left_out()
     }
@@ -83,28 +83,28 @@ impl Record {
         self.reader.columns()
     }
 
-    /// Name of the group of a column; empty where the format or the file has none.
+    /// Returns the name of the group of a column. It is empty if the format or the file has no groups.
     pub fn group(&self, column: usize) -> &str {
         self.reader.group(column)
     }
 
-    /// Channels of the file that are not among the columns, in file order.
+    /// Returns the channels of the file that are not among the columns, in file order.
     pub fn other_channels(&self) -> &[OtherChannel] {
         self.reader.other_channels()
     }
 
-    /// How many pieces it is read in.
+    /// Returns the number of pieces in which the record is read.
     pub fn n_pieces(&self) -> usize {
         self.reader.n_pieces()
     }
 
-    /// Samples of a piece: the first, and the first of the next one.
+    /// Returns the samples of a piece: its first sample, and the first sample of the next piece.
     pub fn span(&self, piece: usize) -> (usize, usize) {
         let at = |i: usize| self.starts.get(i).copied().unwrap_or(self.clock.samples);
         (at(piece), at(piece + 1))
     }
 
-    /// The line in the file of a stored row, counted from 0.
+    /// Returns the line in the file of a stored row, counted from 0.
     pub fn line_of_row(&self, row: usize) -> usize {
         let mut before = 0;
         let spans = self.steps.iter().flat_map(|s| &s.spans);
@@ -117,8 +117,8 @@ impl Record {
         row + 1
     }
 
-    /// Decodes a piece: blocks of consecutive samples, [`Block::first`] counted from the beginning of the record, a number for each of
-    /// `columns` (`None`: NaN) as stored.
+    /// Decodes a piece into blocks of consecutive samples. [`Block::first`] counts from the beginning of the record. A block contains a stored number
+    /// for each of `columns` (`None` gives NaN).
     ///
     /// # Errors
     /// Data that can't be decoded, with its place.
@@ -131,7 +131,7 @@ impl Record {
         self.take(Extent::Whole, piece, columns, sink)
     }
 
-    /// Decodes the first block of a piece alone, as [`Record::read`] gives it.
+    /// Decodes only the first block of a piece, in the form of [`Record::read`].
     ///
     /// # Errors
     /// Errors of [`Record::read`].
@@ -357,7 +357,7 @@ fn starts_of_times(clock: &Clock, steps: &Steps) -> Vec<usize> {
             };
             starts.push(at);
         }
-        // A piece without rows begins where the next one does.
+        // A piece without rows begins where the next piece begins.
         let mut next = clock.samples;
         for (start, s) in starts.iter_mut().zip(&steps.spans).rev() {
             if s.rows == 0 {

@@ -8,7 +8,7 @@ use crate::series::{binary, rpc};
 /// Samples a piece.
 const PIECE: usize = 16_384;
 
-/// Which of both it is.
+/// Format of the record.
 enum Header {
     Binary(binary::Header),
     Rpc(rpc::Header),
@@ -22,7 +22,7 @@ pub(super) struct EvenStepReader {
 }
 
 impl EvenStepReader {
-    /// The binary record of strainbridge; `unit` of its header is stated as the unit of every column without one.
+    /// Opens the binary record of strainbridge. The `unit` in its header is the unit of every column without a unit.
     pub(super) fn binary(bytes: Bytes) -> Result<Self, SeriesError> {
         let header = binary::read_header((*bytes).as_ref()).map_err(|e| SeriesError::Broken {
             wrong: e.to_string(),
@@ -48,7 +48,7 @@ impl EvenStepReader {
         })
     }
 
-    /// RPC III.
+    /// Opens an RPC III file.
     pub(super) fn rpc(bytes: Bytes) -> Result<Self, SeriesError> {
         let header = rpc::read_header((*bytes).as_ref())?;
         let channels = header.channels.iter();

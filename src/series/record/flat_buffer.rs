@@ -1,6 +1,6 @@
 //! Tables of FlatBuffers, as Arrow writes its schema and its messages.
 
-/// Bytes of tables: places count from the first byte. A place outside of the bytes is `None`.
+/// Bytes of tables. Places count from the first byte. A place outside of the bytes gives `None`.
 ///
 /// # Reference
 /// FlatBuffers, internals.
@@ -22,7 +22,7 @@ impl<'a> Buffer<'a> {
         Some(u32::from_le_bytes(*bytes))
     }
 
-    /// Returns an integer of 64 bits that is a size or a place; `None` for a negative one.
+    /// Returns a 64-bit integer that is a size or a place. `None` if it is negative.
     pub(super) fn size(&self, at: usize) -> Option<usize> {
         let bytes = self.0.get(at..)?.first_chunk()?;
         usize::try_from(i64::from_le_bytes(*bytes)).ok()
@@ -33,7 +33,7 @@ impl<'a> Buffer<'a> {
         at.checked_add(self.word(at)? as usize)
     }
 
-    /// Returns the place of field `number` of a table; `None` where it was left out.
+    /// Returns the place of field `number` of a table. `None` if the field was left out.
     pub(super) fn field(&self, table: usize, number: usize) -> Option<usize> {
         let back = self.word(table)? as i32;
         let list = (table as i64).checked_sub(i64::from(back))?;
@@ -46,12 +46,13 @@ impl<'a> Buffer<'a> {
         (offset > 0).then(|| table.checked_add(usize::from(offset)))?
     }
 
-    /// Returns the table that field `number` of a table leads to; `None` where it was left out.
+    /// Returns the table to which field `number` of a table refers. `None` if the field was left out.
     pub(super) fn child(&self, table: usize, number: usize) -> Option<usize> {
         self.follow(self.field(table, number)?)
     }
 
-    /// Returns the places of the entries of the list in field `number` of a table, `width` bytes each; none where it was left out.
+    /// Returns the places of the entries of the list in field `number` of a table. Each entry has `width` bytes. The list is empty if the field was
+    /// left out.
     pub(super) fn list(&self, table: usize, number: usize, width: usize) -> Option<Vec<usize>> {
         let Some(at) = self.field(table, number) else {
             return Some(Vec::new());

@@ -11,11 +11,11 @@ const PIECE: usize = 65_536;
 pub struct MemoryRecord {
     /// Names and units.
     pub columns: Vec<Column>,
-    /// Samples of each, all of one length.
+    /// Samples of each channel. All channels have one length.
     pub samples: Vec<Vec<f64>>,
-    /// Time of each sample, s, if [`MemoryRecord::times`] states that times are stored; else empty.
+    /// Time of each sample, s, if [`MemoryRecord::times`] states that times are stored. Otherwise empty.
     pub stored: Vec<f64>,
-    /// Where the times come from.
+    /// Source of the times.
     pub times: Times,
     /// Channels of the file that are not among the columns.
     pub others: Vec<OtherChannel>,

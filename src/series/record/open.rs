@@ -13,10 +13,10 @@ use crate::series::{binary, rpc};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
-/// How a record is opened.
+/// Options for opening a record.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Sample rate as stated elsewhere, Hz: needed where the file has no times, else held against them.
+    /// Sample rate that the job states, Hz. It is required if the file has no times. Otherwise it is compared with the times.
     pub declared_hz: Option<f64>,
     /// Seconds in one stored time, for a file that states no unit of time.
     pub time_unit_s: Option<f64>,
@@ -25,10 +25,9 @@ pub struct Options {
     pub wanted: Vec<String>,
 }
 
-/// Opens a record of any supported format, which its first bytes determine; a file of no other format is a table of text.
+/// Opens a record of any supported format. The first bytes determine the format. A file of no known format is a table of text.
 ///
-/// # Errors
-/// A format that this build leaves out, a file that can't be read, times that can't be (see [`Record::new`]).
+/// # Errors A format that this build does not support, a file that can't be read, impossible times (see [`Record::new`]).
 pub fn open_record(bytes: Bytes, options: &Options) -> Result<Record, SeriesError> {
     let reader = reader_of(bytes, options)?;
     Record::new(reader, options.declared_hz, options.time_unit_s)
@@ -82,7 +81,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// Returns its name with an article, for messages.
+    /// Returns the name of the format with an article, for messages.
     pub fn words(self) -> &'static str {
         match self {
             Self::Binary => "a binary record of strainbridge",
@@ -95,7 +94,7 @@ impl Format {
         }
     }
 
-    /// Returns its name.
+    /// Returns the name of the format.
     pub fn name(self) -> &'static str {
         match self {
             Self::Binary => "binary record",
@@ -109,7 +108,7 @@ impl Format {
     }
 }
 
-/// Returns the format that the bytes begin as; `None` where they are no record or a table of text.
+/// Returns the format that the first bytes indicate. `None` if they are not a record, or a table of text.
 pub fn format_of(bytes: &[u8]) -> Option<Format> {
     if binary::is_record(bytes) {
         return Some(Format::Binary);
@@ -132,7 +131,7 @@ pub fn format_of(bytes: &[u8]) -> Option<Format> {
     is_uff(bytes).then_some(Format::Uff)
 }
 
-/// Whether the bytes begin as one of the formats of records, and are no table of text.
+/// Returns whether the first bytes indicate a format of records other than a table of text.
 pub fn is_format(bytes: &[u8]) -> bool {
     format_of(bytes).is_some()
 }
@@ -191,7 +190,7 @@ fn mdf(_: Bytes, _: &[String]) -> Result<Box<dyn RecordReader>, SeriesError> {
     })
 }
 
-/// A whole record in memory.
+/// Returns a whole record in memory.
 ///
 /// # Errors
 /// Errors of [`open_record`] and [`Record::read`].

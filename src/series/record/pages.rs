@@ -5,7 +5,7 @@ use parquet::column::page::{Page, PageMetadata, PageReader};
 use parquet::errors::{ParquetError, Result};
 use parquet::schema::types::ColumnDescriptor;
 
-/// Pages of one column. Values split into streams of bytes come out plain.
+/// Pages of one column. Values that are split into streams of bytes are joined again.
 pub(super) struct Pages<P> {
     inner: P,
     /// Bits of a definition level; 0 where none are stored.

@@ -1,4 +1,4 @@
-//! Parquet: a column a channel, a row a sample; read by parts of row groups, column by column, a page at a time.
+//! Parquet with a column for each channel and a row for each sample. It is read by parts of row groups, column by column, page by page.
 
 use super::arrow::notes;
 use super::column::{Column, is_time};
@@ -64,8 +64,8 @@ struct Unit {
 }
 
 impl Parquet {
-    /// The table in a file. A column of time (`time`, `t`, `timestamp`) gives the times; else the first column of timestamps or durations, such
-    /// as the index that pandas writes. Columns of numbers alone are read; a null is NaN.
+    /// Opens the table in a file. A column of time (`time`, `t`, `timestamp`) gives the times, or else the first column of timestamps or durations,
+    /// such as the index that pandas writes. Only columns of numbers are read. A null is NaN.
     ///
     /// # Errors
     /// A file that is cut off or damaged.
@@ -167,7 +167,7 @@ impl Parquet {
         Ok(())
     }
 
-    /// Returns the texts of the column of this name, a row each, blank for a null; `None` where no column of text has it.
+    /// Returns the texts of the column with this name, one for each row, blank for a null. `None` if no column of text has this name.
     ///
     /// # Errors
     /// Pages that can't be decoded, or too few of them.

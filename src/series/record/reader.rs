@@ -8,10 +8,10 @@ use std::sync::Arc;
 /// Bytes of a file, in memory or mapped.
 pub type Bytes = Arc<dyn AsRef<[u8]> + Send + Sync>;
 
-/// Rows decoded at a time: their numbers stay in the processor's cache.
+/// Number of rows that are decoded at a time. Their numbers fit into the processor's cache.
 pub(super) const BLOCK: usize = 512;
 
-/// Where the times of the samples come from.
+/// Source of the times of the samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Times {
     /// Even steps by the format itself.
@@ -59,26 +59,26 @@ pub struct Block<'a> {
     pub first: usize,
     /// Number of rows.
     pub rows: usize,
-    /// Values, row-major, one for each pick; NaN where nothing was measured.
+    /// Values by rows, one for each pick. NaN if nothing was measured.
     pub values: &'a [f64],
 }
 
-/// A channel of a file that is not part of the record: its samples were taken at other times, or they are no numbers.
+/// A channel of a file that is not part of the record, because its samples were taken at other times or are not numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OtherChannel {
-    /// Name of its group; empty where the file states none.
+    /// Name of the group. Empty if the file states none.
     pub group: String,
     /// Name, without the unit.
     pub name: String,
-    /// Unit as the file states it; empty where it doesn't.
+    /// Unit as the file states it. Empty if the file states none.
     pub unit: String,
     /// Number of samples.
     pub samples: usize,
-    /// Sample rate, Hz, where the file states one.
+    /// Sample rate, Hz, if the file states one.
     pub rate_hz: Option<f64>,
 }
 
-/// Takes blocks in order until it has enough.
+/// Receiver of blocks in order, until it has enough.
 pub type Sink<'a> = dyn FnMut(Block<'_>) -> ControlFlow<()> + 'a;
 
 /// File as rows of numbers, in pieces that can be decoded separately and in parallel.
@@ -93,9 +93,9 @@ pub trait RecordReader: Send + Sync {
     fn other_channels(&self) -> &[OtherChannel] {
         &[]
     }
-    /// Where its times come from.
+    /// Returns the source of the times.
     fn times(&self) -> Times;
-    /// How many pieces it is read in.
+    /// Returns the number of pieces in which the record is read.
     fn n_pieces(&self) -> usize;
     /// Decodes the picks of a piece, a block at a time.
     ///

@@ -10,7 +10,7 @@ pub(super) type Strips = Vec<Strip>;
 
 /// Rows being decoded, or decoded.
 pub(super) struct Rows {
-    /// Which rows these are.
+    /// Number of the rows.
     unit: usize,
     picks: Vec<Pick>,
     state: Mutex<State>,
@@ -31,7 +31,7 @@ struct State {
     left: usize,
 }
 
-/// Rows that pieces have in work, the oldest first, and memory of those that are done with.
+/// Decoded rows that pieces use, the oldest first, and memory of rows that are no longer needed.
 #[derive(Default)]
 pub(super) struct SharedRows {
     rows: Mutex<Vec<Arc<Rows>>>,
@@ -44,7 +44,7 @@ fn lock_mutex<T>(m: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl SharedRows {
-    /// The rows `unit`, which `pieces` pieces read, each once; at most `most` of them are kept.
+    /// Returns the rows `unit`, which `pieces` pieces read once each. At most `most` sets of rows are kept.
     pub fn rows(&self, unit: usize, pieces: usize, picks: &[Pick], most: usize) -> Arc<Rows> {
         let mut all = lock_mutex(&self.rows);
         if let Some(found) = all.iter().find(|r| r.unit == unit && r.picks == picks) {
@@ -75,7 +75,7 @@ impl SharedRows {
         new
     }
 
-    /// Counts one more piece that has read the rows, and releases them after the last piece.
+    /// Counts one more piece that has read the rows. After the last piece, the rows are released.
     pub fn done_with(&self, rows: &Arc<Rows>, strips: Arc<Strips>) {
         drop(strips);
         let mut state = lock_mutex(&rows.state);
@@ -91,17 +91,17 @@ impl SharedRows {
         }
     }
 
-    /// Memory for columns.
+    /// Returns unused memory for columns, or new memory.
     pub fn spare(&self) -> Strips {
         lock_mutex(&self.spare).pop().unwrap_or_default()
     }
 
-    /// Takes it back.
+    /// Takes memory for columns back.
     pub fn take_back(&self, strips: Strips) {
         lock_mutex(&self.spare).push(strips);
     }
 
-    /// Runs with memory for decoding.
+    /// Calls a function with memory for decoding.
     pub fn with_buffers<T>(&self, run: impl FnOnce(&mut Buffers) -> T) -> T {
         let mut buffers = lock_mutex(&self.buffers).pop().unwrap_or_default();
         let out = run(&mut buffers);

@@ -8,11 +8,11 @@ use crate::series::error::SeriesError;
 pub(super) struct Sampling {
     /// Time of the first sample, s.
     pub start_s: f64,
-    /// Time between samples, s; 0 where another channel holds the times.
+    /// Time between samples, s. It is 0 if another channel contains the times.
     pub step_s: f64,
     /// Number of samples.
     pub samples: usize,
-    /// Number of the channel that holds the times, where there is one.
+    /// Number of the channel that contains the times, if there is one.
     pub times: Option<usize>,
     /// Whether the file states the unit of its steps.
     pub unit_stated: bool,
@@ -29,8 +29,8 @@ impl Sampling {
     }
 }
 
-/// Returns the sampling of the main channels, and for each channel whether it was sampled together with them. The main channels are those
-/// with most of the `wanted` names; where no name is wanted, those with most numbers. `None`: no channel has samples.
+/// Returns the sampling of the main channels, and for each channel whether it was sampled together with them. The main channels are the group with
+/// most of the `wanted` names. If no name is wanted, they are the group with most numbers. `None` if no channel has samples.
 ///
 /// # Errors
 /// Wanted channels that were sampled at other times.

@@ -33,7 +33,7 @@ impl Source {
         }
     }
 
-    /// All bytes, in memory.
+    /// Returns all bytes, in memory.
     ///
     /// # Errors
     /// Errors of the system.

@@ -10,9 +10,9 @@ use std::ops::ControlFlow;
 /// samples cuts off up to `(2 pi / m)^2 / 8`. Below `e = pi / (4 m)`, .02 for 40 samples, the stored samples are nearer to the truth than
 /// interpolated ones.
 pub const EVEN: f64 = 0.02;
-/// A step longer than this many typical ones is a gap: at least one sample is missing.
+/// Number of typical steps from which a step counts as a gap, in which at least one sample is missing.
 pub(super) const GAP: f64 = 1.5;
-/// Gaps that are kept by place; further ones are counted.
+/// Number of gaps whose place is stored. Further gaps are only counted.
 pub(super) const LISTED: usize = 1000;
 
 /// Steps whose mean is the rate of the logger there: twenty, so that their mean is known well where times are rounded.
@@ -22,12 +22,12 @@ const SAME_STEP_REL: f64 = 0.25;
 /// Share by which another rate differs from the usual one: clocks drift by far less.
 const OTHER: f64 = 0.1;
 
-/// A stretch of a record in which the logger ran at another rate than the typical one.
+/// A stretch of a record with another rate of the logger than the typical rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
-    /// Time of its first sample, s.
+    /// Time of the first sample, s.
     pub from_s: f64,
-    /// Time of its last sample, s, or of the last of the piece that it begins in.
+    /// Time of the last sample of the stretch, or of the piece in which it begins, s.
     pub to_s: f64,
     /// Step of time, s.
     pub step_s: f64,
@@ -51,13 +51,13 @@ impl Stretch {
 /// Typical and longest steps of a record, for comparison with its steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Scale {
-    /// The typical step, s; with several rates, the step of the fastest.
+    /// Typical step, s. With several rates, it is the step of the fastest rate.
     pub typical: f64,
-    /// The longest step of any rate, s: a step half as long again is a gap.
+    /// Longest step of any rate, s. A step that is half as long again is a gap.
     pub longest: f64,
     /// The mean of [`WINDOW`] steps in the first rows, s.
     pub usual: f64,
-    /// Largest error of a time by its rounding, s.
+    /// Largest rounding error of a time, s.
     pub rounding: f64,
 }
 
@@ -93,34 +93,35 @@ impl Scale {
 /// Gap of missing samples between two stored samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
-    /// Stored rows before it.
+    /// Number of stored rows before the gap.
     pub after_row: usize,
-    /// Time of the last sample before, s.
+    /// Time of the last sample before the gap, s.
     pub from_s: f64,
-    /// Time of the first sample after, s.
+    /// Time of the first sample after the gap, s.
     pub to_s: f64,
-    /// Samples of even steps that fall in between.
+    /// Number of samples on even steps that are missing in the gap.
     pub missing: usize,
 }
 
 /// Steps, gaps and rates of the times of a piece.
 #[derive(Clone, Debug)]
 pub(super) struct Span {
-    /// Rows.
+    /// Number of rows.
     pub rows: usize,
     /// Time of the first row, s.
     pub first: f64,
     /// Time of the last row, s.
     pub last: f64,
-    /// The first gaps within.
+    /// First gaps within the piece.
     pub gaps: Vec<Gap>,
     /// Number of gaps.
     pub n_gaps: usize,
-    /// Samples missing in the gaps.
+    /// Number of samples that are missing in the gaps.
     pub missing: f64,
     /// Sum and number of the steps that are not gaps.
     pub steps: (f64, usize),
-    /// Largest departure beyond rounding of a step, or of a gap from whole steps, s, and the rows before it.
+    /// Largest departure beyond rounding of a step from the typical step, or of a gap from whole steps, s. The second value is the number of rows
+    /// before it.
     pub largest: (f64, usize),
     /// The first stretch of another rate.
     pub stretch: Option<Stretch>,
@@ -173,7 +174,7 @@ fn lower_quantile(mut numbers: Vec<f64>, part: usize) -> Option<f64> {
     fits.then(|| *numbers.select_nth_unstable_by(at, f64::total_cmp).1)
 }
 
-/// A time that can't be.
+/// An impossible time.
 pub(super) enum TimeFault {
     Missing,
     Back { time_s: f64, before_s: f64 },
@@ -195,7 +196,7 @@ impl TimeFault {
     }
 }
 
-/// Steps seen so far.
+/// Analysis of the steps seen so far.
 pub(super) struct Walk {
     scale: Scale,
     pub gaps: Vec<Gap>,
@@ -278,7 +279,7 @@ impl Walk {
         })
     }
 
-    /// Takes the step from `a` to `b`; `rows` precede it.
+    /// Takes the step from `a` to `b`. `rows` is the number of rows before it.
     pub(super) fn step(&mut self, a: f64, b: f64, rows: usize) {
         let step = b - a;
         let Scale {
@@ -317,7 +318,7 @@ impl Walk {
     }
 }
 
-/// The span of a piece; else the row in it that is wrong.
+/// Returns the span of a piece, or the first wrong row in the piece.
 pub(super) fn span(
     reader: &dyn RecordReader,
     piece: usize,

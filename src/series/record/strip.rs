@@ -10,7 +10,7 @@ use parquet::schema::types::ColumnDescriptor;
 /// Rows of a column that are decoded at a time.
 const ROWS: usize = 8192;
 
-/// Room for some values of one column; used again for the next one.
+/// Memory for values of one column, which is used again for the next column.
 #[derive(Default)]
 pub(super) struct Buffers {
     levels: Vec<i16>,
@@ -20,7 +20,7 @@ pub(super) struct Buffers {
     halves: Vec<FixedLenByteArray>,
 }
 
-/// Decoded rows of one column: reals of 32 bits as they are, other numbers in 64.
+/// Decoded rows of one column. 32-bit reals are stored unchanged, other numbers in 64 bits.
 #[derive(Default)]
 pub(super) struct Strip {
     singles: Vec<f32>,
@@ -28,7 +28,7 @@ pub(super) struct Strip {
 }
 
 impl Strip {
-    /// Decodes the next rows of a column in the place of what was here.
+    /// Decodes the next rows of a column, which replace the previous rows.
     ///
     /// # Errors
     /// Pages that can't be decoded, or too few of them.
@@ -87,7 +87,7 @@ impl Strip {
         }
     }
 
-    /// The rows from number `first` on, times `worth` less `off`.
+    /// Writes the rows from number `first` on to `out`, multiplied by `worth` and with `off` subtracted.
     pub(super) fn write_rows(&self, first: usize, worth: f64, off: f64, out: &mut [f64]) {
         if let Some(singles) = self.singles.get(first..).filter(|s| !s.is_empty()) {
             pulp::Arch::new().dispatch(|| {
@@ -140,7 +140,7 @@ fn numbers<T: DataType, O: Clone>(
     Ok(())
 }
 
-/// Decodes texts into `out` up to number `end`, blank for a null.
+/// Decodes texts into `out` up to number `end`. A null becomes a blank.
 pub(super) fn texts(
     reader: &mut ColumnReaderImpl<ByteArrayType>,
     most: i16,
@@ -182,7 +182,7 @@ where
         if records == 0 {
             return Ok(());
         }
-        // Move each known value to its row, from the last to the first. A value never moves towards the start, so that no unmoved value is
+        // Move each known value to its row, from the last to the first. A value never moves towards the start, so no unmoved value is
         // overwritten.
         let mut known = out.len();
         out.resize(first + records, blank);
@@ -204,7 +204,7 @@ where
     Ok(())
 }
 
-/// The value of a real of 16 bits (IEEE 754: one bit of sign, five of exponent, ten of fraction).
+/// Returns the value of a 16-bit real (IEEE 754: one bit of sign, five of exponent, ten of fraction).
 pub(super) fn of_half(bits: u16) -> f64 {
     let fraction = f64::from(bits & 0x3ff) / 1024.0;
     let size = match i32::from(bits >> 10 & 0x1f) {

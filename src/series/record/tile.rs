@@ -10,14 +10,14 @@ pub(super) struct Tile {
     values: Vec<f64>,
     /// Place of the first in a row.
     first: usize,
-    /// How many there are.
+    /// Number of columns.
     n: usize,
     /// Rows of each.
     rows: usize,
 }
 
 impl Tile {
-    /// Nothing yet.
+    /// Creates an empty tile.
     pub(super) fn new() -> Self {
         Self {
             values: vec![f64::NAN; WIDE * BLOCK],
@@ -27,8 +27,8 @@ impl Tile {
         }
     }
 
-    /// Returns room for the numbers of column `j` of at most [`BLOCK`] rows. Columns to which it is not adjacent are first laid out into `values`,
-    /// `k` a row.
+    /// Returns room for the numbers of column `j` of at most [`BLOCK`] rows. If the columns are not contiguous, they are first arranged in `values`,
+    /// `k` for each row.
     pub(super) fn column(
         &mut self,
         j: usize,
@@ -46,7 +46,7 @@ impl Tile {
         self.values.get_mut(at..at + rows).unwrap_or_default()
     }
 
-    /// Copies the stored columns into `values`, which has `k` numbers a row.
+    /// Copies the stored columns into `values`, which has `k` numbers in each row.
     pub(super) fn lay_out(&mut self, values: &mut [f64], k: usize) {
         let from = &self.values;
         let rows = values.chunks_exact_mut(k.max(1)).take(self.rows);

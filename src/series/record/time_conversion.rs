@@ -20,8 +20,8 @@ struct SecondsReader {
     times: Times,
 }
 
-/// Returns the reader with its times in seconds, and what its times count where that was recognised by their size. `time_unit_s`: seconds in
-/// one time where the file states no unit.
+/// Returns the reader with its times in seconds, and the unit of the times if it was recognised by their size. `time_unit_s` is the unit in seconds,
+/// for a file that states no unit.
 ///
 /// # Errors
 /// Times that can't be read, and a file that states another unit than `time_unit_s`.

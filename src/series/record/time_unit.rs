@@ -32,7 +32,7 @@ pub enum TimeUnit {
 }
 
 impl TimeUnit {
-    /// Returns what times count whose first one is `first` and that are `step` apart; `None` where their size does not show it.
+    /// Returns the unit of times that begin with `first` and are `step` apart. `None` if their size does not show it.
     pub(super) fn from_times(first: f64, step: f64) -> Option<Self> {
         let within = |x: f64, [from, to]: [f64; 2]| (from..=to).contains(&x);
         if within(first, SERIAL_DAYS) {
@@ -54,7 +54,7 @@ impl TimeUnit {
         since_1970.into_iter().find(of)
     }
 
-    /// Returns the seconds in one.
+    /// Returns the seconds in one unit.
     pub fn seconds(self) -> f64 {
         match self {
             Self::SerialDays => DAY,
@@ -73,7 +73,7 @@ impl TimeUnit {
         }
     }
 
-    /// Returns its name for messages.
+    /// Returns the name of the unit for messages.
     pub fn words(self) -> &'static str {
         match self {
             Self::SerialDays => "days of a spreadsheet (since 30 December 1899)",
@@ -90,7 +90,7 @@ pub(super) fn single_rounding_s(second: f64) -> f64 {
     DAY * 6e-8 * second.abs()
 }
 
-/// Whether a rate, Hz, is one of records.
+/// Returns whether records usually have this rate, Hz.
 pub fn is_usual(rate_hz: f64) -> bool {
     let [slowest, fastest] = USUAL_RATES_HZ;
     (slowest * (1.0 - RATE)..=fastest * (1.0 + RATE)).contains(&rate_hz)

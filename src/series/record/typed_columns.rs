@@ -14,7 +14,7 @@ pub(super) enum Meaning {
     Duration(f64),
 }
 
-/// How the values of a column are stored.
+/// Storage of the values of a column.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Precision {
     Integer,
@@ -87,7 +87,7 @@ impl TypedChannels {
 }
 
 impl TimeColumn {
-    /// Returns s in one stored unit. The type of the column precedes its name.
+    /// Returns the length of one stored unit in s. The type of the column takes precedence over its name.
     ///
     /// # Errors
     /// A unit in brackets that is no unit of time.
@@ -104,12 +104,12 @@ impl TimeColumn {
         }
     }
 
-    /// Whether its values are points in time, which count from 1970.
+    /// Returns whether the values are points in time, which count from 1970.
     pub(super) fn is_instant(&self) -> bool {
         matches!(self.meaning, Meaning::Instant(_))
     }
 
-    /// Returns the times of the record: `factor` s in one stored unit, `epoch` s since 1970 taken off points in time.
+    /// Returns the times of the record. `factor` is the length of one stored unit in s. `epoch` (s since 1970) is subtracted from points in time.
     pub(super) fn times(&self, precision: Precision, factor: f64, epoch: f64) -> Times {
         let is_instant = self.is_instant();
         Times::Stored {

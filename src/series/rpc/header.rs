@@ -5,7 +5,7 @@ use std::fmt;
 
 /// Bytes of a header record.
 pub(super) const RECORD: usize = 128;
-/// Bytes of its key.
+/// Bytes of the key of an entry.
 pub(super) const KEY: usize = 32;
 /// Bytes of a block.
 pub(super) const BLOCK: usize = 512;
@@ -15,15 +15,15 @@ const MOST_BLOCKS: usize = 1024;
 /// One channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RpcChannel {
-    /// `DESC.CHAN_n`; `n` where the file has none.
+    /// Name `DESC.CHAN_n`. It is `n` if the file has none.
     pub name: String,
-    /// `UNITS.CHAN_n`.
+    /// Unit `UNITS.CHAN_n`.
     pub unit: String,
-    /// Value of one count; 1 for reals.
+    /// Value of one count. It is 1 for reals.
     pub scale: f64,
 }
 
-/// How numbers are stored.
+/// Storage of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Numbers {
     Int16,
@@ -46,7 +46,7 @@ pub struct Header {
     pub channels: Vec<RpcChannel>,
     /// Time between samples, s.
     pub dt: f64,
-    /// Samples of each channel.
+    /// Number of samples of each channel.
     pub samples: usize,
     pub(super) per_group: usize,
     pub(super) start: usize,
@@ -122,7 +122,7 @@ pub fn is_rpc(bytes: &[u8]) -> bool {
     key == "FORMAT" && (value.starts_with("BINARY") || value == "ASCII")
 }
 
-/// Text up to the first zero byte, trimmed: UTF-8, else Latin-1.
+/// Returns the text up to the first zero byte, trimmed: UTF-8, else Latin-1.
 pub(super) fn text(bytes: &[u8]) -> String {
     let bytes = bytes.split(|b| *b == 0).next().unwrap_or_default();
     match std::str::from_utf8(bytes) {
@@ -174,10 +174,10 @@ impl Params {
     }
 }
 
-/// The header.
+/// Returns the header.
 ///
 /// # Errors
-/// A file that is cut off, keys that lack or can't be, another kind of file.
+/// A file that is cut off, missing or impossible keys, or another kind of file.
 pub fn read_header(bytes: &[u8]) -> Result<Header, RpcError> {
     let record = |i: usize| {
         let from = i.checked_mul(RECORD)?;

@@ -3,8 +3,7 @@
 use super::header::{Header, Numbers, RpcError, read_header};
 use crate::series::channels::{Channel, Channels};
 
-/// Numbers of samples `from .. to` in the units of the file, one sample after the other, appended in the order of `columns`
-/// (`None`: NaN).
+/// Appends the numbers of samples `from .. to` in the units of the file, one sample after the other, in the order of `columns` (`None` gives NaN).
 pub fn read_samples(
     h: &Header,
     bytes: &[u8],
@@ -51,7 +50,7 @@ fn value(b: &[u8], numbers: Numbers, big_endian: bool) -> f64 {
     }
 }
 
-/// The whole record.
+/// Returns the whole record.
 ///
 /// # Errors
 /// Errors of [`read_header`].

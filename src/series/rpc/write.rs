@@ -22,7 +22,7 @@ pub struct Target {
 }
 
 impl Target {
-    /// Value of one count. The error of a written value is at most half of it.
+    /// Returns the value of one count. The error of a written value is at most half of one count.
     pub fn scale(&self) -> f64 {
         let top = self.min.abs().max(self.max.abs());
         if top.is_finite() && top > 0.0 {

@@ -68,7 +68,7 @@ impl Answer for BallastAnswer {
     }
 }
 
-/// A lumped mass. Each number has its 95 % interval with the other numbers adjusted to the data.
+/// A lumped mass. Each number has a 95 % interval. For its ends, the other numbers are adjusted to the data.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HungMass {
     /// Mass.
@@ -81,16 +81,16 @@ pub struct HungMass {
     pub position_range: [[f64; 2]; 2],
     /// Grid of the completed deck.
     pub grid: u32,
-    /// RBE3 that ties it.
+    /// RBE3 that ties the mass.
     pub rbe3: u32,
-    /// CONM2 of it.
+    /// CONM2 of the mass.
     pub conm2: u32,
 }
 
-/// A wheel's reaction.
+/// Reaction of a wheel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Reaction {
-    /// Load.
+    /// Name of the load.
     pub name: String,
     /// Measured reaction.
     pub measured: f64,
@@ -102,7 +102,7 @@ pub struct Reaction {
     pub after: f64,
 }
 
-/// Total missing mass and its centre, from the resultant of the measured reactions less the reactions of the model.
+/// Total missing mass and its centre, from the resultant of measured reactions minus reactions of the model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TotalMass {
     /// Mass.
@@ -127,7 +127,7 @@ pub(super) struct BallastSizing<'a> {
     pub height: f64,
 }
 
-/// The answer in report units, once it has its deck.
+/// Returns the answer in report units, with the completed deck.
 pub(super) fn report_ballast(
     task: &Task,
     sized: &BallastSizing,
@@ -175,7 +175,7 @@ pub(super) fn report_ballast(
     }
 }
 
-/// Statics alone: the reactions' resultant less the model's own.
+/// Statics alone: the reactions' resultant minus the model's own.
 fn missing_mass_resultant(task: &Task, sized: &BallastSizing) -> TotalMass {
     let (job, g) = (task.job, task.gravity);
     let (l, m) = (length(job), mass(job));
@@ -223,7 +223,7 @@ fn in_steel(task: &Task) -> f64 {
     structure.weight().mass * task.gravity
 }
 
-/// The finding on masses that no structure of the model's mass carries.
+/// Returns the finding on masses that no structure of the model's mass carries.
 pub(super) fn far_beyond(
     task: &Task,
     run: &str,

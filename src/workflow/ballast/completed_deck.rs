@@ -17,7 +17,7 @@ pub(super) struct MassCards {
     pub conm2: u32,
 }
 
-/// Cards of the masses: a grid, an RBE3 that ties it to the carriers, a CONM2.
+/// Returns the cards of the masses: for each mass a grid, an RBE3 that ties it to the carriers, and a CONM2.
 pub(super) fn cards(
     task: &Task,
     carriers: &Carriers,
@@ -77,7 +77,7 @@ pub(super) fn cards(
     (ids, text)
 }
 
-/// Reads the completed deck back, solves it again and returns its reactions.
+/// Reads the written deck, solves it and returns its reactions.
 pub(super) fn solve_completed(
     work: &mut Work,
     task: &Task,

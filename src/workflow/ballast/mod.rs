@@ -28,7 +28,7 @@ use task::{Task, force};
 /// Noise of a measured reaction over the mean reaction, if the job states no noise.
 const ASSUMED_NOISE: f64 = 0.01;
 
-/// Finds lumped masses that match the model's reactions to the measured ones. Returns them with the completed deck, which is read back and
+/// Finds lumped masses that fit the reactions of the model to the measured reactions. Returns the masses with the completed deck, which is read and
 /// solved as a check.
 ///
 /// # Errors
@@ -131,7 +131,7 @@ fn missing_section(job: &Job, field: &str, example: &str) -> Faults {
 /// Returns the section of the job.
 ///
 /// # Errors
-/// A job without it.
+/// A fault if the job has no `[ballast]`.
 fn ballast_section(job: &Job) -> Result<&Ballast, Faults> {
     job.ballast.as_ref().ok_or_else(|| {
         missing_section(
@@ -284,7 +284,7 @@ fn read_measured_reactions(
     Ok((row.run.clone(), values, vec![sigma; n]))
 }
 
-/// Where masses may sit in plan, and their height.
+/// Returns the area in plan in which masses may be placed, and their height.
 fn region(task: &Task, carriers: &Carriers) -> Result<([[f64; 2]; 2], f64), Faults> {
     let Some([b, c, up]) = carriers.extent() else {
         return Err(Faults::from(Fault::with_line(

@@ -12,14 +12,14 @@ use std::path::Path;
 /// The completed deck.
 pub(super) const DECK: &str = "completed";
 
-/// The deck with the masses in it.
+/// The deck with the masses.
 pub struct CompletedDeck {
     pub(super) deck: Deck,
     pub(super) edited: Vec<(String, Vec<u8>)>,
 }
 
 impl CompletedDeck {
-    /// Name and bytes of every file of the completed deck, its INCLUDEs as they are found from `folder`; the first is `completed.bdf`.
+    /// Returns name and bytes of every file of the completed deck. Paths of INCLUDEs are relative to `folder`. The first file is `completed.bdf`.
     pub fn files(&self, folder: &Path) -> Vec<(String, Vec<u8>)> {
         relocate_deck(&self.deck, self.edited.clone(), folder, DECK)
     }
@@ -35,17 +35,17 @@ pub(super) struct Task<'a> {
     pub gravity: f64,
 }
 
-/// Report force per job unit.
+/// Returns the report force per job unit.
 pub(super) fn force(job: &Job) -> f64 {
     factor(job.units, job.report_units.force)
 }
 
-/// Report length per job unit.
+/// Returns the report length per job unit.
 pub(super) fn length(job: &Job) -> f64 {
     factor(job.units, job.report_units.length)
 }
 
-/// Report mass per job unit.
+/// Returns the report mass per job unit.
 pub(super) fn mass(job: &Job) -> f64 {
     factor(job.units, job.report_units.mass)
 }

@@ -12,7 +12,7 @@ const SELDOM: f64 = 0.05;
 /// Half widths by which a check load exceeds any chance deviation: four standard deviations.
 const FAR: f64 = 2.0;
 
-/// Loads of the check runs, and combinations, report units. The interval of the comparison includes the error of the applied load.
+/// Returns the loads of the check runs, and combinations, report units. The interval of the comparison includes the error of the applied load.
 pub(super) fn compare_check_loads(checked: &[CheckedRun], listed: &ListedLoads) -> Vec<CheckLoad> {
     let of_run = |c: &CheckedRun| -> Vec<CheckLoad> {
         let k = c.run.loads.mean.len();
@@ -46,7 +46,7 @@ pub(super) fn compare_check_loads(checked: &[CheckedRun], listed: &ListedLoads) 
     checked.iter().flat_map(of_run).collect()
 }
 
-/// The finding on check loads outside of their intervals; `None` where there are no more of them than 95 % leaves.
+/// Returns the finding on check loads outside their intervals. `None` if no more loads are outside than expected for 95 % intervals.
 pub(super) fn finding(checks: &[CheckLoad], loads: &[String]) -> Option<Finding> {
     let outside: Vec<&CheckLoad> = checks.iter().filter(|c| !c.inside).collect();
     let deviation = |c: &&CheckLoad| (c.recovered - c.applied).abs() / (0.5 * (c.high - c.low));

@@ -18,7 +18,7 @@ const REACH: f64 = 6.0;
 /// Half step of the differences in place over the reach of a gauge: within its element and the next.
 const PLACE_STEP: f64 = 0.5;
 
-/// The job's gauges on its model, free to move.
+/// The job's gauges on its model. Their positions may change.
 pub(super) struct Sites<'a> {
     model: &'a Model,
     corners: CornerRows,
@@ -37,7 +37,7 @@ pub(super) fn tolerance(keys: &CalibrationKeys) -> Option<GlueTolerance> {
 }
 
 impl<'a> Sites<'a> {
-    /// The gauges of a job that has a model.
+    /// Returns the gauges of a job that has a model.
     ///
     /// # Errors
     /// S that is given: gauges can't be moved in a table. Ids that the deck lacks.
@@ -83,7 +83,7 @@ impl<'a> Sites<'a> {
         })
     }
 
-    /// Row of S of a gauge that sits elsewhere: along, across (job units of length), angle (radians).
+    /// Returns the row of S of a gauge with an offset from its nominal position: along, across (job units of length), angle (radians).
     pub fn row(&self, gauge: usize, [along, across, angle_rad]: [f64; 3]) -> Option<Vec<f64>> {
         let (gauge, _) = self.gauges.get(gauge)?.as_ref()?.gauge_at_offset(Offset {
             along,
@@ -106,7 +106,7 @@ impl<'a> Sites<'a> {
         drawn.slope(way, step, |g| self.row_of(g))
     }
 
-    /// Where a gauge was found; `None` for one on a bar.
+    /// Returns the installed position of a gauge. `None` for a gauge on a bar.
     pub fn locate_gauge(
         &self,
         gauge: usize,
@@ -181,8 +181,8 @@ pub(super) fn off_drawing(
             );
             Some(b.iter().zip(&a).map(|(b, a)| b - a).collect())
         };
-        // The reading at the angle x is c + a cos(2x) + b sin(2x). The difference of the readings at +45 and -45 degrees is exactly the derivative 2
-        // b.
+        // The reading at the angle x is c + a cos(2x) + b sin(2x). The difference of the readings at +45 and -45 degrees is exactly 2b, which
+        // is the derivative at 0.
         let turns = [between(-FRAC_PI_4, FRAC_PI_4), between(0.0, FRAC_PI_2)];
         let [Some(turned), Some(crossed)] = turns else {
             continue;

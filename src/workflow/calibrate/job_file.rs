@@ -9,8 +9,8 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// The job for folder `out`: everything kept, file names found from there, S and its covariance from `calibrate`. The model's error, which is in the
-/// covariance now, is no longer added.
+/// Returns the job for folder `out`, with S and its covariance from `calibrate`. Everything else is kept, and file names are relative to `out`. The
+/// model error is no longer added, because the covariance contains it.
 ///
 /// # Errors
 /// A job that is no TOML, which is a mistake of the program.

@@ -25,7 +25,7 @@ pub(super) struct LoadedRun {
     pub row: usize,
     /// Loads of the run, job units.
     pub loads: KnownLoads,
-    /// Number of its group of repeats.
+    /// Number of the group of repeats that contains the run.
     pub group: usize,
 }
 
@@ -41,7 +41,7 @@ pub(super) struct KnownRuns {
     pub runs: Vec<LoadedRun>,
     /// Check runs, which are recovered and compared with their loads but not used for S.
     pub checks: Vec<LoadedRun>,
-    /// Name and values of the column that the scale may depend on, one value per run (NaN where blank).
+    /// Name and values of the column on which the scale may depend, one value for each run (NaN if blank).
     pub column: Option<(String, Vec<f64>)>,
 }
 

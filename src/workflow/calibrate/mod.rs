@@ -200,8 +200,8 @@ fn common_zero(job: &Job, has_prior: bool) -> Result<CommonZero, Faults> {
     }
 }
 
-/// Reads the data that [`calibrate`] uses, as far as that needs no solution of a model, and discards it. This applies to a job with `[calibration]`,
-/// and to a job that only `calibrate` can use.
+/// Reads the data that [`calibrate`] uses without solving a model, and discards it. This applies to a job with `[calibration]`, and to a job that
+/// only `calibrate` can use.
 ///
 /// # Errors
 /// Every fault of these files.
@@ -355,10 +355,10 @@ fn stated_alone(job: &Job, table: &StrainTable) -> Sensitivity {
     }
 }
 
-/// That known loads are changes from zero, and that the strain file has a gauge.
+/// Checks that known loads are changes from zero, and that the strain file has a column of a gauge.
 ///
 /// # Errors
-/// Another reference; no column named after a gauge.
+/// A file of another reference, or a file without a column for any gauge.
 fn check_readings(
     job: &Job,
     measured: &Measured,

@@ -65,7 +65,7 @@ pub struct CalibrationSummary {
     pub runs: usize,
     /// `model` or `none`.
     pub prior: &'static str,
-    /// By gauge.
+    /// Result for each gauge.
     pub gauges: Vec<CalibratedGauge>,
     /// Scatter between repeats over the strain; null if noise explains all scatter.
     pub repeat_scatter_rel: Option<f64>,
@@ -87,9 +87,9 @@ pub struct CalibrationSummary {
     pub residuals: Vec<LoadResidual>,
     /// Check runs: loads applied and recovered, which S was not calibrated with.
     pub checks: Vec<CheckLoad>,
-    /// The next known load worth applying.
+    /// Next known load that would improve the result most.
     pub next_run: Option<NextRunSummary>,
-    /// Relative error of the model as the runs show it.
+    /// Relative error of the model, as estimated from the runs.
     pub model_error: Option<ModelErrorSummary>,
     /// Left-out runs with their loads predicted from the other runs.
     pub left_out: Vec<LeftOutSummary>,
@@ -101,14 +101,14 @@ pub struct CalibrationSummary {
     pub dependence: Option<DependenceSummary>,
 }
 
-/// One gauge.
+/// Result for one gauge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[allow(missing_docs)]
 pub struct CalibratedGauge {
     pub name: String,
     /// Distance from the model in prior sigmas.
     pub shift: f64,
-    /// Calibrated row along the model's.
+    /// Size of the calibrated row along the model's row.
     pub scale: f64,
     /// `none`, `gain`, `angle`, `place`, `sign`, `dead`, `exchanged`, `undetermined`.
     pub looks_like: &'static str,
@@ -124,7 +124,7 @@ pub struct InstalledPositionSummary {
     pub along: Option<GlueSummary>,
     pub across: Option<GlueSummary>,
     pub angle_deg: Option<GlueSummary>,
-    /// Factor on its readings.
+    /// Factor on the readings of the gauge.
     pub gain: GlueSummary,
 }
 
@@ -142,11 +142,11 @@ pub struct GlueSummary {
 /// Gauge on the model at its installed position, as determined from the runs.
 #[derive(Clone, Debug)]
 pub struct InstalledGauge {
-    /// There.
+    /// Gauge at its installed position.
     pub gauge: Gauge,
     /// Position on the reference surface, basic frame.
     pub at: Vec3,
-    /// Whether strain is read at `at`; else in the middle of the element.
+    /// Whether strain is read at `at`. Otherwise it is read in the middle of the element.
     pub by_position: bool,
     /// Specification of the gauge, at its nominal position.
     pub spec: GaugeSpec,
@@ -167,18 +167,18 @@ pub struct CoverageSummary {
     pub factor: f64,
 }
 
-/// A load worth applying.
+/// A load that would improve the result.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NextRunSummary {
     /// Loads, report units.
     pub loads: BTreeMap<String, f64>,
     /// Half the log of the ratio of determinants of the covariance of S.
     pub information: f64,
-    /// The load that gains most, with its standard deviation before and after, report units.
+    /// Load that gains most, with its standard deviation before and after the run, report units.
     pub load: String,
-    /// Before.
+    /// Standard deviation before the run.
     pub sigma_before: f64,
-    /// After.
+    /// Standard deviation after the run.
     pub sigma_after: f64,
     /// Unit of both.
     pub unit: String,
@@ -187,9 +187,9 @@ pub struct NextRunSummary {
 /// Relative error of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ModelErrorSummary {
-    /// Common to a gauge.
+    /// Error that is common to a gauge.
     pub common_rel: f64,
-    /// Entry by entry.
+    /// Separate error of each entry.
     pub entry_rel: f64,
 }
 
@@ -200,7 +200,7 @@ pub struct LeftOutSummary {
     pub run: String,
     /// Distance from the known loads, root mean square over the loads, in standard deviations.
     pub distance: f64,
-    /// By load, then by combination.
+    /// Result for each load, then for each combination.
     pub loads: Vec<LeftOutLoad>,
 }
 
@@ -246,15 +246,15 @@ pub struct LackOfFitSummary {
 /// Root mean square error of left-out runs, percent of the largest load.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HeldOutSummary {
-    /// Without a common zero.
+    /// Error without a common zero.
     pub linear_percent: f64,
-    /// With one.
+    /// Error with a common zero.
     pub intercept_percent: f64,
     /// `linear`, or `intercept` if the error with an intercept is clearly smaller.
     pub recommended: &'static str,
 }
 
-/// Recovered less known load over the calibration runs, percent of full scale: the largest known load.
+/// Recovered minus known load over the calibration runs, percent of full scale, which is the largest known load.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LoadResidual {
     /// Load.
@@ -265,13 +265,13 @@ pub struct LoadResidual {
     pub unit: String,
     /// Root mean square over the runs that S was calibrated with.
     pub rms_percent: f64,
-    /// The largest of them.
+    /// Largest residual.
     pub max_percent: f64,
-    /// Root mean square over left-out runs; null without one.
+    /// Root mean square over left-out runs. Null if no run was left out.
     pub left_out_rms_percent: Option<f64>,
-    /// The largest of them.
+    /// Largest value over left-out runs.
     pub left_out_max_percent: Option<f64>,
-    /// Run.
+    /// Run with this residual.
     pub left_out_max_run: Option<String>,
 }
 
@@ -286,9 +286,9 @@ pub struct CheckLoad {
     pub applied: f64,
     /// Load recovered with the calibrated S.
     pub recovered: f64,
-    /// Lower end of the 95 % interval of the difference, around `recovered`: the error of the applied load is in it.
+    /// Lower end of the 95 % interval of the difference, around `recovered`. It includes the error of the applied load.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub high: f64,
     /// Unit.
     pub unit: String,

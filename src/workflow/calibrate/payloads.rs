@@ -19,7 +19,7 @@ const STATES: [(&str, Quantity); 2] = [
 
 /// Payloads of the runs file.
 pub(super) struct Payloads {
-    /// By row of the table: weight, N, and line of the file.
+    /// Weight (N) and line of the file, for each row of the table.
     weights: Vec<(f64, u32)>,
     /// The column that states them.
     column: &'static str,
@@ -33,7 +33,7 @@ pub(super) struct Payloads {
 struct WeightLoad {
     /// Number of the load.
     load: usize,
-    /// By row of the table: the arm, if the standard deviation of the weight is stated.
+    /// Arm of each row of the table, if the standard deviation of the weight is stated.
     arms: Vec<Option<f64>>,
 }
 
@@ -131,7 +131,7 @@ fn push(
     }
 }
 
-/// By row: sd of the weight, N, of `payload_mass_sd` or `payload_force_sd`, else of the noise that the job states of masses or forces.
+/// Returns the standard deviation of the weight (N) of each row: from `payload_mass_sd` or `payload_force_sd`, else from the noise in the job.
 fn weight_sd(
     job: &Job,
     runs: &Runs,

@@ -133,7 +133,7 @@ pub(super) fn report_uneven_loads(
     })
 }
 
-/// The best next run.
+/// Returns the best next run.
 pub(super) fn next_run(
     task: &Task,
     found: &Calibration,
@@ -167,7 +167,7 @@ pub(super) fn next_run(
     })
 }
 
-/// The test on a column.
+/// Returns the test on a column.
 pub(super) fn dependence(
     task: &Task,
     found: &Calibration,
@@ -188,7 +188,7 @@ pub(super) fn dependence(
     })
 }
 
-/// `calibration` of `result.json`.
+/// Returns `calibration` of `result.json`.
 pub(super) fn words(
     task: &Task,
     found: &Calibration,

@@ -7,7 +7,7 @@ use crate::job::table::Table;
 use crate::measured::runs_columns::{CHECK, column_called};
 use crate::series::record::Column;
 
-/// Rows that the job asks for.
+/// Rows that the job selects.
 pub(super) struct RunSelection {
     /// Rows of the runs in `[calibration] runs`; `None` if the list is missing.
     pub asked: Option<Vec<usize>>,

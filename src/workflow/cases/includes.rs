@@ -17,7 +17,8 @@ struct Statement {
     name: String,
 }
 
-/// Files to write into `folder`: name and bytes, the deck first and as `<stem>.bdf`. `edited` are the deck's files in its order.
+/// Returns the files to write into `folder`, each with name and bytes. The first is the deck as `<stem>.bdf`. `edited` contains the files of the deck
+/// in order.
 pub(crate) fn relocate_deck(
     deck: &Deck,
     edited: Vec<(String, Vec<u8>)>,

@@ -50,14 +50,14 @@ const UNWANTED: [&str; 22] = [
     "NLSTEP",
 ];
 
-/// A deck with one unit-load subcase a load.
+/// A deck with one unit-load subcase for each load.
 #[derive(Serialize)]
 pub struct UnitLoadDeck {
     /// Description of the support of the structure.
     pub support: String,
-    /// By load: its subcase and the applied load.
+    /// Subcase and applied load of each load.
     pub subcases: Vec<Value>,
-    /// The deck and the edits that make it.
+    /// Deck with the edits.
     #[serde(skip)]
     pub edited: EditedDeck,
     /// Title of the job.
@@ -84,20 +84,20 @@ impl Answer for UnitLoadDeck {
     }
 }
 
-/// A deck as read, and the files of its edited form.
+/// The original deck, and the files of the edited deck.
 pub struct EditedDeck {
     deck: Deck,
     edits: Edits,
 }
 
 impl EditedDeck {
-    /// Name and bytes of every file of the edited deck, its INCLUDEs as they are found from `folder`; the first is `unit_loads.bdf`.
+    /// Returns name and bytes of every file of the edited deck. Paths of INCLUDEs are relative to `folder`. The first file is `unit_loads.bdf`.
     pub fn files(&self, folder: &Path) -> Vec<(String, Vec<u8>)> {
         edited_files(&self.deck, &self.edits, folder, "unit_loads")
     }
 }
 
-/// Name and bytes of every file of a deck with these edits made, its INCLUDEs as they are found from `folder`; the first is `<stem>.bdf`.
+/// Returns name and bytes of every file of a deck after these edits. Paths of INCLUDEs are relative to `folder`. The first file is `<stem>.bdf`.
 pub fn edited_files(
     deck: &Deck,
     edits: &Edits,

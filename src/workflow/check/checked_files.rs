@@ -18,10 +18,10 @@ pub struct CheckedFiles {
     pub results: Vec<ResultEntry>,
     /// Records and tables.
     pub records: Vec<RecordEntry>,
-    /// Every fault. If there is a fault, the files are bad input.
+    /// All faults. With a fault, the exit code is the code of bad input.
     #[serde(serialize_with = "as_lines")]
     pub faults: FaultList,
-    /// Next command of a user with the last job.
+    /// Next command for the user, with the last job.
     #[serde(skip)]
     pub(super) next: Option<String>,
     /// Descriptions of the jobs.
@@ -53,7 +53,7 @@ impl Answer for CheckedFiles {
 }
 
 impl CheckedFiles {
-    /// Returns the next step of a user: the command of the job, or a job for a deck; `None` where the files have faults.
+    /// Returns the next step of a user: the command of the job, or a job for a deck. `None` if the files have faults.
     pub fn next_step(&self) -> Option<String> {
         let deck = self.decks.first().map(|d| {
             let deck = d.path();

@@ -11,7 +11,7 @@ use crate::workflow::{recover, sensitivity};
 /// Grids of a deck up to which `check` solves it, with a mesh of half the width: a few seconds of work on two cores.
 const MOST_GRIDS: usize = 10_000;
 
-/// Runs `sensitivity` and `recover` as far as their findings require. `grids` is the number of grids of the job's deck. The caller has read all other
+/// Runs the parts of `sensitivity` and `recover` that give findings. `grids` is the number of grids of the job's deck. The caller has read all other
 /// files.
 ///
 /// # Errors

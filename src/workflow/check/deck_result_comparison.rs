@@ -27,7 +27,7 @@ fn find_ambiguous_subcases(found: &CheckedFiles) -> Vec<Finding> {
     findings
 }
 
-/// Findings of every result file against the deck. Where no deck has a mesh, the first OP2 with geometry replaces it.
+/// Compares every result file with the deck and adds the findings. If no deck has a mesh, the first OP2 with geometry replaces it.
 pub(super) fn compare(work: &mut Work, found: &mut CheckedFiles) {
     work.findings.extend(find_ambiguous_subcases(found));
     let has_mesh = |d: &DeckEntry| d.model.as_ref().is_some_and(|m| !m.grids.is_empty());

@@ -192,7 +192,7 @@ impl DeckEntry {
         }
     }
 
-    /// Takes the units that a job states.
+    /// Applies the units that a job states.
     pub(super) fn state_units(&mut self, job: &Job) {
         self.shown = Some(ShownUnits {
             system: job.units,
@@ -236,7 +236,7 @@ impl DeckEntry {
         }
     }
 
-    /// Path as given.
+    /// Returns the path as given.
     pub(super) fn path(&self) -> &str {
         &self.path
     }
@@ -256,7 +256,7 @@ impl DeckEntry {
         }
     }
 
-    /// Number of grids and of elements.
+    /// Returns the number of grids and of elements.
     pub fn counts(&self) -> [usize; 2] {
         [self.grids, self.elements]
     }

@@ -108,7 +108,7 @@ fn by_group(list: impl Iterator<Item = (String, String)>) -> Vec<String> {
 }
 
 impl RecordEntry {
-    /// Returns the entry as one line for people; where the file has channels at other times, one more line for each group.
+    /// Returns the entry as one line for people. If the file has channels at other times, it adds one line for each group.
     pub fn text(&self) -> String {
         let is_whole = self.other_channels.is_empty();
         let names = self.channels.iter();
@@ -144,7 +144,7 @@ impl RecordEntry {
     }
 }
 
-/// Looks into a record or a table.
+/// Reads the description of a record or a table.
 ///
 /// # Errors
 /// Faults of the file.

@@ -20,7 +20,7 @@ pub struct ResultEntry {
     file_tables: Vec<String>,
     #[serde(skip)]
     pub(super) bytes: FileBytes,
-    /// Whether a job names it.
+    /// Whether a job names the file.
     #[serde(skip)]
     pub(super) is_of_job: bool,
 }
@@ -43,12 +43,12 @@ struct TableEntry {
 }
 
 impl ResultEntry {
-    /// Path as given.
+    /// Returns the path as given.
     pub(super) fn path(&self) -> &str {
         &self.path
     }
 
-    /// For people: one line a kind of table.
+    /// Returns the text for people: one line for each kind of table.
     pub fn text(&self) -> String {
         let mut kinds: BTreeMap<(&str, &str, String, bool), (Vec<u32>, usize)> = BTreeMap::new();
         for t in &self.tables {

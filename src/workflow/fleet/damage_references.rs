@@ -10,25 +10,25 @@ use crate::series::rainflow::{DamageParts, Ratio, SharedErrors};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The day whose damage an hour is 1.
+/// The day whose damage per hour is 1.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReferenceAnswer {
     /// Vehicle of the reference day.
     pub vehicle: String,
     /// The day.
     pub day: String,
-    /// Path of its record.
+    /// Path of the record.
     pub path: String,
-    /// Digest of its bytes.
+    /// Digest of the bytes of the record.
     pub sha256: String,
-    /// Hours of it.
+    /// Hours of the record.
     pub hours: f64,
 }
 
-/// The reference with its damage.
+/// The reference, with its damage.
 pub(super) struct Reference {
     pub answer: ReferenceAnswer,
-    /// By load, with the hours in which it is known.
+    /// Damage of each load, with the hours in which the load is known.
     loads: BTreeMap<String, (DamageParts, f64)>,
     /// Gauges that read.
     gauges: BTreeSet<String>,
@@ -67,8 +67,9 @@ impl Reference {
         })
     }
 
-    /// Returns the damage per hour of a load of a vehicle over the damage per hour of the reference. `days` are the days of the vehicle with their
-    /// damage by this load. If the gauge sets of a day and of the reference day are not nested, the errors of S count as independent on this day.
+    /// Returns the damage per hour of a load of a vehicle, divided by the damage per hour of the reference. `days` are the days of the vehicle with
+    /// their damage by this load. If the gauge sets of a day and of the reference day are not nested, the errors of S count as independent on this
+    /// day.
     pub fn damage_ratio(
         &self,
         vehicle: &str,
@@ -97,7 +98,7 @@ impl Reference {
     }
 }
 
-/// References that the job compares damage with.
+/// References of the job for comparisons of damage.
 pub(super) struct DamageReferences {
     pub reference: Option<Reference>,
     pub mission: Option<MissionSums>,
@@ -158,7 +159,7 @@ impl DamageReferences {
     }
 }
 
-/// Targets name loads of the job.
+/// Checks that targets name loads of the job.
 ///
 /// # Errors
 /// A load that the job lacks.

@@ -12,11 +12,11 @@ use serde::{Deserialize, Serialize};
 pub struct LoadDay {
     /// Name of the load.
     pub name: String,
-    /// Unit of every number of it.
+    /// Unit of all numbers of the load.
     pub unit: String,
     /// Standard deviation of the noise in a sample.
     pub noise: f64,
-    /// Covariance of its errors of scale with every load, row-major, `n_loads x n_loads`.
+    /// Covariance of the scale errors of this load and the scale errors of every load, row-major, `n_loads x n_loads`.
     pub scale: Vec<f64>,
     /// Cycles, levels, extremes and sums of damage.
     pub tally: Tally,
@@ -27,13 +27,13 @@ pub struct LoadDay {
 pub struct GaugeDay {
     /// Name of the gauge.
     pub name: String,
-    /// Mean reading less the job's zero, microstrain.
+    /// Mean reading minus the job's zero, microstrain.
     #[serde(deserialize_with = "number")]
     pub mean: f64,
-    /// Standard deviation of its readings, microstrain.
+    /// Standard deviation of the readings, microstrain.
     #[serde(deserialize_with = "number")]
     pub sd: f64,
-    /// Noise from second differences of its readings, microstrain.
+    /// Noise from second differences of the readings, microstrain.
     #[serde(deserialize_with = "number")]
     pub noise: f64,
     /// Residual, rms, microstrain.
@@ -42,7 +42,7 @@ pub struct GaugeDay {
     /// Reading divided by the prediction from the loads that all gauges determine, by least squares.
     #[serde(deserialize_with = "number")]
     pub gain: f64,
-    /// Mean reading less the prediction from the other gauges, microstrain.
+    /// Mean reading minus the prediction from the other gauges, microstrain.
     #[serde(deserialize_with = "number")]
     pub offset: f64,
     /// Leverage of the gauge on its own prediction: `1 - leverage` of an error of its reading appears in its residual.
@@ -91,9 +91,9 @@ mod with_chances {
 /// Result of a record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Day {
-    /// Samples a second.
+    /// Samples per second.
     pub rate_hz: f64,
-    /// Time of the samples that give a load, hours.
+    /// Duration of the samples that give a load, hours.
     pub hours: f64,
     /// Samples missing in gaps.
     pub missing: usize,
@@ -116,7 +116,7 @@ impl Day {
         self.hours * share
     }
 
-    /// Returns whether the loads fail to explain the strain of the day. Its loads and their damage are then unreliable.
+    /// Returns whether the loads do not explain the strain of the day. The loads and their damage are then unreliable.
     pub fn is_doubtful(&self) -> bool {
         self.findings.iter().any(|f| f.code == UNEXPLAINED)
     }
@@ -142,9 +142,9 @@ pub struct FileResult {
 /// Result of a record without its loads and gauges, which are large.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct DayHead {
-    /// Samples a second.
+    /// Samples per second.
     pub rate_hz: f64,
-    /// Time of the samples that give a load, hours.
+    /// Duration of the samples that give a load, hours.
     pub hours: f64,
     /// Samples missing in gaps.
     pub missing: usize,

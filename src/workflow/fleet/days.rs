@@ -11,15 +11,15 @@ enum DayMonthOrder {
     Month,
 }
 
-/// How the days of a fleet follow each other.
+/// Order of the days of a fleet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DayOrder {
-    /// By numbers, from left to right.
+    /// Compares the numbers in the names, from left to right.
     #[default]
     Numbers,
-    /// By dates with the day before the month.
+    /// Compares dates with the day before the month.
     DayFirst,
-    /// By dates with the month before the day.
+    /// Compares dates with the month before the day.
     MonthFirst,
 }
 
@@ -103,7 +103,7 @@ impl DayOrder {
         }
     }
 
-    /// Which of two days comes first.
+    /// Returns which of two days is first.
     pub fn compare(self, a: &str, b: &str) -> Ordering {
         match self {
             Self::Numbers => by_numbers(a, b),
@@ -120,7 +120,7 @@ fn fits(d: &Date) -> [bool; 2] {
     [is(a, b), is(b, a) && !d.is_told]
 }
 
-/// By year, month and day, then by the names.
+/// Compares names by year, month and day, then by their text.
 fn by_date(first: DayMonthOrder, a: &str, b: &str) -> Ordering {
     let key = |name: &str| match date(name) {
         Some(d) => {

@@ -13,13 +13,13 @@ use crate::series::record::{Clock, Record};
 use crate::workflow::recover::silent_in_part;
 use std::ops::Range;
 
-/// A gauge (of those used), what it gives in a part of the record, and the samples of that part.
+/// A dead part: the gauge (number among the used gauges), its content in this part, and the samples of this part.
 pub(super) type DeadPart = (usize, Gives, Range<usize>);
 
-/// Dead parts by the samples spread over the record, to the sample.
+/// Returns the dead parts, found with samples spread over the record. Their limits are exact to the sample.
 ///
 /// # Errors
-/// What can't be decoded.
+/// A fault if a piece of the record cannot be decoded.
 pub(super) fn dead_parts(
     record: &Record,
     r: &RecordRecovery,
@@ -39,7 +39,7 @@ pub(super) fn dead_parts(
         .collect()
 }
 
-/// The readings that are left out.
+/// Returns the readings that are left out.
 pub(super) fn blank_of(dead: &[DeadPart]) -> Vec<(usize, Range<usize>)> {
     let of_one_value = dead.iter().filter(|d| d.1 == Gives::OneValue);
     of_one_value

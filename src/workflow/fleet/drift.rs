@@ -66,8 +66,8 @@ fn trend(g: &GaugeHistory, v: &VehicleAnswer, errors: &ErrorModel) -> Option<Tre
     })
 }
 
-/// Returns the finding on the gauge of a vehicle whose zero moves most; `None` if no zero moves. A changed gain shifts the means of all gauges with
-/// the mean loads. A vehicle with a changed gain therefore gets the finding on the gain only.
+/// Returns the finding on the gauge of a vehicle whose zero changes most. `None` if no zero changes. A changed gain also changes the means of all
+/// gauges, together with the mean loads. A vehicle with a changed gain therefore gets only the finding on the gain.
 pub(super) fn drift(v: &VehicleAnswer, errors: &ErrorModel) -> Option<Finding> {
     if v.gain_changes().next().is_some() {
         return None;

@@ -16,7 +16,7 @@ const OFF: f64 = 0.1;
 /// Codes of findings that identify the cause in a record. Gains and zeros of that day are then invalid.
 const CAUSES: [&str; 3] = ["inputs-exchanged", "input-sign-reversed", "gauge-dead"];
 
-/// A gauge of a vehicle over its days.
+/// History of a gauge of a vehicle over its days.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GaugeHistory {
     /// Name of the gauge.
@@ -32,11 +32,11 @@ pub struct GaugeHistory {
     pub sd: Vec<Option<f64>>,
     /// Noise of each day, microstrain.
     pub noise: Vec<Option<f64>>,
-    /// Gain against the prediction from the other gauges, each day.
+    /// Gain relative to the prediction from the other gauges, on each day.
     pub gain: Vec<Option<f64>>,
-    /// Mean reading less the prediction from the other gauges, each day, microstrain.
+    /// Mean reading minus the prediction from the other gauges, on each day, microstrain.
     pub offset: Vec<Option<f64>>,
-    /// Leverage on its own prediction, each day.
+    /// Leverage of the gauge on its own prediction, on each day.
     #[serde(skip)]
     pub leverage: Vec<f64>,
 }
@@ -46,17 +46,17 @@ pub struct GaugeHistory {
 pub struct DeadPart {
     /// The day.
     pub day: String,
-    /// Hours from the record's first sample.
+    /// Begin of the part, in hours from the record's first sample.
     pub from: f64,
-    /// Hours from the record's first sample.
+    /// End of the part, in hours from the record's first sample.
     pub to: f64,
 }
 
-/// A gain that is another one from some day on.
+/// A lasting change of the gain from one day on.
 pub(super) struct GainChange {
     /// Number of the first day.
     pub from: usize,
-    /// Natural log of the new gain over the old one, sign dropped.
+    /// Absolute value of the natural log of the new gain divided by the old gain.
     pub size: f64,
     pub finding: Finding,
 }
@@ -67,7 +67,7 @@ fn typical_reading(days: &[GaugeDay]) -> f64 {
     median(sds.collect()).unwrap_or(0.0)
 }
 
-/// Returns for each day whether the vehicle moves, by the gauges that read.
+/// Returns for each day whether the vehicle moves, according to the gauges with readings.
 pub(super) fn moving_days(gauges: &[(String, Vec<GaugeDay>)], n_days: usize) -> Vec<bool> {
     let typical: Vec<f64> = gauges.iter().map(|g| typical_reading(&g.1)).collect();
     let moves = |day: usize| {
@@ -128,7 +128,7 @@ impl GaugeHistory {
         part.map(|p| p.from)
     }
 
-    /// That it was dead on some of `of` days.
+    /// Returns the finding that the gauge was dead on some of `of` days.
     pub(super) fn dead_days_finding(&self, vehicle: &str, of: usize) -> Option<Finding> {
         let first = self.dead_days.first()?;
         let n = self.dead_days.len();
@@ -145,7 +145,8 @@ impl GaugeHistory {
         Some(found.with_numbers(n as f64, 0.0))
     }
 
-    /// Returns the change of the gain from one day on, if it is large. Days in `misread` are left out: another finding identifies their cause.
+    /// Returns the lasting change of the gain from one day on, if it is large. Days in `misread` are left out: another finding identifies their
+    /// cause.
     pub(super) fn gain_change(
         &self,
         vehicle: &str,

@@ -34,7 +34,7 @@ pub struct Health {
 }
 
 impl Health {
-    /// Nothing yet, for S by rows.
+    /// Creates empty sums for S by rows.
     pub fn new(s: &[Vec<f64>]) -> Self {
         let k = s.first().map_or(0, Vec::len);
         let column = |l: usize| s.iter().filter_map(move |row| row.get(l).copied());
@@ -44,7 +44,7 @@ impl Health {
         }
     }
 
-    /// Adds samples: strain less zero (`n_gauges` a row) and the loads recovered from it (`n_loads` a row).
+    /// Adds samples: strain minus zero (`n_gauges` for each row), and the loads recovered from it (`n_loads` for each row).
     pub fn add(&mut self, strain: &[f64], loads: &[f64]) {
         pulp::Arch::new().dispatch(Add {
             to: self,
@@ -117,7 +117,7 @@ impl Health {
         }
     }
 
-    /// Returns the result of each gauge to store; `leverage` by gauge.
+    /// Returns the result of each gauge for storing. `leverage` is by gauge.
     pub fn days(&self, names: &[String], leverage: &[f64]) -> Vec<GaugeDay> {
         let gauges = names.iter().zip(&self.sums).zip(leverage);
         gauges.map(|((name, s), h)| s.day(name, *h)).collect()

@@ -58,7 +58,7 @@ pub struct Kernel {
     pub zero: Vec<f64>,
     /// Stated errors.
     pub errors: ErrorModel,
-    /// Noise variance of a reading less zero, in units of the variance of a single reading.
+    /// Noise variance of a reading minus zero, in units of the variance of a single reading.
     pub noise_factor: f64,
     /// Rows of S that gauges would have on the other surface or with an angle in radians, for all gauges of S.
     pub alternatives: Vec<AlternativeRows>,
@@ -68,7 +68,7 @@ pub struct Kernel {
     pub ranges: Vec<Option<[f64; 2]>>,
     /// Loads of S, then sums of loads, whose cycles are counted, with their units.
     pub listed: ListedLoads,
-    /// Harm of a cycle.
+    /// Law of the damage of a cycle.
     pub law: Law,
     /// Width of a class, by load and sum, report units.
     pub widths: Vec<f64>,
@@ -243,7 +243,7 @@ impl Kernel {
         })
     }
 
-    /// The columns that a record is read for.
+    /// Returns the columns that a record is read for.
     pub fn wanted_columns(&self) -> Vec<String> {
         let gauges = self.sensitivity.gauges.iter().chain(&self.job.reserved);
         columns_wanted(&self.job.corrections, gauges)

@@ -42,14 +42,14 @@ impl Status {
     }
 }
 
-/// Where a number comes from: a sample of a record.
+/// Source of a number: a sample of a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SampleOf {
     /// The day.
     pub day: String,
     /// Path of the record.
     pub path: String,
-    /// Digest of its bytes.
+    /// Digest of the bytes of the record.
     pub sha256: String,
     /// Seconds from the record's first sample.
     pub seconds: f64,
@@ -60,9 +60,9 @@ pub struct SampleOf {
 pub struct RecordOf {
     /// Path of the record.
     pub path: String,
-    /// Digest of its bytes.
+    /// Digest of the bytes of the file.
     pub sha256: String,
-    /// Hours of it.
+    /// Hours of the file.
     pub hours: f64,
 }
 
@@ -73,13 +73,13 @@ pub struct VehicleLoad {
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// Hours of all days in which it is known.
+    /// Hours of all days in which the load is known.
     pub hours: f64,
-    /// All days.
+    /// Tally of all days.
     pub tally: Tally,
     /// Damage with its interval.
     pub damage: DamageInterval,
-    /// Damage divided by the damage of the reference day, an hour of each.
+    /// Damage per hour divided by the damage per hour of the reference day.
     pub to_reference: Option<Ratio>,
     /// Samples with the largest and the smallest value.
     pub extremes: [Option<SampleOf>; 2],
@@ -96,7 +96,7 @@ pub struct Vehicle {
     pub name: String,
     /// Days, in order.
     pub days: Vec<String>,
-    /// Their records, in order.
+    /// Records of the vehicles, in order.
     pub records: Vec<RecordOf>,
     /// Hours of all days.
     pub hours: f64,
@@ -106,14 +106,13 @@ pub struct Vehicle {
     pub doubtful: Vec<bool>,
     /// Whether the record of a day has a finding whose cause makes gains and zeros of that day invalid.
     pub misread: Vec<bool>,
-    /// Readings of each gauge, a day each, in order.
+    /// Readings of each gauge, with an entry for each day, in order.
     pub gauges: Vec<(String, Vec<GaugeDay>)>,
 }
 
-/// Files that count, by vehicle and in the order of their days, and the status of every file in the order given.
+/// Returns the files that count, by vehicle and in the order of their days, and the status of every file in the given order.
 ///
-/// Of two files for one day, or with the same bytes, that with the first path counts. What comes out does not depend on the order of
-/// `files`.
+/// Of two files for one day, or with the same bytes, the file with the first path counts. The result does not depend on the order of `files`.
 pub fn sort_files(
     files: &[FileHead],
     days_in: DayOrder,
@@ -204,7 +203,7 @@ fn extreme(days: &[(&FileHead, &Day, &LoadDay)], larger: bool) -> Option<SampleO
     })
 }
 
-/// A vehicle from its days in order, each with its file.
+/// Returns a vehicle from its days in order, each with its file.
 pub(super) fn vehicle(
     name: &str,
     list: &[(&FileHead, Day)],

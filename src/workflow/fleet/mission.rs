@@ -11,13 +11,13 @@ use serde::Serialize;
 pub struct MissionLoad {
     /// Name of the load.
     pub load: String,
-    /// Unit; damage is in its power.
+    /// Unit of the load. The unit of damage is a power of this unit.
     pub unit: String,
     /// Damage of the mission.
     pub damage: f64,
-    /// Lower end of its 95 % interval by the errors of measurement.
+    /// Lower end of the 95 % interval from errors of measurement.
     pub damage_low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub damage_high: f64,
     /// Standard deviation from the error of S, which is common to all days.
     pub sigma_s: f64,
@@ -27,7 +27,7 @@ pub struct MissionLoad {
     pub sigma_bias: f64,
     /// Standard deviation from the scatter between days of one kind, which is not part of the interval; `None` if a kind has one day.
     pub sigma_days: Option<f64>,
-    /// Damage an hour of each kind.
+    /// Damage per hour of each kind.
     pub by_kind: Vec<f64>,
     /// Upper bound of the damage of cycles that close between days, which `damage` leaves out.
     pub between_days_at_most: f64,
@@ -49,11 +49,11 @@ pub struct KindAnswer {
 /// The mission.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MissionAnswer {
-    /// That it is an extrapolation, and from what.
+    /// Statement that the result is an extrapolation, with its basis.
     pub statement: String,
     /// Hours of the mission.
     pub hours: f64,
-    /// Kinds of days, as the job has them.
+    /// Kinds of days, as stated in the job.
     pub kinds: Vec<KindAnswer>,
     /// Loads, in the order of the job.
     pub loads: Vec<MissionLoad>,
@@ -166,10 +166,10 @@ impl MissionSums {
         })
     }
 
-    /// Adds a day to its kind.
+    /// Adds a day to its kind of days.
     ///
     /// # Errors
-    /// A day of two kinds.
+    /// A fault if the day belongs to two kinds of days.
     pub fn add(&mut self, job: &str, file: &FileHead, day: &Day) -> Result<(), Faults> {
         let mut kinds = self.kinds.iter_mut().filter(|k| k.holds(file));
         let Some(first) = kinds.next() else {
@@ -188,13 +188,13 @@ impl MissionSums {
         Ok(())
     }
 
-    /// Kinds of which no record is.
+    /// Returns the kinds without a record.
     pub fn without_records(&self) -> impl Iterator<Item = &MissionKind> {
         let none = self.kinds.iter().filter(|k| k.files == 0);
         none.map(|k| &k.key)
     }
 
-    /// Damage of the mission, `hours * sum of share_i damage_i / hours_i`; `None` where a kind has no record.
+    /// Returns the damage of the mission, `hours * sum of share_i damage_i / hours_i`. `None` if a kind has no record.
     pub fn answer(&self) -> Option<MissionAnswer> {
         let first = self.kinds.first()?;
         if self.kinds.iter().any(|k| !(k.hours > 0.0)) {

@@ -71,7 +71,7 @@ pub struct FleetSpec {
     /// Output folder, which also stores the results of single files.
     pub folder: PathBuf,
     /// SHA-256 of records by path, as computed by another process. A record with a stored result is not read again if its size and its time of change
-    /// are unchanged. A record that can't be reached here counts by the digest of that process.
+    /// are unchanged. For a record that this process can't reach, the digest of the other process is used.
     pub digests: BTreeMap<String, String>,
 }
 

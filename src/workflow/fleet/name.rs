@@ -1,7 +1,7 @@
 //! Which vehicle and which day a file is of, by its path.
 
-/// The form of file names: text with `{vehicle}` and `{day}`, each once; `{any}` for what doesn't matter. With `/` in it the folders count too:
-/// `vehicle={vehicle}/day={day}/{any}.parquet` is held against the last two folders and the name.
+/// Form of file names: text with `{vehicle}` and `{day}`, each once, and `{any}` for text without meaning. With `/` it includes folders:
+/// `vehicle={vehicle}/day={day}/{any}.parquet` is compared with the last two folders and the name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NameForm {
     parts: Vec<Part>,
@@ -132,14 +132,14 @@ impl NameForm {
 /// A part of the files: number `number` of `of`, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// From 1.
+    /// Number of the shard, from 1 on.
     pub number: usize,
-    /// How many there are.
+    /// Number of all shards.
     pub of: usize,
 }
 
 impl Shard {
-    /// The shard that a text such as `3/64` states.
+    /// Parses a shard such as `3/64`.
     pub fn parse(text: &str) -> Option<Self> {
         let (number, of) = text.split_once('/')?;
         let shard = Self {
@@ -149,7 +149,7 @@ impl Shard {
         (1..=shard.of).contains(&shard.number).then_some(shard)
     }
 
-    /// Whether a file, `i`th of all from 0, belongs to it.
+    /// Returns whether a file belongs to the shard. `i` is the number of the file among all files, from 0 on.
     pub fn holds(&self, i: usize) -> bool {
         i % self.of == self.number - 1
     }

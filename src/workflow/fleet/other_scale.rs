@@ -44,7 +44,7 @@ fn common_factor(logs: &[Vec<Option<f64>>], day: usize) -> Option<f64> {
     (n >= GAUGES && n as f64 >= SHARE * logs.len() as f64).then_some(middle)
 }
 
-/// One finding a vehicle that has such days.
+/// Returns one finding for each vehicle with such days.
 pub(super) fn in_other_scale(v: &VehicleAnswer, errors: &ErrorModel) -> Option<Finding> {
     let stated = errors.noise / MICROSTRAIN;
     let usual = v

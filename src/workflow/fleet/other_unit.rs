@@ -18,7 +18,7 @@ const OF_STATED: f64 = 0.3;
 /// Scatter and noise of a gauge on a day.
 type Sizes = [Option<f64>; 2];
 
-/// One finding a vehicle that has such days; the units of loads and damage of these days are wrong by the power of the factor.
+/// Returns one finding for each vehicle with such days. Loads of these days are wrong by the factor, and damage by its power.
 pub(super) fn in_other_units(vehicles: &[VehicleAnswer], errors: &ErrorModel) -> Vec<Finding> {
     let mut all: BTreeMap<&str, [Vec<f64>; 2]> = BTreeMap::new();
     for g in vehicles.iter().flat_map(|v| &v.gauges) {

@@ -22,11 +22,11 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct VehicleLoadAnswer {
     /// Name of the load.
     pub load: String,
-    /// Unit of `max`, `min`; damage is in its power.
+    /// Unit of `max` and `min`. The unit of damage is a power of this unit.
     pub unit: String,
-    /// Hours in which the load is known, which its damage covers.
+    /// Hours in which the load is known. Its damage covers these hours.
     pub hours: f64,
-    /// Largest value, and its day.
+    /// Largest value, with its day.
     pub max: Option<f64>,
     /// Day of the largest value.
     pub max_day: String,
@@ -38,13 +38,13 @@ pub struct VehicleLoadAnswer {
     pub min_day: String,
     /// Record and time of the smallest value.
     pub min_at: Option<SampleOf>,
-    /// Cycles; cycles of the residue count half.
+    /// Number of cycles. Cycles of the residue count half.
     pub cycles: f64,
     /// Damage, with the bias of noise subtracted.
     pub damage: f64,
     /// Lower end of its 95 % interval.
     pub damage_low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub damage_high: f64,
     /// Damage as counted.
     pub damage_counted: f64,
@@ -56,11 +56,11 @@ pub struct VehicleLoadAnswer {
     pub sigma_noise: f64,
     /// Standard deviation of the noise bias that was subtracted.
     pub sigma_bias: f64,
-    /// Damage per hour over the damage per hour of all vehicles together.
+    /// Damage per hour, divided by the damage per hour of all vehicles together.
     pub relative: f64,
-    /// Damage per hour over the damage per hour of the reference day.
+    /// Damage per hour, divided by the damage per hour of the reference day.
     pub to_reference: Option<Ratio>,
-    /// Damage over the damage of the target.
+    /// Damage divided by the target damage.
     pub to_target: Option<Ratio>,
     /// Damage of each day separately.
     pub by_day: Vec<f64>,
@@ -69,13 +69,13 @@ pub struct VehicleLoadAnswer {
     /// Width of a class.
     #[serde(skip)]
     pub width: f64,
-    /// Cycles by range in class widths.
+    /// Number of cycles by range, in class widths.
     #[serde(skip)]
     pub range_pairs: Vec<(u32, f64)>,
     /// Cycles by class of both reversals.
     #[serde(skip)]
     pub from_to: Vec<(i32, i32, u64)>,
-    /// Rises through the lower border of each class.
+    /// Number of rises through the lower border of each class.
     #[serde(skip)]
     pub levels: Vec<(i32, u64)>,
 }
@@ -85,7 +85,7 @@ pub struct VehicleLoadAnswer {
 pub struct VehicleAnswer {
     /// Name of the vehicle.
     pub name: String,
-    /// How many files count.
+    /// Number of files that count.
     pub files: usize,
     /// Days of the vehicle, in order.
     pub days: Vec<String>,
@@ -104,7 +104,7 @@ pub struct VehicleAnswer {
     pub misread: Vec<bool>,
 }
 
-/// A file.
+/// Result of one record file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FileAnswer {
     /// Path as given.
@@ -121,7 +121,7 @@ pub struct FileAnswer {
     pub message: String,
     /// Hours of it.
     pub hours: Option<f64>,
-    /// Samples a second.
+    /// Samples per second.
     pub rate_hz: Option<f64>,
     /// Samples missing in gaps.
     pub missing: Option<usize>,
@@ -130,7 +130,7 @@ pub struct FileAnswer {
 }
 
 impl FileAnswer {
-    /// Whether it counts though its loads can't be relied on.
+    /// Returns whether the file counts although its loads are unreliable.
     pub fn is_doubtful(&self) -> bool {
         let is_error = |f: &Finding| f.severity == Severity::Error;
         self.status == Status::Done.word() && self.findings.iter().any(is_error)
@@ -294,13 +294,13 @@ impl VehicleLoadAnswer {
 }
 
 impl Fleet {
-    /// Every load of every vehicle.
+    /// Returns every load of every vehicle.
     pub fn rows(&self) -> impl Iterator<Item = (&VehicleAnswer, &VehicleLoadAnswer)> {
         let vehicles = self.vehicles.iter();
         vehicles.flat_map(|v| v.loads.iter().map(move |l| (v, l)))
     }
 
-    /// The answer of merged vehicles.
+    /// Returns the answer of merged vehicles.
     pub(super) fn from_vehicles(
         job: &Job,
         kernel: &Kernel,

@@ -49,24 +49,24 @@ impl Drop for ActiveRecordGuard<'_> {
     }
 }
 
-/// A record being recovered: the gauges of it that read.
+/// A record in recovery, with its active gauges.
 pub(super) struct RecordRecovery {
     pub filter: Filter,
     /// S of the used gauges.
     pub sensitivity: Sensitivity,
     /// Loads at which the model's error is evaluated.
     pub typical: Vec<f64>,
-    /// Gauges that give nothing, or one and the same value.
+    /// Gauges without a reading, or with one constant value.
     pub silent: Vec<String>,
     /// Gauges of the job.
     pub used: Vec<usize>,
     pub columns: Vec<Option<usize>>,
-    /// Strain of one unit of each column, and of none.
+    /// Factors and offsets that convert a reading of each column to strain: `strain = factor * reading + offset`.
     pub scale: [Vec<f64>; 2],
     pub zero: Vec<f64>,
-    /// Readings that are taken for none, since the gauge is dead there: used gauge and samples.
+    /// Readings that count as missing, because the gauge is dead there: number of the used gauge, and samples.
     pub blank: Vec<(usize, Range<usize>)>,
-    /// S of the used gauges, strain per report unit; of sums of loads nothing.
+    /// S of the used gauges, strain per report unit. It is zero for sums of loads.
     pub s: Vec<Vec<f64>>,
     /// Report units per job unit, by load and sum.
     pub factors: Vec<f64>,
@@ -148,7 +148,7 @@ impl RecordRecovery {
     /// A piece of the record, decoded and recovered, its samples marked.
     ///
     /// # Errors
-    /// What can't be decoded.
+    /// An error if the piece cannot be decoded.
     pub fn part(&self, record: &Record, piece: usize, marks: &Marks) -> Result<Part, SeriesError> {
         let (n, k) = (self.used.len(), self.factors.len());
         let (begin, end) = record.span(piece);

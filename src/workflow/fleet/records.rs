@@ -7,7 +7,7 @@ use glob::{MatchOptions, Pattern, glob_with};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Returns the paths of a list: one a line, without blank lines.
+/// Returns the paths of a list with one path in each line. Blank lines are skipped.
 ///
 /// # Errors
 /// A list without a record. An empty list is a mistake of its author, not a request to merge stored results.

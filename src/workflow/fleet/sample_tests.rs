@@ -56,7 +56,7 @@ impl TestedSamples {
         }
     }
 
-    /// Looks at samples from number `first` of the record on: strain less zero (`n_gauges` a row) and the loads recovered from it.
+    /// Looks at samples from number `first` of the record on: strain minus zero (`n_gauges` for each row), and the loads recovered from it.
     pub fn add(&mut self, first: usize, strain: &[f64], loads: &[f64]) {
         let n = self.n_gauges.max(1);
         let rows = strain.len() / n;

@@ -11,8 +11,8 @@ const SETS: usize = 16;
 /// Factor on the size of a load that makes noise negligible.
 const FAR: f64 = 1e6;
 
-/// Returns the standard deviation of the noise in a sample by load, report unit, as root mean square over the record. In dead parts, the noise is
-/// that with the remaining gauges.
+/// Returns the standard deviation of the noise in a sample by load, report unit, as root mean square over the record. In dead parts, it is the noise
+/// with the remaining gauges.
 pub(super) fn noise_of(r: &RecordRecovery) -> Vec<f64> {
     let zeros = vec![0.0; r.factors.len()];
     let all = r.filter.sigma(&zeros);
@@ -32,7 +32,7 @@ pub(super) fn noise_of(r: &RecordRecovery) -> Vec<f64> {
     factors.map(|(s, f)| s.max(0.0).sqrt() * f).collect()
 }
 
-/// Returns the covariance of the scale errors of each load with every load, `n_loads x n_loads` a load. It is the mean over the samples of the
+/// Returns the covariance of the scale errors of each load with every load, `n_loads x n_loads` for each load. It is the mean over the samples of the
 /// record. `whole` is the number of samples with all gauges, and `by_gauges` is the number with each other set of gauges.
 pub(super) fn scales(
     r: &RecordRecovery,
@@ -60,7 +60,7 @@ pub(super) fn scales(
         .collect();
     (0..k)
         .map(|l| {
-            // Samples that do not determine the load add no damage of it.
+            // Samples that do not determine the load add no damage of this load.
             let told = others.iter().filter(|o| o.0.is_seen(l));
             let n = told.clone().map(|o| o.1).sum::<f64>() + whole as f64;
             let entry = |i: usize| {

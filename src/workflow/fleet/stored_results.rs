@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Folder of the kept results within the output folder.
+/// Folder of the stored results within the output folder.
 pub const FOLDER: &str = "days";
 /// Number of the form of a stored result, raised when its meaning changes.
 const FORM: u32 = 10;
@@ -91,7 +91,7 @@ fn verify_digest(bytes: &[u8]) -> Option<&[u8]> {
     (own == hex(&hash.finalize()).as_bytes()).then_some(bytes)
 }
 
-/// SHA-256, hexadecimal.
+/// Returns the SHA-256, hexadecimal.
 pub fn digest(parts: &[&str]) -> String {
     let mut hash = Sha256::new();
     for part in parts {
@@ -104,7 +104,7 @@ pub fn digest(parts: &[&str]) -> String {
 /// SHA-256 by path, as `sha256sum` lists them: the digest, a blank, a blank or an asterisk, the path.
 ///
 /// # Errors
-/// The first line without this form.
+/// The first line that does not have this form.
 pub fn digests_of(text: &str) -> Result<BTreeMap<String, String>, String> {
     let line = |(i, line): (usize, &str)| {
         // A backslash in a name is doubled, and the line then starts with a backslash.
@@ -150,7 +150,7 @@ impl KeptDays {
         self.latest_result(path).filter(|f| f.sha256 == sha256)
     }
 
-    /// The day of a file that [`KeptDays::head`] knows.
+    /// Returns the day of a file that [`KeptDays::head`] knows.
     pub fn day(&self, file: &FileHead) -> Option<Day> {
         let bytes = std::fs::read(self.place(&file.path)).ok()?;
         let kept: StoredResult<Day> = self.read(&bytes)?;

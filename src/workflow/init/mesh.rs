@@ -3,7 +3,7 @@
 use crate::estimate::median;
 use crate::model::Model;
 
-/// The usual side of a shell: the median distance of its first two grids; `None` without shells.
+/// Returns the usual side length of a shell: the median distance between its first two grids. `None` without shells.
 pub(super) fn shell_side(model: &Model) -> Option<f64> {
     let place = |g: crate::model::GridIx| model.grids.get(g.us()).map(|g| g.x);
     let sides = model

@@ -47,15 +47,15 @@ pub struct Proposal {
     pub loads: Vec<String>,
     /// Loads and subcases of the files that are not proposed.
     pub left_out: Vec<NotProposed>,
-    /// Whether `place` answers it.
+    /// Whether `place` finds a layout for the job.
     pub placeable: bool,
-    /// Shell properties by their names in the deck.
+    /// Names of shell properties in the deck.
     #[serde(skip)]
     pub zones: BTreeMap<String, BTreeSet<u32>>,
     /// The job itself.
     #[serde(skip)]
     pub text: String,
-    /// The job as read, and the model of the deck; `None` without a deck, or if `text` needs a correction before it can be read.
+    /// The job, read from its text, and the model of the deck. `None` without a deck, or if `text` needs a correction before it can be read.
     #[serde(skip)]
     pub read: Option<(Job, Model)>,
     /// Path of the proposed job.
@@ -71,7 +71,7 @@ pub struct Proposal {
 pub struct NotProposed {
     /// Name of the load or subcase.
     pub name: String,
-    /// Reason why it is left out.
+    /// Reason why the subcase is left out.
     pub reason: String,
 }
 
@@ -212,7 +212,7 @@ fn named_zones(model: &Model) -> BTreeMap<String, BTreeSet<u32>> {
 /// Path of the proposed job.
 ///
 /// # Errors
-/// A job that is there already.
+/// A fault if this file already exists.
 fn free_target(folder: &Path, cx: &Context) -> Result<PathBuf, Fault> {
     let target = folder.join(JOB);
     if cx.files.load(&target).is_ok() {

@@ -21,7 +21,7 @@ pub(super) enum Rank {
 }
 
 impl Rank {
-    /// All of them.
+    /// All kinds of points.
     pub const ALL: [Self; 3] = [Self::Wheel, Self::Hub, Self::Far];
 }
 
@@ -29,7 +29,7 @@ impl Rank {
 pub(super) struct LoadPoint {
     /// Grid id.
     pub grid: u32,
-    /// Name for its load, without the component.
+    /// Name of the load at this point, without the component.
     pub name: String,
     pub rank: Rank,
 }

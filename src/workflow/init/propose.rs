@@ -35,7 +35,7 @@ pub(super) struct LeftOutLoad {
     pub why: String,
 }
 
-/// Where the strain of a proposal's loads comes from.
+/// Source of the strain of a proposal's loads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StrainFrom {
     Results,
@@ -55,7 +55,8 @@ pub(super) struct Proposal {
 /// A result file and its static subcases with strain of shells, each with its LABEL.
 pub(super) type StrainResultFile = (String, BTreeMap<u32, String>);
 
-/// Every proposal that the files allow, the best first; none without grids. Loads that the files state are never exchanged for others.
+/// Returns every proposal that the files allow, the best first. The list is empty without grids. Loads that the files state are never replaced by
+/// other loads.
 pub(super) fn proposals(
     deck: &DeckModel,
     strained: &[StrainResultFile],

@@ -126,7 +126,7 @@ impl Purpose {
         found.map_or("check", |p| p.0)
     }
 
-    /// The job of a deck with the sections of this purpose.
+    /// Returns the job of a deck with the sections of this purpose.
     pub fn put_into(self, job: &str, zones: &BTreeMap<String, BTreeSet<u32>>) -> String {
         let head = job.split(LATER).next().unwrap_or(job);
         let sections: &[&str] = match self {

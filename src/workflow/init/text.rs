@@ -28,7 +28,7 @@ pub(super) struct JobPlan<'a> {
     pub results: &'a [PathBuf],
     /// Folder of the job.
     pub folder: &'a Path,
-    /// System of units; `None` leaves it open.
+    /// System of units. With `None` the job does not state it.
     pub system: Option<UnitSystem>,
     pub from: StrainFrom,
     /// Reason why given results are left out.
@@ -49,7 +49,7 @@ pub(super) fn usual_spacing(deck: &DeckModel) -> f64 {
 }
 
 impl JobPlan<'_> {
-    /// job.toml.
+    /// Returns the text of job.toml.
     pub(super) fn text(&self) -> String {
         [
             self.head(),

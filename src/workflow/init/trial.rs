@@ -19,7 +19,7 @@ const MOST_TRIALS: usize = 24;
 
 /// Result of the trials.
 pub(super) struct Verdict {
-    /// job.toml.
+    /// Text of job.toml.
     pub text: String,
     /// Names of the loads in `text`.
     pub loads: Vec<String>,
@@ -166,7 +166,7 @@ pub(super) struct WithJob<'a> {
 }
 
 impl<'a> WithJob<'a> {
-    /// The files of `inner` and `text` at `path`.
+    /// Returns the files of `inner` and `text` at `path`.
     pub(super) fn new(inner: &'a dyn Files, path: &Path, text: &str) -> Self {
         Self {
             inner,

@@ -15,23 +15,23 @@ use serde::Serialize;
 /// Payloads weighed, report units.
 #[derive(Serialize)]
 pub struct WeighedPayloads {
-    /// By run.
+    /// Payload of each run.
     pub payload: Vec<WeighedPayload>,
-    /// By run and gauge.
+    /// Payload of each run from each gauge alone.
     pub by_gauge: Vec<SingleGauge>,
-    /// Net reading of each gauge in each run: reading less zero.
+    /// Net reading of each gauge in each run: reading minus zero.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub net: Vec<NetReading>,
-    /// Rank and condition numbers of S, where strain is used and S is the model's.
+    /// Rank and condition numbers of S, if strain is used and S is from the model.
     #[serde(flatten)]
     pub conditioning: Option<Conditioning>,
-    /// The runs as they were weighed.
+    /// Runs with the data of the estimate.
     #[serde(skip)]
     pub runs: Vec<PayloadRun>,
     /// Complete result of the weighing.
     #[serde(skip)]
     pub weighing: Weighing,
-    /// S and gauges, where strain is used.
+    /// S and gauges, if strain is used.
     #[serde(skip)]
     pub prepared: Option<JobSensitivity>,
     /// The job.
@@ -90,18 +90,18 @@ pub struct WeighedPayload {
     pub mass_sigma: Option<f64>,
     /// Place in plan.
     pub position: [Option<f64>; 2],
-    /// Standard deviations of the position; `None` where the place is known.
+    /// Standard deviations of the position. `None` if the place is known.
     pub position_sigma: Option<[Option<f64>; 2]>,
     /// Region that contains the payload with a probability of 95 %; `None` if the place is known.
     pub region: Option<Ellipse>,
-    /// Why there is no answer.
+    /// Reason why there is no answer.
     pub refused: Option<String>,
     /// Unit of the weight.
     pub unit: String,
 }
 
 impl WeighedPayload {
-    /// Returns the weight with its interval, which ends at zero for a payload that may not be there.
+    /// Returns the weight with its interval. The interval begins at zero if the structure may be empty.
     pub fn weight(&self) -> String {
         match (self.force, self.force_low, self.force_high) {
             (Some(force), Some(low), Some(high)) if low <= 0.0 => {
@@ -112,7 +112,7 @@ impl WeighedPayload {
         }
     }
 
-    /// Half width of the 95 % interval of the weight.
+    /// Returns the half width of the 95 % interval of the weight.
     pub fn half_width(&self) -> f64 {
         match (self.force_low, self.force_high) {
             (Some(low), Some(high)) => (high - low) / 2.0,
@@ -160,7 +160,7 @@ fn accepted_value(r: &WeighedRun, v: f64) -> Option<f64> {
 /// of the answer.
 const CARRIES: f64 = 32.0;
 
-/// The answer.
+/// Returns the answer.
 pub(super) fn report_payload(
     task: &Task,
     parts: Parts,

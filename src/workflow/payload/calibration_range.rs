@@ -11,8 +11,8 @@ use crate::recovery::by_calibration::report_untested_intervals;
 use crate::recovery::outside_calibration::{CalibratedLoad, RangeRules, RunLoad, check_load};
 use crate::strain_chain::has_covariance;
 
-/// Returns the findings on weights, and on weights times their distance from the nominal place, beyond the calibration, and on one that no run
-/// tested.
+/// Returns the findings on weights and moments beyond the calibration, and on a weight that no calibration run tested. Moments are weights times
+/// their distance from the nominal place.
 pub(super) fn findings(task: &Task, parts: &Parts, weighing: &Weighing) -> Vec<Finding> {
     let Some(prepared) = parts.prepared.as_ref().filter(|_| has_covariance(task.job)) else {
         return Vec::new();

@@ -24,16 +24,16 @@ use crate::units::MICROSTRAIN;
 
 /// The payload model, together with the data that the report plots.
 pub(super) struct Parts {
-    /// In report units of force and length.
+    /// Model in report units of force and length.
     pub model: PayloadModel,
-    /// S and gauges; `None` where strain is not used.
+    /// S and gauges. `None` if strain is not used.
     pub prepared: Option<JobSensitivity>,
 }
 
-/// The model in report units; sets nominal place, wheels and their reactions to the empty structure.
+/// Returns the model in report units. It also sets the nominal place, the wheels and their reactions to the empty structure.
 ///
 /// # Errors
-/// Faults of deck, gauges, tables; no payload grid.
+/// Faults of deck, gauges and tables, or a payload without a grid.
 pub(super) fn model_of(
     work: &mut Work,
     task: &mut Task,
@@ -101,7 +101,7 @@ fn payload_grid(task: &Task, model: &Model) -> Result<(GridIx, u32), Faults> {
         .ok_or_else(|| fault(format!("the deck has no grid {id}")))
 }
 
-/// Where the payload acts: its grid and the axis of its weight.
+/// Place of the payload: its grid and the axis of its weight.
 #[derive(Clone, Copy)]
 struct Place {
     grid: GridIx,

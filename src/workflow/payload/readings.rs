@@ -22,18 +22,18 @@ use serde::Serialize;
 /// Noise of a wheel force over the largest wheel force, if the job states no noise.
 pub(super) const ASSUMED_NOISE: f64 = 0.01;
 
-/// Net reading of a gauge in a run: reading less zero.
+/// Net reading of a gauge in a run: reading minus zero.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NetReading {
     /// The run.
     pub run: String,
     /// The gauge.
     pub name: String,
-    /// Reading.
+    /// Net reading, microstrain.
     pub net_microstrain: Option<f64>,
     /// Standard deviation of the net reading, microstrain.
     pub sigma_microstrain: Option<f64>,
-    /// Net reading over its standard deviation.
+    /// Net reading divided by its standard deviation.
     pub signal_to_noise: Option<f64>,
 }
 
@@ -41,7 +41,7 @@ pub struct NetReading {
 pub(super) struct Readings {
     /// The runs to be weighed.
     pub runs: Vec<PayloadRun>,
-    /// Net reading of each gauge in each run: reading less zero.
+    /// Net reading of each gauge in each run: reading minus zero.
     pub net: Vec<NetReading>,
 }
 

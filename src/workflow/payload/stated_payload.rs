@@ -10,7 +10,7 @@ use crate::host::work::Work;
 use crate::measured::runs_file::read_runs;
 use crate::payload::{PayloadRun, Place, WeighSpec, WeighedRun, Weighing, weigh};
 
-/// Standard deviations from which readings contradict a stated place, as for moments of wheel forces.
+/// Number of standard deviations from which readings contradict a stated place, as for moments of wheel forces.
 pub(super) const REFUTED: f64 = 4.0;
 /// Relative difference between weighed and recorded mass from which one of them is wrong.
 const OTHER_MASS: f64 = 0.1;

@@ -2,7 +2,7 @@
 
 use crate::job::{Job, Payload};
 
-/// A job's payload section with what it needs: counted in report units from here on (force, length).
+/// The payload section of a job with its data, in report units of force and length.
 pub(super) struct Task<'a> {
     pub job: &'a Job,
     pub payload: &'a Payload,
@@ -13,7 +13,7 @@ pub(super) struct Task<'a> {
     pub length: f64,
     /// Nominal place of the payload in plan, report length, and the names of the plan axes.
     pub nominal: [f64; 2],
-    /// Reactions of the structure's own weight, by wheel; empty where unknown.
+    /// Reactions to the structure's own weight, by wheel. Empty if unknown.
     pub empty: Vec<f64>,
     /// Names of the wheels.
     pub wheels: Vec<String>,

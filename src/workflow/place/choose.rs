@@ -22,7 +22,7 @@ use std::collections::HashMap;
 /// Bundles at most: memory for their rows.
 const MOST_BUNDLES: usize = 4_000_000;
 
-/// Whether single gauges of one wiring are all there is to choose.
+/// Returns whether the choice is only between single gauges of one wiring.
 pub(super) fn is_plain(task: &Task) -> bool {
     let (c, p) = (&task.job.candidates, &task.job.placement);
     if let Some(spots) = &task.spots {
@@ -35,10 +35,10 @@ pub(super) fn is_plain(task: &Task) -> bool {
         && p.budget.is_none()
 }
 
-/// Chooses gauges. If these can't separate the loads, chooses again with the loads known to their expected size, and adds a finding.
+/// Chooses gauges. If they can't separate the loads, it chooses again with prior information on the sizes of the loads, and adds a finding.
 ///
 /// # Errors
-/// No layout fits the job.
+/// A fault if no layout fits the job.
 pub(super) fn choose(
     work: &mut Work,
     task: &Task,
@@ -62,7 +62,7 @@ pub(super) fn choose(
     })
 }
 
-/// Chooses gauges by the spec.
+/// Chooses gauges once, as `spec` states.
 pub(super) fn choose_once(
     task: &Task,
     kinds: &[Kind],
@@ -130,7 +130,7 @@ fn well_conditioned(task: &Task, kind: &Kind, spec: &Spec, layout: &mut Layout) 
         return None;
     }
     let k = task.cases.len();
-    // The gauges that stay have the noise of all gauges.
+    // The gauges that stay installed have the same noise as all other gauges.
     let noise = task.job.placement.noise_microstrain;
     let mut base = vec![0.0; k * k];
     for row in &task.kept_rows {

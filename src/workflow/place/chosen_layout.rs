@@ -6,29 +6,29 @@ use crate::job::JobGauge;
 use crate::placement::PlaceError;
 use crate::placement::sites::Site;
 
-/// A channel chosen.
+/// A chosen channel.
 pub(super) struct Channel {
-    /// On the model.
+    /// Gauge on the model.
     pub gauge: Gauge,
     /// Wiring, as a job names it.
     pub bridge: &'static str,
-    /// Side of the shell; `None` on a bar.
+    /// Site on a side of a shell. `None` on a bar.
     pub site: Option<Site>,
     /// Spot of the job's table, if the gauge is on a named spot.
     pub spot: Option<JobGauge>,
-    /// Row over its standard deviation, columns in the candidates' order.
+    /// Row divided by its standard deviation, with columns in the order of the candidates.
     pub row: Vec<f64>,
-    /// Standard deviation of its reading, microstrain.
+    /// Standard deviation of the reading, microstrain.
     pub sd: f64,
-    /// Change of its reading with its angle, microstrain a radian, rms over the expected loads.
+    /// Change of the reading with the angle, microstrain per radian, rms over the expected loads.
     pub turn: f64,
-    /// The angle of its first grid.
+    /// Angle of the first grid.
     pub angle: f64,
-    /// The refusal of a grid that does not fit on the part there; its strain is then that at its middle.
+    /// Refusal of a grid that does not fit on the part. The strain is then the strain at the middle of the grid.
     pub misfit: Option<Fault>,
 }
 
-/// A layout chosen.
+/// A chosen layout.
 pub(super) struct ChosenLayout {
     pub channels: Vec<Channel>,
     pub log_det: f64,

@@ -13,7 +13,7 @@ use crate::placement::quality::evaluate_rows;
 use crate::placement::{PlaceError, Spec};
 use crate::workflow::recover::ListedLoads;
 
-/// The curve over the job's numbers; numbers that can't separate the loads are left out.
+/// Returns the curve over the gauge counts of the job. Counts that can't separate the loads are left out.
 pub(super) fn curve(
     task: &Task,
     kinds: &[Kind],
@@ -85,7 +85,7 @@ pub(super) fn curve(
     (points, left_out)
 }
 
-/// Numbers of gauges that the curve leaves out.
+/// Returns the finding on gauge counts that the curve leaves out.
 pub(super) fn incomplete_curve_finding(left_out: &[usize]) -> Option<Finding> {
     let counts: Vec<String> = left_out.iter().map(usize::to_string).collect();
     (!left_out.is_empty()).then(|| {

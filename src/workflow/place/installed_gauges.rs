@@ -14,7 +14,7 @@ use crate::placement::{self, Spec, place};
 use crate::strain_chain::lay_gauges;
 use crate::workflow::recover::list_load_columns;
 
-/// The installed layout by the same measures, its determinant with noise alone; `None` without gauges in the job.
+/// Evaluates the installed layout with the same measures as the new layout. The determinant includes only noise. `None` if the job has no gauges.
 pub(super) fn evaluate_installed(
     work: &mut Work,
     task: &Task,

@@ -13,7 +13,7 @@ use crate::sensitivity::{NoStrain, Sensitivity, from_cases};
 use crate::strain_chain::read_given;
 use crate::units::MICROSTRAIN;
 
-/// The S of `[sensitivity]`, where the job has one.
+/// Returns the S of `[sensitivity]`, if the job has one.
 ///
 /// # Errors
 /// Faults of its table and of its covariance.
@@ -31,7 +31,8 @@ pub(super) fn read_given_sensitivity(
 pub(super) struct Rows {
     /// Strain of loads of expected size, microstrain.
     pub strain: Vec<Vec<f64>>,
-    /// `W^-1/2` times `strain`, with `W` the covariance of readings: independent rows of unit variance with the same information on the loads.
+    /// Rows `W^-1/2` times `strain`, with `W` the covariance of readings. The result has independent rows of unit variance with the same
+    /// information on the loads.
     pub over_sd: Vec<Vec<f64>>,
     /// Standard deviation of each reading, microstrain.
     pub sd: Vec<f64>,
@@ -58,7 +59,7 @@ impl Task<'_> {
         Ok(s)
     }
 
-    /// Whether every one of some gauges has a row in a calibrated S.
+    /// Returns whether all given gauges have a row in a calibrated S.
     pub fn all_calibrated(&self, gauges: &[Gauge]) -> bool {
         let has = |g| {
             self.given_row(g)
@@ -84,8 +85,8 @@ impl Task<'_> {
     }
 
     /// Returns the rows of gauges with S `s`. Strain of the model has the relative error `model_rel`, 1 sd, and its estimated remaining mesh error.
-    /// Strain of a calibrated S has the covariance of S, with loads of expected size that are independent of each other. `more`: an additional
-    /// variance of each gauge, microstrain squared; empty: none.
+    /// Strain of a calibrated S has the covariance of S, with loads of expected size that are independent of each other. `more` is an additional
+    /// variance of each gauge, microstrain squared. It may be empty.
     pub fn rows_of(&self, gauges: &[Gauge], s: &Sensitivity, model_rel: f64, more: &[f64]) -> Rows {
         let row = |g: usize| -> Vec<f64> {
             let of = |&l: &usize| s.values[(g, l)] * self.scales[l] / MICROSTRAIN;
@@ -98,7 +99,7 @@ impl Task<'_> {
             let noise = self.noise_of(gauge);
             let sd = match self.given_row(gauge) {
                 Some((own, _)) => match &own.uncertainty {
-                    // As for the left-out runs, `scale` is a factor on the whole standard deviation.
+                    // `scale` is a factor on the whole standard deviation, here as in the test of left-out runs.
                     Some(u) => noise * u.scale,
                     None => noise.hypot(model_rel * spd::dot(row, row).sqrt()),
                 },
@@ -160,7 +161,7 @@ pub(super) fn gluing_variance(task: &Task, gauges: &[Gauge]) -> Vec<f64> {
 pub(super) struct GluingEffect {
     /// Variance by the tolerances of gluing, microstrain squared at the expected loads.
     pub variance: f64,
-    /// Change of the reading with its angle, microstrain a radian, rms over the expected loads.
+    /// Change of the reading with the angle, microstrain per radian, rms over the expected loads.
     pub turn: f64,
     /// Angle of the first grid, radians from the element x axis.
     pub angle: f64,

@@ -58,7 +58,8 @@ pub(super) fn as_recovered(
     Some(out)
 }
 
-/// Standard deviation, job units, of a load or of a sum of loads (their numbers and factors): `c' C c`, `covariance` in shares of `scales`.
+/// Returns the standard deviation, job units, of a load or of a sum of loads (their numbers and factors): `c' C c`. `covariance` is in shares of
+/// `scales`.
 pub(super) fn sigma_of(covariance: &[f64], scales: &[f64], terms: &[(usize, f64)]) -> f64 {
     let k = scales.len();
     let pairs = terms.iter().flat_map(|a| terms.iter().map(move |b| (a, b)));
@@ -67,7 +68,7 @@ pub(super) fn sigma_of(covariance: &[f64], scales: &[f64], terms: &[(usize, f64)
     each.sum::<f64>().max(0.0).sqrt()
 }
 
-/// Terms of all that is listed: each load, then each combination.
+/// Returns the terms of each load, then of each combination.
 pub(super) fn terms_listed(listed: &ListedLoads, k: usize) -> Vec<Vec<(usize, f64)>> {
     let own = (0..k).map(|l| vec![(l, 1.0)]);
     own.chain(listed.sums.iter().cloned()).collect()
@@ -259,7 +260,7 @@ fn check_budgets<'a>(
     Some(finding.with_numbers(least, kept))
 }
 
-/// Findings on the layout.
+/// Adds the findings on the layout.
 pub(super) fn report_layout_findings(
     work: &mut Work,
     job: &Job,

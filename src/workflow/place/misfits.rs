@@ -64,7 +64,7 @@ fn misfit(job: &Job, built: &BuiltGauges) -> Option<Fault> {
 /// site, the element and the refusal of each gauge.
 ///
 /// # Errors
-/// The refusal of a gauge, if no further round is allowed or if its element is wanted.
+/// The fault of a gauge that does not fit, if no further round is allowed or if the job names its element.
 pub(super) fn leave_out<'a>(
     task: &mut Task,
     chosen: impl Iterator<Item = (Option<Site>, u32, Option<&'a Fault>)>,

@@ -254,7 +254,7 @@ impl LayoutOf {
 /// reading.
 ///
 /// # Errors
-/// If the remaining gauges would not separate the loads.
+/// A fault if the remaining gauges would not separate the loads.
 fn reserve_gauges(
     work: &mut Work,
     task: &task::Task,

@@ -25,11 +25,11 @@ pub struct CertifiedLayout {
     pub criterion: &'static str,
     /// ln det(S'S), rows over their standard deviations.
     pub log_det: f64,
-    /// No layout of these candidates has more.
+    /// Upper bound of `log_det` of all layouts of these candidates.
     pub upper_bound: f64,
-    /// Certified: at least this share of the best possible, 0 to 1.
+    /// Certified lower bound on the efficiency, relative to the best possible layout, 0 to 1.
     pub efficiency_bound: f64,
-    /// Whether it is proved the best.
+    /// Whether the layout is proved to be the best.
     pub proved: bool,
     /// Nodes of the proof.
     pub nodes: usize,
@@ -49,7 +49,7 @@ pub struct CertifiedLayout {
     pub least_condition_number_scaled: Option<f64>,
     /// One standard deviation of each load, report units.
     pub load_sigma: Vec<LoadSigma>,
-    /// The gauge whose loss costs most.
+    /// Gauge whose loss reduces the efficiency most.
     pub worst_loss: WorstLoss,
     /// Gauges kept for validation.
     pub reserved: Vec<ReservedGauge>,
@@ -103,7 +103,7 @@ impl Answer for CertifiedLayout {
 }
 
 impl CertifiedLayout {
-    /// Returns the half width of the 95 % interval of a load over its expected size; `None` where the job states no size.
+    /// Returns the half width of the 95 % interval of a load, divided by its expected size. `None` if the job states no size.
     pub fn share_of_expected(&self, load: &LoadSigma) -> Option<f64> {
         let of_job = self.job.loads.iter().find(|l| l.name == load.name)?;
         let factor = of_job
@@ -123,12 +123,12 @@ impl CertifiedLayout {
     }
 }
 
-/// How many candidates there were.
+/// Number of candidates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Candidates {
-    /// Surfaces of elements.
+    /// Number of surfaces of elements.
     pub places: usize,
-    /// Rows: places times angles and wirings.
+    /// Number of rows: places times angles and wirings.
     pub rows: usize,
 }
 
@@ -141,34 +141,34 @@ pub struct PlacedGauge {
     pub element: u32,
     /// `top` or `bottom`.
     pub surface: &'static str,
-    /// Where it sits, basic frame.
+    /// Position of the gauge, basic frame.
     pub position: [f64; 3],
-    /// Unit vector of its axis, basic frame.
+    /// Unit vector of the axis, basic frame.
     pub direction: [f64; 3],
-    /// From the element x axis, right-handed about the element normal.
+    /// Angle from the element x axis, right-handed about the element normal.
     pub angle_deg: f64,
-    /// Angle as the technician sees it on that side; on the bottom it turns the other way.
+    /// Angle as seen from outside by the technician. On the bottom it turns in the opposite direction.
     pub angle_seen_deg: f64,
     /// Leverage of the gauge.
     pub leverage: f64,
-    /// Sum of its strains under the expected loads, microstrain.
+    /// Sum of the strains under the expected loads, microstrain.
     pub expected_microstrain: f64,
     /// Wiring.
     pub bridge: &'static str,
     /// Purpose of the gauge.
     pub role: Role,
-    /// Standard deviation of its reading, microstrain.
+    /// Standard deviation of the reading, microstrain.
     pub sd_microstrain: f64,
     /// Error of the angle, degrees, that moves some load by 5 % of its expected size; `None` if no error does.
     pub angle_budget_deg: Option<f64>,
     /// Error of the place, model units, that moves some load by 5 % of its expected size; `None` if no error does.
     pub position_budget: Option<f64>,
-    /// By load, its strain when that load has its expected size.
+    /// Strain of the gauge under each load of expected size.
     pub strain_by_load: Vec<StrainOfLoad>,
-    /// Nearest reference point, and the way from there, basic frame.
+    /// Nearest reference point, and the vector from there to the gauge, basic frame.
     #[serde(skip)]
     pub reference: Option<(String, [f64; 3])>,
-    /// The spot of the job's table, as it is stated there; `None` for a gauge of the search.
+    /// Spot of the job's table, as stated there. `None` for a gauge that the search placed.
     #[serde(skip)]
     pub spot: Option<JobGauge>,
     /// Gauge as laid onto the model.
@@ -182,7 +182,7 @@ impl PlacedGauge {
         self.spot.as_ref().map_or(of_candidates, |s| s.grid_length)
     }
 
-    /// The angle as the technician sees that side.
+    /// Returns the angle as the technician sees that side.
     pub(super) fn seen_deg(gauge: &Gauge) -> f64 {
         let deg = gauge.angle_rad.to_degrees();
         match gauge.surface {
@@ -218,14 +218,14 @@ pub struct WorstLoss {
 pub struct ReservedGauge {
     /// Name of the gauge.
     pub name: String,
-    /// Standard deviation of the reading predicted from the other gauges, its own noise included.
+    /// Standard deviation of the reading predicted from the other gauges. It includes the noise of the reading.
     pub prediction_sd_microstrain: f64,
 }
 
-/// The layout that the job has.
+/// Evaluation of the installed layout.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct InstalledLayout {
-    /// How many gauges.
+    /// Number of gauges.
     pub gauges: usize,
     /// Rank of S of the gauges, if they don't separate the loads.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -235,20 +235,20 @@ pub struct InstalledLayout {
     pub quality: Option<InstalledQuality>,
 }
 
-/// How good the installed gauges are.
+/// Quality of the installed gauges.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct InstalledQuality {
     /// ln det(S'S) with noise alone.
     pub log_det: Option<f64>,
-    /// No layout of as many gauges has more.
+    /// Upper bound of `log_det` of all layouts with the same number of gauges.
     pub upper_bound: Option<f64>,
-    /// S in strain per job unit.
+    /// Condition number of S in strain per job unit.
     pub condition_number: Option<f64>,
-    /// Columns times `expected`, else of unit norm.
+    /// Condition number of S with its columns multiplied by `expected`, or else normalised.
     pub condition_number_scaled: Option<f64>,
     /// One standard deviation of each load, report units.
     pub load_sigma: Vec<LoadSigma>,
-    /// The gauge whose loss costs most.
+    /// Gauge whose loss reduces the efficiency most.
     pub worst_loss: WorstLoss,
 }
 
@@ -263,7 +263,7 @@ pub struct CurvePoint {
     pub condition_number_scaled: Option<f64>,
     /// Efficiency after the worst loss.
     pub worst_loss: f64,
-    /// By load.
+    /// Standard deviation of each load.
     pub load_sigma: Vec<BoughtSigma>,
 }
 
@@ -276,6 +276,6 @@ pub struct BoughtSigma {
     pub sigma: f64,
     /// Report unit.
     pub unit: String,
-    /// How much less than with the number before, a gauge.
+    /// Decrease relative to the previous count, for each added gauge.
     pub less_by_a_gauge: Option<f64>,
 }

@@ -78,7 +78,7 @@ fn add_mesh_error(
     }
 }
 
-/// Candidates of every wiring that the job allows; `errors` are the mesh errors of the loads, where they are known.
+/// Returns the candidates of every wiring that the job allows. `errors` are the mesh errors of the loads, if known.
 pub(super) fn kinds(
     job: &Job,
     model: &Model,
@@ -105,7 +105,7 @@ pub(super) fn kinds(
         .collect()
 }
 
-/// The angles of a job.
+/// Returns the angles of a job.
 pub(crate) fn angles(step: AngleStep) -> Angles {
     match step {
         AngleStep::Continuous => Angles::Continuous,
@@ -116,14 +116,14 @@ pub(crate) fn angles(step: AngleStep) -> Angles {
     }
 }
 
-/// Loads in the order of the candidates' columns: nuisance loads first.
+/// Returns the loads in the order of the candidates' columns: nuisance loads first.
 pub(crate) fn column_order(job: &Job) -> Vec<usize> {
     let mut order: Vec<usize> = (0..job.loads.len()).collect();
     order.sort_by_key(|&l| job.loads[l].role == LoadRole::Wanted);
     order
 }
 
-/// Column scales: `expected`; where a load states none, the size that strains the candidates by [`ASSUMED_STRAIN`] rms.
+/// Returns the scales of the columns: `expected`, or for a load without it the size that strains the candidates by [`ASSUMED_STRAIN`] rms.
 pub(crate) fn scales(work: &mut Work, cases: &[LoadCaseOf], common: &[ShellIx]) -> Vec<f64> {
     let mut assumed = Vec::new();
     let scales = cases

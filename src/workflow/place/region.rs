@@ -51,7 +51,7 @@ impl StrictRule {
 /// Whether a shell, with its id, its property and its centre, follows a rule.
 type Follows<'a> = &'a dyn Fn(&Shell, u32, Vec3) -> bool;
 
-/// [`allowed_sites`] with the rule that excludes the most.
+/// Returns [`allowed_sites`] and the rule that excludes most shells.
 pub(super) fn allowed_sites_and_rule(
     job: &Job,
     fields: &Fields,
@@ -169,7 +169,7 @@ pub(super) fn allowed_sites_and_rule(
 /// Refuses ids of properties, elements and reference grids that the model lacks: a misspelt exclusion would leave its place open for gauges.
 ///
 /// # Errors
-/// A fault for each such id.
+/// A fault for each id that the deck lacks.
 fn check_ids(job: &Job, model: &Model) -> Result<(), Faults> {
     let rule = &job.candidates;
     let shells = model.shell_properties.iter().map(|p| p.id);

@@ -77,7 +77,7 @@ pub(super) fn list_placed_gauges(
         .collect()
 }
 
-/// By channel, the change of its reading with its place, microstrain per length, rms over the expected loads.
+/// Returns the change of each channel's reading with its place: microstrain per length, rms over the expected loads.
 fn steepness(
     task: &Task,
     chosen: &ChosenLayout,

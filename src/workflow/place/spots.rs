@@ -9,11 +9,11 @@ use crate::placement::sites::Site;
 
 /// A spot on the model.
 pub(super) struct LaidSpot {
-    /// The spot as the table states it.
+    /// Spot as the table states it.
     pub stated: JobGauge,
-    /// Readings of the spot: one, or the three legs of a rosette.
+    /// Readings of the spot: one reading, or the three legs of a rosette.
     pub legs: Vec<Leg>,
-    /// Cost: as stated, else one for each reading.
+    /// Stated cost. The default is one for each reading.
     pub cost: f64,
 }
 
@@ -25,11 +25,11 @@ pub(super) struct Leg {
     pub strain: Vec<f64>,
     /// Standard deviation of the reading, microstrain.
     pub sd: f64,
-    /// Change of the reading with the angle, microstrain a radian, rms over the expected loads.
+    /// Change of the reading with the angle, microstrain per radian, rms over the expected loads.
     pub turn: f64,
     /// Angle of the first grid, radians from the element x axis.
     pub angle: f64,
-    /// Side of the shell; `None` on a bar.
+    /// Site on a side of a shell. `None` on a bar.
     pub site: Option<Site>,
 }
 

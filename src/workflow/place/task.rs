@@ -17,19 +17,19 @@ use crate::sensitivity::{LoadCaseOf, Sensitivity};
 use crate::strain_chain::{Fields, lay_gauges, left_in_reading, without_strain};
 use crate::units::MICROSTRAIN;
 
-/// The task.
+/// Task of `place`: the job with its model and its candidates.
 pub(super) struct Task<'a> {
     pub job: &'a Job,
     pub fields: &'a Fields,
     /// Loads in job order.
     pub cases: Vec<LoadCaseOf<'a>>,
-    /// Their mesh errors; empty where they are not known.
+    /// Mesh errors of the loads. Empty if they are not known.
     pub errors: Vec<LoadCaseOf<'a>>,
     /// Column scales in job order.
     pub scales: Vec<f64>,
     /// Job index of each column of the candidates.
     pub order: Vec<usize>,
-    /// Where gauges can go.
+    /// Sites where gauges can go.
     pub sites: Vec<Site>,
     /// Named spots to choose from, if the job states a table of them. `sites` are then the sites of spots on shells.
     pub spots: Option<Vec<LaidSpot>>,
@@ -46,7 +46,7 @@ pub(super) struct Task<'a> {
 }
 
 impl<'a> Task<'a> {
-    /// Loads in the candidates' order, with their scales.
+    /// Returns the loads in the order of the candidates, with their scales.
     pub fn nuisance_first(&self) -> (Vec<LoadCaseOf<'a>>, Vec<f64>) {
         self.order
             .iter()
@@ -54,19 +54,19 @@ impl<'a> Task<'a> {
             .unzip()
     }
 
-    /// Mesh errors in the candidates' order.
+    /// Returns the mesh errors in the candidates' order.
     pub fn errors_nuisance_first(&self) -> Vec<LoadCaseOf<'a>> {
         let order = self.order.iter();
         order.filter_map(|&l| self.errors.get(l).cloned()).collect()
     }
 
-    /// Noise of a gauge with what may be left of its mesh error, microstrain, 1 sd.
+    /// Returns the noise of a gauge including its possible remaining mesh error, microstrain, 1 sd.
     pub fn with_mesh_error(&self, gauge: &Gauge, noise: f64) -> f64 {
         let strain = (self.cases.as_slice(), self.errors.as_slice());
         noise.hypot(left_in_reading(gauge, strain, &self.scales) / MICROSTRAIN)
     }
 
-    /// Lays the gauges that stay and takes away the sites too close to them.
+    /// Places the gauges that stay installed, and removes the sites that are too close to them.
     ///
     /// # Errors
     /// Names that are no gauge's, gauges that can't be laid, gauges without strain.
@@ -212,7 +212,7 @@ impl<'a> Task<'a> {
         l
     }
 
-    /// The refusal of a placement as a fault of the job.
+    /// Returns the refusal of a placement as a fault of the job.
     pub fn refusal(&self, e: &PlaceError) -> Fault {
         let (mut wrong, mut remedy) = e.parts();
         let too_few = !matches!(e, PlaceError::Singular { .. });
@@ -233,7 +233,7 @@ impl<'a> Task<'a> {
 /// Operations that a proof may take: a second or two.
 const PROOF: f64 = 1e10;
 
-/// Where a site is.
+/// Returns the position of a site.
 pub(super) fn position(fields: &Fields, (shell, side): Site) -> Option<Vec3> {
     use crate::fe::shell_frame::{ShellPlace, shell_axes};
     let model = fields.model();

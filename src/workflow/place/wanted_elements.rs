@@ -9,8 +9,7 @@ use crate::placement::{Layout, Spec};
 
 /// Returns the gauges of a layout with one gauge on every wanted element; `None` if the job wants no elements.
 ///
-/// # Errors
-/// Elements that are no candidates, more of them than gauges, no place at that spacing.
+/// # Errors Elements that are not candidates, more wanted elements than gauges, no place at the stated spacing.
 pub(super) fn on_wanted(
     task: &Task,
     kind: &Kind,

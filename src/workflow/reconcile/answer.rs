@@ -19,7 +19,7 @@ use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Where simulation and measurement disagree, which effect is missing, and the model with the effect in it.
+/// Places where simulation and measurement disagree, the missing effects, and the model with these effects.
 #[derive(Serialize)]
 pub struct Reconciliation {
     /// The verdict.
@@ -36,7 +36,7 @@ pub struct Reconciliation {
     pub rivals: Vec<AlternativeSummary>,
     /// Difference between model and measurement on data that were not fitted.
     pub gap: GapFound,
-    /// Log evidence of the named set (or best attempt) less the log evidence of no effect.
+    /// Log evidence of the named set (or best attempt) minus the log evidence of no effect.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub evidence: Option<f64>,
     /// Squared residual over the allowed variance, per reading.
@@ -91,13 +91,13 @@ impl Reconciliation {
 pub struct EffectFound {
     /// Id with place.
     pub id: String,
-    /// Place alone.
+    /// Place without the id.
     #[serde(rename = "where")]
     pub place: Option<String>,
     /// Size of the effect; `None` for a cause.
     #[serde(flatten)]
     pub size: Option<SizeFound>,
-    /// Whether the size is one that occurs in practice.
+    /// Whether such a size occurs in practice.
     pub plausible: bool,
     /// Response to a cause, by channel.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -113,9 +113,9 @@ pub struct SizeFound {
     pub sigma: Option<f64>,
     /// Unit.
     pub unit: String,
-    /// All parameters (of a kind of amplitude: its root mean square over runs).
+    /// All parameters. For a kind of amplitude it is the root mean square over runs.
     pub sizes: Vec<f64>,
-    /// One standard deviation of each.
+    /// One standard deviation of each parameter.
     pub sigmas: Vec<f64>,
 }
 
@@ -136,7 +136,7 @@ pub struct AlternativeSummary {
     /// Places, joined by ` + `; `None` for causes.
     #[serde(rename = "where")]
     pub place: Option<String>,
-    /// Log evidence of the named set less the log evidence of this explanation.
+    /// Log evidence of the named set minus the log evidence of this explanation.
     pub evidence_difference: f64,
     /// Gap with this explanation.
     pub gap_after: f64,
@@ -185,7 +185,7 @@ pub struct ReducedChi2 {
     pub before: f64,
     /// Fitted data, model with the effects.
     pub after: f64,
-    /// Held-out runs, model with the effects; for strain only, and only if runs were held out.
+    /// Gap on held-out runs, for the model with the effects. Only for strain, and only if runs were held out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub held_out: Option<f64>,
 }
@@ -233,7 +233,7 @@ pub struct StrainPart {
     /// Predictions with the named effects (or best attempt), without their parts that differ from run to run, microstrain, `n_runs x n_gauges`.
     #[serde(skip)]
     pub predicted_after: Vec<f64>,
-    /// Deck and strain fields; `None` where S was given.
+    /// Deck and strain fields. `None` if S was given.
     #[serde(skip)]
     pub fields: Option<Fields>,
     /// Positions of the stiffnesses of the named set (or best attempt) on the deck's model.
@@ -246,9 +246,9 @@ pub struct StrainPart {
 pub struct MotionPart {
     /// Description of where the gap of the analyst's model is largest.
     pub sits: String,
-    /// By equation: band, time and size of the motion at which the gap is largest.
+    /// Band, time and size of the motion at which the gap is largest, for each equation.
     pub sits_at: Vec<GapSits>,
-    /// By equation, with the named effects (or best attempt): band, time and size of the motion at which the gap is largest.
+    /// Band, time and size of the motion at which the gap is largest, for each equation, with the named effects (or best attempt).
     pub sits_after: Vec<GapSits>,
     /// Joint covariance of the sizes of the named set (or best attempt), by rows.
     pub covariance: Vec<Vec<f64>>,
@@ -272,13 +272,13 @@ pub struct MotionPart {
 pub struct WheelMisfit {
     /// Channel.
     pub channel: String,
-    /// By the analyst's model.
+    /// Misfit with the analyst's model.
     pub before: f64,
-    /// With the named effects.
+    /// Misfit with the named effects.
     pub after: Option<f64>,
 }
 
-/// Simulation of what was named.
+/// Simulation of the named effects.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Simulation {
@@ -308,7 +308,7 @@ pub struct SimulationFound {
     pub metric: String,
     /// Kind of data on which both models were simulated.
     pub judged_by: Proof,
-    /// By sensor.
+    /// Result for each sensor.
     pub channels: Vec<SimulatedRow>,
     /// Parameters of the named model.
     pub parameters: Vec<SimulatedParameter>,
@@ -327,14 +327,14 @@ pub struct SimulatedRow {
     pub after: f64,
 }
 
-/// A parameter by both ways.
+/// A parameter, estimated by regression and by simulation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SimulatedParameter {
     /// Name.
     pub name: String,
-    /// By regression.
+    /// Value from the regression.
     pub by_regression: f64,
-    /// By simulation.
+    /// Value from the simulation.
     pub by_simulation: f64,
 }
 
@@ -363,7 +363,7 @@ impl From<SimulatedGap> for SimulationFound {
     }
 }
 
-/// The first of a list where it is a number.
+/// Returns the first entry of a list, if it is a number.
 pub(super) fn first_finite(list: &[f64]) -> Option<f64> {
     list.first().copied().filter(|x| x.is_finite())
 }

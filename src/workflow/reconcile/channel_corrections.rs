@@ -31,7 +31,7 @@ impl Undo {
     }
 }
 
-/// Name of a place, and change of the strain of a mass's weight there by the written deck, microstrain per kg by gauge.
+/// Name of a place, and the change that the written deck causes in the strain from the weight of a mass there, microstrain per kg by gauge.
 pub(super) type Weight = (String, Vec<f64>);
 
 /// Returns the corrections of the named effects; `deck` is present for a job with a deck. Returns `None` if entries of a job can't express them. This
@@ -151,7 +151,7 @@ fn is_corrected(job: &Job, frame: &StrainFrame, gauge: usize) -> bool {
     name.is_some_and(|name| job.corrections.iter().any(|c| is_of(c, name)))
 }
 
-/// A correction of a job.
+/// Returns a correction of a job.
 pub(super) fn entry(c: &ReadingCorrection) -> Value {
     let mut t = Table::new();
     t.insert("gauge".into(), Value::String(c.gauge.clone()));

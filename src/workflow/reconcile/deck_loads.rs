@@ -22,9 +22,9 @@ const SIDE_COMPONENTS: [Component; 5] = [
 
 /// Loads to solve for: columns of the influence matrix, side loads, masses, heat, nuisance loads.
 pub(super) struct SignatureLoads {
-    /// All of them, in this order.
+    /// All loads, in the order of the columns.
     pub(super) loads: Vec<UnitLoad>,
-    /// The first of them.
+    /// Loads that are columns of S. They are the first of `loads`.
     pub(super) columns: Vec<UnitLoad>,
     /// Name and grid of each load that is asked for.
     wheels: Vec<(String, GridIx)>,
@@ -41,7 +41,7 @@ pub(super) struct SignatureLoads {
 
 impl SignatureLoads {
     /// # Errors
-    /// Loads that no model can be put under, grids that the deck lacks.
+    /// Loads that cannot be applied to a model, or grids that the deck lacks.
     pub(super) fn from_job(job: &Job, heated: &UnitTemperatureModel) -> Result<Self, Faults> {
         let model = &heated.model;
         let JobLoads {
@@ -93,7 +93,7 @@ impl SignatureLoads {
         })
     }
 
-    /// Names, places and signatures of the loads, `column(c)` the strain of load `c`; gauges and influence are left to the caller.
+    /// Returns names, places and signatures of the loads. `column(c)` is the strain of load `c`. The caller adds gauges and influence.
     pub(super) fn part(
         &self,
         job: &Job,
@@ -179,7 +179,7 @@ fn grid_of(job: &Job, model: &Model, id: u32) -> Result<GridIx, Faults> {
     model.grid_ix(id).ok_or_else(wrong)
 }
 
-/// `size` kN or kN m at a grid, in the deck's units.
+/// Returns the unit load of `size` kN or kN m at a grid, in the deck's units.
 pub(super) fn unit(job: &Job, grid: GridIx, component: Component, size: f64) -> UnitLoad {
     let v = Vec3::from(component.vector(size * KILO / job.units.si(component.quantity())));
     let (force, moment) = if component.is_force() {
@@ -307,7 +307,7 @@ fn scale_load(load: &UnitLoad, factor: f64) -> UnitLoad {
     }
 }
 
-/// Has the job a nuisance load of this component at the grid, in the basic frame?
+/// Returns whether the job has a nuisance load of this component at the grid, in the basic frame.
 fn has_nuisance(job: &Job, model: &Model, at: GridIx, component: Component) -> bool {
     job.loads.iter().any(|l| match l.acts {
         LoadActs::AtGrid {

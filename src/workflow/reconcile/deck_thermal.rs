@@ -15,18 +15,18 @@ use crate::reconcile::effect::{Extension, Nuisance};
 use std::collections::HashMap;
 use toml::{Table, Value};
 
-/// Apparent strain below which a degree is nothing, microstrain.
+/// Apparent strain per degree below which temperature has no effect, microstrain.
 pub(super) const NOTHING: f64 = 0.02;
 
 /// The model with temperature sets of one degree, and the unit loads that use them.
 pub(super) struct UnitTemperatureModel {
-    /// The deck's model, synthetic sets added.
+    /// Model of the deck, with added temperature sets.
     pub(super) model: Model,
     /// Strain for one degree everywhere, if materials expand differently.
     pub(super) even: Option<UnitLoad>,
-    /// One degree between the coldest and the warmest place of the deck's set.
+    /// Strain for a temperature pattern with one degree between the coldest and the warmest place of the deck's set.
     pub(super) pattern: Option<UnitLoad>,
-    /// That pattern.
+    /// Temperatures of this pattern at the grids.
     shape: Option<TemperatureSet>,
 }
 

@@ -24,14 +24,14 @@ pub(super) fn factor_at(source: &EffectSource, size: f64) -> Option<f64> {
     }
 }
 
-/// The hypotheses of `[[reconcile.effect]]`, in job order.
+/// Returns the hypotheses of `[[reconcile.effect]]`, in job order.
 pub(super) fn effects(job: &Job) -> &[DescribedEffect] {
     job.reconcile
         .as_ref()
         .map_or(&[], |r| r.described.as_slice())
 }
 
-/// Signatures of the hypotheses that a table gives; an `edit` needs a deck.
+/// Returns the signatures of the hypotheses with a table. An `edit` requires a deck.
 ///
 /// # Errors
 /// Tables that can't be read, an edit where there is no deck.
@@ -58,7 +58,7 @@ pub(super) fn from_tables(
     effects(job).iter().map(one).collect()
 }
 
-/// Reads the tables of the hypotheses and drops them.
+/// Reads the tables of the hypotheses as a check, and discards them.
 ///
 /// # Errors
 /// Tables that can't be read, gauges that a table lacks.
@@ -144,7 +144,7 @@ impl DeckFrame {
         Ok(out)
     }
 
-    /// Change of the influence matrix by an edit of the deck at a size.
+    /// Returns the change of the influence matrix by an edit of the deck at a size.
     pub(super) fn described_change(
         &self,
         job: &Job,

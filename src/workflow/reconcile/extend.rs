@@ -63,12 +63,12 @@ fn out_of_reach(job: &Job, e: &NamedEffect, deck: Option<&DeckFrame>) -> Option<
     }
 }
 
-/// Is the hypothesis an edit of the deck?
+/// Returns whether the hypothesis is an edit of the deck.
 fn is_edit(job: &Job, id: &str) -> bool {
     effect_of(job, id).is_some_and(|e| !matches!(e.source, EffectSource::Signature(_)))
 }
 
-/// The extended model; `None`, with a finding for each effect that can't be put into it, where there is one.
+/// Returns the extended model. If an effect can't be added, it returns `None`, with a finding for each such effect.
 ///
 /// # Errors
 /// A job that can't be read again.

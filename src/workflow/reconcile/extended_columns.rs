@@ -56,12 +56,12 @@ fn quantity_left_out(load: &str) -> Quantity {
     component.map_or(Quantity::Force, Component::quantity)
 }
 
-/// Size of a load that was left out, kN or kN m, in the units of the job.
+/// Returns the size of a load that was left out, kN or kN m, in the units of the job.
 pub(super) fn typical_size(job: &Job, load: &str, kilo: f64) -> f64 {
     kilo * KILO / job.units.si(quantity_left_out(load))
 }
 
-/// Factors from the tables of the job to the frame: of the payload's columns.
+/// Returns the factors on the columns of the payload, from the units of the job's tables to the units of the frame.
 pub fn payload_factors(job: &Job) -> [f64; N_PAYLOAD_COLUMNS] {
     job.sensitivity.as_ref().map_or([1.0; 4], |given| {
         payload_scale(1.0 / given.per.mass.si, 1.0 / given.per.length.si)

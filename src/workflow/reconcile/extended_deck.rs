@@ -15,7 +15,7 @@ use crate::units::KILO;
 use nastran::bdf::{Edits, Field, MemoryLoader, ToFields, format_card, read_deck, write_edited};
 use nastran::cards::{Bush, Orientation, Pbush};
 
-/// A stiffness that was named: what it is one of, place, size.
+/// An identified stiffness: its kind, place and size.
 pub(super) type NamedStiffness = (StiffnessOf, String, f64);
 
 impl DeckFrame {
@@ -175,7 +175,7 @@ impl DeckFrame {
     /// the model accelerates with the model. `None` if the grid does not exist.
     ///
     /// # Errors
-    /// What stops the solver.
+    /// The faults that stop the solver.
     pub(super) fn weight_gains(
         &self,
         job: &Job,

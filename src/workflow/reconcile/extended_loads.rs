@@ -8,7 +8,7 @@ use crate::units::{KILO, number};
 use nastran::bdf::{Field, format_card};
 use toml::{Table, Value};
 
-/// A component at a grid, and its size: kN or kN m.
+/// A load component at a grid, with its size in kN or kN m.
 pub(super) struct SideLoad {
     name: String,
     grid: u32,
@@ -33,7 +33,7 @@ const RECORDED_MASS_REL: f64 = 0.02;
 /// Error of a recorded payload place, m, one standard deviation.
 const RECORDED_PLACE_M: f64 = 0.05;
 
-/// Side loads of the effects, by the grids of the job's wheels.
+/// Returns the side loads of the effects, by the grids of the job's wheels.
 pub(super) fn side_loads(job: &Job, effects: &[NamedEffect]) -> Vec<SideLoad> {
     let mut out = Vec::new();
     for e in effects {
@@ -66,7 +66,7 @@ pub(super) fn side_loads(job: &Job, effects: &[NamedEffect]) -> Vec<SideLoad> {
     out
 }
 
-/// Returns the sizes of side loads as text, one a component.
+/// Returns the sizes of side loads as text, one for each component.
 pub(super) fn sizes_by_component(sizes: &[f64]) -> String {
     let word = |(c, size): (&Component, &f64)| {
         let unit = match c.is_force() {
@@ -79,7 +79,7 @@ pub(super) fn sizes_by_component(sizes: &[f64]) -> String {
     list.join(", ")
 }
 
-/// The component that a load's name begins or ends with; `FZ` where it has none (a temperature).
+/// Returns the component at the beginning or end of a load's name. It is `FZ` if the name has none (a temperature).
 pub(super) fn component_word(name: &str) -> &'static str {
     let has = |c: &Component| name.starts_with(c.name()) || name.ends_with(c.name());
     COMPONENTS
@@ -95,7 +95,7 @@ fn grid_of_wheel(job: &Job, wheel: &str) -> Option<u32> {
     })
 }
 
-/// `[[load]]` entries of the side loads and of the payload, `role = "nuisance"`.
+/// Returns the `[[load]]` entries of the side loads and of the payload, `role = "nuisance"`.
 pub(super) fn entries(job: &Job, frame: &StrainFrame, side: &[SideLoad]) -> Vec<Value> {
     let entry = |name: &str, grid: u32, component: Component, size: f64| {
         let mut t = Table::new();
@@ -139,7 +139,7 @@ pub(super) fn entries(job: &Job, frame: &StrainFrame, side: &[SideLoad]) -> Vec<
     out
 }
 
-/// FORCE and MOMENT cards of load set `sid` with the sizes that were found.
+/// Returns the FORCE and MOMENT cards of load set `sid` with the sizes that were found.
 pub(super) fn cards(job: &Job, sid: u32, side: &[SideLoad]) -> String {
     let mut out = String::new();
     for s in side {

@@ -7,18 +7,18 @@
 use serde::{Serialize, Serializer};
 use std::path::Path;
 
-/// The deck with effects in it.
+/// File name of the deck with effects.
 pub const DECK: &str = "deck_extended.bdf";
-/// Readings, corrected.
+/// File name of the corrected readings.
 pub const STRAIN: &str = "strain_extended.csv";
-/// S with effects in it.
+/// File name of S with effects.
 pub const SENSITIVITY: &str = "sensitivity_extended.csv";
-/// Signature of the payload.
+/// File name of the signature of the payload.
 pub const PAYLOAD: &str = "payload_extended.csv";
-/// Recorded loads and payload of each run.
+/// File name of the recorded loads and payload of each run.
 pub const RUNS: &str = "runs_extended.csv";
 
-/// Job with the named effects in it, and the content of its files; in `result.json` its path.
+/// Job with the named effects, and the content of its files. `result.json` contains its path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExtendedModel {
     /// File name of the job.
@@ -42,7 +42,7 @@ pub struct ExtendedModel {
 }
 
 impl ExtendedModel {
-    /// A job named `name` of this text, in which no file changes.
+    /// Creates a job named `name` of this text, in which no file changes.
     pub(super) fn from_job_text(name: &'static str, job_text: String) -> Self {
         Self {
             name,
@@ -75,11 +75,11 @@ impl Serialize for ExtendedModel {
 pub struct ReadingCorrection {
     /// Gauge.
     pub gauge: String,
-    /// Reading over strain, sign included.
+    /// Reading divided by strain, with sign.
     pub factor: f64,
     /// Reading without strain, microstrain.
     pub offset_microstrain: f64,
-    /// Gauge that this gauge's channel is exchanged with.
+    /// Gauge whose channel is exchanged with the channel of this gauge.
     pub exchanged_with: Option<String>,
     /// Rotation of the gauge, degrees.
     pub angle_deg: f64,
@@ -101,10 +101,10 @@ pub struct ExtendedRuns {
 pub struct ExtendedS {
     /// Influence of loads and payload, microstrain, `n_gauges x n_columns`.
     pub influence: Vec<f64>,
-    /// Whether the influence is another than the job's: then the payload's signature is, too.
+    /// Whether the influence differs from the influence of the job. The payload signature then differs as well.
     pub changed: bool,
     /// Other loads of the job: name, microstrain per unit by gauge.
     pub known: Vec<(String, Vec<f64>)>,
-    /// Loads that were left out: name, microstrain per kN or kN m (or degree) by gauge, usual size in these.
+    /// Loads that were left out: name, microstrain per kN, kN m or degree by gauge, and usual size in the same unit.
     pub left_out: Vec<(String, Vec<f64>, f64)>,
 }

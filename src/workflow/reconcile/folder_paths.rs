@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-/// `to` as seen from `from`, with forward slashes; absolute where there is no common root.
+/// Returns the path of `to` relative to `from`, with forward slashes. It is absolute if there is no common root.
 pub(crate) fn relative_path(from: &Path, to: &Path) -> String {
     let absolute = |p: &Path| {
         let p = if p.as_os_str().is_empty() {

@@ -8,11 +8,11 @@ use crate::sensitivity::{GaugeNoise, Load, Sensitivity, Uncertainty};
 use crate::strain_chain::stated_noise;
 use crate::units::{KILO, MICROSTRAIN};
 
-/// S as every command has it, with the row of each channel and the scale of each load.
+/// S with the row of each channel and the scale of each load.
 pub(super) struct FrameColumns {
     sensitivity: Sensitivity,
     rows: Vec<usize>,
-    /// By load: kN or kN m in a job unit, over microstrain.
+    /// Scale of each load: kN or kN m in a job unit, divided by microstrain.
     scales: Vec<f64>,
 }
 
@@ -58,7 +58,7 @@ impl FrameColumns {
         loads.filter(|(_, l)| l.wanted).map(|(k, _)| k)
     }
 
-    /// Name and column of each wanted load, in the order of S.
+    /// Returns the name and column of each wanted load, in the order of S.
     pub(super) fn wanted_columns(&self) -> Vec<(String, Vec<f64>)> {
         let one = |k: usize| (self.sensitivity.loads[k].name.clone(), self.column(k));
         self.wanted_loads().map(one).collect()
@@ -82,7 +82,7 @@ impl FrameColumns {
         Some(of_channels.of_loads(&loads))
     }
 
-    /// Returns the noise of the channels as the job states it; `None` where all have the same, independent of each other.
+    /// Returns the noise of the channels as the job states it. `None` if all channels have equal, independent noise.
     ///
     /// # Errors
     /// Returns the faults of [`stated_noise`].

@@ -14,7 +14,7 @@ use crate::stop::Stop;
 use crate::strain_chain::built_in_solver::support_of_job;
 use crate::units::MICROSTRAIN;
 
-/// Influence of the columns, `n_gauges x n_columns`, zero for columns without a load.
+/// Returns the influence of the columns, `n_gauges x n_columns`, zero for columns without a load.
 pub(super) fn influence(
     job: &Job,
     model: &Model,
@@ -39,7 +39,7 @@ pub(super) fn blank_payload(job: &Job, model: &Model, influence: &mut [f64], n_c
     }
 }
 
-/// Microstrain per unit of each case of `range`, `n_gauges x n_cases` by rows; NaN where there is no strain.
+/// Returns the microstrain per unit of each case of `range`, `n_gauges x n_cases` by rows. NaN without strain.
 pub(super) fn readings(
     gauges: &[Gauge],
     solution: &Solution,
@@ -58,7 +58,7 @@ pub(super) fn readings(
     out
 }
 
-/// The model under these loads.
+/// Returns the model under these loads.
 ///
 /// # Errors
 /// Faults of the solver.
@@ -97,8 +97,8 @@ pub(super) fn solve_each<T>(
     solved.map_err(|e| of_solver(job, &e))
 }
 
-/// Returns the changes of these readings on variants of the model: by variant, microstrain, `n_readings x n_loads` by rows. They are exact for
-/// bushes and of first order for shells. `None` where no single factor serves the variants.
+/// Returns the changes of these readings on variants of the model: by variant, microstrain, `n_readings x n_loads` by rows. They are exact for bushes
+/// and of first order for shells. `None` if the variants need more than one factor.
 ///
 /// # Errors
 /// Faults of the solver.
@@ -123,7 +123,7 @@ pub(super) fn small_changes(
     Ok(changes.map(|all| all.into_iter().map(in_microstrain).collect()))
 }
 
-/// Displacements of the model under these loads and for these readings.
+/// Returns the displacements of the model under these loads and for these readings.
 ///
 /// # Errors
 /// Faults of the solver.

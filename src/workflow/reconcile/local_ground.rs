@@ -13,7 +13,7 @@ const WIDER: usize = 3;
 /// Smallest ratio of all shells to the shells of a region. A larger region is the structure, not a place in it.
 const FEW: usize = 4;
 
-/// Where regions may lie.
+/// Shells on which regions may be placed.
 pub(super) struct Ground<'a> {
     pub(super) model: &'a Model,
     /// Middles of the shells.
@@ -67,7 +67,7 @@ impl<'a> Ground<'a> {
         })
     }
 
-    /// Distance of a gauge from the nearest that disagrees.
+    /// Returns the distance of a gauge from the nearest gauge that disagrees.
     pub(super) fn distance_of_gauge(&self, gauge: usize) -> f64 {
         let Some(at) = self.places.get(gauge) else {
             return f64::INFINITY;
@@ -144,7 +144,7 @@ impl<'a> Ground<'a> {
             .collect()
     }
 
-    /// Regions round grids and shells about a region's middle, `step` of a radius apart, narrower, as wide and wider.
+    /// Returns the regions round grids and shells about a region's middle, `step` of a radius apart, narrower, as wide and wider.
     pub(super) fn regions_near(&self, r: &Region, step: f64, n: usize) -> Vec<Region> {
         let reach = (1.5 * step * r.radius).max(0.8 * self.element);
         let grids = self.model.grids.iter().map(|g| g.x);

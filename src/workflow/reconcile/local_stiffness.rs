@@ -163,7 +163,7 @@ impl DeckFrame {
         })
     }
 
-    /// Shells of the region at `place`; none where there is no such region.
+    /// Returns the shells of the region at `place`. The list is empty if there is no such region.
     pub(super) fn shells_of_region(&self, place: &str) -> Vec<usize> {
         let region = self.regions.iter().find(|r| r.place == place);
         region.map_or_else(Vec::new, |r| r.shells.clone())
@@ -219,7 +219,7 @@ fn keep_distinct_places(all: Vec<TrialRegion>, n: usize) -> Vec<TrialRegion> {
     out
 }
 
-/// Readings less prediction over the runs that are fitted, each over its own standard deviation.
+/// Readings minus prediction over the runs that are fitted, each over its own standard deviation.
 struct Residual {
     /// Run, gauge, residual, weight.
     entries: Vec<(usize, usize, f64, f64)>,

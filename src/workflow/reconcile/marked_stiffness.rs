@@ -23,7 +23,7 @@ pub struct MarkedStiffness {
 }
 
 impl DeckFrame {
-    /// The stiffnesses of `effects` that lie somewhere on the model.
+    /// Returns the stiffnesses of `effects` with a position on the model.
     pub(super) fn mark_stiffnesses(
         &self,
         job: &Job,

@@ -308,14 +308,14 @@ impl<'a> Tables<'a> {
     }
 }
 
-/// Has the job a nuisance load of this name?
+/// Returns whether the job has a nuisance load of this name.
 fn is_nuisance(job: &Job, name: &str) -> bool {
     job.loads
         .iter()
         .any(|l| l.name == name && l.role == LoadRole::Nuisance)
 }
 
-/// Factors of the payload's columns, weight, times dx, times dy, times dx dy, from a table's units to the frame's kg and m.
+/// Returns the factors of the payload's columns, weight, times dx, times dy, times dx dy, from a table's units to the frame's kg and m.
 pub(super) fn payload_scale(per_kg: f64, per_m: f64) -> [f64; N_PAYLOAD_COLUMNS] {
     [
         per_kg,

@@ -87,7 +87,7 @@ pub fn reconcile(job: &Job, cx: &Context) -> Result<Outcome<Reconciliation>, Fau
     ))
 }
 
-/// Reads what a `[reconcile]` compares, as far as no model is solved for it, and drops it.
+/// Reads the data of a `[reconcile]` without solving a model, and discards them.
 ///
 /// # Errors
 /// Faults of the job and of the files it names.

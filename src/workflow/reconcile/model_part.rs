@@ -28,7 +28,7 @@ pub(super) struct ModelPart {
     pub(super) scatter: Vec<Scatter>,
     /// Error of a calibrated S.
     pub(super) learnt: Option<Uncertainty>,
-    /// Noise of the channels, where it differs or is correlated.
+    /// Noise of the channels, if it differs or is correlated.
     pub(super) gauge_noise: Option<GaugeNoise>,
     /// Nominal place of the payload, m.
     pub(super) payload_origin: [f64; 2],

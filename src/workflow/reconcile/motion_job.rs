@@ -8,7 +8,7 @@ use toml::{Table, Value};
 /// File name of the job.
 pub(super) const JOB: &str = "extended_job.toml";
 
-/// Whether a job can state the corrections: one slip, one low-pass, one line a channel.
+/// Returns whether a job can state the corrections. A channel may have one slip, one low-pass filter and one line.
 pub(super) fn can_state(outcome: &MotionOutcome) -> bool {
     let one = |a: &Adjustment| a.slips.len() <= 1 && a.lags.len() <= 1 && a.lines_hz.len() <= 1;
     outcome.corrections.iter().all(one)

@@ -9,7 +9,7 @@ use crate::reconcile::Observations;
 use crate::recovery::Readings;
 use crate::units::MICROSTRAIN;
 
-/// Readings of the strain file and of a held-out file, runs by name.
+/// Returns the readings of the strain file and of a held-out file, runs by name.
 pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, Faults> {
     let Some(measured) = &job.measured else {
         return Err(Faults::from(Fault::new(
@@ -89,7 +89,7 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
 /// Tests, as `recover` does, whether readings can be strain in their stated unit. Impossible readings become missing readings.
 ///
 /// # Errors
-/// One fault where no reading is left.
+/// One fault if no reading is left.
 fn test_readings(
     work: &mut Work,
     measured: &Measured,

@@ -6,7 +6,7 @@ use crate::job::Job;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// The job's text as it was read.
+/// Returns the original text of the job.
 ///
 /// # Errors
 /// A file that can't be read.

@@ -12,7 +12,7 @@ pub(super) struct RefinedGaugeModel {
 
 impl RefinedGaugeModel {
     /// # Errors
-    /// Why no finer mesh was made.
+    /// The reason why no finer mesh was made.
     pub(super) fn refine_model(model: &Model, laid: [&Vec<Gauge>; 3]) -> Result<Self, String> {
         let refined = refined_mesh(model, laid.first().map(|g| g.as_slice()))?;
         let lost = || "a gauge is not on the refined mesh".to_owned();
@@ -26,7 +26,7 @@ impl RefinedGaugeModel {
         Ok(Self { refined, laid })
     }
 
-    /// Lays gauges of the deck's model on the finer model; `None` if one is not on it.
+    /// Places gauges of the deck's model on the finer model. `None` if a gauge is not on it.
     pub(super) fn lay(&self, gauges: &[Gauge], model: &Model) -> Option<Vec<Gauge>> {
         lay_on(gauges, model, &self.refined)
     }

@@ -5,10 +5,10 @@ use crate::model::Vec3;
 /// Shells within a radius of a point.
 #[derive(Clone, Debug)]
 pub(super) struct Region {
-    /// Id of the shell in its middle.
+    /// Id of the shell in the middle of the region.
     pub(super) place: String,
     pub(super) centre: Vec3,
     pub(super) radius: f64,
-    /// Indices of its shells.
+    /// Indices of the shells of the region.
     pub(super) shells: Vec<usize>,
 }

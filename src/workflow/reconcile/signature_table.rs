@@ -65,7 +65,7 @@ impl SignatureTable {
             .collect()
     }
 
-    /// Notes that a column is known, and not wanted.
+    /// Marks a column as known but not wanted.
     pub(super) fn leave(&self, name: &str) {
         if let Some(c) = self.table.column(&[name]) {
             self.mark(c);
@@ -84,12 +84,12 @@ impl SignatureTable {
         note_unread(inputs, &self.table, |c| read[c], &[]);
     }
 
-    /// Does the column exist?
+    /// Returns whether the column exists.
     pub(super) fn has(&self, name: &str) -> bool {
         self.table.column(&[name]).is_some()
     }
 
-    /// Column `name` times `factor`, by gauge.
+    /// Returns the column `name` times `factor`, by gauge.
     pub(super) fn column(&self, name: &str, factor: f64) -> Result<Vec<f64>, Faults> {
         let Some(c) = self.table.column(&[name]) else {
             let found = self.table.header.join(", ");

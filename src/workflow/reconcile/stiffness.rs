@@ -48,7 +48,7 @@ fn joints(job: &Job, model: &Model) -> Vec<u32> {
 }
 
 impl DeckFrame {
-    /// Signatures of all zones and joints.
+    /// Returns the signatures of all zones and joints.
     pub(super) fn signatures(&self, job: &Job) -> Result<Vec<StiffnessSignature>, Faults> {
         let mut wanted: Vec<(StiffnessOf, String, Vec<f64>, f64)> = self
             .zones

@@ -19,7 +19,7 @@ pub(super) enum DeckStiffnessChange {
 }
 
 impl DeckFrame {
-    /// Change of the influence matrix by each change of the deck, from solutions of the changed models on the mesh of the deck.
+    /// Returns the change of the influence matrix by each change of the deck, from solutions of the changed models on the mesh of the deck.
     pub(super) fn changes_by(
         &self,
         job: &Job,
@@ -89,7 +89,7 @@ impl DeckFrame {
         model
     }
 
-    /// Ids of the PSHELL cards that are wanted.
+    /// Returns the ids of the PSHELL cards that are wanted.
     pub(super) fn shell_properties(&self, wanted: impl Fn(u32) -> bool) -> Vec<u32> {
         let cards = self.fields.deck.deck.cards.pshells.iter();
         cards.map(|p| p.card.id).filter(|id| wanted(*id)).collect()

@@ -72,7 +72,7 @@ pub(super) fn edit(table: &mut Table, job: &Job, found: &StrainPart, extended: &
     drop_accepted(table, &accepted);
 }
 
-/// Usual change of a wheel force, kN, where uneven ground was named.
+/// Returns the usual change of a wheel force, kN, if uneven ground was named.
 pub(super) fn ground_found(effects: &[NamedEffect]) -> Option<f64> {
     let of = |e: &NamedEffect| match &e.extension {
         Extension::NuisanceLoads {

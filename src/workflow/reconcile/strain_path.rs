@@ -179,7 +179,7 @@ fn take_readings_of_noise(work: &mut Work) -> Vec<Finding> {
 /// Searches the effects and returns the verdict on the frame.
 ///
 /// # Errors
-/// One fault where the work is stopped: the search was cut short then.
+/// One fault if the work is stopped before the search is complete.
 fn search_effects(
     work: &mut Work,
     frame: &StrainFrame,

@@ -173,7 +173,7 @@ impl Reconciliation {
         }
     }
 
-    /// How sure the identified set is.
+    /// Returns the confidence in the identified set, in words.
     fn confidence_in_words(&self) -> String {
         let strain = self.strain.as_ref();
         strain.map_or_else(String::new, |s| {

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 /// Returns the zones that the job states, else each shell property with gauges, by its name in the deck.
 ///
 /// # Errors
-/// Names that no property of the deck has, or several.
+/// Names that no property of the deck or more than one property has.
 pub(super) fn zones(
     job: &Job,
     model: &Model,

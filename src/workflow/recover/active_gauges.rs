@@ -11,11 +11,11 @@ use crate::measured::record::Record;
 use crate::sensitivity::Sensitivity;
 use crate::series::constant_columns::{ColumnContents, Gives};
 
-/// A record whose columns are the gauges of S, every one of which gives something somewhere.
+/// A record with the gauges of S as columns. Every gauge has a reading at some time.
 pub(super) struct ActiveGaugeRecord {
     pub record: Record,
     pub sensitivity: Sensitivity,
-    /// Subtracted from readings, strain by gauge.
+    /// Zero that is subtracted from readings, strain by gauge.
     pub zero: Vec<f64>,
 }
 
@@ -74,7 +74,7 @@ pub(super) fn exclude_silent_gauges(
     })
 }
 
-/// Returns the warning of gauges that give nothing, or one and the same value, in the whole record.
+/// Returns the warning on gauges without a reading, or with one constant value, in the whole record.
 pub(crate) fn silent_throughout(names: &[&str], gives: Gives) -> Option<Finding> {
     let what = match gives {
         Gives::Signal => return None,

@@ -34,19 +34,19 @@ pub struct RecoveredLoads {
     /// Rank and condition numbers of S.
     #[serde(flatten)]
     pub conditioning: Conditioning,
-    /// Loads of what was measured.
+    /// Recovered loads of the runs or of the record.
     #[serde(flatten)]
     pub states: States,
     /// Changes of the readings by `[conditioning]`, by step and gauge.
     #[serde(rename = "conditioning", skip_serializing_if = "Vec::is_empty")]
     pub reading_conditioning: Vec<ConditioningStep>,
-    /// Gauges that no load was estimated from, each compared with its prediction.
+    /// Gauges from which no load was estimated, each compared with its prediction.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub validation: Vec<ValidationGauge>,
-    /// Recovered against recorded loads, where some were recorded.
+    /// Comparison of recovered with recorded loads, if loads were recorded.
     #[serde(flatten)]
     pub comparison: Comparison,
-    /// Loads by section and over the duty cycle, where the job has sections.
+    /// Loads by section and over the duty cycle, if the job has sections.
     #[serde(flatten)]
     pub sections: Option<Sections>,
     /// Mesh error of the deck by gauge, if the job requests it. It is subtracted from S, and its possible remainder is part of the uncertainty.
@@ -89,7 +89,7 @@ impl Answer for RecoveredLoads {
 }
 
 impl RecoveredLoads {
-    /// Loads of static runs; `None` where a record was measured.
+    /// Returns the loads of static runs. `None` if a record was measured.
     pub fn runs(&self) -> Option<&RecoveredRuns> {
         match &self.states {
             States::Runs(runs) => Some(runs),
@@ -97,7 +97,7 @@ impl RecoveredLoads {
         }
     }
 
-    /// Loads of a record; `None` where runs were measured.
+    /// Returns the loads of a record. `None` if runs were measured.
     pub fn record(&self) -> Option<&RecoveredRecord> {
         match &self.states {
             States::Record(record) => Some(record),
@@ -116,18 +116,18 @@ pub enum States {
     Record(Box<RecoveredRecord>),
 }
 
-/// Loads of the static runs of a job, sums of loads among them.
+/// Loads of the static runs of a job, including sums of loads.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecoveredRuns {
-    /// By run, then by load.
+    /// Loads of each run.
     pub loads: Vec<RecoveredLoad>,
     /// Root mean square of all residuals over their degrees of freedom.
     pub residual_rms_microstrain: f64,
-    /// How well each gauge agrees.
+    /// Agreement of each gauge.
     pub gauges: Vec<GaugeResidual>,
-    /// How well each run agrees.
+    /// Agreement of each run.
     pub runs: Vec<RunFit>,
-    /// Readings of the runs, zero, reference and known payload taken into account.
+    /// Readings of the runs, with zero, reference and known payload taken into account.
     #[serde(skip)]
     pub readings: Vec<Readings>,
     /// The estimates, job units.
@@ -136,7 +136,7 @@ pub struct RecoveredRuns {
     /// Loads, then combinations.
     #[serde(skip)]
     pub names: Vec<String>,
-    /// Units of both.
+    /// Units of loads and combinations.
     #[serde(skip)]
     pub units: Vec<LoadUnits>,
 }
@@ -154,27 +154,27 @@ pub struct RecoveredLoad {
     pub sigma: f64,
     /// Lower end of the 95 % interval.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub high: f64,
     /// Report unit.
     pub unit: String,
 }
 
 impl RecoveredLoad {
-    /// Half width of the 95 % interval.
+    /// Returns the half width of the 95 % interval.
     pub fn half_width(&self) -> f64 {
         (self.high - self.low) / 2.0
     }
 }
 
-/// A gauge over all runs, or over a record.
+/// Residual of a gauge over all runs, or over a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GaugeResidual {
     /// Gauge.
     pub name: String,
     /// Root mean square residual.
     pub residual_rms_microstrain: f64,
-    /// How much it decides its own prediction, 0 to 1.
+    /// Influence of the gauge on its own prediction, 0 to 1.
     pub leverage: f64,
 }
 
@@ -183,7 +183,7 @@ pub struct GaugeResidual {
 pub struct RunFit {
     /// Run.
     pub run: String,
-    /// Sum of squares over stated errors.
+    /// Sum of squares of the residuals, relative to the stated errors.
     pub chi2: f64,
     /// Degrees of freedom.
     pub degrees_of_freedom: usize,
@@ -191,35 +191,35 @@ pub struct RunFit {
     pub coverage_factor: f64,
 }
 
-/// Loads of a record, sums of loads among them.
+/// Loads of a record, including sums of loads.
 #[derive(Serialize)]
 pub struct RecoveredRecord {
-    /// By load.
+    /// Result for each load.
     pub loads: Vec<RecordLoad>,
     /// Root mean square of all residuals over their degrees of freedom.
     pub residual_rms_microstrain: f64,
-    /// How well each gauge agrees.
+    /// Agreement of each gauge.
     pub gauges: Vec<GaugeResidual>,
     /// Number of samples, including samples with gaps.
     pub samples: u64,
-    /// Samples in which some gauge gave nothing.
+    /// Number of samples in which a gauge has no reading.
     pub gaps: u64,
-    /// From the first sample to the last.
+    /// Time from the first to the last sample.
     pub duration_s: f64,
-    /// Steps between samples over the duration.
+    /// Number of steps between samples, divided by the duration.
     pub sample_rate_hz: Option<f64>,
-    /// Every how many samples `loads.csv` has a row.
+    /// `loads.csv` has a row for every n-th sample, with this n.
     pub csv_every: usize,
-    /// Content of the loads against the first elastic mode, where that is known.
+    /// Frequency content of the loads compared with the first elastic mode, if this mode is known.
     #[serde(flatten)]
     pub content: Option<Content>,
     /// Vibration that was removed from the record.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
-    /// Cycles and pseudo-damage by load, where they are asked for or the record is short.
+    /// Cycles and pseudo-damage by load, if requested or if the record is short.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub damage: Option<Vec<LoadDamage>>,
-    /// S of the gauges that read.
+    /// S of the active gauges.
     #[serde(skip)]
     pub sensitivity: Sensitivity,
     /// Names, units, estimate, clock.
@@ -231,7 +231,7 @@ pub struct RecoveredRecord {
     /// Smallest, mean and largest by span of time, job units.
     #[serde(skip)]
     pub spans: Spans,
-    /// Every sample, where they were kept in memory.
+    /// Every sample, if the samples were kept in memory.
     #[serde(skip)]
     pub history: Option<History>,
 }
@@ -267,7 +267,7 @@ pub struct RecordLoad {
 }
 
 impl RecoveredRuns {
-    /// Builds the answer in report units; `units` are the units of the loads that the estimates list.
+    /// Builds the answer in report units. `units` are the units of the estimated loads.
     pub(super) fn from_recovery(
         s: &Sensitivity,
         readings: Vec<Readings>,

@@ -6,7 +6,7 @@ use crate::measured::record::Record;
 use crate::recovery::Sums;
 use crate::recovery::history::{Filter, SampleLoads};
 
-/// Loads of piece `i`, and the sums over it. The caller determines the place of the piece in the record.
+/// Returns the loads of piece `i`, and the sums over this piece. The caller determines the place of the piece in the record.
 pub(crate) fn block(record: &Record, filter: &Filter, i: usize) -> Result<(Block, Sums), Fault> {
     let mut sums = Sums::new(filter.n_gauges(), filter.n_loads());
     let mut loads = SampleLoads::default();

@@ -14,21 +14,21 @@ pub struct LoadSpan {
     pub mean: f64,
     /// Largest value.
     pub largest: f64,
-    /// Half width of the widest 95 % interval; NaN where no run determines the load.
+    /// Half width of the widest 95 % interval. NaN if no run determines the load.
     pub half: f64,
     /// Report unit.
     pub unit: String,
-    /// Expected size of the load, or its largest value where the job states none.
+    /// Expected size of the load, or its largest value if the job states no size.
     pub size: f64,
 }
 
 impl LoadSpan {
-    /// Half width over the size of the load.
+    /// Returns the half width divided by the size of the load.
     pub fn share(&self) -> f64 {
         self.half / self.size
     }
 
-    /// Largest value by magnitude, with its sign.
+    /// Returns the largest value by magnitude, with its sign.
     pub fn peak(&self) -> f64 {
         match self.smallest.abs() > self.largest.abs() {
             true => self.smallest,
@@ -38,7 +38,7 @@ impl LoadSpan {
 }
 
 impl RecoveredLoads {
-    /// Returns the loads over all runs or samples, combinations among them, in the order of the job.
+    /// Returns the loads over all runs or samples, including combinations, in the order of the job.
     pub fn spans(&self) -> Vec<LoadSpan> {
         let mut spans = match &self.states {
             States::Runs(runs) => of_runs(runs),

@@ -12,7 +12,7 @@ use crate::sensitivity::Sensitivity;
 use crate::strain_chain::LoadUnits;
 use crate::units::MICROSTRAIN;
 
-/// Loads of S with a stated range, by number.
+/// Returns the loads of S with a stated range, by number.
 pub(super) fn with_range<'a>(
     job: &Job,
     s: &'a Sensitivity,

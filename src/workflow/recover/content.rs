@@ -8,7 +8,7 @@ use crate::series::content::content_hz;
 /// eighth at one third.
 const SHARE_OF_FIRST_MODE: f64 = 1.0 / 3.0;
 
-/// Content of every load, Hz; `pieces` hold samples of all loads in turn, `sigma` is the noise of each load.
+/// Returns the highest frequency with content of every load, Hz. `pieces` contain samples of all loads in turn. `sigma` is the noise of each load.
 pub(super) fn content_of_loads(
     pieces: &[Vec<f64>],
     sigma: &[f64],
@@ -35,7 +35,7 @@ pub(super) fn content_of_loads(
         .collect()
 }
 
-/// Describes the structure to which the first mode belongs: with the support that it has under the unit loads.
+/// Describes the structure of the first mode and its support under the unit loads.
 pub(super) fn structure(support: Support) -> String {
     match support.is_held() {
         true => format!("the structure {}", support.words()),
@@ -65,7 +65,7 @@ pub(super) fn check_band(names: &[String], content: &[Option<f64>], up_to_hz: f6
     beyond.collect()
 }
 
-/// A warning for each load whose content reaches a third of the first mode of `structure`.
+/// Returns a warning for each load whose content reaches a third of the first mode of `structure`.
 pub(super) fn check_content(
     names: &[String],
     content: &[Option<f64>],

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::ops::Range;
 
-/// Samples read at a time.
+/// Number of samples that are read at a time.
 pub(super) const PIECE: usize = 16_384;
 
 /// Cycles of a load, report unit.
@@ -22,7 +22,7 @@ pub struct LoadDamage {
     pub unit: String,
     /// Power of the range in pseudo-damage.
     pub slope: f64,
-    /// How many; an open range counts half.
+    /// Number of cycles. An open range counts half.
     pub cycles: f64,
     /// The largest range.
     pub largest_range: f64,
@@ -30,20 +30,20 @@ pub struct LoadDamage {
     pub damage: f64,
     /// Lower end of its 95 % interval.
     pub damage_low: Option<f64>,
-    /// Upper end.
+    /// Upper end of this interval.
     pub damage_high: Option<f64>,
-    /// The range of the one cycle that does as much.
+    /// Range of a single cycle with the same damage.
     pub one_cycle_range: Option<f64>,
     /// Lower end of its 95 % interval.
     pub one_cycle_range_low: Option<f64>,
-    /// Upper end.
+    /// Upper end of this interval.
     pub one_cycle_range_high: Option<f64>,
     /// Cycles by range.
     #[serde(skip)]
     pub count: Damage,
 }
 
-/// Cycles of every load.
+/// Returns the cycles of every load.
 pub(super) fn damage(
     head: &RecordHead,
     sums: &Sums,
@@ -78,7 +78,7 @@ pub(super) fn damage(
         .collect()
 }
 
-/// How cycles are counted, and what pseudo-damage is.
+/// Returns the text on the counting of cycles and the meaning of pseudo-damage.
 pub(super) fn about_damage(slope: f64) -> Finding {
     Finding::new(
         Severity::Info,
@@ -93,7 +93,7 @@ pub(super) fn about_damage(slope: f64) -> Finding {
     )
 }
 
-/// Smallest and largest sample of load `l`, report unit; zeros where there is no sample.
+/// Returns the smallest and largest sample of load `l`, report unit. Both are zero without samples.
 pub(super) fn extremes(head: &RecordHead, sums: &Sums, l: usize) -> [f64; 2] {
     [sums.min[l], sums.max[l]].map(|v| {
         let v = v * head.units[l].factor;
@@ -110,7 +110,7 @@ pub(super) struct CycleCountInput<'a> {
 }
 
 impl CycleCountInput<'_> {
-    /// Counts load `l` over some of the samples, report unit; ranges reach to `limit`.
+    /// Counts the cycles of load `l` over some of the samples, report unit. Ranges are at most `limit`.
     pub fn damage(self, l: usize, limit: f64, range: Range<usize>) -> Damage {
         let Self {
             head,
@@ -134,7 +134,7 @@ impl CycleCountInput<'_> {
                 .zip(&head.units)
                 .map(|((a, b), u)| (b - a) / u.factor)
                 .collect();
-            // The error of the change is the larger one of the errors with the gauges at either end.
+            // The error of the change is computed twice, with the active gauges at the begin and with those at the end. The larger error is used.
             let by_end = [cycle.from, cycle.to].map(|point| {
                 let gain = head.estimate_at(point.at);
                 let ends = [cycle.from.at, cycle.to.at];
@@ -157,7 +157,7 @@ impl CycleCountInput<'_> {
     }
 }
 
-/// Counts a load that was recorded with samples of this noise, 1 sd, in the unit of its values.
+/// Counts the cycles of a recorded load whose samples have this noise, 1 sd, in the unit of its values.
 pub(super) fn damage_of_recorded(
     values: impl Iterator<Item = f64>,
     noise: f64,

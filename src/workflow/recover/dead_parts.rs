@@ -12,7 +12,7 @@ use crate::sensitivity::Sensitivity;
 use crate::series::constant_columns::{Gives, blank_readings};
 use std::ops::Range;
 
-/// A record without the readings of gauges where they are dead.
+/// A record without the readings of gauges in their dead parts.
 pub(super) struct MaskedRecord {
     pub record: Record,
     /// Readings of samples spread over the record.
@@ -21,7 +21,7 @@ pub(super) struct MaskedRecord {
     pub dead: Vec<(usize, Range<usize>)>,
 }
 
-/// Removes such readings and reports them as findings. In these parts the loads come from the other gauges.
+/// Removes readings of gauges in their dead parts, and reports these parts as findings. In these parts the loads come from the other gauges.
 ///
 /// # Errors
 /// A piece that can't be read.
@@ -34,7 +34,7 @@ pub(super) fn without_dead_parts(
 ) -> Result<MaskedRecord, Faults> {
     let mut samples = spread_readings(task, &record, zero)?;
     let looked: Vec<(usize, &[f64])> = samples.iter().map(|r| (r.0, &*r.1.strain)).collect();
-    // Names without S give no prediction from the other gauges.
+    // Gauge names alone, without S, give no prediction from the other gauges.
     let stuck = match s.loads.is_empty() {
         true => Vec::new(),
         false => check(s, &looked, task.errors, task.noise_factor),

@@ -396,7 +396,7 @@ fn contradiction(
 ) -> Option<Finding> {
     let off = |(j, by_kind): (usize, &[Option<Deviation>; 2])| {
         let of_kind = |(kind, d): (usize, &Option<Deviation>)| {
-            // Nobody stated a damping that is estimated.
+            // An estimated damping has no stated value from which it could deviate.
             let d = d.as_ref().filter(|_| kind == 0 || !open_damping)?;
             let off = d.standard_deviations_off()?.abs();
             (off > RULES.contradicted_sd).then_some((off, j, kind, *d))

@@ -14,10 +14,10 @@ const MOST_SAMPLES: usize = 200_000;
 /// Samples of a history up to which tables of Nastran are written by default; these contain a pair of numbers per sample as text.
 const MOST_ROWS: usize = 20_000;
 
-/// Files that are made of a history of about so many samples.
+/// Returns the files that are written of a history with about this number of samples.
 ///
 /// # Errors
-/// A file asked for that this build can't write.
+/// A fault for each requested file that this build cannot write.
 pub(super) fn select_load_files(job: &Job, samples: usize) -> Result<Vec<LoadFile>, Faults> {
     let Some(files) = &job.recover.files else {
         let list = LoadFile::ALL.iter().map(|f| f.1);
@@ -63,7 +63,7 @@ pub(super) fn findings(job: &Job, head: &RecordHead, sums: &Sums) -> Vec<Finding
     out
 }
 
-/// The channels of `loads.rsp`.
+/// Returns the channels of `loads.rsp`.
 pub fn rpc_targets(head: &RecordHead, sums: &Sums) -> Vec<Target> {
     let loads = head.names.iter().zip(&head.units).enumerate();
     loads
@@ -114,7 +114,7 @@ fn quantisation_finding(head: &RecordHead, sums: &Sums) -> Finding {
     )
 }
 
-/// Which files were not written because the record is long.
+/// Returns the finding on files that were not written because the record is long.
 fn left_out(job: &Job, head: &RecordHead, sums: &Sums) -> Option<Finding> {
     let left: Vec<&str> = LoadFile::ALL
         .iter()

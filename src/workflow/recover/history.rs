@@ -34,7 +34,7 @@ impl History {
         })
     }
 
-    /// Returns the samples as they came, in order of time.
+    /// Returns the samples in order of time.
     pub fn blocks(&self) -> &[Block] {
         &self.blocks
     }

@@ -15,7 +15,7 @@ use crate::units::MICROSTRAIN;
 /// Loads that are known, by run: number of the load, value in job units. The recovery determines the remainder of these loads.
 pub(super) type KnownLoads = Vec<Vec<(usize, f64)>>;
 
-/// Takes the strain of the known payload from the readings of every run; the remaining strain is the strain of the loads.
+/// Subtracts the strain of the known payload from the readings of every run. The remaining strain is the strain of the loads.
 ///
 /// `strain = m (b0 + dx b_dx + dy b_dy + dx dy b_dxdy)`, `dx`, `dy` from the nominal place of `[payload]`.
 ///
@@ -167,7 +167,7 @@ fn payload_of(job: &Job, row: &RunRow, origin: [f64; 2]) -> Option<(f64, f64, f6
     ))
 }
 
-/// By gauge of S: strain per kg, per kg m along x, y, and per kg m^2.
+/// Returns strain per kg, per kg m along x and y, and per kg m^2, for each gauge of S.
 fn signature(
     work: &mut Work,
     task: &Task,

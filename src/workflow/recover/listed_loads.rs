@@ -9,13 +9,13 @@ use crate::strain_chain::{LoadUnits, load_units};
 pub struct ListedLoads {
     /// Loads, then combinations.
     pub names: Vec<String>,
-    /// Units of both.
+    /// Units of loads and combinations.
     pub units: Vec<LoadUnits>,
     /// Columns of S and their factors, one list per combination.
     pub sums: Vec<Vec<(usize, f64)>>,
 }
 
-/// Loads of S and combinations of the job.
+/// Returns the loads of S and combinations of the job.
 ///
 /// # Errors
 /// Combinations of loads that S lacks, of forces with moments, or that bear a load's name.

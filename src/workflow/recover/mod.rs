@@ -1,7 +1,7 @@
 //! `recover`: loads from measured strain.
 //!
-//! `runs` recovers static states, one a row. `record` recovers records of any length and format ([`crate::series::record`]) at constant memory. It
-//! sends their loads to a [`RecordSink`] piece by piece.
+//! `runs` recovers static states, one for each row. `record` recovers records of any length and format ([`crate::series::record`]) at constant
+//! memory. It sends their loads to a [`RecordSink`] piece by piece.
 
 mod active_gauges;
 mod answer;
@@ -187,10 +187,10 @@ fn open_strain(work: &mut Work, job: &Job, measured: &Measured) -> Result<Measur
     })
 }
 
-/// Recovers the loads for the findings alone, as `check` needs them.
+/// Recovers the loads only for the findings, as `check` needs them.
 ///
 /// # Errors
-/// As [`recover_into`].
+/// The errors of [`recover_into`].
 pub(super) fn recover_for_findings(
     work: &mut Work,
     job: &Job,
@@ -200,7 +200,7 @@ pub(super) fn recover_for_findings(
     recover_measured_loads(work, (job, measured), prepared, &mut Unheard).map(|_| ())
 }
 
-/// Readings and recovered loads of the job's static runs, for commands that go on from there.
+/// Returns readings and recovered loads of the job's static runs, for commands that use both.
 ///
 /// # Errors
 /// Unreadable tables; a record, which [`recover_into`] streams.

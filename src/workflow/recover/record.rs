@@ -204,7 +204,7 @@ fn about_files(
     work.findings.extend(gaps.into_iter().filter(stated));
 }
 
-/// Reads the whole record as it is recovered, without S: S of the gauges that read, and readings of samples spread over it.
+/// Reads the whole record without S, and returns the names of the active gauges and readings of samples spread over the record.
 ///
 /// # Errors
 /// A record that can't be read.

@@ -28,7 +28,7 @@ use crate::strain_chain::{LoadUnits, alternative_rows};
 use crate::units::MICROSTRAIN;
 use std::collections::{HashMap, HashSet};
 
-/// Readings of the runs, less their zeros and the strain of loads that are known, and these loads.
+/// Returns the readings of the runs after subtraction of their zeros and of the strain of known loads, together with these loads.
 pub(super) fn read(
     work: &mut Work,
     task: &Task,
@@ -132,7 +132,7 @@ fn blanks(table: &StrainTable, names: &[String], gauges: &[(usize, &str)]) -> Ve
     out
 }
 
-/// Loads of the runs, with what they were estimated from.
+/// Loads of the runs, with the data from which they were estimated.
 pub(super) struct RunRecovery {
     /// S of the gauges that loads are estimated from.
     pub s: Sensitivity,
@@ -339,7 +339,7 @@ fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
     ]
 }
 
-/// The finding on gauges with the same readings.
+/// Returns the finding on gauges with the same readings.
 pub(super) fn find_identical_readings(s: &Sensitivity, readings: &[Readings]) -> Option<Finding> {
     let of_gauge = |g: usize| readings.iter().map(|r| r.strain[g]).collect();
     let columns: Vec<Vec<f64>> = (0..s.gauges.len()).map(of_gauge).collect();

@@ -11,10 +11,10 @@ use crate::host::work::Work;
 use crate::job::{Measured, SectionExtent};
 use crate::measured::{self, MeasuredStrain};
 
-/// Recovers the loads of every section that has a file, and counts them; the loads of one file at a time are in memory.
+/// Recovers and counts the loads of every section with a separate file. Only the loads of one file at a time are in memory.
 ///
 /// # Errors
-/// Files that can't be read, or have runs.
+/// Files that can't be read, or that contain runs.
 pub(super) fn count_files(work: &mut Work, task: &Task) -> Result<Vec<SectionLoad>, Faults> {
     let mut out = Vec::new();
     for section in &task.job.sections {

@@ -12,9 +12,9 @@ use std::ops::Range;
 /// Sections of a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Sections {
-    /// By section, then by load.
+    /// Loads of each section.
     pub sections: Vec<SectionLoad>,
-    /// By load: the sections, each as often as it occurs.
+    /// Sum over the sections for each load, each section counted as often as it occurs.
     pub duty_cycle: Vec<DutyLoad>,
 }
 
@@ -27,9 +27,9 @@ pub struct SectionLoad {
     pub load: String,
     /// Report unit.
     pub unit: String,
-    /// Samples of the section times the time between them.
+    /// Number of samples of the section times the time step.
     pub seconds: f64,
-    /// How often the section occurs in the duty cycle.
+    /// Number of occurrences of the section in the duty cycle.
     pub repeats: f64,
     /// Smallest sample.
     pub min: f64,
@@ -37,11 +37,11 @@ pub struct SectionLoad {
     pub mean: f64,
     /// Largest sample.
     pub max: f64,
-    /// Pseudo-damage of the section once.
+    /// Pseudo-damage of the section, counted once.
     pub damage: f64,
     /// Lower end of its 95 % interval.
     pub damage_low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub damage_high: f64,
 }
 
@@ -58,7 +58,7 @@ pub struct DutyLoad {
     pub damage: f64,
     /// Lower end of its 95 % interval.
     pub damage_low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub damage_high: f64,
 }
 
@@ -81,7 +81,7 @@ pub(super) fn without_record(job: &Job) -> Result<(), Faults> {
     Err(Fault::with_line(&*job.file, first.line, "section", wrong, remedy).into())
 }
 
-/// The sections of a job that are stretches of its strain record, with their samples.
+/// Returns the sections of a job that are parts of its strain record, with their samples.
 ///
 /// # Errors
 /// A fault for each section that is beyond the record or has no sample.
@@ -131,7 +131,7 @@ pub(super) fn parts<'a>(job: &'a Job, clock: &Clock) -> Result<Vec<Part<'a>>, Fa
     Ok(out)
 }
 
-/// Statistics and damage of every load in every section of the record.
+/// Returns the statistics and damage of every load in every section of the record.
 pub(super) fn count_all(counting: CycleCountInput, parts: &[Part]) -> Vec<SectionLoad> {
     let counted = parts.iter();
     counted
@@ -139,7 +139,7 @@ pub(super) fn count_all(counting: CycleCountInput, parts: &[Part]) -> Vec<Sectio
         .collect()
 }
 
-/// Statistics and damage of every load in some samples of a record.
+/// Returns the statistics and damage of every load in some samples of a record.
 pub(super) fn count(
     counting: CycleCountInput,
     section: &RecordSection,
@@ -180,7 +180,7 @@ pub(super) fn count(
 }
 
 impl Sections {
-    /// Sections in the order of the job, and the duty cycle of them; `None` without any.
+    /// Returns the sections in the order of the job, with their duty cycle. `None` without sections.
     pub(super) fn from_loads(job: &Job, counted: Vec<SectionLoad>) -> Option<Self> {
         let place = |s: &SectionLoad| job.sections.iter().position(|j| j.name == s.section);
         let mut sections = counted;

@@ -8,43 +8,43 @@ use crate::strain_chain::LoadUnits;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Takes the loads of a record as they are recovered.
+/// Receiver of the loads of a record during recovery.
 pub trait RecordSink {
-    /// Before the first block.
+    /// Starts the loads of a record. It is called before the first block.
     ///
     /// # Errors
-    /// Where they can't be taken, a file that can't be begun.
+    /// A fault if a file cannot be created.
     fn begin(&mut self, head: &Arc<RecordHead>) -> Result<(), Fault>;
 
-    /// The next blocks, in order of time.
+    /// Receives the next blocks, in order of time.
     ///
     /// # Errors
-    /// Where they can't be taken; the record is read no further.
+    /// A fault if the blocks cannot be stored. The rest of the record is then not read.
     fn take(&mut self, blocks: Vec<Block>) -> Result<(), Fault>;
 
-    /// After the last block: how many samples there were.
+    /// Completes the loads of the record. It is called after the last block, with the number of samples.
     ///
     /// # Errors
-    /// What was left to be done and failed.
+    /// A fault if a file cannot be completed.
     fn end(&mut self, samples: u64) -> Result<(), Fault>;
 
     /// Returns the recorded samples, to be read again. It is called after the last block, and only if [`RecordHead::is_read_again`].
     ///
     /// # Errors
-    /// If the samples can't be read.
+    /// A fault if the samples cannot be read.
     fn samples(&self) -> Result<Box<dyn Samples + '_>, Fault>;
 }
 
 /// Samples of a record, read in any order.
 pub trait Samples: Sync {
-    /// How many.
+    /// Returns the number of samples.
     fn n_samples(&self) -> usize;
 
     /// Appends the loads `columns` of samples `from .. to`, report units, rounded to single precision. A load that is not known is NaN.
     fn read(&self, from: usize, to: usize, columns: &[usize], out: &mut Vec<f64>);
 }
 
-/// Takes the loads of a record and keeps none.
+/// Receiver that discards the loads of a record.
 pub(super) struct Unheard;
 
 impl RecordSink for Unheard {
@@ -80,7 +80,7 @@ pub struct RecordHead {
     pub file: String,
     /// Loads, then combinations.
     pub names: Vec<String>,
-    /// Units of both.
+    /// Units of loads and combinations.
     pub units: Vec<LoadUnits>,
     /// The estimate of every sample.
     pub filter: Filter,
@@ -88,18 +88,18 @@ pub struct RecordHead {
     pub first_s: f64,
     /// Time between samples, s.
     pub step_s: f64,
-    /// Every how many samples `loads.csv` has a row.
+    /// `loads.csv` has a row for every n-th sample, with this n.
     pub stride: usize,
     /// Files to make from the history.
     pub files: Vec<LoadFile>,
-    /// Whether loads are compared with recorded ones or counted by section.
+    /// Whether loads are compared with recorded loads or counted by section.
     pub is_compared: bool,
     /// Stretches of samples in which some gauges are dead, and the estimate from the remaining gauges.
     pub stretches: Vec<(Range<usize>, Arc<Gain>)>,
 }
 
 impl RecordHead {
-    /// Number of loads, including combinations.
+    /// Returns the number of loads, including combinations.
     pub fn n_loads(&self) -> usize {
         self.names.len()
     }
@@ -131,7 +131,7 @@ impl RecordHead {
     }
 }
 
-/// Some samples on end.
+/// Some consecutive samples.
 #[derive(Clone, Debug)]
 pub struct Block {
     /// Number of the first sample in the record.

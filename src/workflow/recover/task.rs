@@ -23,11 +23,11 @@ pub(super) struct Task<'a> {
     pub estimating: Vec<usize>,
     /// Rows of S of the gauges that the estimate is compared with.
     pub validation: Vec<usize>,
-    /// Noise variance of a reading less zero, in units of the variance of a single reading.
+    /// Noise variance of a reading minus zero, in units of the variance of a single reading.
     pub noise_factor: f64,
 }
 
-/// `[measured]` of a job.
+/// Returns `[measured]` of a job.
 pub(super) fn measured_of(job: &Job) -> Result<&Measured, Faults> {
     job.measured.as_ref().ok_or_else(|| {
         Faults::from(Fault::new(

@@ -5,7 +5,7 @@ use super::sink::Block;
 /// Largest number of spans, an even number. At this number two neighbours are merged. It is twice the number of points on a wide screen.
 const MOST: usize = 4000;
 
-/// Spans of equally many samples so far.
+/// Spans so far, each with the same number of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spans {
     k: usize,
@@ -17,15 +17,15 @@ pub struct Spans {
 /// Consecutive samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Span {
-    /// Time of the first and the last, s.
+    /// Time of the first and the last sample, s.
     pub time: [f64; 2],
     samples: usize,
-    /// By load: smallest, sum, largest, count.
+    /// Smallest value, sum, largest value and count, for each load.
     loads: Vec<[f64; 4]>,
 }
 
 impl Span {
-    /// Smallest, mean and largest sample of load `l`, job units; not numbers where none is known.
+    /// Returns the smallest, mean and largest sample of load `l`, job units. NaN if no sample is known.
     pub fn of_load(&self, l: usize) -> [f64; 3] {
         match self.loads.get(l) {
             Some([low, sum, high, count]) if *count > 0.0 => [*low, sum / count, *high],
@@ -37,7 +37,7 @@ impl Span {
 const NOTHING: [f64; 4] = [f64::INFINITY, 0.0, f64::NEG_INFINITY, 0.0];
 
 impl Spans {
-    /// For a record of `k` loads.
+    /// Creates a trace for a record of `k` loads.
     pub(super) fn new(k: usize) -> Self {
         Self {
             k,
@@ -71,12 +71,12 @@ impl Spans {
         }
     }
 
-    /// The spans in order of time.
+    /// Returns the spans in order of time.
     pub fn list(&self) -> &[Span] {
         &self.list
     }
 
-    /// Time of the first and the last sample; NaN without samples.
+    /// Returns the time of the first and the last sample; NaN without samples.
     pub(super) fn time(&self) -> [f64; 2] {
         match (self.list.first(), self.list.last()) {
             (Some(first), Some(last)) => [first.time[0], last.time[1]],

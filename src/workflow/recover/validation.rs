@@ -17,14 +17,14 @@ use serde::Serialize;
 /// single run, and fewer in several runs.
 const CONTRADICTED: f64 = 3.0;
 
-/// Comparison of a gauge, from which no load was estimated, with its prediction.
+/// Comparison of a gauge with its prediction. No load was estimated from this gauge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ValidationGauge {
     /// Gauge.
     pub name: String,
-    /// Runs or samples that were compared.
+    /// Number of runs or samples that were compared.
     pub n: u64,
-    /// Root mean square of reading less prediction; `None` where nothing was compared.
+    /// Root mean square of reading minus prediction. `None` if nothing was compared.
     pub rms_microstrain: Option<f64>,
     /// Root mean square that stated errors explain: noise, model error, uncertainty of the loads.
     pub expected_rms_microstrain: Option<f64>,
@@ -109,7 +109,7 @@ impl<'a> PredictedGauge<'a> {
         self.s.iter().zip(f).map(|(s, f)| s * f).sum()
     }
 
-    /// Expected variance of reading less prediction, strain^2.
+    /// Expected variance of reading minus prediction, strain^2.
     fn variance(&self, gain: &Gain, f: &[f64], noise_factor: f64) -> f64 {
         let own = self.uncertainty.as_ref();
         let of_row: f64 = own.map_or(0.0, |u| u.strain_covariance(1, f).iter().sum());
@@ -119,8 +119,8 @@ impl<'a> PredictedGauge<'a> {
     }
 }
 
-/// Compares the readings of the runs, by all rows of S, with their prediction from the loads. `s` and `readings` are those that loads were
-/// estimated from, without the loads that are known beforehand.
+/// Compares the readings of the runs, by all rows of S, with their prediction from the loads. `s` and `readings` are the data of the estimate,
+/// without the loads that are known beforehand.
 pub(super) fn of_runs(
     task: &Task,
     (s, readings): (&Sensitivity, &[Readings]),
@@ -196,7 +196,7 @@ impl ValidationSums {
 }
 
 impl<'a> Channels<'a> {
-    /// Returns the channels of the job's validation gauges in a record; `None` where it has none.
+    /// Returns the channels of the job's validation gauges in a record. `None` if the record has none of them.
     pub fn from_record(task: &'a Task<'a>, record: &Record) -> Option<Self> {
         let gauges = PredictedGauge::from_validation_gauges(task);
         if gauges.is_empty() {
@@ -216,7 +216,7 @@ impl<'a> Channels<'a> {
         Some(Self { record, gauges, of })
     }
 
-    /// Returns a note that the gauges are not compared, as their readings contain the vibration that `[dynamic]` takes out of the loads.
+    /// Returns a note that the gauges are not compared, because their readings contain the vibration that `[dynamic]` removes from the loads.
     pub fn not_compared(&self) -> Finding {
         let names: Vec<&str> = self.gauges.iter().map(PredictedGauge::name).collect();
         Finding::new(
@@ -229,7 +229,7 @@ impl<'a> Channels<'a> {
         )
     }
 
-    /// Compares the predictions with a piece of the record. `loads` contains `width` numbers a sample, which begin with the loads of S.
+    /// Compares the predictions with a piece of the record. `loads` contains `width` numbers for each sample. The loads of S come first.
     ///
     /// # Errors
     /// A piece that can't be read.

@@ -35,23 +35,23 @@ pub struct GaugeCheck {
     pub correlation: Option<f64>,
 }
 
-/// All gauges.
+/// Comparison of all gauges.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Check {
-    /// A row a gauge with readings.
+    /// A row for each gauge with readings.
     pub rows: Vec<GaugeCheck>,
     /// Gauges of S.
     pub gauges: Vec<String>,
     /// States that have a row of strain.
     pub states: Vec<String>,
-    /// By state and gauge: predicted and measured, microstrain; NaN where nothing was measured.
+    /// Predicted and measured strain by state and gauge, microstrain. NaN if nothing was measured.
     pub pairs: Vec<Vec<(f64, f64)>>,
 }
 
 /// Compares predicted and measured strain, if the job has gauges and measured strain whose rows are the states.
 ///
 /// # Errors
-/// Unreadable strain.
+/// A strain file that can't be read.
 pub(super) fn check(
     work: &mut Work,
     job: &Job,

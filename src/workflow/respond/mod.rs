@@ -52,7 +52,7 @@ pub fn respond(job: &Job, cx: &Context) -> Result<Outcome<StressResponse>, Fault
     ))
 }
 
-/// Reads the table of loads that the job names, as `respond` does, and drops it.
+/// Reads the table of loads that the job names, as `respond` does, and discards it.
 ///
 /// # Errors
 /// A table that can't be read, or that lacks a load.

@@ -13,18 +13,18 @@ use serde::Serialize;
 /// Stress from loads.
 #[derive(Serialize)]
 pub struct StressResponse {
-    /// The elements asked for, or the hottest, the hottest first.
+    /// Requested elements, or the elements with the highest stress, the highest first.
     pub elements: Vec<Element>,
     /// Elements with a higher stress than all elements that share a grid with them.
     pub hot_spots: Vec<Element>,
-    /// Pseudo-damage of these elements over the history of loads, where the job states a slope.
+    /// Pseudo-damage of these elements over the history of loads, if the job states a slope.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub fatigue: Vec<ElementFatigue>,
-    /// How many states of the loads there are.
+    /// Number of load states.
     pub states: usize,
     /// Unit of the stresses.
     pub stress_unit: &'static str,
-    /// Predicted against measured strain at the gauges.
+    /// Comparison of predicted with measured strain at the gauges.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gauges: Vec<GaugeCheck>,
     /// All elements.
@@ -69,9 +69,9 @@ pub struct Field {
     pub rows: Vec<ResponseRow>,
     /// The largest von Mises stress of each row.
     pub peaks: Vec<Peak>,
-    /// Rows asked for, or the hottest.
+    /// Requested rows, or the rows with the highest stress.
     pub order: Vec<usize>,
-    /// Rows hotter than all that share a grid with them, the hottest first.
+    /// Rows with a higher stress than all rows of elements that share a grid with them, the highest first.
     pub spots: Vec<usize>,
     /// States of the loads.
     pub states: Vec<LoadState>,
@@ -88,7 +88,7 @@ pub struct ElementFatigue {
     pub damage: f64,
     /// Lower end of its 95 % interval.
     pub damage_low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub damage_high: f64,
     /// Direction normal to that plane, from the x axis of the element.
     pub angle_deg: f64,
@@ -103,18 +103,18 @@ pub struct Element {
     pub surface: String,
     /// Largest von Mises stress over the states.
     pub max_von_mises: f64,
-    /// The state.
+    /// State with this stress.
     pub at: Option<String>,
     /// Standard deviation of the largest von Mises stress, from the uncertainty of the loads.
     pub sigma: f64,
     /// Lower end of its 95 % interval.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of this interval.
     pub high: f64,
 }
 
 impl Element {
-    /// Half width of the 95 % interval.
+    /// Returns the half width of the 95 % interval.
     pub fn half_width(&self) -> f64 {
         NORMAL_95 * self.sigma
     }

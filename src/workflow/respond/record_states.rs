@@ -1,4 +1,4 @@
-//! Load states from a record of loads: one a sample.
+//! Load states from a record of loads, one for each sample.
 
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::files::FileBytes;

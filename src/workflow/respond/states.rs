@@ -20,13 +20,13 @@ use std::collections::HashSet;
 /// Rows of the table whose fields are in memory at a time.
 const PART: usize = 10_000;
 
-/// Load states, and whether they follow each other in time.
+/// Load states. They state whether they are consecutive in time.
 pub(super) struct States {
     pub states: Vec<LoadState>,
     pub is_history: bool,
 }
 
-/// The states of the job.
+/// Returns the states of the job.
 ///
 /// # Errors
 /// Neither loads nor measured strain; tables that can't be read.
@@ -68,7 +68,7 @@ pub(super) fn read(
     })
 }
 
-/// Columns `<load>`, and where there `<load>.low`, `<load>.high`, in report units, as `recover` writes them.
+/// Reads the columns `<load>` and, if present, `<load>.low` and `<load>.high`, in report units, as `recover` writes them.
 pub(super) fn from_table(work: &mut Work, job: &Job, named: &NamedFile) -> Result<States, Faults> {
     let names: Vec<String> = job.loads.iter().map(|l| l.name.clone()).collect();
     let bytes = work.inputs.read_named(job, named)?;
@@ -124,7 +124,7 @@ pub(super) fn from_table(work: &mut Work, job: &Job, named: &NamedFile) -> Resul
 /// Adds the findings on the states of a file. `exact` are loads without an interval, and `blank` is the number of rows that lack a load.
 ///
 /// # Errors
-/// A file without a state.
+/// A fault if the file contains no state.
 fn finish(
     work: &mut Work,
     job: &Job,

@@ -6,7 +6,7 @@ use serde::Serialize;
 /// The gauges of a layout.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LayoutGauges {
-    /// Which layout.
+    /// Layout of the gauge.
     pub layout: String,
     /// Number of gauges.
     pub gauges: usize,
@@ -19,7 +19,7 @@ pub struct LayoutGauges {
 pub struct LayoutGauge {
     /// Name.
     pub name: String,
-    /// Place on the model; `None` where S is given.
+    /// Place on the model. `None` if S is given.
     #[serde(flatten)]
     pub place: Option<LayoutPlace>,
 }

@@ -25,13 +25,13 @@ pub(super) struct LayoutOf {
     pub name: String,
     /// Number of gauges.
     pub gauges: usize,
-    /// Gauges that `members` index.
+    /// Pool of gauges, to which the indices in `members` refer.
     pub pool: Pool,
     /// One layout, or many random ones.
     pub members: Vec<Vec<usize>>,
 }
 
-/// Every layout and count that the job asks for and the pool allows.
+/// Returns every layout and count that the job asks for and the pool allows.
 ///
 /// # Errors
 /// No pool at all, candidates that can't be used.
@@ -127,7 +127,7 @@ fn random_subsets(all: usize, n: usize, seed: u64) -> Vec<Vec<usize>> {
 }
 
 impl LayoutOf {
-    /// Returns the gauges of the layout; none for random layouts, of which there are many.
+    /// Returns the gauges of the layout. The list is empty for random layouts, of which there are many.
     pub fn chosen_gauges(&self) -> Vec<LayoutGauge> {
         match self.members.as_slice() {
             [one] if self.name != "random" => {

@@ -33,9 +33,9 @@ struct Line {
 /// Recovery repeated under stated errors.
 #[derive(Serialize)]
 pub struct LayoutStudy {
-    /// A row a layout, number of gauges and error.
+    /// A row for each layout, number of gauges and error.
     pub study: Vec<StudiedLayout>,
-    /// The gauges of each layout, of random ones none.
+    /// Gauges of each layout. Random layouts have no list.
     pub layouts: Vec<LayoutGauges>,
     /// Rank and condition numbers of the gauges that the job has.
     #[serde(flatten)]
@@ -80,7 +80,7 @@ impl Answer for LayoutStudy {
 /// A layout under one error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudiedLayout {
-    /// Which layout.
+    /// Layout that was studied.
     pub layout: String,
     /// Number of gauges.
     pub gauges: usize,
@@ -88,11 +88,11 @@ pub struct StudiedLayout {
     pub names: Vec<String>,
     /// Kind and size of the error.
     pub error: String,
-    /// S in strain per job unit.
+    /// Condition number of S in strain per job unit.
     pub condition_number: Option<f64>,
     /// Mean over the wanted loads of `relative_rms`.
     pub mean_relative_rms: Option<f64>,
-    /// By load.
+    /// Result for each load.
     pub loads: Vec<StudiedLoad>,
 }
 
@@ -111,7 +111,7 @@ pub struct StudiedLoad {
     pub coverage: Option<f64>,
     /// Report unit.
     pub unit: String,
-    /// Whether it is asked for.
+    /// Whether the load is wanted as a result.
     #[serde(skip)]
     pub wanted: bool,
 }

@@ -42,7 +42,7 @@ impl Pool {
 
 /// Gauges, loads and model for the layouts.
 pub(super) struct StudyInputs {
-    /// Columns.
+    /// Loads: the columns of S.
     pub loads: Vec<Load>,
     /// The job's gauges; empty without.
     pub pool: Pool,
@@ -162,7 +162,7 @@ fn pool_on_model(
     Ok(pool)
 }
 
-/// The pool gauge of a specification on the model, with its place.
+/// Returns the pool gauge of a specification on the model, with its place.
 pub(super) fn on_model(
     fields: &Fields,
     job: &Job,

@@ -13,18 +13,18 @@ const GAUSS: [(f64, f64); 3] = [
 /// cleared afterwards.
 const ALMOST_NOTHING: f64 = 1e-9;
 
-/// A beam in its own frame.
+/// A beam in the element frame.
 #[derive(Clone, Debug)]
 pub(super) struct LocalBeam<'a> {
     pub(super) sections: &'a [(f64, Section)],
     pub(super) e: f64,
     pub(super) g: f64,
     pub(super) length: f64,
-    /// Shear factors K1, K2; 0 is rigid in shear.
+    /// Shear factors K1, K2. A factor of 0 means rigid in shear.
     pub(super) k: [f64; 2],
 }
 
-/// Properties between stations, linear in x.
+/// Returns the properties between stations, linear in x.
 pub(crate) fn section_at(sections: &[(f64, Section)], xi: f64) -> Section {
     let last = sections.last().map(|s| s.1).unwrap_or_default();
     let Some(i) = sections.windows(2).position(|w| xi <= w[1].0) else {
@@ -61,7 +61,7 @@ fn largest_of(s: &Section, l2: f64) -> f64 {
         .max(f64::MIN_POSITIVE)
 }
 
-/// Compliance of a section for N, My, Mz about the reference line: strain of the line, curvatures d(theta_y)/dx, d(theta_z)/dx.
+/// Returns the compliance of a section for N, My, Mz about the reference line: strain of the line, curvatures d(theta_y)/dx, d(theta_z)/dx.
 ///
 /// Strain at (y, z) is e0 + z ky - y kz.
 pub(super) fn compliance(s: &Section, e: f64, length: f64) -> Matrix3<f64> {
@@ -115,7 +115,7 @@ impl LocalBeam<'_> {
         f
     }
 
-    /// Stiffness of end B with end A held, and what carries forces at B over to A with their sign reversed.
+    /// Returns the stiffness of end B with end A held, and the matrix that transfers forces at B to A with reversed sign.
     pub(super) fn basic(&self) -> Option<(Matrix6<f64>, Matrix6<f64>)> {
         let kb = self.flexibility().try_inverse()?;
         let kb = (kb + kb.transpose()) * 0.5;
@@ -126,7 +126,7 @@ impl LocalBeam<'_> {
         Some((kb, g))
     }
 
-    /// Stiffness over u v w and rotations at A, then B; element frame.
+    /// Returns the stiffness over displacements and rotations at A, then B, element frame.
     pub(super) fn stiffness(&self) -> Option<SMatrix<f64, 12, 12>> {
         let (kb, g) = self.basic()?;
         let mut k = SMatrix::<f64, 12, 12>::zeros();
@@ -159,7 +159,7 @@ impl LocalBeam<'_> {
     }
 }
 
-/// Takes released dofs (a bit each, A then B) out of a stiffness, and of the forces on it, by static condensation.
+/// Removes released dofs from a stiffness and from the forces on it, by static condensation. Each bit of the mask is a dof, A then B.
 pub(super) fn release(k: &mut SMatrix<f64, 12, 12>, f: &mut SVector<f64, 12>, pins: u16) {
     for r in (0..12).filter(|r| pins >> r & 1 == 1) {
         let pivot = k[(r, r)];

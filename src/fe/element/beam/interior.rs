@@ -11,17 +11,17 @@ const GAUSS: [(f64, f64); 3] = [
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
 
-/// Force or moment along a beam, element axes; `from` = `to`: concentrated there.
+/// Force or moment along a beam, element axes. It is concentrated if `from` equals `to`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LineLoad {
-    /// Shares of the length at which it begins and ends.
+    /// Begin and end of the load, as shares of the length.
     pub(crate) span: [f64; 2],
-    /// Force and moment, per length at both ends of the span; a concentrated one is first.
+    /// Force and moment per length at both ends of the span. For a concentrated load the first entry is the force.
     pub(crate) force: [Vec3; 2],
     pub(crate) moment: [Vec3; 2],
 }
 
-/// Free thermal strain of a beam at its ends: along the axis and per height along y and z.
+/// Free thermal strain of a beam at both ends: along the axis, and per height along y and z.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct LineStrain {
     pub(crate) axial: [f64; 2],
@@ -34,7 +34,7 @@ pub(crate) struct LineStrain {
 pub(crate) struct Interior {
     pub(crate) loads: Vec<LineLoad>,
     pub(crate) thermal: Option<LineStrain>,
-    /// End forces equivalent to the inertia of the coupled mass, element frame; its forces along the beam are not in `loads`.
+    /// End forces equivalent to the inertia of the coupled mass, element frame. The inertia forces along the beam are not in `loads`.
     pub(crate) inertia: Option<[f64; 12]>,
 }
 
@@ -80,7 +80,7 @@ impl Interior {
         self.loads.is_empty() && self.thermal.is_none()
     }
 
-    /// Where sections, loads and so section forces change their law.
+    /// Returns the places at which a section or a load begins or ends. Section forces are smooth between these places.
     fn breaks(&self, beam: &LocalBeam<'_>) -> Vec<f64> {
         let mut all: Vec<f64> = beam.sections.iter().map(|s| s.0).collect();
         all.extend(self.loads.iter().flat_map(|l| l.span));

@@ -70,7 +70,7 @@ pub(crate) fn beam_lumped_mass(model: &Model, i: usize) -> [Matrix6<f64>; 2] {
     ends
 }
 
-/// Coupled mass (PARAM,COUPMASS) with the cubic shape functions of a slender beam, basic frame, before WTMASS.
+/// Returns the coupled mass (PARAM,COUPMASS) with the cubic shape functions of a slender beam, basic frame, before WTMASS.
 pub(crate) fn beam_coupled_mass(model: &Model, i: usize) -> ElementMatrix {
     let beam = &model.beams[i];
     let t = to_element(beam);

@@ -20,7 +20,7 @@ fn refuse(beam: &Beam, reason: String, remedy: &str) -> Refusal {
     }
 }
 
-/// Length between the offset ends.
+/// Returns the length between the offset ends.
 pub(super) fn length(model: &Model, beam: &Beam) -> f64 {
     let end = |i: usize| model.grids[beam.grids[i].us()].x + beam.offsets[i];
     (end(1) - end(0)).norm()
@@ -135,7 +135,7 @@ fn form_stiffness_and_forces(
 /// the first component.
 ///
 /// # Errors
-/// As `beam_stiffness`.
+/// The errors of `beam_stiffness`.
 pub(crate) fn beam_end_forces(
     model: &Model,
     i: usize,
@@ -166,7 +166,7 @@ pub(crate) fn beam_end_forces(
     Ok(all)
 }
 
-/// Stiffness of beam `i`, basic frame.
+/// Returns the stiffness of beam `i`, basic frame.
 ///
 /// # Errors
 /// Lengths, materials and sections that make no beam.
@@ -251,10 +251,10 @@ pub(crate) struct BeamForces {
     moment: [f64; 2],
 }
 
-/// Returns the forces on end B of beam `i` from displacements (basic), those that hold what acts between its ends included.
+/// Returns the forces on end B of beam `i` from displacements (basic). They include the forces that balance the loads between the ends.
 ///
 /// # Errors
-/// As `beam_stiffness`.
+/// The errors of `beam_stiffness`.
 pub(crate) fn beam_forces(
     model: &Model,
     i: usize,
@@ -300,7 +300,7 @@ pub(crate) fn strain_at(
 /// Returns modulus and length of beam `i`.
 ///
 /// # Errors
-/// As `beam_stiffness`.
+/// The errors of `beam_stiffness`.
 pub(crate) fn modulus_and_length(model: &Model, i: usize) -> Result<(f64, f64), Refusal> {
     let (local, _) = build_local_beam(model, &model.beams[i])?;
     Ok((local.e, local.length))

@@ -139,7 +139,8 @@ pub(super) fn torque_at_ends(
     f
 }
 
-/// The stiffness of a beam over its two grids and its two warping points, basic frame: `k` (element frame) without its torsion, and
+/// Returns the stiffness of a beam over its two grids and its two warping points, basic frame. It is `k` (element frame) without torsion, plus
+/// `torsion`. The first dof of a warping point is theta'.
 /// `torsion` instead. The first dof of a warping point is theta'.
 pub(super) fn assemble_with_warping(
     grids: &[GridIx],

@@ -4,14 +4,14 @@ use super::quad4::quad_points;
 use super::tria3::tria_points;
 use crate::model::Vec3;
 
-/// Integrals of products of shape functions, times one and times the thickness; a triangle leaves the fourth row and column zero.
+/// Integrals of products of shape functions, with weight one and with the thickness as weight. For a triangle, the fourth row and column are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct CornerProducts {
     pub(crate) area: [[f64; 4]; 4],
     pub(crate) volume: [[f64; 4]; 4],
 }
 
-/// Integrals over the mid-surface through three or four corners.
+/// Returns the integrals over the mid-surface through three or four corners.
 pub(crate) fn corner_products(x: &[Vec3], thickness: &[f64; 4]) -> CornerProducts {
     let mut out = CornerProducts::default();
     let mut add = |h: [f64; 4], hr: [f64; 4], hs: [f64; 4], weight: f64| {

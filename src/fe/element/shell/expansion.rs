@@ -6,7 +6,7 @@ use super::types::{Expansion, Heat};
 use crate::model::{Material, MaterialKind, Model, ShellKind, ShellProperty};
 
 impl Heat {
-    /// Membrane force and moment per length of the held shell where the rise is `rise`.
+    /// Returns the membrane force and moment per length of the held shell at the temperature rise `rise`.
     pub(crate) fn resultants(&self, rise: f64) -> ([f64; 3], [f64; 3]) {
         let x = &self.expansion;
         let sum = |p: &[[f64; 3]; 2]| -> [f64; 3] {
@@ -15,7 +15,7 @@ impl Heat {
         (sum(&x.force), sum(&x.moment))
     }
 
-    /// Free strain at the heights `z` of the surfaces where the rise of the reference plane is `rise`.
+    /// Returns the free strain at the heights `z` of the surfaces. `rise` is the temperature rise of the reference plane.
     pub(crate) fn free_strain(&self, rise: f64, z: [f64; 2]) -> [[f64; 3]; 2] {
         std::array::from_fn(|s| {
             self.expansion.surface[s].map(|a| a * (rise + self.gradient * z[s]))
@@ -33,7 +33,7 @@ fn coefficients(m: &Material) -> Option<[f64; 3]> {
     }
 }
 
-/// Strain given in axes that lie at `angle` from x, seen in x and y.
+/// Transforms a strain from axes at `angle` from x to the axes x and y.
 pub(super) fn turn_strain([e1, e2, g]: [f64; 3], angle: f64) -> [f64; 3] {
     let (s, c) = angle.sin_cos();
     [

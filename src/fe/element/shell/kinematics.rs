@@ -41,7 +41,7 @@ impl Tangents {
     }
 }
 
-/// Orthonormal axes in the tangent plane, x nearest to a given direction, and derivatives of r, s along them.
+/// Orthonormal axes in the tangent plane, with x nearest to a given direction, and the derivatives of r and s along these axes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TangentFrame {
     pub(super) e1: Vec3,
@@ -81,7 +81,7 @@ impl TangentFrame {
         })
     }
 
-    /// Rows xx, yy, xy from covariant rows rr, ss, 2 rs.
+    /// Returns the rows xx, yy, xy from covariant rows rr, ss, 2 rs.
     pub(super) fn strain<const M: usize>(&self, [rr, ss, rs]: &[Row<M>; 3]) -> [Row<M>; 3] {
         let (rx, sx, ry, sy) = (self.rx, self.sx, self.ry, self.sy);
         let mut out = [[0.0; M]; 3];
@@ -93,7 +93,7 @@ impl TangentFrame {
         out
     }
 
-    /// Rows xz, yz from covariant rows r, s.
+    /// Returns the rows xz, yz from covariant rows r, s.
     pub(super) fn shear<const M: usize>(&self, r: &Row<M>, s: &Row<M>) -> [Row<M>; 2] {
         let mut out = [[0.0; M]; 2];
         for i in 0..M {
@@ -110,7 +110,7 @@ fn add_vector<const M: usize>(row: &mut Row<M>, at: usize, v: &Vec3) {
     row[at + 2] += v.z;
 }
 
-/// Mid-surface strains rr, ss, 2 rs.
+/// Returns the mid-surface strains rr, ss, 2 rs.
 pub(super) fn membrane<const N: usize, const M: usize>(
     t: &Tangents,
     shape: &Shape<N>,
@@ -128,7 +128,7 @@ pub(super) fn membrane<const N: usize, const M: usize>(
 /// Adds the contribution of bending sides to the mid-surface strains rr, ss, 2 rs.
 ///
 /// Between corners i and j the side bulges as a parabola along the side. The bulge is (x_j - x_i) x n / 8 times the difference of their rotations
-/// about n. `slopes` are the derivatives along r and s of the parabolas, which are one in the middle of their sides.
+/// about n. `slopes` are the derivatives along r and s of parabolas with the value one in the middle of their sides.
 ///
 /// # Reference
 /// Allman, A compatible triangular element including vertex rotations, Computers and Structures 19 (1984) 1.
@@ -151,7 +151,7 @@ pub(super) fn add_bending_sides<const N: usize, const M: usize>(
     }
 }
 
-/// Coefficients of z in the strains rr, ss, 2 rs.
+/// Returns the coefficients of z in the strains rr, ss, 2 rs.
 pub(super) fn curvature<const N: usize, const M: usize>(
     t: &Tangents,
     shape: &Shape<N>,
@@ -171,7 +171,7 @@ pub(super) fn curvature<const N: usize, const M: usize>(
     rows
 }
 
-/// Transverse shear strains r, s.
+/// Returns the transverse shear strains r, s.
 pub(super) fn shear<const N: usize, const M: usize>(
     t: &Tangents,
     shape: &Shape<N>,
@@ -187,7 +187,7 @@ pub(super) fn shear<const N: usize, const M: usize>(
     rows
 }
 
-/// Rotation about the surface normal less half the curl of the displacements about the same normal.
+/// Returns the row of the rotation about the surface normal minus half the curl of the displacements about this normal.
 pub(super) fn drilling_row<const N: usize, const M: usize>(
     local: &TangentFrame,
     shape: &Shape<N>,
@@ -206,7 +206,7 @@ pub(super) fn drilling_row<const N: usize, const M: usize>(
     row
 }
 
-/// Adds weight * (strain rows)' law (strain rows) to a stiffness; rows are membrane, curvature, shear, drilling.
+/// Section of a shell: its law, its thickness, and K6ROT, the factor of the drilling stiffness.
 pub(super) struct Section<'a> {
     pub(super) law: &'a ShellLaw,
     pub(super) t: f64,

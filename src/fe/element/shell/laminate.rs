@@ -30,7 +30,7 @@ pub(crate) enum Lamination {
 }
 
 impl Lamination {
-    /// Returns the option for LAM as written; `None` for options that are not supported (SMCORE ..).
+    /// Returns the LAM option in its written form. `None` for unsupported options (SMCORE ..).
     pub(crate) fn parse_lam(lam: &str) -> Option<Self> {
         match lam {
             "" | "SYM" => Some(Self::Full),
@@ -76,7 +76,7 @@ pub(super) fn place_plies(
         .collect()
 }
 
-/// The law of a laminate, scaled as a shell law is.
+/// Returns the law of a laminate, with the scaling of a shell law.
 pub(super) fn law(plies: &[LaminatePly], lamination: Lamination) -> Option<ShellLaw> {
     let (bottom, top) = (plies.first()?.z[0], plies.last()?.z[1]);
     let t = top - bottom;

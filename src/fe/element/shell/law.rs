@@ -10,7 +10,7 @@ use crate::model::{Model, ShellKind, ShellProperty};
 impl ShellLaw {
     /// Computes the law of a PSHELL or laminate whose material x axis is at `angle_rad` from the element's output x axis.
     ///
-    /// `None` for materials that aren't plane-stress laws.
+    /// `None` if a material has no plane-stress law.
     pub(crate) fn new(model: &Model, property: &ShellProperty, angle_rad: f64) -> Option<Self> {
         let ShellKind::Homogeneous {
             membrane,

@@ -13,7 +13,7 @@ use super::types::{BadShape, Heat, Parts, ShellInput, ShellLaw, ShellMatrices, S
 use crate::linalg::{DMatrix, DVector};
 use crate::model::{GridIx, Mat3, Model, Shell, ShellProperty, Vec3, face_edges, face_functions};
 
-/// Strain at a place: rows over the element's unknowns and what temperature adds by moving the centre.
+/// Strain at a place: rows over the element's unknowns, and the contribution of temperature through the motion of the centre.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ManyRows {
     pub(crate) membrane: [Vec<f64>; 3],
@@ -21,7 +21,7 @@ pub(crate) struct ManyRows {
     constant: [[f64; 3]; 2],
 }
 
-/// Stiffness (row by row), strain and thermal load over six unknowns a grid.
+/// Stiffness (row by row), strain and thermal load over six unknowns for each grid.
 #[derive(Clone, Debug)]
 pub(crate) struct ManyShell {
     pub(crate) stiffness: Vec<f64>,
@@ -31,7 +31,7 @@ pub(crate) struct ManyShell {
 }
 
 impl ManyRows {
-    /// Mechanical strain at both surfaces, less the thermal strain.
+    /// Returns the mechanical strain at both surfaces, minus the thermal strain.
     pub(crate) fn surfaces(&self, z: [f64; 2], u: &[f64], free: &[[f64; 3]; 2]) -> [[f64; 3]; 2] {
         let dot = |rows: &[Vec<f64>; 3], constant: [f64; 3]| -> [f64; 3] {
             std::array::from_fn(|c| {
@@ -61,7 +61,7 @@ impl ManyRows {
     }
 }
 
-/// Grids of a shell: corners, then the mid-side grids there are, each with the number of its side.
+/// Returns the grids of a shell: the corners, then the existing mid-side grids, each with the number of its side.
 pub(crate) fn many_grids(shell: &Shell) -> (Vec<GridIx>, Vec<usize>) {
     (shell.all_grids(), shell.middles().collect())
 }
@@ -194,10 +194,10 @@ impl ParentShell<'_> {
     }
 }
 
-/// Matrices of a shell with mid-side grids; `material_angle_rad` from the output x axis of its corners.
+/// Returns the matrices of a shell with mid-side grids; `material_angle_rad` from the output x axis of its corners.
 ///
 /// # Errors
-/// Parts that make no quadrilateral.
+/// Parts that do not form a quadrilateral.
 pub(super) fn many_shell(
     model: &Model,
     shell: &Shell,
@@ -304,7 +304,7 @@ const GAUSS: [(f64, f64); 3] = [
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
 
-/// Calls with functions (corners, then mid-side grids), area vector and thickness at the points of a rule on the surface.
+/// Calls `f` with functions (corners, then mid-side grids), area vector and thickness at the points of a rule on the surface.
 pub(super) fn over_surface(
     model: &Model,
     shell: &Shell,
@@ -331,7 +331,7 @@ pub(crate) fn linear_part(n: usize, functions: &[[f64; 4]], sides: &[usize], c: 
     functions[c][0] + halves.sum::<f64>()
 }
 
-/// Calls with functions and area vector at the points of a rule on a face of `n` corners with mid-side grids on `sides`.
+/// Calls `f` with functions and area vector at the points of a rule on a face of `n` corners with mid-side grids on `sides`.
 pub(crate) fn over_face(
     n: usize,
     x: &[Vec3],

@@ -3,7 +3,7 @@
 use crate::model::{GridIx, GridNormal, Model, Shell, Vec3};
 use std::collections::{HashMap, HashSet};
 
-/// Director at each corner of a shell; a triangle's fourth repeats its third.
+/// Director at each corner of a shell. For a triangle the fourth director repeats the third.
 pub(crate) type CornerDirectors = [Vec3; 4];
 
 /// Normals of the element's own surface at its corners; zero where the shape is degenerate.
@@ -76,8 +76,8 @@ pub(crate) fn shared_normals(model: &Model) -> Vec<CornerDirectors> {
     result
 }
 
-/// Returns the normals of SNORM that the formulation refuses. Such a normal is farther than PARAM,SNORM from the normal of a shell at its grid, or
-/// PARAM,SNORM turns shared normals off.
+/// Returns the normals of SNORM that the formulation refuses. The angle between such a normal and the normal of a shell at its grid exceeds
+/// PARAM,SNORM, or PARAM,SNORM turns shared normals off.
 pub(crate) fn normals_beyond(model: &Model) -> Vec<&GridNormal> {
     let given: HashMap<GridIx, &GridNormal> = model.normals.iter().map(|n| (n.grid, n)).collect();
     if given.is_empty() {

@@ -38,7 +38,7 @@ fn refuse(shell: &Shell, reason: &str, remedy: &str) -> Refusal {
     )
 }
 
-/// Angle of the material x axis from the output x axis, radians.
+/// Returns the angle of the material x axis from the output x axis, radians.
 pub(crate) fn material_angle(model: &Model, shell: &Shell) -> Option<f64> {
     let n = shell.shape.n_corners();
     let x: Vec<Vec3> = shell.grids[..n]
@@ -50,7 +50,7 @@ pub(crate) fn material_angle(model: &Model, shell: &Shell) -> Option<f64> {
     Some(side.y.atan2(side.x) + shell.material_angle_rad)
 }
 
-/// Matrices of shell `i`.
+/// Returns the matrices of shell `i`.
 ///
 /// # Errors
 /// Shapes, thicknesses and properties that make no element.
@@ -134,10 +134,10 @@ pub(crate) fn shell_matrices(
     }
 }
 
-/// Stiffness of shell `i`.
+/// Returns the stiffness of shell `i`.
 ///
 /// # Errors
-/// As `shell_matrices`.
+/// The errors of `shell_matrices`.
 pub(crate) fn shell_stiffness(
     prepared: &PreparedModel<'_>,
     i: usize,
@@ -172,7 +172,7 @@ pub(crate) fn shell_heat(model: &Model, i: usize, t: &Temperatures) -> Option<He
 /// Returns the forces of the thermal strain of shell `i`, six a grid, basic frame.
 ///
 /// # Errors
-/// As `shell_matrices`.
+/// The errors of `shell_matrices`.
 pub(crate) fn shell_thermal_force(
     prepared: &PreparedModel<'_>,
     i: usize,
@@ -210,7 +210,7 @@ fn densities(model: &Model, property: &crate::model::ShellProperty) -> (f64, f64
     }
 }
 
-/// Consistent mass of a shell with mid-side grids: its grids and, row by row, their shares, before WTMASS.
+/// Returns the consistent mass of a shell with mid-side grids: the grids, and the mass matrix by rows, before WTMASS.
 pub(crate) fn many_mass(model: &Model, i: usize) -> (Vec<crate::model::GridIx>, Vec<f64>) {
     let shell = &model.shells[i];
     let grids = shell.all_grids();
@@ -230,8 +230,8 @@ pub(crate) fn many_mass(model: &Model, i: usize) -> (Vec<crate::model::GridIx>, 
     (grids, products)
 }
 
-/// Consistent mass of shell `i` by pairs of corners, before WTMASS: integral of the product of their shape functions times
-/// (density * thickness + NSM). The sum of a row is what a lumped mass puts at that corner.
+/// Returns the consistent mass of shell `i` by pairs of corners, before WTMASS. It is the integral of the product of two shape functions times
+/// (density * thickness + NSM). The sum of a row is the lumped mass at that corner.
 pub(crate) fn shell_mass(model: &Model, i: usize) -> [[f64; 4]; 4] {
     let shell = &model.shells[i];
     let Some(property) = model.shell_properties.get(shell.property.us()) else {
@@ -246,7 +246,7 @@ pub(crate) fn shell_mass(model: &Model, i: usize) -> [[f64; 4]; 4] {
     })
 }
 
-/// Mechanical strain at both surfaces from rows and displacements, less the thermal strain: bottom (Z1), top (Z2).
+/// Returns the mechanical strain at both surfaces from rows and displacements, minus the thermal strain: bottom (Z1), top (Z2).
 pub(crate) fn surfaces<const M: usize>(
     rows: &StrainRows<M>,
     z: [f64; 2],

@@ -2,7 +2,7 @@
 
 use crate::model::{Mat3, Vec3};
 
-/// Rows x, y, z of the output frame in basic, from the corners.
+/// Returns the rows x, y, z of the output frame in basic, from the corners.
 ///
 /// Four corners: x = unit(unit(d13) - unit(d24)), z = unit(d13 x d24) (the bisector frame that MSC and NX use when OMID is absent).
 /// Three corners: x along side 1-2, z = unit(side 12 x side 13). `None` where the corners span no area.

@@ -2,10 +2,10 @@
 
 use crate::model::{Material, MaterialKind};
 
-/// A shell without MID3 is rigid in transverse shear: this many times its elastic shear stiffness.
+/// Factor on the elastic shear stiffness that makes a shell without MID3 rigid in transverse shear.
 pub(super) const RIGID_SHEAR: f64 = 1e3;
 
-/// G11 G12 G13 / G22 G23 / G33 of plane stress.
+/// Returns G11 G12 G13 / G22 G23 / G33 of plane stress.
 pub(super) fn plane_stress(m: &Material) -> Option<[[f64; 3]; 3]> {
     Some(match m.kind {
         MaterialKind::Isotropic { e, g, nu, .. } => {
@@ -30,7 +30,7 @@ pub(super) fn plane_stress(m: &Material) -> Option<[[f64; 3]; 3]> {
     })
 }
 
-/// Likewise of plane strain.
+/// Returns G11 G12 G13 / G22 G23 / G33 of plane strain.
 pub(super) fn plane_strain_matrix(m: &Material) -> Option<[[f64; 3]; 3]> {
     let MaterialKind::Isotropic { e, g, nu, .. } = m.kind else {
         return None;
@@ -43,7 +43,7 @@ pub(super) fn plane_strain_matrix(m: &Material) -> Option<[[f64; 3]; 3]> {
     ])
 }
 
-/// Transverse shear moduli in material axes.
+/// Returns the transverse shear moduli in material axes.
 pub(super) fn transverse_shear(m: &Material) -> Option<[[f64; 2]; 2]> {
     Some(match m.kind {
         MaterialKind::Isotropic { g, .. } => [[g, 0.0], [0.0, g]],
@@ -60,7 +60,7 @@ pub(super) fn transverse_shear(m: &Material) -> Option<[[f64; 2]; 2]> {
     })
 }
 
-/// T' G T with T the strain transformation to axes turned by `angle`.
+/// Returns `T' G T`, with T the strain transformation to axes turned by `angle`.
 pub(super) fn rotate(g: &[[f64; 3]; 3], angle: f64) -> [[f64; 3]; 3] {
     let (s, c) = angle.sin_cos();
     let t = [
@@ -81,7 +81,7 @@ pub(super) fn rotate(g: &[[f64; 3]; 3], angle: f64) -> [[f64; 3]; 3] {
     out
 }
 
-/// Transverse shear moduli in axes turned by `angle`.
+/// Returns the transverse shear moduli in axes turned by `angle`.
 pub(super) fn rotate_shear(g: &[[f64; 2]; 2], angle: f64) -> [[f64; 2]; 2] {
     let (s, c) = angle.sin_cos();
     let t = [[c, s], [-s, c]];

@@ -9,7 +9,7 @@ const ROOM: usize = 36;
 /// Rows and columns of a block of the sum.
 const BLOCK: (usize, usize) = (4, 8);
 
-/// Rows a and p; the sum of a'p over them, symmetric, is a stiffness.
+/// Rows `a` and `p`. The sum of `a' p` over the rows is a stiffness, which is symmetric.
 #[derive(Debug)]
 pub(super) struct Products {
     rows: Vec<([f64; WIDE], [f64; WIDE])>,

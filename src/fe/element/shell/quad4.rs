@@ -83,13 +83,13 @@ impl Point {
     }
 }
 
-/// Stiffness and strain of a four-node shell.
+/// Returns the stiffness and strain of a four-node shell.
 ///
 /// # Reference
 /// Dvorkin and Bathe, Eng. Comput. 1 (1984) 77; Taylor, Beresford and Wilson, IJNME 10 (1976) 1211.
 ///
 /// # Errors
-/// The corners make no convex quadrilateral.
+/// An error if the corners do not form a convex quadrilateral.
 pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, BadShape> {
     let frame = output_frame(&input.x).ok_or(BadShape)?;
     let (x_axis, normal) = (frame.row(0).transpose(), frame.row(2).transpose());

@@ -23,18 +23,18 @@ fn shape(r: f64, s: f64) -> Shape<3> {
     }
 }
 
-/// Shape functions and weights of the integration points; weights sum to half the parallelogram of the two sides.
+/// Returns shape functions and weights of the integration points. The weights sum to half the parallelogram of the two sides.
 pub(super) fn tria_points() -> [(Shape<3>, f64); 7] {
     RADON.map(|(r, s, w)| (shape(r, s), w))
 }
 
-/// Stiffness and strain of a three-node shell. The rotation has a cubic bubble whose two amplitudes are eliminated.
+/// Returns the stiffness and strain of a three-node shell. The rotation has a cubic bubble whose two amplitudes are eliminated.
 ///
 /// # Reference
 /// Lee, Lee and Bathe, The MITC3+ shell element and its performance, Computers and Structures 138 (2014) 12.
 ///
 /// # Errors
-/// The corners lie on a line.
+/// An error if the corners lie on a line.
 pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, BadShape> {
     let frame = output_frame(&input.x).ok_or(BadShape)?;
     let (x_axis, normal) = (frame.row(0).transpose(), frame.row(2).transpose());

@@ -5,7 +5,7 @@ use crate::model::Vec3;
 /// A linear form on the element's unknowns.
 pub(super) type Row<const M: usize> = [f64; M];
 
-/// Matrices of stress = G strain (engineering shear) in the output frame; scaled by thickness where they are used.
+/// Matrices of `stress = G strain` (engineering shear) in the output frame. They are multiplied by the thickness where they are used.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ShellLaw {
     /// Membrane; `None`: no membrane stiffness.
@@ -50,7 +50,7 @@ pub(crate) enum Sides {
     Bending,
 }
 
-/// Matrices of a shell to compute: its stiffness takes most of the time.
+/// Matrices of a shell to compute. The stiffness takes most of the time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Parts {
     All,
@@ -64,7 +64,7 @@ pub(crate) struct ShellMatrices<const N: usize, const M: usize> {
     pub(crate) stiffness: [[f64; M]; M],
     pub(crate) centre: StrainRows<M>,
     pub(crate) corners: [StrainRows<M>; N],
-    /// Loads equivalent to thermal strain: the forces that prevent it, sign reversed.
+    /// Loads equivalent to thermal strain: the forces that prevent thermal strain, with reversed sign.
     pub(crate) thermal: [f64; M],
 }
 
@@ -85,7 +85,7 @@ pub(crate) struct BadShape;
 pub(crate) struct Expansion {
     /// Membrane force per length: of a unit rise of temperature, and of a unit gradient dT/dz.
     pub(crate) force: [[f64; 3]; 2],
-    /// Moment per length (integral of z sigma), likewise.
+    /// Moment per length (integral of z sigma) in the same two cases.
     pub(crate) moment: [[f64; 3]; 2],
     /// Free strain per unit rise at the surfaces Z1 and Z2: exx, eyy, gxy (engineering shear).
     pub(crate) surface: [[f64; 3]; 2],
@@ -97,7 +97,7 @@ pub(crate) struct Expansion {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Heat {
     pub(crate) expansion: Expansion,
-    /// Rise of the reference plane at the corners.
+    /// Temperature rise of the reference plane at the corners.
     pub(crate) rise: [f64; 4],
     /// dT/dz along the element normal.
     pub(crate) gradient: f64,

@@ -9,7 +9,7 @@ use nastran::cards::SolidShape;
 #[derive(Clone, Debug)]
 pub(super) struct SolidInput {
     pub(super) shape: SolidShape,
-    /// Corners, then the mid-side grids there are.
+    /// Corners, then the existing mid-side grids.
     pub(super) x: Vec<Vec3>,
     /// Edge of each mid-side grid.
     pub(super) mids: Vec<usize>,
@@ -19,7 +19,7 @@ pub(super) struct SolidInput {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct DegenerateShape;
 
-/// Strain columns at a point: three a grid, then three a mode.
+/// Strain columns at a point: three for each grid, then three for each mode.
 pub(super) struct StrainColumns {
     /// Weight times volume per parameter volume.
     pub(super) volume: f64,
@@ -32,7 +32,7 @@ pub(super) struct CondensedSolid {
     pub(super) stiffness: DMatrix<f64>,
     /// Modes by translations.
     pub(super) share: DMatrix<f64>,
-    /// Forces that a thermal strain by point puts on translations, modes taken out.
+    /// Forces on the translations that a thermal strain at the points causes. The modes are eliminated.
     pub(super) force: Vec<f64>,
     /// Amounts of the modes under the thermal strain alone.
     pub(super) amount: Vec<f64>,
@@ -65,7 +65,7 @@ impl SolidInput {
         }
     }
 
-    /// 1, or -1 for an element numbered as its mirror image: the same body, which solvers accept.
+    /// Returns the orientation of the numbering: 1, or -1 for an element that is numbered as its mirror image. Solvers accept both.
     pub(super) fn hand(&self) -> f64 {
         let centre = &Tables::get(self.shape).centre;
         self.jacobian(&centre.functions(self.shape, &self.mids))
@@ -85,7 +85,7 @@ impl SolidInput {
         j
     }
 
-    /// Strain columns at a point.
+    /// Returns the strain columns at a point.
     pub(super) fn strain_columns_at(
         &self,
         point: &TablePoint,
@@ -126,7 +126,7 @@ impl SolidInput {
         })
     }
 
-    /// Stiffness for a law; `strain` is the thermal strain at the point with these functions, if any.
+    /// Returns the stiffness for a law; `strain` is the thermal strain at the point with these functions, if any.
     pub(super) fn form(
         &self,
         law: &Matrix6<f64>,
@@ -176,7 +176,7 @@ impl SolidInput {
         })
     }
 
-    /// Integral of products of shape functions, row by row over the grids. The folded part of a shape counts as negative.
+    /// Returns the integral of products of shape functions, row by row over the grids. The folded part of a shape counts as negative.
     pub(super) fn products(&self) -> Vec<f64> {
         let n = self.x.len();
         let mut out = vec![0.0; n * n];

@@ -9,7 +9,7 @@ use nastran::cards::SolidShape;
 pub(super) struct SolidLaw {
     pub(super) g: Matrix6<f64>,
     pub(super) alpha: Vector6<f64>,
-    /// Axes of the material, where they are not the basic ones: strain is given in them.
+    /// Axes of the material if they differ from the basic axes. Strain is then in these axes.
     pub(super) axes: Option<Mat3>,
 }
 

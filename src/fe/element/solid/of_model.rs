@@ -9,11 +9,11 @@ use crate::linalg::{DMatrix, Vector6};
 use crate::model::{GridIx, Model, Solid, Vec3};
 use nastran::cards::SolidShape;
 
-/// Strain of a solid: xx yy zz xy yz zx, engineering shear; basic frame, or the material's where PSOLID names one.
+/// Strain of a solid: xx yy zz xy yz zx, engineering shear. The frame is the basic frame, or the material frame if PSOLID names one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SolidStrain {
     pub(crate) centre: [f64; 6],
-    /// By corner; NaN beyond the element's own.
+    /// Strain at each corner. NaN beyond the corners of the element.
     pub(crate) corners: [[f64; 6]; 8],
 }
 
@@ -73,7 +73,7 @@ pub(crate) fn is_inverted(model: &Model, i: usize) -> bool {
     input(model, &model.solids[i]).is_ok_and(|input| input.hand() < 0.0)
 }
 
-/// Stiffness of solid `i`, basic frame; rotations are without stiffness.
+/// Returns the stiffness of solid `i`, basic frame. Rotations have no stiffness.
 ///
 /// # Errors
 /// Folded shapes; properties and materials that make no solid.
@@ -95,8 +95,8 @@ pub(crate) fn solid_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, 
     Ok(out)
 }
 
-/// Grids and, row by row, the integral of density times products of shape functions, before WTMASS; empty without density. A pyramid
-/// has the mass between its corners: the solver refuses its mid-side grids.
+/// Returns the grids and the mass matrix by rows: integrals of density times products of shape functions, before WTMASS. Both are empty without
+/// density. The mass of a pyramid is distributed over its corners, because the solver refuses its mid-side grids.
 pub(crate) fn solid_mass(model: &Model, i: usize) -> (Vec<GridIx>, Vec<f64>) {
     let solid = &model.solids[i];
     let rho = model
@@ -124,10 +124,10 @@ fn expansion<'a>(law: &'a SolidLaw, rise: &'a [f64]) -> impl Fn(&[Function]) -> 
     }
 }
 
-/// Forces of a temperature rise by grid of the element: three a grid, basic frame.
+/// Returns the forces that a temperature rise causes: three components for each grid of the element, basic frame.
 ///
 /// # Errors
-/// As `solid_stiffness`.
+/// The errors of `solid_stiffness`.
 pub(crate) fn solid_thermal_force(
     model: &Model,
     i: usize,
@@ -151,7 +151,7 @@ pub(crate) fn solid_thermal_force(
 /// temperature rise is by grid of the solid (empty: none).
 ///
 /// # Errors
-/// As `solid_stiffness`.
+/// The errors of `solid_stiffness`.
 pub(crate) fn solid_strain(
     model: &Model,
     i: usize,

@@ -5,7 +5,7 @@ use crate::model::{solid_edges, solid_functions};
 use nastran::cards::SolidShape;
 use std::sync::OnceLock;
 
-/// Value and derivatives along the parameters of one function.
+/// Value of a function, and its derivatives along the parameters.
 pub(super) type Function = [f64; 4];
 
 /// Functions at a point.
@@ -28,7 +28,8 @@ impl TablePoint {
         }
     }
 
-    /// Functions of the corners, then of the mid-side grids at `mids` (edge numbers): a corner gives half of its edges' functions away.
+    /// Returns the functions of the corners, then of the mid-side grids at `mids` (edge numbers). Half of the function of each edge is subtracted
+    /// from its corners.
     pub(super) fn functions(&self, shape: SolidShape, mids: &[usize]) -> Vec<Function> {
         let mut all = self.corners.clone();
         let edges = solid_edges(shape);

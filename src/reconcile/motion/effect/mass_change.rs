@@ -24,7 +24,7 @@ pub(super) fn candidates(frame: &MotionFrame, design: &Design) -> Vec<Candidate>
         .iter()
         .zip(found)
         .map(|(&body, found)| {
-            // The best moments in the record, then the moments of a grid.
+            // The best times in the record, then the times of a grid.
             let mut shapes: Vec<Change> = found.into_iter().map(Change::Step).collect();
             for gravity in [0.0, frame.gravity] {
                 let step = |at_s: f64, over_s: f64| {

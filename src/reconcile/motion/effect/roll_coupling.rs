@@ -4,7 +4,7 @@ use super::places::coupling_forms;
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::frame::MotionFrame;
 
-/// Returns links across the vehicle: between the stretches of both sides, the wheels, the bodies, or a body and the opposite wheel.
+/// Links across the vehicle: between the stretches of both sides, the wheels, the bodies, or a body and the opposite wheel.
 const LINKS: [&str; 4] = ["bar", "axle", "roll", "cross"];
 
 pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {

@@ -6,12 +6,12 @@ use crate::reconcile::motion::fit::held_parameters;
 use crate::reconcile::motion::frame::MotionFrame;
 use crate::reconcile::motion::motion_fit::MotionFit;
 
-/// Rows of a measurement over their standard deviation.
+/// Rows of a measurement, divided by their standard deviation.
 #[derive(Clone)]
 pub(super) struct Rows {
     /// Reading under the explanation, or its residual.
     pub(super) reading: Vec<f64>,
-    /// Columns of the fit, in its order.
+    /// Columns of the fit, in the order of the fit.
     pub(super) own: Vec<Vec<f64>>,
     /// Columns that the measurement adds, each with one standard deviation if it is known beforehand.
     pub(super) fresh: Vec<(Vec<f64>, Option<f64>)>,

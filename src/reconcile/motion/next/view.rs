@@ -36,11 +36,11 @@ pub(super) struct RecordEquations {
     pub(super) left: Vec<Bins>,
     /// Whether each equation predicts the reading of a new channel. Its residual is then that reading, not an error of the record.
     pub(super) is_new: Vec<bool>,
-    /// How the channels of the record enter the equations.
+    /// Contribution of the channels of the record to the equations.
     pub(super) channels: Vec<ChannelResponse>,
     /// Whitening by sensor noise and background.
     pub(super) whitener: Whitener,
-    /// Columns of the fit, in its order, before whitening.
+    /// Columns of the fit before whitening, in the order of the fit.
     pub(super) own: Vec<Vec<Bins>>,
     /// Columns that the measurement adds, before whitening, with one standard deviation if it is known beforehand.
     pub(super) fresh: Vec<(Vec<Bins>, Option<f64>)>,
@@ -56,7 +56,7 @@ pub(super) struct RecordEquations {
 pub(super) struct ChannelResponse {
     /// Name.
     pub(super) name: String,
-    /// Power of its noise.
+    /// Power of the noise.
     pub(super) power: f64,
     /// Response of each equation to the corrected channel, by bin.
     pub(super) responses: Vec<Bins>,
@@ -107,7 +107,7 @@ impl View {
 
 /// Forms the equations of motion of a further drive.
 ///
-/// The motion is the present one with the same filter at every channel, less the channel errors that explain its residual under one explanation
+/// The motion is the present one with the same filter at every channel, minus the channel errors that explain its residual under one explanation
 /// ([`super::alternative_misfit`]). It obeys that explanation to first order in the difference of two explanations. The residual of the other
 /// explanation is the difference of the forces of both at that motion.
 fn form_drive_equations(

@@ -3,14 +3,14 @@
 use crate::strain_chain::LoadUnits;
 use crate::workflow::recover::GaugeResidual;
 
-/// Columns of `loads.csv`: `key`, then each load with the ends of its 95 % interval.
+/// Returns the columns of `loads.csv`: `key`, then each load with the ends of its 95 % interval.
 pub(super) fn columns(key: &str, names: &[String]) -> Vec<String> {
     let ends = |name: &String| [name.clone(), format!("{name}.low"), format!("{name}.high")];
     let loads = names.iter().flat_map(ends);
     std::iter::once(key.to_owned()).chain(loads).collect()
 }
 
-/// Columns of `loads.csv` ([`columns`]) with their units; `key` is the name and unit of the first column.
+/// Returns the columns of `loads.csv` ([`columns`]) with their units. `key` is the name and unit of the first column.
 pub(super) fn columns_with_units(
     key: [&str; 2],
     names: &[String],
@@ -21,7 +21,7 @@ pub(super) fn columns_with_units(
     columns(key[0], names).into_iter().zip(units).collect()
 }
 
-/// Name, residual in microstrain, and leverage.
+/// Returns name, residual in microstrain, and leverage of each gauge.
 pub(super) fn by_gauge(gauges: &[GaugeResidual]) -> Vec<(String, f64, f64)> {
     let row = |g: &GaugeResidual| (g.name.clone(), g.residual_rms_microstrain, g.leverage);
     gauges.iter().map(row).collect()

@@ -7,7 +7,7 @@ use crate::report::console::{Console, ConsoleTable};
 use crate::units::{half_width, number, plus_minus};
 use crate::workflow::recover::{LoadSpan, RecoveredLoads, RecoveredRuns, States};
 
-/// Returns a row a run where they fit, else a row a load.
+/// Returns a row for each run if all columns fit, or else a row for each load.
 pub(super) fn console(outcome: &Outcome<RecoveredLoads>) -> Console {
     let spans = outcome.spans();
     let (n, of_what) = match &outcome.states {
@@ -33,7 +33,7 @@ pub(super) fn console(outcome: &Outcome<RecoveredLoads>) -> Console {
     }
 }
 
-/// A row a run, a column a load.
+/// Returns a table with a row for each run and a column for each load.
 fn by_run(runs: &RecoveredRuns, spans: &[LoadSpan]) -> ConsoleTable {
     let mut units: Vec<&str> = spans.iter().map(|s| s.unit.as_str()).collect();
     units.dedup();

@@ -19,7 +19,7 @@ pub struct RecordFolder {
 }
 
 impl RecordFolder {
-    /// Into this folder.
+    /// Creates the writer for this folder.
     pub fn new(folder: &Path) -> Self {
         Self {
             tables: None,
@@ -28,10 +28,10 @@ impl RecordFolder {
         }
     }
 
-    /// The folder with what was written so far.
+    /// Returns the folder with the files written so far.
     ///
     /// # Errors
-    /// A fault where it can't be created.
+    /// A fault if it cannot be created.
     pub fn into_output(self) -> Result<Output, Fault> {
         match self.out {
             Some(out) => Ok(out),

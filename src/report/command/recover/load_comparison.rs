@@ -41,7 +41,7 @@ const SECTIONS: [(&str, &str); 11] = [
     ("damage_high", DAMAGE),
 ];
 
-/// Writes `comparison.csv` and `sections.csv`, where there is something in them.
+/// Writes `comparison.csv` and `sections.csv` if they have any content.
 ///
 /// # Errors
 /// A file that can't be written.
@@ -195,7 +195,7 @@ fn comparison_section(comparison: &Comparison) -> Section {
     Section::new("Recovered against recorded loads", blocks)
 }
 
-/// Returns the table of what `[conditioning]` changed, a row a step and gauge.
+/// Returns the table of the changes by `[conditioning]`, with a row for each step and gauge.
 fn conditioning_section(steps: &[ConditioningStep]) -> Section {
     let row = |s: &ConditioningStep| {
         vec![

@@ -7,7 +7,7 @@ use crate::report::page::KeyNumber;
 use crate::units::{half_width, number, percent, plus_minus};
 use crate::workflow::recover::{LoadSpan, RecoveredLoad, RecoveredLoads, RecoveredRuns, States};
 
-/// Largest load, residual, gauges, least certain load.
+/// Returns the key numbers: the largest load, the residual, the number of gauges and the least certain load.
 pub(super) fn key_numbers(outcome: &Outcome<RecoveredLoads>) -> Vec<KeyNumber> {
     let spans = outcome.spans();
     let known = || spans.iter().filter(|s| s.share().is_finite());
@@ -82,7 +82,7 @@ fn format_expected_residual(runs: &RecoveredRuns) -> String {
     }
 }
 
-/// A row a load: its largest value by magnitude with interval, and the share of its typical size.
+/// Returns a table with a row for each load: the largest value by magnitude with its interval, and its share of the typical size.
 pub(super) fn result_table(outcome: &Outcome<RecoveredLoads>) -> ConsoleTable {
     let spans = outcome.spans();
     if !outcome.comparison.loads.is_empty() {
@@ -167,7 +167,7 @@ fn of_record(spans: &[LoadSpan]) -> ConsoleTable {
 /// Runs whose loads are in a table of the page; all are in `loads.csv`.
 const MOST_ROWS: usize = 600;
 
-/// A row a run and load, for the table next to the figure, and whether some are left out.
+/// Returns a row for each run and load, for the table next to the figure, and whether some are left out.
 pub(super) fn by_run(
     outcome: &Outcome<RecoveredLoads>,
     runs: &RecoveredRuns,

@@ -90,7 +90,7 @@ fn heading(recovered: &RecoveredLoads, what: &str) -> String {
     )
 }
 
-/// Writes the loads of every run; nothing if the job states the place of no load.
+/// Writes the loads of every run. It writes nothing if the job states no place of a load.
 ///
 /// # Errors
 /// A file that can't be written.

@@ -9,7 +9,7 @@ use crate::workflow::recover::{RecordHead, Samples};
 
 const NAME: &str = "loads.parquet";
 
-/// Writes the history in Parquet: `time` in s, then a column a load, report units; unit and 95 % half width in the metadata.
+/// Writes the history in Parquet: `time` in s, then a column for each load in report units. The metadata contain unit and 95 % half width.
 ///
 /// # Errors
 /// A file that can't be written.

@@ -21,7 +21,8 @@ use std::io::Write;
 /// Blocks formed at a time.
 const GROUP: usize = 8;
 
-/// Writes everything; `loads.csv` and `loads.bin` only where the outcome holds its history, else a [`super::RecordFolder`] wrote them.
+/// Writes all files of a record. It writes `loads.csv` and `loads.bin` only if the outcome contains its history. Otherwise a [`super::RecordFolder`]
+/// has written them.
 ///
 /// # Errors
 /// The first file that can't be written.
@@ -128,7 +129,7 @@ fn of_history(l: &crate::workflow::recover::RecordLoad) -> HistoryLoad {
     }
 }
 
-/// The page.
+/// Returns the page.
 pub(super) fn page(outcome: &Outcome<RecoveredLoads>, record: &RecoveredRecord) -> Page {
     let (job, file) = (&outcome.job, &record.head.file);
     let row = |name: &str, value: String| (name.to_owned(), value);

@@ -88,7 +88,7 @@ fn shown_run(runs: &RecoveredRuns, r: &RunEstimate) -> RecoveredRun {
     }
 }
 
-/// The page.
+/// Returns the page.
 pub(super) fn page(outcome: &Outcome<RecoveredLoads>, runs: &RecoveredRuns) -> Page {
     let shown = shown_runs(runs);
     let (job, s) = (&outcome.job, &outcome.prepared.sensitivity);

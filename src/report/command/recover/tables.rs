@@ -15,12 +15,12 @@ use std::sync::Arc;
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
-/// Every sample, or every so many, as text.
+/// File name of the loads as text: every sample, or every n-th sample.
 pub(super) const CSV: &str = "loads.csv";
-/// Every sample as numbers.
+/// File name of the loads as numbers: every sample.
 pub(super) const BIN: &str = "loads.bin";
 
-/// The two files while they are written.
+/// The two files during writing.
 pub(super) struct LoadTables {
     head: Arc<RecordHead>,
     /// To the thread that writes.
@@ -86,7 +86,7 @@ impl LoadTables {
         }
     }
 
-    /// Ends the files: how many samples a record holds is known now, and the header of `loads.bin` is written again.
+    /// Completes the files. The number of samples is now known, so the header of `loads.bin` is written again.
     ///
     /// # Errors
     /// A file that can't be written.

@@ -6,7 +6,7 @@ use crate::job::LoadActs;
 use crate::report::{PointValues, write_points_vtu};
 use crate::workflow::recover::{RecoveredLoads, RecoveredRuns};
 
-/// Writes a point a loaded grid with force and moment of every run, basic frame, report units; nothing without a model.
+/// Writes a point for each loaded grid with force and moment of every run, basic frame, report units. It writes nothing without a model.
 ///
 /// # Errors
 /// A file that can't be written.

@@ -2,9 +2,9 @@
 
 use crate::series::record::time_unit::DAY;
 
-/// Seconds since 1970 of a date with a time: `2026-05-01 12:00:00.002`, `2026-05-01T12:00:00,002Z`, `01.05.2026 12:00:00`,
-/// `2026/05/01 12:00:00`, `5/31/2026 1:05:09 PM`. An offset from UTC (`Z`, `+01:00`, `-0500`, `+01`) is subtracted. Dates whose day and month
-/// could be exchanged (`05/01/2026`) are refused.
+/// Returns the seconds since 1970 of a date with a time: `2026-05-01 12:00:00.002`, `2026-05-01T12:00:00,002Z`, `01.05.2026 12:00:00`, `2026/05/01
+/// 12:00:00`, `5/31/2026 1:05:09 PM`. An offset from UTC (`Z`, `+01:00`, `-0500`, `+01`) is subtracted. Dates whose day and month could be exchanged
+/// (`05/01/2026`) are refused.
 pub fn seconds(field: &[u8]) -> Option<f64> {
     let text = std::str::from_utf8(field).ok()?.trim();
     let (date, time) = text.split_once([' ', 'T'])?;
@@ -40,7 +40,7 @@ pub fn is_ambiguous(field: &[u8]) -> bool {
     matches!(parts[..], [a, b, c] if c.len() == 4 && [a, b].iter().all(|p| parse_whole_number(p).is_some_and(|n| (1..=12).contains(&n))))
 }
 
-/// Seconds since 1970 of a date in one field and a time of day in the other.
+/// Returns the seconds since 1970 of a date in one field and a time of day in another field.
 pub fn parse_date_and_time(one: &[u8], other: &[u8]) -> Option<f64> {
     let date = |field: &[u8]| days_of(std::str::from_utf8(field).ok()?.trim());
     let both =
@@ -48,8 +48,8 @@ pub fn parse_date_and_time(one: &[u8], other: &[u8]) -> Option<f64> {
     both(one, other).or_else(|| both(other, one))
 }
 
-/// Seconds since midnight of a time of day with its seconds: `12:00:00.002`, `1:05:09 PM`. Of two numbers nobody knows whether they are hours
-/// and minutes.
+/// Returns the seconds since midnight of a time of day with seconds: `12:00:00.002`, `1:05:09 PM`. A time of two numbers is ambiguous, because it may
+/// contain hours and minutes or minutes and seconds.
 pub fn of_day(field: &[u8]) -> Option<f64> {
     let text = std::str::from_utf8(field).ok()?.trim();
     let parts = text.split(':').count();
@@ -121,7 +121,7 @@ fn parse_whole_number(text: &str) -> Option<i64> {
     (is_short && text.bytes().all(|b| b.is_ascii_digit())).then(|| text.parse().ok())?
 }
 
-/// Decimals of the seconds.
+/// Returns the decimals of the seconds.
 pub fn decimals(field: &[u8]) -> usize {
     let end = field.trim_ascii();
     let digits = end.splitn(3, |b| *b == b':').last().unwrap_or_default();

@@ -8,8 +8,8 @@ const TELLING: usize = 8;
 /// Returns the start of the last line if that line may be cut within its last field: `131.9` cut is `131.`, `131` or nothing. Such a line has no end
 /// of line although other lines have one.
 ///
-/// A last field with as many characters after the point as the fields before it is complete. A line with fewer fields than the line before is refused
-/// elsewhere. Of two lines, the first may be the header, so they show nothing.
+/// A last field with as many characters after the point as the fields before it is complete. Other code refuses a line with fewer fields than the
+/// line before. If the file has only two lines, the first may be the header, so that they show nothing.
 pub fn unsure_end(bytes: &[u8]) -> Option<usize> {
     let (start, lines) = last_lines(bytes);
     let (last, before) = lines.split_first()?;
@@ -35,8 +35,8 @@ pub fn unsure_end(bytes: &[u8]) -> Option<usize> {
     (!whole && !closed).then_some(start)
 }
 
-/// Whether the last line is certainly cut. [`unsure_end`] returns it, and its last number lacks a part that the other numbers of its column have. The
-/// part may be digits after the point (`has_fewer_digits`), the point or the exponent (`lacks_a_part`).
+/// Returns whether the last line, which [`unsure_end`] has found, is certainly cut. Its last number then lacks a part that the other numbers of its
+/// column have. The part may be digits after the point (`has_fewer_digits`), the point or the exponent (`lacks_a_part`).
 pub fn is_cut(bytes: &[u8]) -> bool {
     if unsure_end(bytes).is_none() {
         return false;
@@ -111,7 +111,7 @@ fn exponent(field: &[u8]) -> Option<usize> {
     is_number.then_some(field.len() - at - 1)
 }
 
-/// Where the last line begins; it and some lines before it, the last first.
+/// Returns the begin of the last line, and the last lines of the text in reverse order.
 fn last_lines(bytes: &[u8]) -> (usize, Vec<Vec<u8>>) {
     let (encoding, begin) = Encoding::detect(bytes);
     let last = last_line(encoding, bytes, bytes.len());
@@ -137,7 +137,7 @@ fn delimiter_of(line: &[u8]) -> u8 {
     [b';', b'\t'].into_iter().find(divides).unwrap_or(b',')
 }
 
-/// Where the line begins that ends before `end`.
+/// Returns the begin of the line that ends before `end`.
 fn last_line(encoding: Encoding, bytes: &[u8], end: usize) -> usize {
     let unit = encoding.unit();
     let begin = Encoding::detect(bytes).1;

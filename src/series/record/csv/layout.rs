@@ -46,15 +46,15 @@ pub struct Layout {
     pub encoding: Encoding,
     /// Delimiter of fields.
     pub delimiter: u8,
-    /// The mark between whole and fraction.
+    /// The mark between the whole part and the fraction of a number.
     pub mark: DecimalMark,
     /// Name and unit of each field.
     pub columns: Vec<Column>,
-    /// Field of the time, and its content.
+    /// Field with the time, and the content of this field.
     pub time: Option<(usize, TimeKind)>,
     /// Whether the unit of time is stated.
     pub unit_stated: bool,
-    /// Half of the last digit that times are written with, s.
+    /// Half of the last digit of the written times, s.
     pub rounding_s: f64,
     /// First byte of the first row.
     pub start: usize,
@@ -62,7 +62,7 @@ pub struct Layout {
 
 /// A line of the beginning.
 struct Line {
-    /// Where it begins and ends in the file.
+    /// Begin and end of the piece in the file.
     from: usize,
     to: usize,
     text: Vec<u8>,
@@ -149,7 +149,7 @@ impl Layout {
         }
     }
 
-    /// Whether rows have times rather than names of runs: a column of time, and none called `run`.
+    /// Returns whether rows have times and not names of runs: there is a column of time, and no column `run`.
     pub fn is_record(&self) -> bool {
         self.time.is_some() && !self.columns.iter().any(|c| c.name == "run")
     }
@@ -339,7 +339,7 @@ fn header_of(fields: &[Vec<&[u8]>], mark: DecimalMark) -> Result<usize, SeriesEr
                 || decode_field(n).eq_ignore_ascii_case("run")
         })
     };
-    // Names may be numbers (`time,14,15`). A column of time identifies the header if rows of about its length follow.
+    // Names may be numbers (`time,14,15`). A line with a column of time is the header if the next line has about as many fields.
     let followed = fields.windows(2).position(|w| match w {
         [a, b] => a.len() > 1 && named(a) && a.len().abs_diff(b.len()) <= 1,
         _ => false,

@@ -9,7 +9,7 @@ pub const REMEDY: &str = "write numbers without marks between thousands, and all
 /// Numbers of each kind in a column that are enough to test numbers with a mark against numbers without.
 const SEVERAL: usize = 2;
 
-/// Returns the decimal mark of the first rows; `mark` if none of their numbers has one. Error: the wrong row, and the message about it.
+/// Returns the decimal mark of the first rows. It is `mark` if no number has a decimal mark. An error contains the wrong row and a message.
 pub fn find_decimal_mark(
     rows: &[Vec<&[u8]>],
     mark: DecimalMark,
@@ -65,7 +65,7 @@ pub fn in_words(field: &[u8]) -> String {
     )
 }
 
-/// Whether a number may have a mark between thousands: one to three digits, the first not 0, a mark, three digits.
+/// Returns whether a mark in a number may separate thousands: one to three digits of which the first is not 0, a mark, three digits.
 pub fn may_be_thousands(field: &[u8]) -> bool {
     let bare = field
         .strip_prefix(b"-")

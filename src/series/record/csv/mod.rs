@@ -26,7 +26,7 @@ use text::Encoding;
 /// Bytes of a piece.
 const PIECE: usize = 4 << 20;
 
-/// A table as a record.
+/// A text table that is read as a record.
 pub struct Csv {
     bytes: Bytes,
     layout: Layout,
@@ -34,12 +34,12 @@ pub struct Csv {
     columns: Vec<Column>,
     /// Field of each column.
     fields: Vec<usize>,
-    /// Where the last line begins, if it was left out.
+    /// Begin of the last line, if this line was left out.
     left_out: Option<usize>,
 }
 
 impl Csv {
-    /// The table in a file.
+    /// Returns the table in a file.
     ///
     /// # Errors
     /// No header, a header without rows, a time column in a unit that is not a unit of time.
@@ -66,7 +66,7 @@ impl Csv {
         })
     }
 
-    /// Which field goes where: for each field of a row, the places among the picks.
+    /// Destinations of the fields: for each field of a row, the indices among the picks.
     fn places(&self, picks: &[Pick]) -> Vec<Vec<usize>> {
         let mut places = vec![Vec::new(); self.layout.columns.len()];
         for (j, pick) in picks.iter().enumerate() {

@@ -33,7 +33,7 @@ pub fn table_text(bytes: &[u8]) -> Option<String> {
     }
 }
 
-/// How text is coded.
+/// Encoding of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
     /// A byte a character where it matters here: UTF-8 and eight-bit codes.
@@ -45,7 +45,7 @@ pub enum Encoding {
 }
 
 impl Encoding {
-    /// How these bytes are coded, and where the text begins.
+    /// Returns the encoding of these bytes, and the position where the text begins.
     pub fn detect(bytes: &[u8]) -> (Self, usize) {
         match bytes {
             [0xef, 0xbb, 0xbf, ..] => (Self::Bytes, 3),
@@ -74,7 +74,7 @@ impl Encoding {
         }
     }
 
-    /// Bytes of an end of line.
+    /// Returns the bytes of an end of line.
     pub fn unit(self) -> usize {
         match self {
             Self::Bytes => 1,
@@ -82,7 +82,7 @@ impl Encoding {
         }
     }
 
-    /// The text as bytes that hold ASCII as such.
+    /// Returns the text as bytes in which ASCII characters are unchanged.
     pub fn text(self, raw: &[u8]) -> Cow<'_, [u8]> {
         let unit = match self {
             Self::Bytes => return Cow::Borrowed(raw),
@@ -99,7 +99,7 @@ impl Encoding {
         Cow::Owned(text.into_bytes())
     }
 
-    /// Where the line that holds byte `at` ends, its end of line included.
+    /// Returns the end of the line that contains byte `at`, including its line end.
     pub fn line_end(self, bytes: &[u8], at: usize) -> usize {
         let rest = bytes.get(at..).unwrap_or_default();
         let pair = |end: [u8; 2]| {
@@ -114,7 +114,7 @@ impl Encoding {
         }
     }
 
-    /// Ends of lines.
+    /// Returns the ends of lines.
     pub fn lines(self, bytes: &[u8]) -> usize {
         match self {
             Self::Bytes => memchr::memchr_iter(b'\n', bytes).count(),
@@ -123,7 +123,7 @@ impl Encoding {
         }
     }
 
-    /// Pieces of about `size` bytes that end with whole lines.
+    /// Returns the pieces of about `size` bytes that end with whole lines.
     pub fn pieces(self, bytes: &[u8], start: usize, size: usize) -> Vec<(usize, usize)> {
         let mut out = Vec::new();
         let mut from = start;
@@ -160,7 +160,7 @@ pub fn is_empty_line(line: &[u8]) -> bool {
     line.is_empty() || line.first() == Some(&b'#')
 }
 
-/// Where the line that begins at `at` ends, if it holds nothing or a comment.
+/// Returns the end of the line that begins at `at`, if the line is empty or a comment.
 pub fn skip_empty(text: &[u8], at: usize) -> Option<usize> {
     let rest = text.get(at..)?;
     let first = rest.iter().position(|b| !matches!(b, b' ' | b'\r'));
@@ -171,7 +171,7 @@ pub fn skip_empty(text: &[u8], at: usize) -> Option<usize> {
     Some(memchr::memchr(b'\n', rest).map_or(text.len(), |n| at + n + 1))
 }
 
-/// Length of the field at the beginning of `rest`, quotes included.
+/// Returns the length of the field at the beginning of `rest`, quotes included.
 pub fn field_end(rest: &[u8], delimiter: u8) -> usize {
     let mut from = 0;
     if let Some(open) = rest.iter().position(|b| *b != b' ')
@@ -195,7 +195,7 @@ pub fn field_end(rest: &[u8], delimiter: u8) -> usize {
     memchr::memchr2(delimiter, b'\n', rest_of).map_or(rest.len(), |n| from + n)
 }
 
-/// A field without spaces around it and without its quotes.
+/// Returns a field without spaces around it and without quotes.
 pub fn trim_field(field: &[u8]) -> &[u8] {
     let field = field.trim_ascii();
     field
@@ -204,7 +204,7 @@ pub fn trim_field(field: &[u8]) -> &[u8] {
         .map_or(field, <[u8]>::trim_ascii)
 }
 
-/// Text of a field without its quotes: UTF-8, else an eight-bit code. A quotation mark within is doubled in the file.
+/// Returns the text of a field without quotes: UTF-8, or else an eight-bit code. A quotation mark within the field is doubled in the file.
 pub fn decode_field(field: &[u8]) -> String {
     match std::str::from_utf8(field) {
         Ok(t) => t.replace("\"\"", "\""),

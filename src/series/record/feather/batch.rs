@@ -68,7 +68,7 @@ impl Batch {
     }
 }
 
-/// Returns the columns, the batches and the dictionaries that the end of a file lists; `None` where the list is damaged.
+/// Returns the columns, the batches and the dictionaries in the list at the end of a file. `None` if the list is damaged.
 pub(super) fn parts(file: &[u8]) -> Option<(Vec<Field>, Vec<Batch>, Vec<(usize, Batch)>)> {
     let end = file.len().checked_sub(MAGIC.len() + 4)?;
     let length = Buffer(file).word(end)? as usize;

@@ -1,4 +1,5 @@
-//! Feather: a column a channel, a row a sample, in batches of rows; the file format of Arrow, plain or compressed by LZ4 or Zstandard.
+//! Feather with a column for each channel and a row for each sample, in batches of rows. It is the file format of Arrow, plain or compressed by LZ4
+//! or Zstandard.
 
 mod batch;
 #[cfg(test)]
@@ -41,7 +42,7 @@ pub struct Feather {
 }
 
 impl Feather {
-    /// Returns the table in a file. Columns of numbers alone are channels; a null is NaN. [`TypedChannels::from_columns`] determines the column of
+    /// Returns the table in a file. Only columns of numbers are channels. A null is NaN. [`TypedChannels::from_columns`] determines the column of
     /// time.
     ///
     /// # Errors
@@ -59,7 +60,7 @@ impl Feather {
         );
         let (leaves, columns) = typed.channels.into_iter().unzip();
         let pieces = batches.iter().enumerate().flat_map(|(b, batch)| {
-            // A compressed batch is decompressed whole.
+            // A compressed batch is decompressed as a whole.
             let step = if batch.codec.is_some() {
                 usize::MAX
             } else {
@@ -109,7 +110,7 @@ impl Feather {
         Ok(())
     }
 
-    /// Returns the texts of the column of this name, a row each, blank for a null; `None` where no column of text has it.
+    /// Returns the texts of the column with this name, one for each row, blank for a null. `None` if no column of text has this name.
     ///
     /// # Errors
     /// Buffers that can't be read.

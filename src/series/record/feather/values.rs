@@ -7,15 +7,15 @@ use std::borrow::Cow;
 /// Values of one field in one batch.
 pub(super) struct Values<'a> {
     pub stored: ColumnStorage,
-    /// A bit a row; empty where no value is missing.
+    /// One bit for each row, which states whether the row has a value. Empty if no value is missing.
     pub validity: Cow<'a, [u8]>,
     pub data: Cow<'a, [u8]>,
-    /// Values that the stored ones are the numbers of.
+    /// Dictionary, if the stored values are indices into a dictionary.
     pub dictionary: Option<Vec<f64>>,
 }
 
 impl Values<'_> {
-    /// Writes the rows from number `first` on, times `worth` less `off`; NaN for a null.
+    /// Writes the rows from number `first` on, multiplied by `worth` and with `off` subtracted. A null gives NaN.
     pub(super) fn write_rows(&self, first: usize, worth: f64, off: f64, out: &mut [f64]) {
         let data = &*self.data;
         match self.stored {
@@ -83,7 +83,7 @@ fn bit(bits: &[u8], i: usize) -> bool {
     bits.get(i / 8).is_some_and(|b| b >> (i % 8) & 1 == 1)
 }
 
-/// Whether a row has a value: no bits are stored where each row has one.
+/// Returns whether a row has a value. No bits are stored if every row has a value.
 pub(super) fn is_valid(validity: &[u8], i: usize) -> bool {
     validity.is_empty() || bit(validity, i)
 }

@@ -4,13 +4,13 @@ use crate::series::record::time_unit::single_rounding_s;
 use falcon_mdf::blocks::{ChannelType, DataType};
 use falcon_mdf::{Channel, ChannelGroup, Conversion};
 
-/// Channels that hold numbers and are not the group's clock.
+/// Returns the channels that hold numbers and are not the group's clock.
 pub(super) fn values(g: &ChannelGroup) -> impl Iterator<Item = &Channel> {
     let channels = g.channels.iter();
     channels.filter(|c| !c.is_master() && c.is_numeric() && !c.is_array())
 }
 
-/// How the bits of a number are meant.
+/// Type of a number, from which its bits are decoded.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Unsigned,

@@ -36,7 +36,7 @@ pub(super) struct Group {
 }
 
 impl Group {
-    /// The group, where its records are fixed and its blocks plain or deflated; else `None`.
+    /// Returns the group if its records have fixed length and its blocks are plain or deflated. Otherwise it returns `None`.
     ///
     /// # Errors
     /// Fewer bytes than the group states records, or blocks that lie outside of the file.
@@ -115,12 +115,12 @@ impl Group {
         }))
     }
 
-    /// Whether another group was sampled at the same times, to a share of a step.
+    /// Returns whether another group was sampled at the same times, within a share of a step.
     pub(super) fn same_clock(&self, other: &Self, bytes: &Bytes, share: f64) -> bool {
         if self.samples != other.samples || self.time.is_none() || other.time.is_none() {
             return false;
         }
-        // Each piece has a megabyte of times.
+        // The times of each piece take one megabyte.
         const ROWS: usize = 131_072;
         let mut from = 0;
         while from < self.samples {
@@ -193,7 +193,7 @@ impl Group {
             return Cow::Borrowed(records);
         }
         let shifted = records.get(self.skip..).unwrap_or_default();
-        // Pad the last record to its full size, so that the length is a multiple of it.
+        // Pad the last record to its full size, so that the length is a multiple of this size.
         let mut out = shifted.to_vec();
         out.resize(records.len(), 0);
         Cow::Owned(out)
@@ -239,7 +239,7 @@ fn content<'a>(file: &'a [u8], block: &DataBlockInfo) -> Result<Cow<'a, [u8]>, S
     Ok(Cow::Owned(out))
 }
 
-/// Groups on one clock as a record.
+/// Reader of groups with one clock as a record.
 pub(super) struct FixedRecordReader {
     bytes: Bytes,
     groups: Vec<Group>,
@@ -252,7 +252,7 @@ pub(super) struct FixedRecordReader {
 }
 
 impl FixedRecordReader {
-    /// Pieces end where blocks of the first group do, so that a deflated block is mostly expanded once.
+    /// Creates the reader. Pieces end at the ends of blocks of the first group, so that a deflated block is usually expanded only once.
     pub(super) fn new(bytes: Bytes, groups: Vec<Group>, others: Vec<OtherChannel>) -> Self {
         let mut places = Vec::new();
         let mut columns = Vec::new();

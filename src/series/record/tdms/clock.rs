@@ -138,7 +138,7 @@ pub(super) fn check_restarts(c: &Channel) -> Result<(), SeriesError> {
     Ok(())
 }
 
-/// Refuses channels on even steps next to a channel of times in their group that states another rate.
+/// Refuses channels with even steps if a channel of times in their group states another rate.
 ///
 /// # Errors
 /// A time channel that contradicts the increment of the waveforms.

@@ -45,7 +45,8 @@ pub(super) struct Tdms {
 type Scale = Vec<f64>;
 
 impl Tdms {
-    /// Returns the channels sampled at equal times: the `wanted` channels (without any, the group with most numbers) and all sampled with them.
+    /// Returns the channels that were sampled at equal times: the `wanted` channels and all channels sampled with them. Without `wanted` channels, it
+    /// is the group with most numbers.
     ///
     /// # Errors
     /// A file that can't be read, channels of a kind that is not read, wanted channels that were sampled at other times.
@@ -160,7 +161,7 @@ impl Tdms {
 /// Splits channels into those over time and those over something else, such as frequency.
 ///
 /// # Errors
-/// Wanted channels that are not over time, or no channel that is.
+/// Wanted channels that are not sampled over time, or a file without any channel over time.
 fn over_time(
     all: Vec<Channel>,
     wanted: &[String],

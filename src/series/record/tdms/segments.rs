@@ -17,7 +17,7 @@ const DAQMX: u32 = 1 << 7;
 /// Properties that state the times of a waveform.
 const CLOCK: [&str; 3] = ["wf_start_time", "wf_start_offset", "wf_increment"];
 
-/// How numbers are stored.
+/// Storage of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     I8,
@@ -119,11 +119,11 @@ struct Run {
 /// A property of the clock that a later segment states otherwise.
 #[derive(Clone, Debug)]
 pub struct Restart {
-    /// Number of samples before it.
+    /// Number of samples before the segment.
     pub first: usize,
     /// Name of the property.
     pub key: String,
-    /// Value of the property from there on.
+    /// Value of the property from this segment on.
     pub value: Value,
 }
 
@@ -140,7 +140,7 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// Samples `from .. to`, as stored.
+    /// Writes the samples `from .. to`, as stored, to `slots`.
     pub fn decode<'a>(
         &self,
         file: &[u8],

@@ -10,7 +10,7 @@ pub struct Stamp {
 }
 
 impl Stamp {
-    /// Reads one; `None` where there are too few bytes.
+    /// Reads one time stamp. `None` if there are too few bytes.
     pub fn from_bytes(bytes: &[u8], big: bool) -> Option<Self> {
         let (a, b) = bytes.split_first_chunk::<8>()?;
         let b = b.first_chunk::<8>()?;
@@ -26,7 +26,7 @@ impl Stamp {
         })
     }
 
-    /// Returns the seconds from `begin` to this one.
+    /// Returns the seconds from `begin` to this time stamp.
     pub fn seconds_since(self, begin: Self) -> f64 {
         let fraction = self.fraction as f64 - begin.fraction as f64;
         self.seconds.saturating_sub(begin.seconds) as f64 + fraction * 2_f64.powi(-64)

@@ -12,7 +12,7 @@ const TIME: i64 = 17;
 /// Codes of a general response and of a time response among the types of function.
 const RESPONSES: [i64; 2] = [0, 1];
 
-/// Numbers in the file as they are.
+/// Numbers in the stored form of the file.
 #[derive(Clone, Copy, Debug)]
 pub struct Binary {
     at: usize,
@@ -21,7 +21,7 @@ pub struct Binary {
 }
 
 impl Binary {
-    /// Number `i`.
+    /// Returns number `i` of the data set.
     pub fn value(&self, file: &[u8], i: usize) -> f64 {
         let size = if self.double { 8 } else { 4 };
         match file.get(self.at + i * size..self.at + (i + 1) * size) {
@@ -54,7 +54,7 @@ pub struct Dataset {
     unit: String,
     /// Texts that may be the name: the first line of the head, the label of the numbers, grid and direction.
     titles: [String; 3],
-    /// Name that several data sets share: [`Self::column`] adds a number to it.
+    /// Name that several data sets have. [`Self::column`] adds a number to it.
     pub twice: Option<String>,
     /// Time of the first sample, s.
     pub start_s: f64,
@@ -64,7 +64,7 @@ pub struct Dataset {
     pub unit_stated: bool,
     /// Number of samples.
     pub samples: usize,
-    /// The numbers.
+    /// Samples of the time history.
     pub data: Samples,
 }
 
@@ -86,7 +86,7 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// The time histories of a file; other data sets are passed over.
+/// Returns the time histories of a file. Other data sets are ignored.
 ///
 /// # Errors
 /// A file that is cut off, time histories on uneven steps or of complex numbers.
@@ -108,7 +108,7 @@ pub fn datasets(bytes: &[u8]) -> Result<Vec<Dataset>, SeriesError> {
                 out.push(set);
             }
         }
-        // To the end of this data set.
+        // Skip the lines up to the end of this data set.
         if !lines.by_ref().any(|l| l.trim_ascii() == b"-1") {
             return Err(read_error("the file is cut off: a data set has no end"));
         }

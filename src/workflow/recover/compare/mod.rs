@@ -13,10 +13,10 @@ use crate::host::words::format_number;
 use crate::units::percent;
 use serde::Serialize;
 
-/// Recovered against recorded loads.
+/// Comparison of recovered with recorded loads.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Comparison {
-    /// By load.
+    /// Result for each load.
     #[serde(rename = "comparison", skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<LoadComparison>,
     /// Time shift of a record of loads.
@@ -37,26 +37,26 @@ pub struct ComparisonShift {
     pub correlation: Option<f64>,
 }
 
-/// A load, recovered less recorded, report unit.
+/// Comparison of a load, recovered minus recorded, report unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LoadComparison {
     /// Load or combination.
     pub load: String,
     /// Report unit.
     pub unit: String,
-    /// Runs or samples that are compared.
+    /// Number of runs or samples that are compared.
     pub n: u64,
     /// Mean difference.
     pub bias: f64,
     /// Root mean square difference.
     pub rms: f64,
-    /// Share of the recorded loads inside the 95 % interval of the recovered ones.
+    /// Share of the recorded loads inside the 95 % interval of the recovered loads.
     pub share_within: f64,
-    /// Damage by the recovered load over damage by the recorded load; `None` for runs.
+    /// Damage of the recovered load divided by the damage of the recorded load. `None` for runs.
     pub damage_ratio: Option<f64>,
     /// Lower end of its 95 % interval.
     pub damage_ratio_low: Option<f64>,
-    /// Upper end.
+    /// Upper end of this interval.
     pub damage_ratio_high: Option<f64>,
     /// Recorded and recovered load of some of the runs or samples.
     #[serde(skip)]

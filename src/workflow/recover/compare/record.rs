@@ -23,7 +23,7 @@ use std::sync::Arc;
 /// Blocks of a record whose scatter shows how many of its samples are independent.
 const BLOCKS: usize = 20;
 
-/// A sample in which a gauge gives nothing, and the estimate from the other gauges.
+/// A sample with a missing reading, and the estimate from the other gauges.
 pub type Gap = (usize, Option<Arc<Estimate>>);
 
 /// Opens the record of loads that a job names for its strain record; `None` if it names no such record. The runs file of a job is read for its
@@ -180,7 +180,7 @@ impl LoadRecordPair<'_> {
         Fault::with_line(&*job.file, compare.line, "compare.shift_s", wrong, remedy)
     }
 
-    /// By recorded load: sums of the differences, and the root mean square difference between curve and line through recorded samples.
+    /// Returns, for each recorded load, sums of the differences, and the rms difference between curve and line through recorded samples.
     fn differences(&self, range: &Range<usize>) -> Vec<(Differences, f64)> {
         let pieces: Vec<usize> = range.clone().step_by(PIECE).collect();
         let of_pieces: Vec<Vec<(Differences, f64)>> = pieces

@@ -14,8 +14,8 @@ use crate::strain_chain::{LoadUnits, has_covariance};
 use crate::workflow::recover::known_payload::KnownLoads;
 use crate::workflow::recover::task::Task;
 
-/// Compares the recovered loads of runs with those that `[compare]`, else `[runs]`, records. Loads that were taken as known, and runs that S was
-/// calibrated with, are not compared: they would be compared with themselves.
+/// Compares the recovered loads of runs with the recorded loads of `[compare]`, or else of `[runs]`. Known loads and calibration runs are not
+/// compared, because the comparison would not be independent.
 ///
 /// # Errors
 /// Files that can't be read; a `[compare]` that names a record, or has none of the runs.
