@@ -82,7 +82,7 @@ pub(super) fn hidden_gauge_faults(task: &Task, shifts: &[GaugeShift]) -> Vec<Inp
     found.filter(is_hidden).collect()
 }
 
-/// Returns what the shifts of the gauges of a fault say about them; `None` for a fault whose effect on a row of S is not known.
+/// Returns the words of the shifts of the gauges of a fault; `None` for a fault whose effect on a row of S is not known.
 fn word_of(fault: &InputFault) -> Option<Vec<(usize, ShiftWord)>> {
     match *fault {
         InputFault::Sign(Channels::One(g)) => Some(vec![(g, ShiftWord::Sign)]),

@@ -1,10 +1,9 @@
 //! An open record of a fleet, its readings changed by `[conditioning]` if the job has this section.
 
-use super::kernel::Kernel;
 use crate::finding::{Finding, Severity};
 use crate::host::fault::Faults;
 use crate::host::files::{OpenedFile, may_be_cut};
-use crate::job::StrainCorrection;
+use crate::job::{Job, StrainCorrection};
 use crate::measured::conditioning::{condition, report_conditioning, report_doubtful_drift};
 use crate::measured::faults::record_fault;
 use crate::measured::record::Record as StrainRecord;
@@ -23,14 +22,19 @@ pub struct FleetRecord {
 }
 
 impl FleetRecord {
-    /// Opens a record. With `[conditioning]` all of its readings are in memory, corrected and named after their gauges.
+    /// Opens a record of a job to read the columns `wanted`; `noise` is the noise of a reading, strain. With `[conditioning]` all of its readings are
+    /// in memory, corrected and named after their gauges.
     ///
     /// # Errors
     /// A record that can't be read, and the errors of [`condition`].
-    pub fn open(kernel: &Kernel, opened: &OpenedFile) -> Result<Self, Faults> {
-        let (job, wanted) = (&kernel.job, kernel.wanted_columns());
+    pub fn open(
+        job: &Job,
+        wanted: &[String],
+        noise: f64,
+        opened: &OpenedFile,
+    ) -> Result<Self, Faults> {
         let time_unit_s = job.measured.as_ref().and_then(|m| m.time_unit_s);
-        let options = StrainRecord::options(job, time_unit_s, &wanted);
+        let options = StrainRecord::options(job, time_unit_s, wanted);
         let record = open_source(opened.source(), &options);
         let record = record.map_err(|e| record_fault("record", &e))?;
         let cut = record.left_out();
@@ -44,10 +48,9 @@ impl FleetRecord {
                 findings,
             });
         }
-        let strain = StrainRecord::from_series(job, "record", record, &wanted)?;
-        let strain = condition(job, strain, &wanted)?;
+        let strain = StrainRecord::from_series(job, "record", record, wanted)?;
+        let strain = condition(job, strain, wanted)?;
         let steps = strain.conditioning_steps();
-        let noise = kernel.errors.noise_variance(1.0).sqrt();
         findings.extend(report_conditioning(steps));
         findings.extend(report_doubtful_drift(steps, noise));
         let ignored = job.corrections.iter().filter(|c| c.ignore);

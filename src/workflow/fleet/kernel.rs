@@ -6,6 +6,7 @@ use super::dead_parts::{blank_of, dead_parts, report_dead_parts};
 use super::health::Health;
 use super::record_recovery::{Part, RecordRecovery, UnderWay, count_pieces};
 use super::sample_tests::{TestedSamples, findings_of};
+use super::sampled_readings::{kept_columns, sample_readings};
 use super::scale::{noise_of, scales};
 use crate::finding::{Finding, list_few};
 use crate::host::fault::{Fault, Faults};
@@ -30,11 +31,8 @@ use crate::units::MICROSTRAIN;
 use crate::workflow::recover::{ListedLoads, VerticalLoads, VibrationModel, silent_throughout};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// Number of pieces of a record that are sampled in advance.
-const LOOKED_AT: usize = 10;
 /// Number of samples of these pieces that suffice to determine whether the vehicle moves.
 const ENOUGH: usize = 200;
 
@@ -468,41 +466,4 @@ impl Kernel {
 /// Strain from a reading: it times the first, plus the second.
 fn line_of(micro: f64, channel: Channel) -> [f64; 2] {
     [micro, -channel.offset].map(|v| v * MICROSTRAIN / channel.factor)
-}
-
-/// Readings of the first block of some pieces spread over the record, strain.
-fn sample_readings(record: &Record, found: &[(usize, usize, [f64; 2])]) -> Result<Vec<f64>, Fault> {
-    let columns: Vec<Option<usize>> = found.iter().map(|f| Some(f.1)).collect();
-    let n = record.n_pieces();
-    let taken = n.min(LOOKED_AT);
-    let looked_at: Vec<Vec<f64>> = (0..taken)
-        .into_par_iter()
-        .map(|i| {
-            let mut out = Vec::new();
-            record.head(i * n / taken, &columns, &mut |block| {
-                for row in block.values.chunks_exact(found.len().max(1)) {
-                    out.extend(row.iter().zip(found).map(|(v, (_, _, [a, b]))| v * a + b));
-                }
-                ControlFlow::Break(())
-            })?;
-            Ok(out)
-        })
-        .collect::<Result<_, SeriesError>>()
-        .map_err(|e| record_fault("record", &e))?;
-    Ok(looked_at.concat())
-}
-
-/// The columns of `found` that are in `alive`, row by row.
-fn kept_columns(
-    values: &[f64],
-    found: &[(usize, usize, [f64; 2])],
-    alive: &[(usize, usize, [f64; 2])],
-) -> Vec<f64> {
-    let keep: Vec<bool> = found
-        .iter()
-        .map(|f| alive.iter().any(|a| a.0 == f.0))
-        .collect();
-    let rows = values.chunks_exact(found.len().max(1));
-    rows.flat_map(|row| row.iter().zip(&keep).filter(|k| *k.1).map(|k| *k.0))
-        .collect()
 }

@@ -26,6 +26,7 @@ mod record_recovery;
 pub mod records;
 mod requested_records;
 mod sample_tests;
+mod sampled_readings;
 mod scale;
 pub mod stored_results;
 
@@ -477,7 +478,9 @@ fn reason(faults: Faults) -> String {
 /// # Errors
 /// The reason why the loads or their damage can't be computed.
 pub fn day_of(kernel: &Kernel, opened: &OpenedFile) -> Result<Day, Faults> {
-    let day = kernel.day(FleetRecord::open(kernel, opened)?)?;
+    let noise = kernel.errors.noise_variance(1.0).sqrt();
+    let record = FleetRecord::open(&kernel.job, &kernel.wanted_columns(), noise, opened)?;
+    let day = kernel.day(record)?;
     let is_number = |l: &&day::LoadDay| {
         let sums = &l.tally.sums;
         let [a, b, c] = sums.damage;

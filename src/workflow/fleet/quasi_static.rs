@@ -35,6 +35,7 @@ impl Kernel {
             of_record,
             &|| Ok(()),
         )?;
+        let noise_factor = removed.noise_factor(self.noise_factor);
         findings.extend(removed.findings);
         let quasi_static = MemoryRecord {
             columns: Vec::new(),
@@ -51,7 +52,7 @@ impl Kernel {
         r.columns = (0..n).map(Some).collect();
         r.scale = [vec![1.0; n], vec![0.0; n]];
         r.blank.clear();
-        r.noise_factor = self.noise_factor - 1.0 + removed.noise_share;
+        r.noise_factor = noise_factor;
         r.errors_beyond = Some(removed.doubt);
         r.apart = removed.apart;
         r.blank_by_filter = removed.blank as u64;

@@ -128,7 +128,8 @@ impl TestedSamples {
     }
 
     /// Recovers all of these samples. If the loads explain them, recovers the extremes alone too: among 200 samples a single wrong one may not be
-    /// significant. Empty if no gauge reads. `beyond` are errors beyond the noise. `installed` are the rows of S of gauges that are installed otherwise than stated.
+    /// significant. Empty if no gauge reads. `beyond` are errors beyond the noise. `installed` are the rows of S of gauges that are installed
+    /// otherwise than stated.
     pub fn recover_loads(
         self,
         (s, installed): (&Sensitivity, &[AlternativeRows]),

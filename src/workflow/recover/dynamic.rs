@@ -1,9 +1,10 @@
 //! `[dynamic]`: the vibration of the structure taken out of a record, with the modes of the model.
 
 use super::task::Task;
+use super::vibration_findings::{contradiction, vibration_finding};
 use crate::estimate::NORMAL_95;
 use crate::fe::{CaseResult, LoadCase, modal_loads};
-use crate::finding::{Finding, Severity};
+use crate::finding::Finding;
 use crate::gauge::gauge_reading;
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
@@ -11,14 +12,13 @@ use crate::job::{Damping, Dynamic, Job};
 use crate::measured::record::{MOST_NUMBERS, Record};
 use crate::recovery::ErrorModel;
 use crate::recovery::dynamic::{
-    AtRest, Deviation, Dynamics, ElasticMode, EstimatedModes, RULES, ReadingCovariance, Unfit,
-    estimate_modes, readings_at_rest, triangle, window,
+    AtRest, Dynamics, ElasticMode, ReadingCovariance, Unfit, estimate_modes, readings_at_rest,
+    triangle, window,
 };
 use crate::sensitivity::Sensitivity;
 use crate::strain_chain::JobSensitivity;
 use crate::strain_chain::built_in_solver::{ElasticModes, cases_of_job, faults_of, modes_kept};
 use crate::strain_chain::deck::DeckModel;
-use crate::units::number;
 use serde::Serialize;
 
 /// Modes are solved up to at least this factor times the highest wanted frequency, and all solved modes are used. The next mode exceeds its
@@ -79,6 +79,14 @@ pub(crate) struct QuasiStaticReadings {
     /// Number of samples that are blank in the quasi-static readings only.
     pub blank: usize,
     pub findings: Vec<Finding>,
+}
+
+impl QuasiStaticReadings {
+    /// Returns the noise variance of a reading minus its zero, in units of the variance of a reading as measured. `measured` is this factor before
+    /// the vibration was removed.
+    pub fn noise_factor(&self, measured: f64) -> f64 {
+        measured - 1.0 + self.noise_share
+    }
 }
 
 /// Modes of the structure of a job with `[dynamic]`, at its gauges and loads.
@@ -385,114 +393,4 @@ impl ModeInUse {
                 || used.damping_sd < 0.7 * stated.damping_sd,
         }
     }
-}
-
-/// Returns the error that the record contradicts the modes. A frequency or a damping then differs from its stated value by more than its stated
-/// uncertainty. Otherwise, no frequency and damping of the modes explains the vibration.
-fn contradiction(
-    (stated, open_damping): (&Dynamics, bool),
-    found: &EstimatedModes,
-    file: &str,
-) -> Option<Finding> {
-    let off = |(j, by_kind): (usize, &[Option<Deviation>; 2])| {
-        let of_kind = |(kind, d): (usize, &Option<Deviation>)| {
-            // An estimated damping has no stated value from which it could deviate.
-            let d = d.as_ref().filter(|_| kind == 0 || !open_damping)?;
-            let off = d.standard_deviations_off()?.abs();
-            (off > RULES.contradicted_sd).then_some((off, j, kind, *d))
-        };
-        let worst = by_kind.iter().enumerate().filter_map(of_kind);
-        worst.max_by(|a, b| a.0.total_cmp(&b.0))
-    };
-    let modes = found.deviations.iter().enumerate().filter_map(off);
-    let worst = modes.max_by(|a, b| a.0.total_cmp(&b.0));
-    let what = match worst {
-        Some((off, j, kind, deviation)) => {
-            let (mode, used) = (&stated.modes[j], &found.dynamics.modes[j]);
-            let half = |value: f64| number(NORMAL_95 * deviation.sd * value);
-            let shown = match kind {
-                0 => format!(
-                    "mode {} vibrates at {} ± {} Hz in the record and at {} Hz in the model",
-                    j + 1,
-                    number(used.hz),
-                    half(used.hz),
-                    number(mode.hz)
-                ),
-                _ => format!(
-                    "mode {} at {} Hz has a damping of {} ± {} in the record and a stated damping of {}",
-                    j + 1,
-                    number(mode.hz),
-                    number(used.damping),
-                    half(used.damping),
-                    number(mode.damping)
-                ),
-            };
-            format!(
-                "{shown}, a difference of {off:.1} stated standard deviations, limit {}",
-                RULES.contradicted_sd
-            )
-        }
-        None if found.unexplained > RULES.unexplained && found.over_noise > RULES.over_noise => {
-            format!(
-                "no frequency and damping of the modes explains {:.0} % of the mean square of the vibration in the residual, limit {:.0} %",
-                100.0 * found.unexplained,
-                100.0 * RULES.unexplained
-            )
-        }
-        None => return None,
-    };
-    Some(Finding::new(
-        Severity::Error,
-        "modes-contradicted",
-        file,
-        format!("{what}; recovered loads contain the vibration that remains"),
-        "correct the stiffness or the mass of the model, state a larger `frequency_uncertainty_rel`, or set `damping = \"estimate\"`",
-    ))
-}
-
-/// Returns the finding on the vibration that was removed from the record.
-fn vibration_finding(motion: &Motion, asked: &Dynamic, file: &str) -> Finding {
-    let known: Option<Vec<f64>> = motion.change_rel.iter().copied().collect();
-    let most = known.map(|k| k.into_iter().fold(0.0_f64, f64::max));
-    let as_at_rest = match most {
-        Some(most) => format!(
-            "without the correction, a load would be wrong by up to {:.1} % of its rms about the mean",
-            100.0 * most
-        ),
-        None => "the error of the loads without the correction is not known".to_owned(),
-    };
-    let first = motion.modes_hz.first();
-    let first = first.map_or_else(String::new, |f| format!(", the first at {f:.2} Hz"));
-    let damping = match &asked.damping {
-        Damping::Uniform(damping) => format!("damping {damping}"),
-        Damping::Bands(_) => "damping by band".to_owned(),
-        Damping::Estimate => "damping estimated from the record".to_owned(),
-    };
-    let finding = Finding::new(
-        Severity::Info,
-        "vibration-taken-out",
-        file,
-        format!(
-            "loads up to {} Hz, with {} modes{first}, {damping}: {as_at_rest}; {:.3} s at either end and next to gaps are blank",
-            asked.up_to_hz,
-            motion.modes_hz.len(),
-            motion.blank_s
-        ),
-        "",
-    );
-    match most {
-        Some(most) => finding.with_numbers(most, 0.0),
-        None => finding,
-    }
-}
-
-/// Returns the warning that `[dynamic]` has no effect on runs.
-pub(super) fn without_record() -> Finding {
-    Finding::new(
-        Severity::Warning,
-        "dynamic-without-record",
-        "dynamic",
-        "the strain file contains runs, which are treated as quasi-static: [dynamic] has no effect",
-        "name a record, or delete [dynamic]",
-    )
 }

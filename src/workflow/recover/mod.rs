@@ -29,6 +29,7 @@ mod task;
 mod trace;
 mod validation;
 mod vertical_loads;
+mod vibration_findings;
 
 pub(crate) use calibration_range::record_beyond_calibration;
 
@@ -172,7 +173,10 @@ fn recover_measured_loads(
             (States::Record(Box::new(record)), beside)
         }
         MeasuredStrain::Runs(table) => {
-            let unused = job.dynamic.as_ref().map(|_| dynamic::without_record());
+            let unused = job
+                .dynamic
+                .as_ref()
+                .map(|_| vibration_findings::without_record());
             work.findings.extend(unused);
             let (runs, beside) = runs::runs(work, &task, &table)?;
             (States::Runs(Box::new(runs)), beside)

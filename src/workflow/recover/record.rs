@@ -74,7 +74,7 @@ pub(super) fn record(
     let rested = remove_vibration(work, task, &record, &sensitivity)?;
     let (judged, errors, at_rest, motion, blank) = match rested {
         Some((quasi_static, r)) => {
-            let noise_factor = task.noise_factor - 1.0 + r.noise_share;
+            let noise_factor = r.noise_factor(task.noise_factor);
             let readings = spread((noise_factor, r.apart), &quasi_static, &zero)?;
             let judged = recover_quasi_static_samples(task, &sensitivity, readings, &r.doubt);
             let errors = (noise_factor, Some(r.doubt));
@@ -101,7 +101,6 @@ pub(super) fn record(
         work.findings.extend(dropped.map(|c| c.not_compared()));
     }
     let record = at_rest.unwrap_or(record);
-    let about = record.clock().samples;
     let (first_s, step_s) = record.first_and_step();
     let head = Arc::new(RecordHead {
         file: record.file().to_owned(),
@@ -112,7 +111,7 @@ pub(super) fn record(
         first_s,
         step_s,
         stride: task.job.recover.csv_every,
-        files: files::select_load_files(task.job, about)?,
+        files: files::select_load_files(task.job, record.clock().samples)?,
         is_compared: recorded.is_some() || !parts.is_empty(),
     });
     sink.begin(&head)?;
