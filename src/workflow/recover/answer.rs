@@ -2,8 +2,8 @@
 
 use super::compare::Comparison;
 use super::damage::LoadDamage;
-use super::dynamic::Motion;
 use super::history::History;
+use super::motion::Motion;
 use super::sections::{SectionLoad, Sections};
 use super::sink::RecordHead;
 use super::trace::Spans;

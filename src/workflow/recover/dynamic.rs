@@ -1,5 +1,6 @@
 //! `[dynamic]`: the vibration of the structure taken out of a record, with the modes of the model.
 
+use super::motion::{ModeInUse, Motion};
 use super::task::Task;
 use super::vibration_findings::{contradiction, vibration_finding};
 use crate::estimate::NORMAL_95;
@@ -19,7 +20,6 @@ use crate::sensitivity::Sensitivity;
 use crate::strain_chain::JobSensitivity;
 use crate::strain_chain::built_in_solver::{ElasticModes, cases_of_job, faults_of, modes_kept};
 use crate::strain_chain::deck::DeckModel;
-use serde::Serialize;
 
 /// Modes are solved up to at least this factor times the highest wanted frequency, and all solved modes are used. The next mode exceeds its
 /// quasi-static response by an eighth at the highest frequency, and by a third at the end of the band. The uncertainty includes this error.
@@ -29,41 +29,6 @@ const FIRST_MODES: usize = 16;
 const MOST_MODES: usize = 256;
 /// Factor on the number of modes expected in the band, which assumes that they are as dense as the modes below.
 const MARGIN: f64 = 1.25;
-/// Vibration that was removed from a record.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Motion {
-    /// Highest frequency of the recovered loads.
-    pub up_to_hz: f64,
-    /// Frequencies of the modes used; the intervals contain the effect of further modes.
-    pub modes_hz: Vec<f64>,
-    /// Modes of `modes_hz`, with their damping and intervals.
-    pub modes: Vec<ModeInUse>,
-    /// Time without known loads at either end of the record and of every gap.
-    pub blank_s: f64,
-    /// Error of each load without the correction, rms, as a share of the rms of the load about its mean.
-    pub change_rel: Vec<Option<f64>>,
-}
-
-/// Mode that was removed from a record. `low` and `high` are the ends of 95 % intervals.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ModeInUse {
-    /// Frequency of the model, Hz.
-    pub model_hz: f64,
-    /// Frequency with which the vibration was removed, Hz.
-    pub hz: f64,
-    /// Low end of the frequency, Hz.
-    pub hz_low: f64,
-    /// High end of the frequency, Hz.
-    pub hz_high: f64,
-    /// Damping with which the vibration was removed, share of critical.
-    pub damping: f64,
-    /// Low end of the damping.
-    pub damping_low: f64,
-    /// High end of the damping.
-    pub damping_high: f64,
-    /// Whether the record changed the stated values.
-    pub estimated: bool,
-}
 
 /// Readings without the vibration of the structure, and their errors.
 pub(crate) struct QuasiStaticReadings {

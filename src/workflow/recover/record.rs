@@ -7,9 +7,10 @@ use super::calibration_range;
 use super::compare::{self, Gap};
 use super::damage::{CycleCountInput, LoadDamage, about_damage, damage};
 use super::dead_parts::{MaskedRecord, without_dead_parts};
-use super::dynamic::{Motion, remove_vibration};
+use super::dynamic::remove_vibration;
 use super::files;
 use super::listed_loads::{ListedLoads, list_load_columns};
+use super::motion::Motion;
 use super::record_tests::{
     check_times, content, recover_quasi_static_samples, recover_tested_samples, spread,
 };

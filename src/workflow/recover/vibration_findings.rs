@@ -1,6 +1,6 @@
 //! Findings on the vibration of a structure in a record.
 
-use super::dynamic::Motion;
+use super::motion::Motion;
 use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity};
 use crate::job::{Damping, Dynamic};
