@@ -346,6 +346,7 @@ pub(super) struct RawVehicle {
     pub model: S<String>,
     pub terms: S<Vec<SpannedValue<String>>>,
     pub data: S<String>,
+    pub input: S<Texts>,
     pub hold_out: S<String>,
     pub sample_rate: S<f64>,
     pub known: BTreeMap<String, f64>,

@@ -51,4 +51,4 @@ pub use runs::{RunNoise, Runs};
 pub use section::{RecordSection, SectionExtent};
 pub use sensitivity::{GivenSensitivity, Signatures};
 pub use study::Study;
-pub use vehicle::{ChannelCorrection, MassChange, Vehicle};
+pub use vehicle::{ChannelCorrection, InputKind, MassChange, SimulationInput, Vehicle};

@@ -38,7 +38,9 @@ pub use answer::{
     RecoveredRuns, RunFit, States,
 };
 pub use by_load::LoadSpan;
-pub use compare::{Comparison, ComparisonShift, LoadComparison};
+pub use compare::{
+    Comparison, ComparisonShift, ComparisonSpectra, LoadComparison, LoadLevels, LoadSpectra,
+};
 pub use damage::LoadDamage;
 pub(super) use dead_parts::silent_in_part;
 pub use dynamic::Motion;

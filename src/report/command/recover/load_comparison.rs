@@ -1,5 +1,6 @@
 //! Recovered against recorded loads, and loads by section: tables, console, page.
 
+use super::comparison_curves;
 use crate::host::fault::Faults;
 use crate::host::output::Output;
 use crate::measured::conditioning_step::ConditioningStep;
@@ -54,6 +55,7 @@ pub(super) fn write(out: &mut Output, recovered: &RecoveredLoads) -> Result<(), 
             loads.iter().try_for_each(|l| comparison_row(w, l))
         })?;
     }
+    comparison_curves::write(out, &recovered.comparison)?;
     if let Some(sections) = &recovered.sections {
         out.declare("sections.csv", SECTIONS);
         out.write("sections.csv", |w| sections_csv(w, sections))?;
@@ -131,6 +133,7 @@ pub(super) fn add_sections(page: &mut Page, recovered: &RecoveredLoads) {
     let comparison = &recovered.comparison;
     if !comparison.loads.is_empty() {
         added.push(comparison_section(comparison));
+        added.extend(comparison_curves::curve_section(comparison));
     }
     if let Some(sections) = &recovered.sections {
         added.push(section_table(sections));
