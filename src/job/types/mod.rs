@@ -48,7 +48,7 @@ pub use recover::{LoadFile, Recover};
 pub use region::Region;
 pub use respond::Respond;
 pub use runs::{RunNoise, Runs};
-pub use section::{RecordSection, SectionExtent};
+pub use section::{RecordSection, SectionExtent, SectionRule};
 pub use sensitivity::{GivenSensitivity, Signatures};
 pub use study::Study;
 pub use vehicle::{ChannelCorrection, InputKind, MassChange, SimulationInput, Vehicle};

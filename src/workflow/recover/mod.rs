@@ -23,6 +23,7 @@ mod record_tests;
 mod recorded_run_loads;
 mod runs;
 mod section_files;
+mod section_rules;
 mod sections;
 mod sink;
 mod task;

@@ -28,7 +28,7 @@ const COMPARISON: [(&str, &str); 9] = [
     ("damage_ratio_high", ""),
 ];
 
-const SECTIONS: [(&str, &str); 11] = [
+const SECTIONS: [(&str, &str); 12] = [
     ("section", ""),
     ("load", ""),
     ("unit", ""),
@@ -40,6 +40,7 @@ const SECTIONS: [(&str, &str); 11] = [
     ("damage", DAMAGE),
     ("damage_low", DAMAGE),
     ("damage_high", DAMAGE),
+    ("stretches [-]", ""),
 ];
 
 /// Writes `comparison.csv` and `sections.csv`, where there is something in them.
@@ -99,7 +100,8 @@ fn sections_csv(w: &mut dyn Write, sections: &Sections) -> std::io::Result<()> {
             s.damage_high,
         ];
         let names = [&s.section, &s.load, &s.unit].map(|n| csv_cell(n));
-        writeln!(w, "{},{}", names.join(","), numbers.map(cell).join(","))?;
+        let numbers = numbers.map(cell).join(",");
+        writeln!(w, "{},{numbers},{}", names.join(","), s.stretches)?;
     }
     Ok(())
 }
