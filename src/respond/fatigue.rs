@@ -68,8 +68,8 @@ pub fn fatigue(rows: &[&ResponseRow], states: &[LoadState], law: StressLaw) -> V
     rows.par_iter().map(worst).collect()
 }
 
-/// Returns low end, value and high end of the damage of `g . loads` over the states. The errors of both ends of a cycle add up, as errors of S do in a
-/// reversed cycle.
+/// Returns low end, value and high end of the damage of `g . loads` over the states. The errors of both ends of a cycle add up, as errors of S do in
+/// a reversed cycle.
 fn damage_along(g: &[f64], states: &[LoadState], law: StressLaw) -> [f64; 3] {
     let mut damage = [0.0; 3];
     let sigma = |p: Point| {

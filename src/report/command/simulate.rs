@@ -79,7 +79,7 @@ impl Report for Outcome<SimulatedResponse> {
             let caption = format!("Simulated {kind} over the first {} s.", number(SHOWN_S));
             let label = format!("{kind}, {unit}");
             let figure = lines(&groups, "time, s", &label, Scale::Linear, &caption);
-            sections.push(Section::new(capitalised(kind), vec![Block::Figure(figure)]));
+            sections.push(Section::new(capitalise(kind), vec![Block::Figure(figure)]));
         }
         sections.push(table_section(
             "Parameters",
@@ -135,7 +135,7 @@ fn parameter_row(p: &UsedParameter) -> Vec<String> {
     vec![p.name.clone(), number(p.value), p.unit.clone()]
 }
 
-fn capitalised(text: &str) -> String {
+fn capitalise(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| {
         first.to_uppercase().chain(letters).collect()

@@ -1,6 +1,6 @@
 //! Equations of motion of a vehicle as a first-order system.
 
-use super::{Inputs, PrescribedMotion, ResponseError};
+use super::types::{Inputs, PrescribedMotion, ResponseError};
 use crate::linalg::spd;
 use crate::linalg::tall::left_inverse;
 use crate::vehicle::layout::Vehicle;

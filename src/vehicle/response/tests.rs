@@ -1,7 +1,12 @@
 //! Responses against closed forms, the balance of energy, and values of scipy.
 
-use super::*;
+use super::{
+    Inputs, PrescribedMotion, Response, ResponseError, ResponseRules, compute_response,
+    static_wheel_loads,
+};
+use crate::vehicle::layout::Vehicle;
 use crate::vehicle::preset::{PresetRequest, vehicle};
+use crate::vehicle::term::Term;
 use crate::vehicle::tyre::add_tyres;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;

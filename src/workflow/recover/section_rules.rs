@@ -1,6 +1,5 @@
 //! Sections by a rule on channels of the strain record: a threshold of speed, or a box of positions.
 
-use super::sections::NoSamples;
 use crate::host::fault::Faults;
 use crate::host::words::format_number;
 use crate::job::SectionRule;
@@ -9,6 +8,9 @@ use crate::measured::faults::record_fault;
 use crate::measured::record::Record;
 use crate::series::record::Clock;
 use std::ops::Range;
+
+/// Field, message and remedy of a section that selects no samples.
+pub(super) type NoSamples = (&'static str, String, &'static str);
 
 /// Returns the stretches of a record in which every channel of a rule is within its range. A missing sample of a channel is outside.
 ///

@@ -1,7 +1,7 @@
 //! Loads of a record by section, and the duty cycle that the sections make.
 
 use super::damage::{CycleCountInput, PIECE};
-use super::section_rules::stretches_within;
+use super::section_rules::{NoSamples, stretches_within};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::words::format_number;
 use crate::job::{Job, RecordSection, SectionExtent};
@@ -120,9 +120,6 @@ pub(super) fn parts<'a>(
     Faults::check(faults)?;
     Ok(out)
 }
-
-/// Field, message and remedy of a section that selects no samples.
-pub(super) type NoSamples = (&'static str, String, &'static str);
 
 /// Samples from one time until before another, s.
 fn samples_between([from, to]: [f64; 2], clock: &Clock) -> Result<Range<usize>, NoSamples> {

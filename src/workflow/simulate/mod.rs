@@ -274,8 +274,8 @@ fn lifted_wheels(simulation: &Simulation, found: &Response, rest: &[Option<f64>]
         .collect()
 }
 
-/// Largest displacement of a body over the largest stretch of a spring. Springs of vehicles stretch by some centimetres, and no road of a test rises by
-/// a hundred times that.
+/// Largest displacement of a body over the largest stretch of a spring. Springs of vehicles stretch by some centimetres, and no
+/// vehicle on a test moves up or down by a hundred times that.
 const MOST_DISPLACEMENT: f64 = 100.0;
 
 /// Returns a warning if the integration of forces or accelerations drifts.

@@ -42,7 +42,7 @@ fn spectrum_columns(spectra: &ComparisonSpectra) -> Vec<Column> {
     let mut columns = vec![("frequency".to_owned(), "Hz".to_owned(), frequencies)];
     for l in &spectra.loads {
         let name = |part: &str| format!("{}.{part}", l.load);
-        let density = format!("{}2/Hz", squared(&l.unit));
+        let density = format!("{}2/Hz", unit_in_parentheses(&l.unit));
         columns.push((name("recovered"), density.clone(), cells(&l.recovered)));
         columns.push((name("recorded"), density, cells(&l.recorded)));
         columns.push((name("coherence"), String::new(), cells(&l.coherence)));
@@ -52,7 +52,7 @@ fn spectrum_columns(spectra: &ComparisonSpectra) -> Vec<Column> {
 }
 
 /// A unit of two words in parentheses, as it is raised to a power.
-fn squared(unit: &str) -> String {
+fn unit_in_parentheses(unit: &str) -> String {
     match unit.contains(' ') {
         true => format!("({unit})"),
         false => unit.to_owned(),
@@ -109,7 +109,7 @@ fn densities(spectra: &ComparisonSpectra) -> Figure {
             let of = |name, y| Line { name, x, y };
             let (measured, recovered) = (&l.recorded[1..], &l.recovered[1..]);
             (
-                format!("{}, {}²/Hz", l.load, squared(&l.unit)),
+                format!("{}, {}²/Hz", l.load, unit_in_parentheses(&l.unit)),
                 vec![of("measured", measured), of("recovered", recovered)],
             )
         })
