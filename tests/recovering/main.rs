@@ -8,6 +8,7 @@ mod conditioned;
 #[path = "../drawn/mod.rs"]
 mod drawn;
 mod dynamic;
+mod end_to_end;
 mod files;
 mod kinds;
 mod misled;

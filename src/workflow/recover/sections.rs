@@ -102,12 +102,10 @@ pub(super) fn parts<'a>(
             SectionExtent::Times(times) => samples_between(*times, clock).map(|r| vec![r]),
             SectionExtent::Within(rule) => stretches_within(rule, record, clock)?,
         };
-        let stretches = stretches.or_else(|e| {
-            let (field, wrong, remedy) = e;
+        let stretches = stretches.map_err(|(field, wrong, remedy)| {
             let wrong = format!("section `{}`: {wrong}", section.name);
             let line = section.line;
             faults.push(Fault::with_line(&*job.file, line, field, wrong, remedy));
-            Err(())
         });
         let Ok(stretches) = stretches else { continue };
         let part = Part { section, stretches };

@@ -41,7 +41,7 @@ pub(super) fn remove_static_forces(
 ) {
     for bodies in model.components() {
         let is_free = bodies.iter().all(|&b| inputs.motions[b].is_none());
-        if !is_free || !model.rests_on_wheels(&bodies) {
+        if !model.rests_on_wheels(&bodies) {
             continue;
         }
         let wheels: Vec<usize> = (0..model.wheels.len())
@@ -59,7 +59,8 @@ pub(super) fn remove_static_forces(
         let share = percent(total / weight);
         let (severity, message, remedy) = match compare_mean(total, weight) {
             Mean::Zero => continue,
-            Mean::Static => {
+            _ if wheels.iter().all(|&w| inputs.forces[w].is_none()) => continue,
+            Mean::Static if is_free => {
                 for &w in &wheels {
                     if let Some(force) = &mut inputs.forces[w] {
                         let level = mean(force);
@@ -74,6 +75,13 @@ pub(super) fn remove_static_forces(
                     "",
                 )
             }
+            Mean::Static => (
+                Severity::Warning,
+                format!(
+                    "the mean is {share} of the weight. It is not subtracted, as accelerations prescribe some bodies, and loads the springs"
+                ),
+                "Subtract the static load.",
+            ),
             Mean::Neither => (
                 Severity::Warning,
                 format!(
