@@ -46,7 +46,7 @@ mod tests {
     #[test]
     fn cubics_are_reproduced_and_slopes_of_degree_four_are_exact() {
         let f = |t: f64| 1.0 - 2.0 * t + 0.5 * t * t - 0.25 * t * t * t;
-        let x: Vec<f64> = (0..9).map(|i| f64::from(i)).map(f).collect();
+        let x: Vec<f64> = (0..9).map(f64::from).map(f).collect();
         for i in 0..8 {
             let p = coefficients(&x, i);
             for s in [0.25, 0.5, 0.9] {

@@ -145,7 +145,7 @@ pub(crate) fn is_asked(job: &Job) -> bool {
 /// let found = simulate(&Job::read(Path::new("job.toml"), &files)?, &Context::new(&files))?;
 /// for (i, y) in found.channel("y").unwrap().iter().enumerate() {
 ///     let time = i as f64 / 1000.0;
-///     let expected = 0.002 * (1.0 - (8000.0f64 / 2.0).sqrt().mul_add(time, 0.0).cos());
+///     let expected = 0.002 * (1.0 - (4000.0f64.sqrt() * time).cos());
 ///     assert!((y - expected).abs() < 1e-9);
 /// }
 /// # Ok::<(), strainbridge::Faults>(())
