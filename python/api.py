@@ -12,7 +12,7 @@ SUBJECTS = {
     "Jobs": ["Job"],
     "Commands": [
         "check", "init", "strains", "cases", "solve", "modes", "sensitivity", "place", "recover", "respond", "payload", "ballast", "study", "identify",
-        "reconcile", "calibrate", "verify", "clean", "explain", "fleet",
+        "simulate", "reconcile", "calibrate", "verify", "clean", "explain", "fleet",
     ],
     "Outcomes": ["Outcome", "Record", "Finding", "UnreliableWarning", "Table", "Mesh", "Fault", "Faults"],
     "Decks, results, models": ["Deck", "Results", "Strain", "write_op2", "Model"],

@@ -117,6 +117,7 @@ pub use workflow::reconcile::reconcile;
 pub use workflow::recover::recover;
 pub use workflow::respond::respond;
 pub use workflow::sensitivity::sensitivity;
+pub use workflow::simulate::simulate;
 pub use workflow::solve::{solve, solve_deck};
 pub use workflow::strains::strains;
 pub use workflow::study::study;

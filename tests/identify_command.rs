@@ -3,6 +3,9 @@
 #[path = "../nastran/tests/support/mod.rs"]
 mod support;
 
+#[path = "identify/simulate.rs"]
+mod simulate;
+
 #[path = "identify/formats.rs"]
 mod formats;
 

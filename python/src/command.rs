@@ -18,7 +18,7 @@ use strainbridge::{Context, Faults, Job};
 type OnJob = fn(&Job, &Context) -> Result<AnyOutcome, Faults>;
 
 /// Commands that take only a job, with the function of the library.
-const ON_JOB: [(&str, OnJob); 11] = [
+const ON_JOB: [(&str, OnJob); 12] = [
     ("ballast", |j, cx| keep(strainbridge::ballast(j, cx)?)),
     ("calibrate", |j, cx| {
         keep_calibrated(strainbridge::calibrate(j, cx)?)
@@ -33,6 +33,7 @@ const ON_JOB: [(&str, OnJob); 11] = [
     ("sensitivity", |j, cx| {
         keep_sensitivity(strainbridge::sensitivity(j, cx)?)
     }),
+    ("simulate", |j, cx| keep(strainbridge::simulate(j, cx)?)),
     ("study", |j, cx| keep(strainbridge::study(j, cx)?)),
 ];
 

@@ -116,6 +116,14 @@ def identify(job: AnyJob, *, threads: int | None = None, cache: bool = True, pro
     return _ask("identify", job, threads=threads, cache=cache, progress=progress)
 
 
+def simulate(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
+    """Response of a vehicle with known parameters to wheel forces, to a road or to recorded accelerations.
+
+    The outcome contains ``response`` (channel, unit, min, max, rms), ``fastest_mode_hz`` and ``integration``; ``response.csv`` once saved.
+    """
+    return _ask("simulate", job, threads=threads, cache=cache, progress=progress)
+
+
 def calibrate(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
     """Calibrates S with runs of known loads.
 

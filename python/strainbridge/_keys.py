@@ -444,9 +444,16 @@ class RespondKeys(Section):
     loads: _Key[Any]
     """Table or record of loads, as `recover` writes them (loads.csv, loads.bin, loads.rsp, loads.parquet) or reads them. A record has no
     intervals, and its loads count as exact [report units]; default: recovered from [measured]."""
+    mean_sensitivity: _Key[Any]
+    """Sensitivity M to mean stress for mean_stress = 'sensitivity', such as 0.3; required for 'sensitivity'."""
+    mean_stress: _Key[Any]
+    """Correction of `fatigue` for the mean stress of each cycle: 'none', 'goodman', 'swt' (Smith, Watson, Topper), 'sensitivity' (M of the FKM
+    guideline); default: 'none'."""
     slope: _Key[Any]
     """Power of the stress range in pseudo-damage. If it is stated, `fatigue.csv` contains the damage at each reported place over the history of
     loads; default: no damage."""
+    ultimate: _Key[Any]
+    """Ultimate strength for mean_stress = 'goodman' [report unit of stress]; required for 'goodman'."""
 
 
 class RunsKeys(Section):
@@ -471,8 +478,10 @@ class RunsKeys(Section):
 class SectionKeys(Section):
     """Keys of ``section``."""
 
+    at_least_s: _Key[Any]
+    """Shortest stretch that counts, together with `within` [s]; default: 0."""
     end_s: _Key[Any]
-    """Time at which the section ends; a sample at this time belongs to the next section [s]; required without `file`."""
+    """Time at which the section ends; a sample at this time belongs to the next section [s]; required without `file` or `within`."""
     file: _Key[Any]
     """A separate strain record, instead of times, with the columns, zero and corrections of [measured]; default: none."""
     name: _Key[Any]
@@ -480,7 +489,10 @@ class SectionKeys(Section):
     repeats: _Key[Any]
     """Number of repetitions in the duty cycle; default: 1."""
     start_s: _Key[Any]
-    """Time of the first sample of the section [s]; required without `file`."""
+    """Time of the first sample of the section [s]; required without `file` or `within`."""
+    within: _Key[Any]
+    """Range [low, high] of one or more channels of the strain record, such as { speed = [5.0, inf] } or { lat = [51.20, 51.21], lon = [4.40,
+    4.42] }. The section is all stretches in which every channel is within its range [unit of the channel]; default: none."""
 
 
 class SensitivityKeys(Section):
@@ -539,6 +551,9 @@ class VehicleKeys(Section):
     required."""
     hold_out: _Key[Any]
     """Record of another road that no fit uses; default: none."""
+    input: _Key[Any]
+    """Input of `simulate`: 'wheel_force', 'road', 'acceleration', or a list of channels; default: the only kind of input that the record
+    contains."""
     known: _Key[Any]
     """Known parameters, such as { m_b = 3200.0 } [units of the job]; default: none."""
     leaf: _Key[Any]

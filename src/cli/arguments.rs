@@ -133,6 +133,11 @@ pub enum Command {
     /// Identify vehicle parameters and wheel loads from accelerations
     #[command(after_help = "Example:\n  strainbridge identify vehicle.toml")]
     Identify(JobArguments),
+    /// Simulate a vehicle with known parameters, from wheel forces, from a road or from recorded accelerations
+    #[command(
+        after_help = "Example:\n  strainbridge simulate vehicle.toml    # writes response.csv"
+    )]
+    Simulate(JobArguments),
     /// Recompute a result folder from its inputs and compare hashes and numbers
     #[command(
         after_help = "Example:\n  strainbridge verify job.out    # exit code 1: something differs"

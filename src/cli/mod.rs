@@ -140,6 +140,9 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Identify(a) => {
             Run::from_arguments(&a.common, &a.job).job(&a.job, workflow::identify::identify)
         }
+        Command::Simulate(a) => {
+            Run::from_arguments(&a.common, &a.job).job(&a.job, workflow::simulate::simulate)
+        }
         Command::Verify(a) => upkeep::verify(&a),
         Command::Cache(CacheArguments {
             task: CacheTask::Clean(a),

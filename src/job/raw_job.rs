@@ -249,6 +249,8 @@ pub(super) struct RawSection {
     pub start_s: S<f64>,
     pub end_s: S<f64>,
     pub file: S<String>,
+    pub within: BTreeMap<SpannedValue<String>, [f64; 2]>,
+    pub at_least_s: S<f64>,
     pub repeats: S<f64>,
 }
 
@@ -321,6 +323,9 @@ pub(super) struct RawRespond {
     pub hottest: S<u32>,
     pub loads: S<String>,
     pub slope: S<f64>,
+    pub mean_stress: S<String>,
+    pub ultimate: S<f64>,
+    pub mean_sensitivity: S<f64>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]
@@ -346,6 +351,7 @@ pub(super) struct RawVehicle {
     pub model: S<String>,
     pub terms: S<Vec<SpannedValue<String>>>,
     pub data: S<String>,
+    pub input: S<Texts>,
     pub hold_out: S<String>,
     pub sample_rate: S<f64>,
     pub known: BTreeMap<String, f64>,

@@ -6,10 +6,12 @@
 //! - [`cholesky`]: the factor of a dense covariance
 //! - [`complex`]: complex least squares of small systems
 //! - [`precision`]: the inverse of a dense covariance
+//! - [`exponential`]: the matrix exponential
 
 pub mod cholesky;
 pub mod complex;
 pub mod dense;
+pub mod exponential;
 pub mod levenberg;
 pub mod precision;
 pub mod sparse;

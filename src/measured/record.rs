@@ -6,8 +6,8 @@ use super::gauge_columns::{StrainColumn, find_gauge_columns};
 use crate::finding::Finding;
 use crate::host::fault::{Fault, Faults};
 use crate::host::files::FileBytes;
-use crate::job::Job;
 use crate::job::correct::{Channel, channel_of, column_of};
+use crate::job::{Job, SectionExtent};
 use crate::recovery::clock;
 use crate::recovery::dead_gauges::DeadGaugeSpan;
 use crate::recovery::net::Series;
@@ -37,8 +37,19 @@ pub(crate) struct Record {
     blank: Vec<(usize, Range<usize>)>,
     /// Changes of the readings by `[conditioning]`, which follows the corrections; `None` for a record without it.
     conditioning: Option<Vec<ConditioningStep>>,
+    /// The record of the file and its columns before `[conditioning]`; `None` for a record without it.
+    before: Option<(Arc<series::Record>, Vec<String>)>,
     /// Times of the samples, as the file states them.
     clock: Clock,
+}
+
+/// Channels that the rules of sections name.
+pub(crate) fn section_channels(job: &Job) -> impl Iterator<Item = String> + '_ {
+    let rules = job.sections.iter().filter_map(|s| match &s.extent {
+        SectionExtent::Within(rule) => Some(&rule.ranges),
+        SectionExtent::Times(_) | SectionExtent::File(_) => None,
+    });
+    rules.flatten().map(|r| r.0.clone())
 }
 
 impl Record {
@@ -67,6 +78,9 @@ impl Record {
         if let Some(t) = temperature.filter(|_| !wanted.is_empty()) {
             wanted.push(t.channel.clone());
         }
+        if !wanted.is_empty() {
+            wanted.extend(section_channels(job));
+        }
         Options {
             declared_hz: None,
             time_unit_s,
@@ -94,6 +108,7 @@ impl Record {
             columns: Vec::new(),
             blank: Vec::new(),
             conditioning: None,
+            before: None,
             clock: inner.clock.clone(),
             inner: Arc::new(inner),
         })
@@ -161,6 +176,7 @@ impl Record {
         Ok(Self {
             names,
             conditioning: Some(conditioning),
+            before: Some((Arc::clone(&self.inner), self.names.clone())),
             ..record
         })
     }
@@ -177,16 +193,18 @@ impl Record {
 
     /// Returns the unit of a column as the file states it; `None` if no column has the name.
     pub fn unit_of(&self, name: &str) -> Option<&str> {
-        let column = self.names.iter().position(|n| n == name)?;
-        self.inner.columns().get(column).map(|c| c.unit.as_str())
+        let (file, names) = self.file_columns();
+        let column = names.iter().position(|n| n == name)?;
+        file.columns().get(column).map(|c| c.unit.as_str())
     }
 
     /// Returns the numbers of a column as the file contains them; `None` if no column has the name.
     pub fn raw_column(&self, name: &str) -> Option<Result<Vec<f64>, SeriesError>> {
-        let column = self.names.iter().position(|n| n == name)?;
+        let (file, names) = self.file_columns();
+        let column = names.iter().position(|n| n == name)?;
         let mut out = Vec::with_capacity(self.clock().samples);
-        for i in 0..self.n_pieces() {
-            let read = self.inner.read(i, &[Some(column)], &mut |block| {
+        for i in 0..file.n_pieces() {
+            let read = file.read(i, &[Some(column)], &mut |block| {
                 out.extend_from_slice(block.values);
                 ControlFlow::Continue(())
             });
@@ -195,6 +213,14 @@ impl Record {
             }
         }
         Some(Ok(out))
+    }
+
+    /// The record of the file and the names of its columns. Conditioned readings are in memory, and the file contains all other channels.
+    fn file_columns(&self) -> (&series::Record, &[String]) {
+        match &self.before {
+            Some((inner, names)) => (inner, names),
+            None => (&self.inner, &self.names),
+        }
     }
 
     /// Returns the gauges whose columns are read.
@@ -313,6 +339,7 @@ impl Record {
             names: self.names.clone(),
             micro: vec![1.0; n],
             columns: (0..n).map(|c| (Some(c), as_it_is)).collect(),
+            before: self.before.clone(),
             blank: Vec::new(),
             conditioning: self.conditioning.clone(),
             clock: self.clock.clone(),

@@ -9,7 +9,7 @@ mod fatigue;
 mod rows;
 
 pub use envelope::{LoadState, Peak, Spread, envelope, hot_spots, von_mises_history};
-pub use fatigue::{PlaceDamage, fatigue};
+pub use fatigue::{PlaceDamage, StressLaw, fatigue};
 pub use rows::{Place, ResponseRow, response_rows};
 
 #[cfg(test)]

@@ -17,6 +17,7 @@
 //! - [`integrate`]: velocity and displacement from acceleration
 //! - [`window`]: tapered transforms with independent bins
 //! - [`welch`]: power and cross spectra
+//! - [`level_crossing`]: how often a signal crosses levels
 //! - [`content`]: highest frequency at which a signal has content
 //! - [`align`]: shift by a part of a sample
 //! - [`resample`]: values between samples
@@ -35,6 +36,7 @@ pub mod detrend;
 pub mod error;
 pub mod even_record;
 pub mod integrate;
+pub mod level_crossing;
 pub mod number;
 #[cfg(feature = "parquet")]
 pub mod parquet;

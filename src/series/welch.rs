@@ -5,6 +5,15 @@ use realfft::RealFftPlanner;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 
+impl CrossSpectra {
+    /// Share of the density of y that is linear in x, |xy|^2 / (xx yy) by frequency; NaN where a density is 0.
+    pub fn coherence(&self) -> Vec<f64> {
+        let powers = self.xx.iter().zip(&self.yy);
+        let cross = self.xy.iter().map(|c| c.norm_sqr());
+        cross.zip(powers).map(|(c, (x, y))| c / (x * y)).collect()
+    }
+}
+
 /// Spectra of two signals, with one value for each frequency.
 #[derive(Clone, Debug)]
 pub struct CrossSpectra {
@@ -21,6 +30,7 @@ pub struct CrossSpectra {
 }
 
 /// Returns the densities of x and y from Hann segments of `n_segment` samples with 50 % overlap. The mean of each segment is removed.
+/// Segments with a value that is not finite are left out.
 ///
 /// The conventions are as in `scipy.signal.csd`.
 ///
@@ -70,6 +80,9 @@ pub fn cross_spectra(x: &[f64], y: &[f64], rate_hz: f64, n_segment: usize) -> Cr
         .step_by((n / 2).max(1))
         .zip(y.windows(n).step_by((n / 2).max(1)))
     {
+        if px.iter().chain(py).any(|v| !v.is_finite()) {
+            continue;
+        }
         let (fx, fy) = (transform(px), transform(py));
         for k in 0..bins {
             out.xx[k] += fx[k].norm_sqr();

@@ -7,6 +7,7 @@
 //! - [`loads`]: wheel forces; [`chassis`]: chassis forces
 //! - [`stretch`]: slow stretch from force, for frequencies at which integration drifts
 //! - [`simulate`]: simulation in time; [`refine`]: nonlinear parameters by simulation error
+//! - [`response`]: response of a vehicle with known parameters to a record; [`tyre`]: tyres on a road
 
 pub mod adequacy;
 pub mod adjustment;
@@ -30,10 +31,12 @@ mod part_answer;
 mod part_problem;
 pub mod preset;
 pub mod refine;
+pub mod response;
 pub mod simulate;
 pub mod stretch;
 pub mod term;
 pub mod treatment;
+pub mod tyre;
 pub mod wrong_inputs;
 
 #[cfg(test)]

@@ -19,6 +19,7 @@ pub mod reconcile;
 pub mod recover;
 pub mod respond;
 pub mod sensitivity;
+pub mod simulate;
 pub mod solve;
 pub mod strains;
 pub mod study;

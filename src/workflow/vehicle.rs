@@ -189,7 +189,11 @@ const LARGEST_SAMPLE: f64 = 1e15;
 ///
 /// # Errors
 /// One fault for each channel with impossible samples.
-fn check_samples(file: &str, record: &Channels, used: impl Fn(&str) -> bool) -> Result<(), Faults> {
+pub(super) fn check_samples(
+    file: &str,
+    record: &Channels,
+    used: impl Fn(&str) -> bool,
+) -> Result<(), Faults> {
     let huge = |v: &f64| v.abs() > LARGEST_SAMPLE;
     let channels = record.list.iter().filter(|c| used(&c.name));
     let faults: FaultList = channels
@@ -264,7 +268,8 @@ pub fn vehicle_fault(job: &Job, file: &str, e: &VehicleError) -> Fault {
     }
 }
 
-fn preset_fault(job: &Job, section: &VehicleJob, e: &PresetError) -> Fault {
+/// Returns the fault for an error in the request of a vehicle, at the line of the job.
+pub(super) fn preset_fault(job: &Job, section: &VehicleJob, e: &PresetError) -> Fault {
     let key = match e {
         PresetError::Model { .. } => "vehicle.model",
         PresetError::Term { .. } => "vehicle.terms",
@@ -275,7 +280,7 @@ fn preset_fault(job: &Job, section: &VehicleJob, e: &PresetError) -> Fault {
 }
 
 /// Reads a record of any format that a record of strain may have, in the job's units.
-fn read_record(
+pub(super) fn read_record(
     work: &mut Work,
     job: &Job,
     section: &VehicleJob,

@@ -452,6 +452,194 @@ fn tables_page_and_console_state_comparison_and_sections() {
     assert!(comparison.starts_with("load,unit,n,bias,rms,share_within,damage_ratio,"));
     assert!(comparison.contains("\nA,N,300,"), "{comparison}");
     assert!(read("sections.csv").contains("\n\"first, half\",A,N,1.5,1,"));
+    let levels = read("comparison_levels.csv");
+    assert!(
+        levels.starts_with("A.level [N],A.recovered [-],A.recorded [-],B.level [N],"),
+        "{levels}"
+    );
+    assert_eq!(levels.lines().count(), 41);
+    // 300 samples are too few for a spectrum of 32 averages.
+    assert!(!dir.join("job.out/comparison_spectra.csv").exists());
     let page = read("report.html");
     assert!(page.contains("Recovered against recorded loads") && page.contains("Duty cycle"));
+    assert!(page.contains("Crossings of each level"));
+}
+
+/// A record of strain with the channels `speed`, `lat` and `lon`.
+fn record_with_channels(n: usize) -> String {
+    let plain = record(n, 0.0, loads_at, || 0.0);
+    let mut text = String::new();
+    for (i, line) in plain.lines().enumerate() {
+        let t = (i as f64 - 1.0) / RATE;
+        let fast = (10.0..20.0).contains(&t) || (25.0..25.5).contains(&t) || t >= 30.0;
+        let [lat, lon] = [51.0 + 1e-4 * t, 4.4 + 0.01 * (t / 20.0).sin()];
+        let speed = if fast { 8.0 } else { 3.0 };
+        let _ = match i {
+            0 => writeln!(text, "{line},speed [m/s],lat,lon"),
+            // A missing sample is outside.
+            1200 => writeln!(text, "{line},,{lat:.6},{lon:.6}"),
+            _ => writeln!(text, "{line},{speed},{lat:.6},{lon:.6}"),
+        };
+    }
+    text
+}
+
+/// Stretches by a threshold with a least duration have the statistics of sections by their times; damage adds up.
+#[test]
+fn a_section_by_speed_is_the_sum_of_the_stretches_by_time() {
+    let rule = "[[section]]\nname = \"fast\"\nwithin = { speed = [5.0, inf] }\nat_least_s = 1.5\n";
+    let (found, findings) = answer(&files(record_with_channels(4000), rule)).unwrap();
+    assert!(
+        findings
+            .iter()
+            .all(|f| f.0 != "strain-without-gauge" || !f.1.contains("speed")),
+        "{findings:?}"
+    );
+    let times = |name: &str, from: f64, to: f64| {
+        format!("[[section]]\nname = \"{name}\"\nstart_s = {from}\nend_s = {to}\n")
+    };
+    let stretches = times("a", 10.0, 11.99) + &times("b", 12.0, 20.0) + &times("c", 30.0, 40.0);
+    let (by_time, _) = answer(&files(record_with_channels(4000), &stretches)).unwrap();
+    for load in ["A.FZ", "B.FZ"] {
+        let rows = |answer: &Value| -> Vec<Value> {
+            let list = answer["sections"].as_array().unwrap();
+            list.iter().filter(|s| s["load"] == load).cloned().collect()
+        };
+        let (one, parts) = (&rows(&found)[0], rows(&by_time));
+        let all = |key: &str| parts.iter().map(|p| number(&p[key])).collect::<Vec<f64>>();
+        let close = |got: f64, expected: f64| {
+            assert!(
+                (got - expected).abs() <= 1e-9 * expected.abs(),
+                "{load}: {got} {expected}"
+            )
+        };
+        assert_eq!(one["stretches"], 3);
+        for key in ["seconds", "damage", "damage_low", "damage_high"] {
+            close(number(&one[key]), all(key).iter().sum());
+        }
+        close(
+            number(&one["max"]),
+            all("max").into_iter().fold(f64::MIN, f64::max),
+        );
+        close(
+            number(&one["min"]),
+            all("min").into_iter().fold(f64::MAX, f64::min),
+        );
+    }
+}
+
+#[test]
+fn a_section_by_a_box_of_positions_needs_both_channels_inside() {
+    let rule =
+        "[[section]]\nname = \"bend\"\nwithin = { lat = [51.001, 51.003], lon = [4.405, 4.5] }\n";
+    let (found, _) = answer(&files(record_with_channels(4000), rule)).unwrap();
+    // lat: 10 to 30 s; lon: sin(t / 20) from 0.5 on, t from 10.472 s. The last sample at 30.00 s is inside.
+    let a = of_load(&found, "sections", "A.FZ");
+    assert_eq!(a["stretches"], 1);
+    assert!((number(&a["seconds"]) - 19.53).abs() < 0.011, "{a}");
+}
+
+#[test]
+fn rules_of_sections_that_select_nothing_or_too_much_are_refused() {
+    let refused = |more: &str, expected: &[&str]| {
+        let said = answer(&files(record_with_channels(4000), more))
+            .unwrap_err()
+            .to_string();
+        for part in expected {
+            assert!(said.contains(part), "{part}: {said}");
+        }
+    };
+    let rule = |keys: &str| format!("[[section]]\nname = \"fast\"\n{keys}\n");
+    refused(
+        &rule("within = { sped = [5.0, inf] }"),
+        &["section.within", "did you mean `speed`"],
+    );
+    refused(
+        &rule("within = { speed = [9.0, inf] }"),
+        &["no stretch", "`speed` covers 3 to 8"],
+    );
+    refused(
+        &rule("within = { speed = [5.0, inf] }\nat_least_s = 60"),
+        &["no stretch of 60 s", "the longest has 10 s"],
+    );
+    refused(
+        &rule("within = { speed = [5.0, 5.0] }"),
+        &["section.within.speed", "not a range"],
+    );
+    refused(
+        &rule("within = { speed = [-inf, inf] }"),
+        &["section.within.speed", "not a range"],
+    );
+    refused(
+        &rule("start_s = 1\nend_s = 2\nwithin = { speed = [5.0, 9.0] }"),
+        &["together with a file or times"],
+    );
+    refused(
+        &rule("start_s = 1\nend_s = 2\nat_least_s = 1"),
+        &["needs ranges of channels"],
+    );
+    let both = rule("within = { speed = [5.0, inf] }")
+        + "[[section]]\nname = \"other\"\nstart_s = 35\nend_s = 36\n";
+    refused(&both, &["section `other` overlaps section `fast` at 35 s"]);
+}
+
+/// Conditioned readings are in memory; the channels of sections are still read from the file.
+#[test]
+fn sections_by_a_rule_work_on_a_conditioned_record() {
+    let more = "[conditioning]\nlow_pass_hz = 20\n[[section]]\nname = \"fast\"\nwithin = { speed = [5.0, inf] }\nat_least_s = 1.5\n";
+    let (found, _) = answer(&files(record_with_channels(4000), more)).unwrap();
+    assert_eq!(of_load(&found, "sections", "A.FZ")["stretches"], 3);
+}
+
+/// Spectra of sines: the density sums to the variance, the coherence at the sines is 1; both loads cross each level equally often.
+#[test]
+fn spectra_coherence_and_levels_of_recovered_and_recorded_loads_agree() {
+    let more =
+        "[compare]\nfile = \"wft.csv\"\ncolumns = { \"B.FZ\" = \"Kraft B\" }\nshift_s = 6.0\n";
+    let mut noise = normal_numbers(5);
+    let strain = record(20_000, START, loads_at, || 0.1 * noise());
+    let wft = format_load_record(6.0, 0.0, 190.0);
+    let files = files(strain, more).with_file("wft.csv", wft);
+    let job = Job::read("job.toml", &files).unwrap();
+    let outcome = recover(&job, &Context::new(&files)).unwrap();
+    let spectra = outcome.comparison.spectra.as_ref().unwrap();
+    // 190 s at 100 Hz: 33 half segments of 1024 samples at most, so 1024 is the longest power of two.
+    assert_eq!((spectra.segment_s, spectra.averages), (10.24, 36));
+    let step = spectra.f_hz[1] - spectra.f_hz[0];
+    assert!(spectra.f_hz.last().unwrap() <= &50.0);
+    let a = spectra.loads.iter().find(|l| l.load == "A.FZ").unwrap();
+    let variance = 0.5 * (100.0f64.powi(2) + 70.0f64.powi(2) + 40.0f64.powi(2));
+    for density in [&a.recovered, &a.recorded] {
+        let sum = density.iter().sum::<f64>() * step;
+        assert!((sum / variance - 1.0).abs() < 0.03, "{sum} {variance}");
+    }
+    for f in [0.31, 1.13, 2.71] {
+        let k = (f / step).round() as usize;
+        assert!(
+            a.coherence[k] > 0.999 && a.phase_deg[k].abs() < 0.5,
+            "{f}: {}",
+            a.coherence[k]
+        );
+    }
+    // Far from the sines, independent noise of the readings has the coherence of chance, about 1 over the averages.
+    let k = (30.0 / step) as usize;
+    let chance = a.coherence[k..k + 100].iter().sum::<f64>() / 100.0;
+    assert!(chance < 0.5, "{chance}");
+    let levels = outcome
+        .comparison
+        .levels
+        .iter()
+        .find(|l| l.load == "A.FZ")
+        .unwrap();
+    assert_eq!(levels.levels.len(), 40);
+    assert!((levels.reference - 300.0).abs() < 3.0);
+    let pairs = levels.recovered.iter().zip(&levels.recorded);
+    for (level, (recovered, recorded)) in levels.levels.iter().zip(pairs) {
+        // Peaks between two samples, at 100 and at 128 Hz, may miss a level; noise of 0.2 N may cross one twice.
+        let most = 3.0 + 0.05 * *recorded as f64;
+        assert!(
+            (*recovered as f64 - *recorded as f64).abs() <= most,
+            "{level}: {recovered} {recorded}"
+        );
+    }
 }

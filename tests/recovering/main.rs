@@ -9,6 +9,7 @@ mod conditioned;
 #[path = "../drawn/mod.rs"]
 mod drawn;
 mod dynamic;
+mod end_to_end;
 mod files;
 mod in_fleet;
 mod kinds;

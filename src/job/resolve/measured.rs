@@ -11,6 +11,7 @@ use super::placement::DEFAULT_NOISE_MICROSTRAIN;
 use super::units::{stated_quantities, units};
 use crate::payload::Place;
 use crate::reconcile::strain::WheelForces;
+use crate::series::rainflow::MeanStress;
 use crate::series::record::seconds_in;
 use crate::units::{ReportUnits, STANDARD_GRAVITY_M_S2};
 
@@ -313,6 +314,7 @@ pub(super) fn respond(c: &mut Collector, raw: Option<&SpannedValue<RawRespond>>)
         hottest: DEFAULT_HOTTEST,
         loads: None,
         slope: None,
+        mean_stress: MeanStress::None,
         line: 0,
     };
     let Some(section) = raw else { return out };
@@ -323,8 +325,57 @@ pub(super) fn respond(c: &mut Collector, raw: Option<&SpannedValue<RawRespond>>)
         .unwrap_or(DEFAULT_HOTTEST);
     out.loads = c.named_file(&raw.loads, "respond.loads");
     out.slope = slope_of(c, &raw.slope, "respond.slope");
+    out.mean_stress = mean_stress(c, section);
     out.line = c.line(section);
     out
+}
+
+/// Correction for mean stress, with the parameter that it needs.
+fn mean_stress(c: &mut Collector, section: &SpannedValue<RawRespond>) -> MeanStress {
+    const RULES: [(&str, usize); 4] = [("none", 0), ("goodman", 1), ("swt", 2), ("sensitivity", 3)];
+    let raw = section.value();
+    let rule = c.choose(&raw.mean_stress, "respond.mean_stress", &RULES, 0);
+    if let (Some(at), true, None) = (&raw.mean_stress, rule > 0, &raw.slope) {
+        let wrong = "the correction needs the power of the stress range";
+        c.fault(
+            at,
+            "respond.mean_stress",
+            wrong,
+            "state `slope` in [respond]",
+        );
+    }
+    let ultimate = c.positive_number(&raw.ultimate, "respond.ultimate");
+    let key = "respond.mean_sensitivity";
+    let expected = "a number from 0 to below 1";
+    let m = c.number(&raw.mean_sensitivity, key, expected, |m| {
+        (0.0..1.0).contains(&m)
+    });
+    for (value, of, key) in [
+        (&raw.ultimate, 1, "respond.ultimate"),
+        (&raw.mean_sensitivity, 3, "respond.mean_sensitivity"),
+    ] {
+        match value {
+            Some(at) if rule != of => {
+                let wrong = format!("it belongs to mean_stress = \"{}\"", RULES[of].0);
+                c.fault(at, key, wrong, "delete it, or correct `mean_stress`");
+            }
+            None if rule == of => {
+                let example = if of == 1 {
+                    "ultimate = 510"
+                } else {
+                    "mean_sensitivity = 0.3"
+                };
+                c.require(value, section, key, example);
+            }
+            _ => {}
+        }
+    }
+    match (rule, ultimate, m) {
+        (1, Some(ultimate), _) => MeanStress::Goodman { ultimate },
+        (2, ..) => MeanStress::SmithWatsonTopper,
+        (3, _, Some(m)) => MeanStress::Sensitivity { m },
+        _ => MeanStress::None,
+    }
 }
 
 /// Power of a range in pseudo-damage.

@@ -24,7 +24,7 @@ pub(super) fn sections(c: &mut Collector, raw: &[SpannedValue<RawSection>]) -> V
         }
         let times = |s: &RecordSection| match s.extent {
             SectionExtent::Times(times) => Some(times),
-            SectionExtent::File(_) => None,
+            SectionExtent::File(_) | SectionExtent::Within(_) => None,
         };
         if let Some([from, to]) = times(&section) {
             let overlaps = |s: &&RecordSection| times(s).is_some_and(|[a, b]| from < b && a < to);
@@ -50,6 +50,30 @@ fn section(c: &mut Collector, item: &SpannedValue<RawSection>) -> Option<RecordS
     let number = |c: &mut Collector, value, key| c.number(value, key, "a time in s", |_| true);
     let start = number(c, &raw.start_s, "section.start_s");
     let end = number(c, &raw.end_s, "section.end_s");
+    let least = c.at_least_zero(&raw.at_least_s, "section.at_least_s");
+    if let (Some(at), true) = (&raw.at_least_s, raw.within.is_empty()) {
+        let wrong = "a shortest stretch needs ranges of channels";
+        let remedy = "state within = { speed = [5.0, inf] }, or delete this key";
+        c.fault(at, "section.at_least_s", wrong, remedy);
+        return None;
+    }
+    if !raw.within.is_empty() {
+        if raw.file.is_some() || raw.start_s.is_some() || raw.end_s.is_some() {
+            let wrong = "the section has ranges of channels together with a file or times";
+            let remedy = format!("state `within`, `file`, or {TIMES}");
+            c.fault(item, "section.within", wrong, remedy);
+            return None;
+        }
+        return Some(RecordSection {
+            name: name?,
+            extent: SectionExtent::Within(SectionRule {
+                ranges: ranges(c, raw)?,
+                at_least_s: least.unwrap_or(0.0),
+            }),
+            repeats: repeats.unwrap_or(1.0),
+            line: c.line(item),
+        });
+    }
     let extent = match (&raw.file, &raw.start_s, &raw.end_s) {
         (Some(file), None, None) => SectionExtent::File(c.named_at(file, "section.file")),
         (None, Some(_), Some(at)) => {
@@ -74,7 +98,7 @@ fn section(c: &mut Collector, item: &SpannedValue<RawSection>) -> Option<RecordS
                 item,
                 "section.start_s",
                 wrong,
-                format!("state {TIMES}, or `file`"),
+                format!("state {TIMES}, `file`, or within = {{ speed = [5.0, inf] }}"),
             );
             return None;
         }
@@ -85,4 +109,22 @@ fn section(c: &mut Collector, item: &SpannedValue<RawSection>) -> Option<RecordS
         repeats: repeats.unwrap_or(1.0),
         line: c.line(item),
     })
+}
+
+/// Ranges of the channels of a rule; `None` and a fault for a range without a limit or without a value.
+fn ranges(c: &mut Collector, raw: &RawSection) -> Option<Vec<(String, [f64; 2])>> {
+    let mut out = Vec::new();
+    for (channel, [low, high]) in &raw.within {
+        let limited = low.is_finite() || high.is_finite();
+        if !(low < high && limited) {
+            let key = format!("section.within.{}", channel.value());
+            let wrong = format!("[{low}, {high}] is not a range");
+            let remedy =
+                "write [low, high] in the unit of the channel, such as [5.0, 20.0] or [5.0, inf]";
+            c.fault(channel, &key, wrong, remedy);
+            return None;
+        }
+        out.push((channel.value().clone(), [*low, *high]));
+    }
+    Some(out)
 }

@@ -133,6 +133,14 @@ pub(super) fn vehicle(
         })
     });
     let leaf = seats(c, section);
+    let input = raw.input.as_ref().and_then(|at| match at.value() {
+        Texts::Many(names) => Some(SimulationInput::Channels(names.clone())),
+        Texts::One(word) => {
+            let at = SpannedValue::new(at.span(), word.clone());
+            let kind = c.choose_at(&at, "vehicle.input", &InputKind::WORDS);
+            kind.map(SimulationInput::Kind)
+        }
+    });
     numbers(c, section);
     if let (Some(data), Some(at)) = (&raw.data, &raw.hold_out)
         && data.value() == at.value()
@@ -148,6 +156,7 @@ pub(super) fn vehicle(
             t.value().iter().map(|w| w.value().clone()).collect()
         }),
         data: c.named_file(&raw.data, "vehicle.data")?,
+        input,
         hold_out: c.named_file(&raw.hold_out, "vehicle.hold_out"),
         sample_rate,
         known: raw.known.clone(),

@@ -2,6 +2,7 @@
 
 use super::named_file::NamedFile;
 use crate::job::shapes::Ids;
+use crate::series::rainflow::MeanStress;
 
 /// `[respond]`.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +15,8 @@ pub struct Respond {
     pub loads: Option<NamedFile>,
     /// Power of the stress range in pseudo-damage; `None`: no damage.
     pub slope: Option<f64>,
+    /// Correction of the cycles for their mean stress, report unit of stress.
+    pub mean_stress: MeanStress,
     /// Line of the job; 0 where the section is absent.
     pub line: u32,
 }

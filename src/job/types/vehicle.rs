@@ -14,6 +14,8 @@ pub struct Vehicle {
     pub terms: Vec<String>,
     /// Record.
     pub data: NamedFile,
+    /// Channels that drive a simulation; `None` if the columns of the record determine them.
+    pub input: Option<SimulationInput>,
     /// Held-out record.
     pub hold_out: Option<NamedFile>,
     /// Sampling rate, Hz. `None` means the rate of the time column.
@@ -74,4 +76,33 @@ pub struct MassChange {
     pub over_s: f64,
     /// Whether the weight of the mass changes too. Otherwise only its inertia changes.
     pub weight: bool,
+}
+
+/// Channels that drive a simulation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SimulationInput {
+    /// All channels of a kind.
+    Kind(InputKind),
+    /// Channels by name.
+    Channels(Vec<String>),
+}
+
+/// Kind of the channels that drive a simulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InputKind {
+    /// Every wheel force of the model.
+    WheelForce,
+    /// Height of the road under every wheel.
+    Road,
+    /// Accelerations in the record.
+    Acceleration,
+}
+
+impl InputKind {
+    /// Words of a job, with their meaning.
+    pub const WORDS: [(&'static str, Self); 3] = [
+        ("wheel_force", Self::WheelForce),
+        ("road", Self::Road),
+        ("acceleration", Self::Acceleration),
+    ];
 }

@@ -25,6 +25,7 @@ mod recover;
 mod respond;
 mod respond_files;
 mod sensitivity;
+mod simulate;
 mod solve;
 mod strains;
 mod study;

@@ -5,6 +5,7 @@
 //! - [`count`]: the four-point count, whose residues can be joined. With the residue as half cycles it equals the count of ASTM E1049
 //! - `counter`: a tally in progress; `counts`: cycles and rises by class
 //! - `marks`: a number for each sample, which seeds the noise of the counts with more noise
+//! - `mean_stress`: the fully reversed cycle that does the damage of a cycle with a mean
 //! - [`law`]: the damage of a cycle, by the slope and knee of an S-N line
 //! - [`tally`]: cycles by class, levels, extremes and sums of a load over a time. Tallies of days join to the tally of a year
 //! - [`interval`]: damage with its 95 % interval
@@ -18,6 +19,7 @@ mod damage;
 pub mod interval;
 pub mod law;
 mod marks;
+mod mean_stress;
 pub mod nullable_numbers;
 pub mod tally;
 
@@ -27,6 +29,7 @@ pub use damage::{Bin, Damage};
 pub use interval::{DamageInterval, DamageParts, Ratio, SharedErrors, damage_interval};
 pub use law::{Knee, Law};
 pub use marks::Marks;
+pub use mean_stress::MeanStress;
 pub use tally::{Extreme, Tally};
 
 #[cfg(test)]

@@ -15,7 +15,7 @@ use crate::sensitivity::Sensitivity;
 use crate::strain_chain::built_in_solver::{relief_of_job, support_finding, support_of_job};
 use crate::strain_chain::job_deck::against_units;
 use crate::strain_chain::{given_as_asked, point_findings};
-use crate::workflow::{calibrate, identify, reconcile, recover, respond};
+use crate::workflow::{calibrate, identify, reconcile, recover, respond, simulate};
 use std::collections::HashSet;
 use std::path::Path;
 
@@ -50,6 +50,7 @@ pub(super) fn look(
     let gauges = gauges_of(work, &job, s.as_ref(), &mut faults);
     let command = match &job.measured {
         Some(_) if recovers(&job) => "recover",
+        _ if simulate::is_asked(&job) => "simulate",
         _ if job.vehicle.is_some() => "identify",
         None => "place",
         Some(_) if job.reconcile.is_some() => "reconcile",
@@ -77,7 +78,9 @@ pub(super) fn look(
     if let Some(r) = &job.runs {
         collect_faults(runs_file::read_runs(&mut work.inputs, &job, r), &mut faults);
     }
-    if job.vehicle.is_some() {
+    if simulate::is_asked(&job) {
+        collect_faults(simulate::look(work, &job), &mut faults);
+    } else if job.vehicle.is_some() {
         collect_faults(identify::look(work, &job), &mut faults);
     }
     collect_faults(respond::look(work, &job), &mut faults);

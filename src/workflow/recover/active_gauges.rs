@@ -7,7 +7,7 @@ use crate::host::work::Work;
 use crate::job::correct::channel_of;
 use crate::measured::columns::columns_of;
 use crate::measured::faults::no_gauge_column;
-use crate::measured::record::Record;
+use crate::measured::record::{Record, section_channels};
 use crate::sensitivity::Sensitivity;
 use crate::series::constant_columns::{ColumnContents, Gives};
 
@@ -33,7 +33,11 @@ pub(super) fn exclude_silent_gauges(
     let file = named.given.as_str();
     let corrections = &task.job.corrections;
     work.findings.extend(record.findings());
-    let found = columns_of(work, named, &record.names, &all.gauges);
+    // Channels of sections are no gauges, and are not left out.
+    let is_in_file = |channel: &String| record.names.contains(channel);
+    let channels = section_channels(task.job).filter(is_in_file);
+    let known: Vec<String> = all.gauges.iter().cloned().chain(channels).collect();
+    let found = columns_of(work, named, &record.names, &known);
     let channel = |g: usize| (found[g], channel_of(corrections, &all.gauges[g]));
     // Gauges without a column are not used.
     let mut used: Vec<usize> = task

@@ -24,6 +24,7 @@ mod record_tests;
 mod recorded_run_loads;
 mod runs;
 mod section_files;
+mod section_rules;
 mod sections;
 mod sink;
 mod task;
@@ -40,7 +41,9 @@ pub use answer::{
     RecoveredRuns, RunFit, States,
 };
 pub use by_load::LoadSpan;
-pub use compare::{Comparison, ComparisonShift, LoadComparison};
+pub use compare::{
+    Comparison, ComparisonShift, ComparisonSpectra, LoadComparison, LoadLevels, LoadSpectra,
+};
 pub use damage::LoadDamage;
 pub(super) use dead_parts::silent_in_part;
 pub(crate) use dynamic::VibrationModel;

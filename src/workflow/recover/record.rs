@@ -71,7 +71,7 @@ pub(super) fn record(
         .extend(find_identical_readings(&sensitivity, &readings));
     let clock = record.clock().clone();
     let recorded = compare::record_of_job(work, task, &names)?;
-    let parts = sections::parts(task.job, &clock)?;
+    let parts = sections::parts(task.job, &record, &clock)?;
     let rested = remove_vibration(work, task, &record, &sensitivity)?;
     let (judged, errors, at_rest, motion, blank) = match rested {
         Some((quasi_static, r)) => {

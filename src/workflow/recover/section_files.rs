@@ -58,7 +58,11 @@ pub(super) fn count_files(work: &mut Work, task: &Task) -> Result<Vec<SectionLoa
             samples: &*samples,
             slope: job.recover.slope,
         };
-        out.extend(count(counting, section, &(0..samples.n_samples())));
+        out.extend(count(
+            counting,
+            section,
+            std::slice::from_ref(&(0..samples.n_samples())),
+        ));
     }
     Ok(out)
 }

@@ -1,9 +1,11 @@
 //! Loads of a record by section, and the duty cycle that the sections make.
 
 use super::damage::{CycleCountInput, PIECE};
+use super::section_rules::{NoSamples, stretches_within};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::words::format_number;
 use crate::job::{Job, RecordSection, SectionExtent};
+use crate::measured::record::Record;
 use crate::series::record::Clock;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -27,6 +29,8 @@ pub struct SectionLoad {
     pub load: String,
     /// Report unit.
     pub unit: String,
+    /// Stretches of the record; more than one where a rule selects them.
+    pub stretches: usize,
     /// Number of samples of the section times the time step.
     pub seconds: f64,
     /// Number of occurrences of the section in the duty cycle.
@@ -37,7 +41,7 @@ pub struct SectionLoad {
     pub mean: f64,
     /// Largest sample.
     pub max: f64,
-    /// Pseudo-damage of the section, counted once.
+    /// Pseudo-damage of the section once, the sum over its stretches.
     pub damage: f64,
     /// Lower end of its 95 % interval.
     pub damage_low: f64,
@@ -62,10 +66,10 @@ pub struct DutyLoad {
     pub damage_high: f64,
 }
 
-/// The samples of a section of the strain record.
+/// The samples of a section of the strain record: one stretch or more, ascending.
 pub(super) struct Part<'a> {
     pub section: &'a RecordSection,
-    pub range: Range<usize>,
+    pub stretches: Vec<Range<usize>>,
 }
 
 /// Refuses sections without a record.
@@ -84,58 +88,85 @@ pub(super) fn without_record(job: &Job) -> Result<(), Faults> {
 /// Returns the sections of a job that are parts of its strain record, with their samples.
 ///
 /// # Errors
-/// A fault for each section that is beyond the record or has no sample.
-pub(super) fn parts<'a>(job: &'a Job, clock: &Clock) -> Result<Vec<Part<'a>>, Faults> {
+/// A fault for each section that is beyond the record, has no sample, names a channel that the record lacks, or overlaps another section.
+pub(super) fn parts<'a>(
+    job: &'a Job,
+    record: &Record,
+    clock: &Clock,
+) -> Result<Vec<Part<'a>>, Faults> {
     let mut faults = FaultList::new();
-    let mut out = Vec::new();
+    let mut out: Vec<Part> = Vec::new();
+    for section in &job.sections {
+        let stretches = match &section.extent {
+            SectionExtent::File(_) => continue,
+            SectionExtent::Times(times) => samples_between(*times, clock).map(|r| vec![r]),
+            SectionExtent::Within(rule) => stretches_within(rule, record, clock)?,
+        };
+        let stretches = stretches.map_err(|(field, wrong, remedy)| {
+            let wrong = format!("section `{}`: {wrong}", section.name);
+            let line = section.line;
+            faults.push(Fault::with_line(&*job.file, line, field, wrong, remedy));
+        });
+        let Ok(stretches) = stretches else { continue };
+        let part = Part { section, stretches };
+        faults.extend(
+            out.iter()
+                .find_map(|other| overlap(job, other, &part, clock)),
+        );
+        out.push(part);
+    }
+    Faults::check(faults)?;
+    Ok(out)
+}
+
+/// Samples from one time until before another, s.
+fn samples_between([from, to]: [f64; 2], clock: &Clock) -> Result<Range<usize>, NoSamples> {
     let step = 1.0 / clock.rate_hz;
     let end_s = clock.start_s + clock.samples as f64 * step;
     // Stated times are rounded. A time up to a millionth of a step after a sample selects this sample.
     let place = |t: f64| (((t - clock.start_s) / step - 1e-6).ceil()).max(0.0) as usize;
-    for section in &job.sections {
-        let SectionExtent::Times([from, to]) = section.extent else {
-            continue;
-        };
-        let range = place(from)..place(to).min(clock.samples);
-        let mut fault = |field: &str, wrong: String, remedy: &str| {
-            faults.push(Fault::with_line(
-                &*job.file,
-                section.line,
-                field,
-                wrong,
-                remedy,
-            ));
-        };
-        if from < clock.start_s - 1e-6 * step || to > end_s + 1e-6 * step {
-            let wrong = format!(
-                "section `{}` from {} to {} s is beyond the record, which covers {} to {} s",
-                section.name,
-                format_number(from),
-                format_number(to),
-                format_number(clock.start_s),
-                format_number(end_s)
-            );
-            fault(
-                "section.end_s",
-                wrong,
-                "correct the times, in s of the record's own clock",
-            );
-        } else if range.is_empty() {
-            let wrong = format!("no sample of the record is in section `{}`", section.name);
-            fault("section.start_s", wrong, "correct its times");
-        } else {
-            out.push(Part { section, range });
-        }
+    let range = place(from)..place(to).min(clock.samples);
+    if from < clock.start_s - 1e-6 * step || to > end_s + 1e-6 * step {
+        let [from, to, start, end] = [from, to, clock.start_s, end_s].map(format_number);
+        let wrong =
+            format!("{from} to {to} s is beyond the record, which covers {start} to {end} s");
+        let remedy = "correct the times, in s of the record's own clock";
+        return Err(("section.end_s", wrong, remedy));
     }
-    Faults::check(faults)?;
-    Ok(out)
+    if range.is_empty() {
+        let wrong = "no sample of the record is between its times".to_owned();
+        return Err(("section.start_s", wrong, "correct its times"));
+    }
+    Ok(range)
+}
+
+/// The fault of a section that contains samples of an earlier one.
+fn overlap(job: &Job, first: &Part, second: &Part, clock: &Clock) -> Option<Fault> {
+    let pairs = second.stretches.iter();
+    let at = pairs
+        .flat_map(|b| {
+            first
+                .stretches
+                .iter()
+                .map(move |a| (a.start.max(b.start), a.end.min(b.end)))
+        })
+        .find(|(from, to)| from < to)?;
+    let wrong = format!(
+        "section `{}` overlaps section `{}` at {} s: the duty cycle would count these samples twice",
+        second.section.name,
+        first.section.name,
+        format_number(clock.time_s(at.0))
+    );
+    let remedy = "change the times or ranges so that no sample is in two sections";
+    let line = second.section.line;
+    Some(Fault::with_line(&*job.file, line, "section", wrong, remedy))
 }
 
 /// Returns the statistics and damage of every load in every section of the record.
 pub(super) fn count_all(counting: CycleCountInput, parts: &[Part]) -> Vec<SectionLoad> {
     let counted = parts.iter();
     counted
-        .flat_map(|p| count(counting, p.section, &p.range))
+        .flat_map(|p| count(counting, p.section, &p.stretches))
         .collect()
 }
 
@@ -143,37 +174,46 @@ pub(super) fn count_all(counting: CycleCountInput, parts: &[Part]) -> Vec<Sectio
 pub(super) fn count(
     counting: CycleCountInput,
     section: &RecordSection,
-    range: &Range<usize>,
+    stretches: &[Range<usize>],
 ) -> Vec<SectionLoad> {
     let head = counting.head;
     let one = |l: usize| {
         let (mut n, mut sum) = (0.0, 0.0);
         let [mut min, mut max] = [f64::INFINITY, f64::NEG_INFINITY];
         let mut values = Vec::with_capacity(PIECE);
-        for from in range.clone().step_by(PIECE) {
-            values.clear();
-            let to = (from + PIECE).min(range.end);
-            counting.samples.read(from, to, &[l], &mut values);
-            for v in values.iter().filter(|v| v.is_finite()) {
-                n += 1.0;
-                sum += v;
-                (min, max) = (min.min(*v), max.max(*v));
+        let [mut value, mut low, mut high] = [0.0; 3];
+        for range in stretches {
+            for from in range.clone().step_by(PIECE) {
+                values.clear();
+                let to = (from + PIECE).min(range.end);
+                counting.samples.read(from, to, &[l], &mut values);
+                for v in values.iter().filter(|v| v.is_finite()) {
+                    n += 1.0;
+                    sum += v;
+                    (min, max) = (min.min(*v), max.max(*v));
+                }
             }
+            // Errors of the model are common to all stretches, so the ends of the intervals are added.
+            let damage = counting.damage(l, 0.0, range.clone());
+            value += damage.value;
+            low += damage.low;
+            high += damage.high;
         }
         let known = |v: f64| if n > 0.0 { v } else { f64::NAN };
-        let damage = counting.damage(l, 0.0, range.clone());
+        let samples: usize = stretches.iter().map(Range::len).sum();
         SectionLoad {
             section: section.name.clone(),
             load: head.names[l].clone(),
             unit: head.units[l].name.clone(),
-            seconds: range.len() as f64 * head.step_s,
+            stretches: stretches.len(),
+            seconds: samples as f64 * head.step_s,
             repeats: section.repeats,
             min: known(min),
             mean: known(sum / n),
             max: known(max),
-            damage: known(damage.value),
-            damage_low: known(damage.low),
-            damage_high: known(damage.high),
+            damage: known(value),
+            damage_low: known(low),
+            damage_high: known(high),
         }
     };
     (0..head.n_loads()).into_par_iter().map(one).collect()

@@ -17,8 +17,10 @@ use crate::host::work::Work;
 use crate::job::{self, Job};
 use crate::model::{GridIx, Model};
 use crate::respond::{
-    LoadState, Peak, Place, PlaceDamage, ResponseRow, envelope, fatigue, hot_spots, response_rows,
+    LoadState, Peak, Place, PlaceDamage, ResponseRow, StressLaw, envelope, fatigue, hot_spots,
+    response_rows,
 };
+use crate::series::rainflow::MeanStress;
 use crate::strain_chain::named_results::check_tables;
 use crate::strain_chain::{JobSensitivity, WantedAt, has_covariance, prepare, read_fields};
 use crate::units::factor;
@@ -151,9 +153,16 @@ fn compute_response(work: &mut Work, job: &Job) -> Result<StressResponse, Faults
     let hottest = spots.iter().take(job.respond.hottest);
     let fatigue = match job.respond.slope {
         Some(slope) => {
-            work.findings.push(about_damage(slope));
+            let law = StressLaw {
+                slope,
+                mean_stress: job.respond.mean_stress,
+                unit: u,
+            };
+            work.findings.push(about_damage(&law));
             let places: Vec<&ResponseRow> = order.iter().filter_map(|i| rows.get(*i)).collect();
-            work.stage("fatigue", |_| damage_of(&places, &states, (slope, u)))
+            let found = work.stage("fatigue", |_| damage_of(&places, &states, law));
+            check_finite(job, &found)?;
+            found
         }
         None => Vec::new(),
     };
@@ -189,12 +198,8 @@ fn no_history(job: &Job) -> Fault {
 }
 
 /// Returns the pseudo-damage of places in the form of the answer.
-fn damage_of(
-    places: &[&ResponseRow],
-    states: &[LoadState],
-    (slope, unit): (f64, f64),
-) -> Vec<ElementFatigue> {
-    let found = fatigue(places, states, (slope, unit));
+fn damage_of(places: &[&ResponseRow], states: &[LoadState], law: StressLaw) -> Vec<ElementFatigue> {
+    let found = fatigue(places, states, law);
     let one = |(row, d): (&&ResponseRow, PlaceDamage)| ElementFatigue {
         element: row.element,
         surface: row.surface_word(),
@@ -206,15 +211,45 @@ fn damage_of(
     places.iter().zip(found).map(one).collect()
 }
 
+/// Refuses a mean stress, or an upper end of its interval, that reaches the ultimate strength.
+fn check_finite(job: &Job, found: &[ElementFatigue]) -> Result<(), Faults> {
+    let beyond = found.iter().find(|f| !f.damage_high.is_finite());
+    beyond.map_or(Ok(()), |f| {
+        let wrong = format!(
+            "the mean stress of a cycle at element {} reaches this strength, within its 95 % interval: Goodman's line ends there",
+            f.element
+        );
+        let remedy = "correct the strength, or exclude the element with `elements`";
+        let line = job.respond.line;
+        Err(Fault::with_line(&*job.file, line, "respond.ultimate", wrong, remedy).into())
+    })
+}
+
 /// Returns the note that explains pseudo-damage of stress.
-fn about_damage(slope: f64) -> Finding {
+fn about_damage(law: &StressLaw) -> Finding {
+    let (range, mean) = match law.mean_stress {
+        MeanStress::None => ("range", "without mean stress".to_owned()),
+        MeanStress::Goodman { ultimate } => (
+            "reversed range",
+            format!("corrected for mean stress by Goodman with an ultimate strength of {ultimate}"),
+        ),
+        MeanStress::SmithWatsonTopper => (
+            "reversed range",
+            "corrected for mean stress by Smith, Watson and Topper".to_owned(),
+        ),
+        MeanStress::Sensitivity { m } => (
+            "reversed range",
+            format!("corrected for mean stress by the sensitivity M = {m} of the FKM guideline"),
+        ),
+    };
+    let slope = law.slope;
     Finding::new(
         Severity::Info,
         "pseudo-damage",
         "fatigue",
         format!(
             "rainflow counts by ASTM E1049-85 of the normal stress on the plane of largest damage. Pseudo-damage is the sum of cycles \
-             times range to the power {slope}, without mean stress and without a fatigue limit. It compares places and records and is not \
+             times {range} to the power {slope}, {mean} and without a fatigue limit. It compares places and records and is not \
              a life. Its interval shifts all ranges together by their own 95 % interval, from the intervals of the loads"
         ),
         "state the slope of the part's S-N curve: [respond] slope",
@@ -279,11 +314,20 @@ fn report_findings(
         .as_ref()
         .is_none_or(|m| m.reference == job::Reference::None)
     {
+        // A correction for mean stress needs the static stress too.
+        let (severity, also) = match job.respond.mean_stress {
+            _ if job.measured.is_none() => (Severity::Info, ""),
+            MeanStress::None => (Severity::Info, ""),
+            _ => (
+                Severity::Warning,
+                ". Mean stresses lack the static stress of this state, and so does the damage",
+            ),
+        };
         work.findings.push(Finding::new(
-            Severity::Info,
+            severity,
             "stress-is-change",
             "respond",
-            "loads are changes from the state at which the gauges read zero, and stress is the change from this state",
+            format!("loads are changes from the state at which the gauges read zero, and stress is the change from this state{also}"),
             "state [measured] reference to get totals",
         ));
     }

@@ -1,5 +1,6 @@
 //! Recovered against recorded loads, and loads by section: tables, console, page.
 
+use super::comparison_curves;
 use crate::host::fault::Faults;
 use crate::host::output::Output;
 use crate::measured::conditioning_step::ConditioningStep;
@@ -27,7 +28,7 @@ const COMPARISON: [(&str, &str); 9] = [
     ("damage_ratio_high", ""),
 ];
 
-const SECTIONS: [(&str, &str); 11] = [
+const SECTIONS: [(&str, &str); 12] = [
     ("section", ""),
     ("load", ""),
     ("unit", ""),
@@ -39,6 +40,7 @@ const SECTIONS: [(&str, &str); 11] = [
     ("damage", DAMAGE),
     ("damage_low", DAMAGE),
     ("damage_high", DAMAGE),
+    ("stretches [-]", ""),
 ];
 
 /// Writes `comparison.csv` and `sections.csv` if they have any content.
@@ -54,6 +56,7 @@ pub(super) fn write(out: &mut Output, recovered: &RecoveredLoads) -> Result<(), 
             loads.iter().try_for_each(|l| comparison_row(w, l))
         })?;
     }
+    comparison_curves::write(out, &recovered.comparison)?;
     if let Some(sections) = &recovered.sections {
         out.declare("sections.csv", SECTIONS);
         out.write("sections.csv", |w| sections_csv(w, sections))?;
@@ -97,7 +100,8 @@ fn sections_csv(w: &mut dyn Write, sections: &Sections) -> std::io::Result<()> {
             s.damage_high,
         ];
         let names = [&s.section, &s.load, &s.unit].map(|n| csv_cell(n));
-        writeln!(w, "{},{}", names.join(","), numbers.map(cell).join(","))?;
+        let numbers = numbers.map(cell).join(",");
+        writeln!(w, "{},{numbers},{}", names.join(","), s.stretches)?;
     }
     Ok(())
 }
@@ -131,6 +135,7 @@ pub(super) fn add_sections(page: &mut Page, recovered: &RecoveredLoads) {
     let comparison = &recovered.comparison;
     if !comparison.loads.is_empty() {
         added.push(comparison_section(comparison));
+        added.extend(comparison_curves::curve_section(comparison));
     }
     if let Some(sections) = &recovered.sections {
         added.push(section_table(sections));

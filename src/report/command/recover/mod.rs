@@ -3,6 +3,7 @@
 //! A [`RecordFolder`] writes the loads of a record while they are recovered. All other files are written from the outcome.
 
 mod columns;
+mod comparison_curves;
 mod console;
 mod folder;
 mod load_comparison;

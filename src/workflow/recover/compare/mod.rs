@@ -1,8 +1,10 @@
 //! Recovered loads compared with recorded ones: of runs by their names, of records at the same times.
 
+mod curves;
 mod record;
 mod runs;
 
+pub use curves::{ComparisonSpectra, LoadLevels, LoadSpectra};
 pub(super) use record::{Gap, record, record_of_job};
 pub(super) use runs::runs;
 
@@ -22,6 +24,12 @@ pub struct Comparison {
     /// Time shift of a record of loads.
     #[serde(rename = "comparison_shift", skip_serializing_if = "Option::is_none")]
     pub shift: Option<ComparisonShift>,
+    /// Spectra and coherence of a record.
+    #[serde(rename = "comparison_spectra", skip_serializing_if = "Option::is_none")]
+    pub spectra: Option<ComparisonSpectra>,
+    /// Level crossings of a record, by load.
+    #[serde(skip)]
+    pub levels: Vec<LoadLevels>,
 }
 
 /// Time shift that converts the times of the recorded loads to times of the strain record.

@@ -1,6 +1,7 @@
 //! A recovered record against a record of loads: times are brought together, samples compared at the times of the recovered loads.
 
-use super::{Comparison, ComparisonShift, Differences, POINTS, Pair};
+use super::curves::{SampledLoad, levels_of, spectra_of};
+use super::{Comparison, ComparisonShift, Differences, LoadLevels, POINTS, Pair};
 use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, Faults};
@@ -119,9 +120,16 @@ pub fn record(
     if range.len() < 2 {
         return Err(both.nothing_common(job, compare).into());
     }
+    let lower_hz = both.recorded.clock.rate_hz.min(1.0 / head.step_s);
     let mut out = Comparison {
-        loads: Vec::new(),
         shift: Some(shift),
+        spectra: spectra_of(
+            &both.sampled_loads(&range),
+            1.0 / head.step_s,
+            0.5 * lower_hz,
+        ),
+        levels: both.levels(&range),
+        ..Comparison::default()
     };
     for (i, (sums, curved)) in both.differences(&range).into_iter().enumerate() {
         let (sigma, deviations) = (sums.sigma(), sums.deviations(false));
@@ -254,14 +262,65 @@ impl LoadRecordPair<'_> {
         out
     }
 
-    /// Damage of recovered over recorded load between the same times, each from its own samples.
-    fn compare_damage(&self, i: usize, range: &Range<usize>, found: &mut super::LoadComparison) {
+    /// Recovered and recorded loads at the times of the recovered ones.
+    fn sampled_loads(&self, range: &Range<usize>) -> Vec<SampledLoad> {
+        let head = self.counting.head;
+        let recovered = recovered_columns(self.counting, &self.columns);
+        let sampled = self.recorded_samples();
+        let time = |at: usize| head.first_s + at as f64 * head.step_s;
+        let load = |(i, recovered): (usize, Vec<f32>)| {
+            let column = self.columns[i];
+            let recorded = range.clone().map(|at| sampled.value_at(i, time(at)));
+            SampledLoad {
+                load: head.names[column].clone(),
+                unit: head.units[column].name.clone(),
+                recorded: recorded.map(|v| v.map_or(f64::NAN, |v| v.value)).collect(),
+                recovered: recovered[range.clone()]
+                    .iter()
+                    .map(|v| f64::from(*v))
+                    .collect(),
+            }
+        };
+        recovered.into_iter().enumerate().map(load).collect()
+    }
+
+    /// Level crossings of both loads between the same times, each from its own samples.
+    fn levels(&self, range: &Range<usize>) -> Vec<LoadLevels> {
+        let head = self.counting.head;
+        let recovered = recovered_columns(self.counting, &self.columns);
+        let of_load = |(i, recovered): (usize, Vec<f32>)| {
+            let column = self.columns[i];
+            let samples = recovered[range.clone()].iter().map(|v| f64::from(*v));
+            let recorded = self
+                .recorded_between(i, range)
+                .iter()
+                .map(|v| f64::from(*v));
+            let name = (
+                head.names[column].as_str(),
+                head.units[column].name.as_str(),
+            );
+            levels_of(name, samples, recorded)
+        };
+        recovered
+            .into_iter()
+            .enumerate()
+            .filter_map(of_load)
+            .collect()
+    }
+
+    /// Recorded samples of a load between the first and the last time of a range.
+    fn recorded_between(&self, i: usize, range: &Range<usize>) -> &[f32] {
         let head = self.counting.head;
         let time = |at: usize| head.first_s + at as f64 * head.step_s;
         let place = |t: f64| (t - self.start_s) * self.recorded.clock.rate_hz;
         let from = (place(time(range.start)) - 1e-6).ceil().max(0.0) as usize;
         let to = (place(time(range.end - 1)) + 1e-6).floor().max(0.0) as usize;
-        let samples = self.recorded.samples[i].get(from..=to).unwrap_or_default();
+        self.recorded.samples[i].get(from..=to).unwrap_or_default()
+    }
+
+    /// Damage of recovered over recorded load between the same times, each from its own samples.
+    fn compare_damage(&self, i: usize, range: &Range<usize>, found: &mut super::LoadComparison) {
+        let samples = self.recorded_between(i, range);
         let values = samples.iter().map(|v| f64::from(*v));
         let slope = self.counting.slope;
         let recorded = damage_of_recorded(values, self.noise[i], slope);
