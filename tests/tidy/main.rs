@@ -14,8 +14,9 @@ use std::path::{Path, PathBuf};
 
 /// Row of each module of the root crate; imports go strictly downward. `finding` and `linalg` are below all others of row 1:
 /// estimates carry findings, series use linear algebra. `units` stand between: columns of series state units.
-const ROWS: [(&str, f64); 27] = [
+const ROWS: [(&str, f64); 28] = [
     ("cli", 10.0),
+    ("open", 9.5),
     ("report", 9.0),
     ("workflow", 8.0),
     ("measured", 7.8),
