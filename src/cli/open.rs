@@ -22,7 +22,12 @@ pub(super) fn open(a: &OpenArguments) -> ExitCode {
     // Whoever started the program may have closed its output; the browser still gets the address.
     let _ = writeln!(out, "{address}").and_then(|()| out.flush());
     let voice = Voice::from_arguments(&a.common);
-    if !a.no_browser && !open_browser(&address) {
+    let for_browser = || {
+        server
+            .address_for_browser()
+            .is_ok_and(|once| open_browser(&once))
+    };
+    if !a.no_browser && !for_browser() {
         voice.note("no browser could be started: open the address above");
     }
     voice.note("Ctrl-C ends the program; it also ends ten minutes after the last page was closed");

@@ -94,8 +94,8 @@ fn report_unused_keys(file: &str, text: &str, candidates: &mut Candidates) -> Fa
         .collect()
 }
 
-/// Adds the lists of a picked file to the lists of a job, and its faults to the list. Its number of gauges and its gauges that stay replace the values
-/// of the job.
+/// Adds the lists of a picked file to the lists of a job, and its faults to the list. The number of gauges and the gauges that stay of the file
+/// replace the values of the job.
 pub(super) fn merge_candidates(
     job: &mut Job,
     named: &NamedFile,

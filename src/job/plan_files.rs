@@ -41,7 +41,8 @@ impl Job {
     }
 
     /// Returns the job as if its file of picked lists had the text `picks`, and its table of gauges the text `gauges`. If the job names no file of
-    /// picked lists, lists of the text replace the lists of the job. A blank text of picks changes nothing. Without `gauges`, the job keeps its table.
+    /// picked lists, lists of the text replace the lists of the job. A blank text of picks changes nothing. Without `gauges`, the job keeps its
+    /// table.
     ///
     /// # Errors
     /// Faults of the two texts, each with the name of the file.

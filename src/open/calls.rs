@@ -41,7 +41,7 @@ pub(super) fn answer(session: &Session, method: &str, target: &str, body: &[u8])
     let answered = match target {
         "/job" => Ok(job_value(&session.job())),
         "/alive" => {
-            Ok(json!({ "changed": session.seen.changed(), "working": session.is_working() }))
+            Ok(json!({ "changed": session.seen.list_changed(), "working": session.is_working() }))
         }
         "/place" => with_body(body, |texts: PlanTexts| {
             let shown = session.place(&texts)?;
@@ -121,12 +121,12 @@ fn job_value(job: &Job) -> Value {
         "gauges": { "name": gauges, "named": is_gauges, "text": text(gauges).filter(|_| is_gauges) },
         "count": job.placement.gauges.unwrap_or(2 * job.loads.len()),
         "loads": job.loads.len(),
-        "command": format!("strainbridge place {}", quoted(&job.file)),
+        "command": format!("strainbridge place {}", quote_path(&job.file)),
     })
 }
 
 /// Returns a path as a shell takes it.
-fn quoted(path: &str) -> String {
+fn quote_path(path: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "/\\._-:+".contains(c);
     match path.chars().all(is_plain) {
         true => path.to_owned(),

@@ -3,6 +3,7 @@
 use super::http::{Head, Response};
 use rand::TryRng;
 use rand::rngs::SysRng;
+use std::sync::{Mutex, PoisonError};
 
 /// Header that carries the token. A page of another origin cannot set it without a permission that this server never gives.
 const TOKEN: &str = "x-strainbridge-token";
@@ -23,6 +24,8 @@ pub fn random_text() -> Result<String, String> {
 pub struct Guard {
     token: String,
     port: u16,
+    /// Key that a browser may exchange for the token, once.
+    key: Mutex<Option<String>>,
 }
 
 impl Guard {
@@ -32,12 +35,38 @@ impl Guard {
     /// A system without random numbers.
     pub fn new(port: u16) -> Result<Self, String> {
         let token = random_text()?;
-        Ok(Self { token, port })
+        Ok(Self {
+            token,
+            port,
+            key: Mutex::default(),
+        })
     }
 
     /// Returns the address of the page, with the token in its fragment: browsers do not send fragments to servers or in `Referer`.
     pub fn address(&self) -> String {
         format!("http://127.0.0.1:{}/#{}", self.port, self.token)
+    }
+
+    /// Returns an address with a key that the page exchanges for the token, once.
+    ///
+    /// # Errors
+    /// A system without random numbers.
+    pub fn address_for_browser(&self) -> Result<String, String> {
+        let key = format!("once-{}", random_text()?);
+        let address = format!("http://127.0.0.1:{}/#{key}", self.port);
+        *self.key.lock().unwrap_or_else(PoisonError::into_inner) = Some(key);
+        Ok(address)
+    }
+
+    /// Returns the token for the key of [`Guard::address_for_browser`], which is then used up.
+    ///
+    /// # Errors
+    /// The refusal.
+    pub fn exchange_key(&self, head: &Head) -> Result<&str, Response> {
+        let mut key = self.key.lock().unwrap_or_else(PoisonError::into_inner);
+        self.check_caller(head, key.as_deref().unwrap_or(""))?;
+        *key = None;
+        Ok(&self.token)
     }
 
     /// Refuses names of other hosts. Otherwise a foreign page could give its own name our address (DNS rebinding) and would then count as our page.
@@ -64,9 +93,13 @@ impl Guard {
     /// # Errors
     /// The refusal.
     pub fn check_call(&self, head: &Head) -> Result<(), Response> {
+        self.check_caller(head, &self.token)
+    }
+
+    fn check_caller(&self, head: &Head, expected: &str) -> Result<(), Response> {
         self.check_host(head)?;
         let given = head.header(TOKEN).unwrap_or("");
-        if !is_same_text(given.as_bytes(), self.token.as_bytes()) {
+        if expected.is_empty() || !is_same_text(given.as_bytes(), expected.as_bytes()) {
             return Err(Response::refusal(
                 401,
                 "the token is missing or wrong: open the address that the program printed",

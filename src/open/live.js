@@ -1,6 +1,6 @@
 // The live page. Its state is two texts, those of the files that "save" writes: the picks and the table of gauges.
 const live = (name) => document.querySelector(`[data-live=${name}]`);
-const token = location.hash.slice(1);
+let token = location.hash.slice(1);
 // About the job; the plan; plans before it; whether marks changed since the layout.
 let job = null, plan = { lists: "", count: 0, keep: [], gauges: "", answer: null };
 const past = [];
@@ -31,11 +31,13 @@ function picksOf(p) {
   return (p.lists ? p.lists.trimEnd() + "\n\n" : "") + `[placement]\ngauges = ${p.count - p.keep.length}\n` + keep;
 }
 // The reverse, for a file that was saved before.
-function readPicks(text) {
+function readPicks(text, table) {
   const at = text.search(/^\[placement\]/m), lists = (at < 0 ? text : text.slice(0, at)).trim(), rest = at < 0 ? "" : text.slice(at);
-  const n = /^gauges *= *(\d+)/m.exec(rest), kept = /^keep *= *(\[.*\])/m.exec(rest);
+  const n = /^gauges *= *(\d+)/m.exec(rest), kept = /^keep *= *(\[.*\]|".*")/m.exec(rest);
   let keep = [];
-  try { keep = kept ? JSON.parse(kept[1]) : []; } catch { say("The list `keep` of the picks could not be read."); }
+  try { keep = kept ? [JSON.parse(kept[1])].flat() : []; } catch { say("The list `keep` of the picks could not be read."); }
+  // Words of a job: all gauges of its table.
+  if (keep.length === 1 && keep[0] === "all") keep = table.trim().split("\n").slice(1).map((row) => row.split(",")[0]);
   return { lists: lists === "[candidates]" ? "" : lists, count: n ? +n[1] + keep.length : job.count, keep };
 }
 const texts = () => ({ picks: picksOf(plan), gauges: plan.gauges });
@@ -84,9 +86,12 @@ function enable() {
 const scenes = () => [...live("page").querySelectorAll("[data-figure]")].filter((f) => f.scene);
 async function show(answer) {
   const before = scenes().map((f) => f.scene.camera), page = live("page");
-  page.innerHTML = answer.page;
-  // The policy of this page refuses style attributes of texts.
-  page.querySelectorAll("[style]").forEach((e) => { e.style.cssText = e.getAttribute("style"); });
+  // The policy of this page refuses style attributes in a text of HTML, and allows them from its script.
+  page.innerHTML = answer.page.replaceAll(' style="', ' data-style="');
+  page.querySelectorAll("[data-style]").forEach((e) => { e.style.cssText = e.dataset.style; });
+  // The model that is worked on comes first.
+  const model = page.querySelector(".scene")?.closest("section");
+  if (model) page.prepend(model);
   await all();
   page.classList.remove("stale");
   scenes().forEach((figure, n) => {
@@ -98,6 +103,7 @@ async function show(answer) {
   shownLists = listsNow();
   plan.answer = answer;
   plan.gauges = answer.gauges;
+  live("command").textContent = job.command;
   showLoads(answer.loads);
   showKept();
   say(answer.summary);
@@ -164,6 +170,7 @@ async function moved() {
     if (!at.length) { plan.gauges = plan.answer.gauges; showLoads(plan.answer.loads); say(plan.answer.summary); } else {
       const answer = await call("/move", { picks: picksOf(plan), gauges: plan.answer.gauges, moved: at });
       plan.gauges = answer.gauges;
+      live("command").textContent = `${job.command}    # "installed" in result.json: the gauges of ${job.gauges.name}`;
       showLoads(answer.loads);
       showFaults(answer.findings.filter((f) => f.severity === "error").map((f) => ({ file: f.subject, wrong: f.message })));
       say(answer.summary);
@@ -213,7 +220,7 @@ async function read(target, body) {
     document.title = `${job.title} · strainbridge`;
     live("command").textContent = job.command;
     // Changes that were not saved stay.
-    if (!unsaved) Object.assign(plan, readPicks(job.picked.text || ""), { gauges: job.gauges.text || "" });
+    if (!unsaved) Object.assign(plan, readPicks(job.picked.text || "", job.gauges.text || ""), { gauges: job.gauges.text || "" });
     const slider = live("count");
     slider.max = Math.max(40, 2 * plan.count);
     slider.min = 1;
@@ -247,4 +254,13 @@ live("copy").addEventListener("click", async () => {
   getSelection().addRange(range);
   try { await navigator.clipboard.writeText(live("lines").textContent); } catch { document.execCommand("copy"); }
 });
-if (token) { read("/job"); setInterval(beat, 5000); } else say("The address lacks its token: open the whole address that the program printed.");
+async function enter() {
+  // A browser that the program started has a key that works once.
+  if (token.startsWith("once-")) {
+    try { token = (await call("/enter", {})).token; } catch (e) { if (e instanceof Refused) return; throw e; }
+    history.replaceState(null, "", "#" + token);
+  }
+  read("/job");
+  setInterval(beat, 5000);
+}
+if (token) enter(); else say("The address lacks its token: open the whole address that the program printed.");

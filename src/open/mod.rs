@@ -5,6 +5,7 @@ mod calls;
 mod guard;
 mod http;
 mod saved;
+mod seen_files;
 mod server;
 mod session;
 mod shell;

@@ -1,81 +1,19 @@
-//! The files of a plan: which texts are saved where, and which files changed since they were read.
+//! The files of a plan: which texts are saved where.
 
+use super::seen_files::changed_files_fault;
 use super::session::{PlanTexts, Session};
 use crate::host::context::{Disk, Files};
 use crate::host::fault::{Fault, Faults};
 use crate::host::output::Output;
-use crate::host::whole_file::Stamp;
 use crate::job::{Job, Keep};
 use crate::report::strain::GAUGES_HEAD;
-use crate::workflow::place::Plan;
-use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
-
-/// Files of a session with their state when they were last read or written.
-#[derive(Default)]
-pub(super) struct SeenFiles(Mutex<Seen>);
-
-#[derive(Default)]
-struct Seen {
-    stamps: BTreeMap<PathBuf, Option<Stamp>>,
-    /// Files that this session wrote.
-    written: BTreeSet<PathBuf>,
-}
-
-impl SeenFiles {
-    fn lock(&self) -> MutexGuard<'_, Seen> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Notes the state of every file of a job and its plan.
-    pub(super) fn note_all(&self, job: &Job, plan: &Plan) {
-        let of_job = job.read.iter().map(|f| f.path.clone());
-        let files = of_job.chain(plan.files().map(Path::to_owned)).chain([
-            job.folder.join(job.picked_file()),
-            job.folder.join(job.gauges_file()),
-        ]);
-        let stamps = files.map(|f| (f.clone(), Disk.stamp(&f).ok())).collect();
-        self.lock().stamps = stamps;
-    }
-
-    /// Returns the names of files that changed since they were noted.
-    pub(super) fn changed(&self) -> Vec<String> {
-        let seen = self.lock();
-        let changed = seen
-            .stamps
-            .iter()
-            .filter(|(f, s)| Disk.stamp(f).ok() != **s);
-        let names = changed.map(|(f, _)| f.file_name().unwrap_or(f.as_os_str()));
-        names.map(|n| n.to_string_lossy().into_owned()).collect()
-    }
-
-    fn note_written(&self, path: PathBuf) {
-        let mut seen = self.lock();
-        seen.stamps.insert(path.clone(), Disk.stamp(&path).ok());
-        seen.written.insert(path);
-    }
-
-    fn has_written(&self, path: &Path) -> bool {
-        self.lock().written.contains(path)
-    }
-}
-
-/// The fault of files that another program changed.
-pub(super) fn changed_fault(changed: &[String]) -> Fault {
-    Fault::new(
-        changed.join(", "),
-        "file",
-        "the file changed on disk since this session read it",
-        "press `read again`, then repeat the change",
-    )
-}
 
 /// Result of saving.
 pub struct SavedPlan {
     /// Names of the files that were written.
     pub files: Vec<String>,
-    /// What to write into the job, so that the command reads these files.
+    /// Lines to write into the job, so that the command reads these files.
     pub advice: Vec<String>,
     /// Faults of the job with these files.
     pub faults: Option<Faults>,
@@ -89,9 +27,9 @@ impl Session {
     pub fn save(&self, texts: &PlanTexts) -> Result<SavedPlan, Faults> {
         let job = self.job();
         job.with_plan_files(&texts.picks, texts.gauges.as_deref())?;
-        let changed = self.seen.changed();
+        let changed = self.seen.list_changed();
         if !changed.is_empty() {
-            return Err(changed_fault(&changed).into());
+            return Err(changed_files_fault(&changed).into());
         }
         let folder = match job.folder.as_os_str().is_empty() {
             true => PathBuf::from("."),
@@ -192,7 +130,7 @@ fn check_name(name: &str, key: &str) -> Result<(), Fault> {
     ))
 }
 
-/// Returns what to write into a job that does not name the files of its plan.
+/// Returns the lines to write into a job that does not name the files of its plan.
 fn advice(job: &Job, texts: &PlanTexts) -> Vec<String> {
     let mut out = Vec::new();
     if !texts.picks.trim().is_empty() && job.candidates.file.is_none() {

@@ -18,7 +18,7 @@ pub struct Server {
     limits: Limits,
 }
 
-/// What connections share.
+/// Data that all connections use.
 struct Shared {
     session: Session,
     guard: Guard,
@@ -53,6 +53,14 @@ impl Server {
     /// Returns the address of the page with its token.
     pub fn address(&self) -> String {
         self.guard.address()
+    }
+
+    /// Returns an address that works once, for the arguments of a browser, which other users of the machine can read.
+    ///
+    /// # Errors
+    /// A system without random numbers.
+    pub fn address_for_browser(&self) -> Result<String, String> {
+        self.guard.address_for_browser()
     }
 
     /// Answers until no page has called for the idle time of the limits.
@@ -111,7 +119,7 @@ impl Drop for Counted<'_> {
     }
 }
 
-/// Answers a connection on a thread of its own.
+/// Answers a connection on a separate thread.
 fn accept(shared: &Arc<Shared>, stream: TcpStream) {
     /// Refusals at a time; further connections are cut.
     const REFUSALS: usize = 32;
@@ -135,6 +143,10 @@ fn answer_request(shared: &Shared, stream: &mut TcpStream) -> Result<Response, R
     shared.guard.check_host(&head)?;
     if head.target == "/" {
         return page(&head);
+    }
+    if head.target == "/enter" {
+        let token = shared.guard.exchange_key(&head)?;
+        return Ok(Response::json(200, &serde_json::json!({ "token": token })));
     }
     shared.guard.check_call(&head)?;
     *shared.last_call() = Instant::now();

@@ -1,6 +1,6 @@
 //! A session: the job, its plan in memory, and the calls of the page on them.
 
-use super::saved::{SeenFiles, changed_fault};
+use super::seen_files::{SeenFiles, changed_files_fault};
 use crate::fe::strain_tensor::Surface;
 use crate::host::context::{Context, Disk, Progress};
 use crate::host::fault::{Fault, Faults};
@@ -166,7 +166,7 @@ impl Session {
                 return Ok(ShownLayout { layout: best, kept });
             }
             let chosen = best.gauges.iter();
-            let chosen = chosen.map(|g| g.stated(job.candidates.grid_length));
+            let chosen = chosen.map(|g| g.to_job_gauge(job.candidates.grid_length));
             let all: Vec<JobGauge> = staying.into_iter().chain(chosen).collect();
             let layout = Arc::new(data.plan.evaluate(&job, &all, &best, cx)?);
             Ok(ShownLayout { layout, kept })
@@ -210,9 +210,9 @@ impl Session {
     /// # Errors
     /// Faults of the command, files that changed since they were read.
     pub fn report(&self) -> Result<(PathBuf, String), Faults> {
-        let changed = self.seen.changed();
+        let changed = self.seen.list_changed();
         if !changed.is_empty() {
-            return Err(changed_fault(&changed).into());
+            return Err(changed_files_fault(&changed).into());
         }
         let out = &self.around.out;
         check_folder::<CertifiedLayout>(out)?;

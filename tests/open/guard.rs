@@ -208,12 +208,14 @@ fn a_slow_client_is_cut_and_of_twenty_connections_sixteen_wait() {
     let mut out = String::new();
     let _ = slow.read_to_string(&mut out);
     assert_eq!(status(&out), 408, "{out}");
+    drop(slow);
     let seconds = began.elapsed().as_secs_f64();
     assert!(
         (4.0..9.0).contains(&seconds),
         "{seconds} s for a limit of 5 s"
     );
 
+    std::thread::sleep(Duration::from_millis(300));
     let mut all: Vec<_> = (0..20).map(|_| server.connect()).collect();
     for stream in &mut all {
         stream.write_all(b"GET / HT").unwrap();
@@ -283,24 +285,38 @@ fn the_server_ends_after_the_idle_time_and_not_while_a_page_calls() {
     )
     .unwrap();
     let address = server.address();
-    let (port, token) = address
-        .strip_prefix("http://127.0.0.1:")
-        .unwrap()
-        .split_once("/#")
-        .unwrap();
-    let (port, token): (u16, String) = (port.parse().unwrap(), token.to_owned());
+    let once = server.address_for_browser().unwrap();
+    let parts = |address: &str| {
+        let rest = address.strip_prefix("http://127.0.0.1:").unwrap();
+        let (port, secret) = rest.split_once("/#").unwrap();
+        (port.parse::<u16>().unwrap(), secret.to_owned())
+    };
+    let ((port, token), (_, key)) = (parts(&address), parts(&once));
     let running = std::thread::spawn(move || server.run(session));
-    let call = || {
+    let send = |request: String| {
         let mut stream = std::net::TcpStream::connect(("127.0.0.1", port)).unwrap();
-        write!(
-            stream,
-            "GET /alive HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nX-Strainbridge-Token: {token}\r\n\r\n"
-        )
-        .unwrap();
+        stream.write_all(request.as_bytes()).unwrap();
         let mut out = String::new();
         let _ = stream.read_to_string(&mut out);
+        out
+    };
+    let call = || {
+        let headers = format!("Host: 127.0.0.1:{port}\r\nX-Strainbridge-Token: {token}\r\n");
+        let out = send(format!("GET /alive HTTP/1.1\r\n{headers}\r\n"));
         assert_eq!(status(&out), 200);
     };
+    // The key in the arguments of a browser gives the token once, and is no token.
+    let enter = |secret: &str| {
+        let own = format!("127.0.0.1:{port}");
+        let headers =
+            format!("Host: {own}\r\nOrigin: http://{own}\r\nX-Strainbridge-Token: {secret}\r\n");
+        send(format!(
+            "POST /enter HTTP/1.1\r\n{headers}Content-Type: application/json\r\nContent-Length: 2\r\n\r\n{{}}"
+        ))
+    };
+    assert_eq!(status(&enter(&token)), 401);
+    assert!(enter(&key).ends_with(&format!("{{\"token\":\"{token}\"}}")));
+    assert_eq!((status(&enter(&key)), status(&enter(""))), (401, 401));
     for _ in 0..6 {
         call();
         std::thread::sleep(Duration::from_millis(500));

@@ -1,5 +1,6 @@
 //! `open`: the server that answers a live page. Requests are raw bytes over TCP.
 
+mod browser;
 mod guard;
 mod plan;
 
@@ -96,6 +97,11 @@ impl Server {
         let (status, value) = self.call(target, body);
         assert_eq!(status, 200, "{target}: {value}");
         value
+    }
+
+    /// Process id.
+    pub fn pid(&self) -> u32 {
+        self.child.id()
     }
 
     /// Interrupts the program as Ctrl-C does, and returns its exit code.

@@ -238,3 +238,22 @@ fn a_job_with_faults_is_listed_with_exit_code_2_and_prints_no_address() {
     assert!(out.stdout.is_empty());
     assert!(String::from_utf8_lossy(&out.stderr).contains("colour"));
 }
+
+#[test]
+fn a_layout_in_progress_is_cancelled_and_the_next_one_is_not() {
+    let job = frame_job("open_cancel", NAMED);
+    let server = Server::start(&job);
+    let body = json!({ "picks": PICKS });
+    let (status, value) = std::thread::scope(|scope| {
+        let placing = scope.spawn(|| server.call("/place", Some(&body)));
+        while !placing.is_finished() {
+            server.ask("/cancel", Some(&json!({})));
+        }
+        placing.join().unwrap()
+    });
+    assert_eq!(
+        (status, &value["faults"][0]["wrong"]),
+        (422, &json!("stopped"))
+    );
+    assert_eq!(server.call("/place", Some(&body)).0, 200);
+}

@@ -16,7 +16,7 @@ struct Kept {
     kinds: Vec<Kind>,
 }
 
-/// What rows of candidates depend on in a job, in addition to its model and loads.
+/// Keys of a job that determine the rows of candidates, in addition to its model and loads.
 #[derive(Clone, PartialEq)]
 struct RowKeys {
     angles: AngleStep,

@@ -184,7 +184,7 @@ impl PlacedGauge {
     }
 
     /// Returns the gauge as a job states it, like its row of `gauges.csv`; `of_candidates` is the grid length of the candidates.
-    pub fn stated(&self, of_candidates: f64) -> JobGauge {
+    pub fn to_job_gauge(&self, of_candidates: f64) -> JobGauge {
         if let Some(spot) = &self.spot {
             return spot.clone();
         }
