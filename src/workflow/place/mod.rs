@@ -219,9 +219,9 @@ fn describe_layout(
 }
 
 /// Returns the candidates of every wiring, or the named spots. Candidates of an earlier layout of the same job are used again.
-fn kinds_of(task: &task::Task, kept: &mut KeptCandidates) -> Vec<pool::Kind> {
+fn kinds_of(task: &task::Task, kept: &mut KeptCandidates) -> Arc<Vec<pool::Kind>> {
     if let Some(spots) = &task.spots {
-        return vec![spot_layout::kind(task, spots)];
+        return Arc::new(vec![spot_layout::kind(task, spots)]);
     }
     if let Some(kinds) = kept.find_kinds(task.job, &task.sites) {
         return kinds;

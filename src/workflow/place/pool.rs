@@ -17,7 +17,6 @@ use crate::units::MICROSTRAIN;
 const ASSUMED_STRAIN: f64 = 100.0;
 
 /// Candidates of one wiring.
-#[derive(Clone)]
 pub(super) struct Kind {
     /// Wiring.
     pub bridge: Bridge,
