@@ -75,6 +75,8 @@ pub mod job;
 pub mod linalg;
 pub mod measured;
 pub mod model;
+#[cfg(feature = "open")]
+pub mod open;
 pub mod payload;
 pub mod placement;
 pub mod reconcile;

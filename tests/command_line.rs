@@ -3,6 +3,10 @@
 #[path = "../nastran/tests/support/mod.rs"]
 mod support;
 
+#[cfg(feature = "open")]
+#[path = "open/mod.rs"]
+mod open;
+
 use std::path::PathBuf;
 use std::process::{Command, Output};
 

@@ -6,6 +6,7 @@ use strainbridge::host::context::{Files, InMemory};
 use strainbridge::host::store::Memory;
 use strainbridge::reconcile::Verdict;
 use strainbridge::report::command::{RecordFolder, Report, finish, save};
+use strainbridge::workflow::place::Plan;
 use strainbridge::workflow::reconcile::extended_job;
 use strainbridge::workflow::recover::{Block, RecordHead, RecordSink, Samples, recover_into};
 use strainbridge::{Context, Fault, Job, Severity, place, reconcile, recover, sensitivity};
@@ -690,6 +691,58 @@ fn wanted_elements_and_picked_lists_are_kept() {
         panic!("element 99 is none of the deck");
     };
     assert!(faults.to_string().contains("element 99 is not a candidate"));
+}
+
+/// A plan keeps S of the candidates: a narrower choice after a wide one has the bits of a layout that is made alone.
+#[test]
+fn a_plan_gives_the_layouts_of_the_command_and_new_gauges_take_no_name_that_stays() {
+    let job = format!("{JOB}spacing = 15.0\nposition_tolerance = 1.0\n[candidates]\n");
+    let picked = |gauges: u32, lists: &str| {
+        format!("[candidates]\n{lists}\n[placement]\ngauges = {gauges}\nkeep = [\"P02\"]\n")
+    };
+    let table = "name,element,surface,dir_x,dir_y,dir_z\nP02,5,top,1,0,0\n";
+    let narrow = picked(3, "elements = \"1 THRU 4, 7 THRU 10\"");
+    let gauges = "file = \"picked.toml\"\n[gauges]\nfile = \"gauges.csv\"\n";
+    let files = files()
+        .with_file("wide.toml", job.clone())
+        .with_file("narrow.toml", format!("{job}{gauges}"))
+        .with_file("picked.toml", narrow.clone())
+        .with_file("gauges.csv", table)
+        .with_file("stray.toml", format!("{job}file = \"stray_list.toml\"\n"))
+        .with_file("stray_list.toml", "[placement]\nspacing = 3.0\n");
+    let cx = Context::new(&files);
+    let wide = Job::read("wide.toml", &files).unwrap();
+    let mut plan = Plan::read(&wide, &cx).unwrap();
+    assert_eq!(plan.place(&wide, &cx).unwrap().gauges.len(), 4);
+    let by_texts = wide.with_plan_files(&narrow, Some(table)).unwrap();
+    let by_plan = plan.place(&by_texts, &cx).unwrap();
+    let alone = place(&Job::read("narrow.toml", &files).unwrap(), &cx).unwrap();
+    assert_eq!(by_plan.gauges, alone.gauges);
+    assert_eq!(by_plan.log_det.to_bits(), alone.log_det.to_bits());
+    let names: Vec<&str> = alone.gauges.iter().map(|g| &*g.name).collect();
+    assert_eq!(names, ["P01", "P03", "P04"]);
+
+    // Two texts of a layout describe it as it was placed.
+    let all: Vec<_> = alone.gauges.iter().map(|g| g.to_job_gauge(0.0)).collect();
+    let free = wide.with_plan_files("", None).unwrap();
+    let described = plan.evaluate(&free, &all, &alone, &cx).unwrap();
+    assert!(
+        described
+            .gauges
+            .iter()
+            .zip(&alone.gauges)
+            .all(|(a, b)| a.element == b.element)
+    );
+    let faults = Job::read("stray.toml", &files).unwrap_err().to_string();
+    assert!(faults.contains("placement.spacing"), "{faults}");
+    assert!(
+        wide.with_plan_files("[candidates]\ncolour = 1\n", None)
+            .is_err()
+    );
+    assert!(
+        wide.with_plan_files("", Some("name,element\nA,1\nA,2\n"))
+            .is_err()
+    );
 }
 
 /// A gauge with the nominal angle 30 degrees and a correction by 60 reads the same as one with the nominal angle 90.

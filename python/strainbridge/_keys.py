@@ -75,9 +75,10 @@ class CandidatesKeys(Section):
     """Properties left out, ids or names; default: none."""
     file: _Key[Any]
     """A name that ends with .toml: file with a section [candidates] whose lists of properties and elements (properties, elements,
-    exclude_properties, exclude_elements, wanted_elements) are added to those of the job. Any other name: table of named spots, with the columns
-    of [gauges] file and an optional column `cost`. Gauges are chosen from these spots alone and keep their names; other keys of [candidates]
-    are refused. Costs need [placement] budget; default: none."""
+    exclude_properties, exclude_elements, wanted_elements) are added to those of the job. It may also state [placement] gauges and keep, which
+    replace the values of the job. Any other name: table of named spots, with the columns of [gauges] file and an optional column `cost`. Gauges
+    are chosen from these spots alone and keep their names; other keys of [candidates] are refused. Costs need [placement] budget; default:
+    none."""
     grid_length: _Key[Any]
     """Grid length of the gauges to be placed; written to gauges.csv. The layout and its sigmas are computed with the strain at the middle of
     each gauge, its spread over the grid counts as scatter; S and the strain by load of the chosen gauges are averaged over the grid. A place

@@ -86,6 +86,12 @@ pub enum Command {
         after_help = "Example:\n  strainbridge place job.toml    # job.out/gauges.csv, gauges.xlsx, gluing_sheet.html, report.html (report.pdf with feature pdf)"
     )]
     Place(JobArguments),
+    /// Plan gauges live in the browser: mark elements, move gauges, place again, save
+    #[cfg(feature = "open")]
+    #[command(
+        after_help = "Example:\n  strainbridge open job.toml\n  strainbridge open job.toml --port 8765 --no-browser    # on a server; then on your machine: ssh -L 8765:127.0.0.1:8765 HOST"
+    )]
+    Open(OpenArguments),
     /// Compute S from runs with known loads, combined with the model's S if there is a model
     #[command(
         after_help = "Example:\n  strainbridge calibrate job.toml --out cal && strainbridge recover cal/calibrated.toml"
@@ -310,6 +316,24 @@ pub struct JobArguments {
     /// The job
     #[arg(value_name = "JOB.toml")]
     pub job: PathBuf,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub common: CommonArguments,
+}
+
+/// A job whose gauges are planned live.
+#[cfg(feature = "open")]
+#[derive(clap::Args, Debug)]
+pub struct OpenArguments {
+    /// The job
+    #[arg(value_name = "JOB.toml")]
+    pub job: PathBuf,
+    /// Port of 127.0.0.1 (default: a free one)
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub port: u16,
+    /// Print the address, and do not open a browser
+    #[arg(long)]
+    pub no_browser: bool,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub common: CommonArguments,

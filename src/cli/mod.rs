@@ -5,6 +5,8 @@ mod demo;
 mod explain;
 mod interrupt;
 mod manual;
+#[cfg(feature = "open")]
+mod open;
 mod progress;
 mod run;
 mod upkeep;
@@ -60,6 +62,8 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Place(a) => {
             Run::from_arguments(&a.common, &a.job).job(&a.job, workflow::place::place)
         }
+        #[cfg(feature = "open")]
+        Command::Open(a) => open::open(&a),
         Command::Calibrate(a) => {
             Run::from_arguments(&a.common, &a.job).job(&a.job, workflow::calibrate::calibrate)
         }

@@ -184,19 +184,7 @@ impl Run {
         work: impl FnOnce(&Context) -> Result<T, Faults> + Send,
     ) -> Result<T, Faults> {
         let terminal = Terminal::default();
-        // 0 threads: as many as the machine has.
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(self.common.threads.map_or(0, |n| n.max(1)))
-            .stack_size(STACK)
-            .build()
-            .map_err(|e| {
-                Fault::new(
-                    "--threads",
-                    "threads",
-                    e.to_string(),
-                    "ask for fewer threads",
-                )
-            })?;
+        let pool = thread_pool(&self.common)?;
         let mut cx = Context::new(&Disk);
         if !Voice::from_arguments(&self.common).is_quiet() {
             cx = cx.progress(&terminal);
@@ -258,6 +246,22 @@ impl Run {
             _ => ExitCode::SUCCESS,
         }
     }
+}
+
+/// Returns the requested number of threads.
+///
+/// # Errors
+/// Threads that the system refuses.
+pub(super) fn thread_pool(common: &CommonArguments) -> Result<rayon::ThreadPool, Fault> {
+    // 0 threads: as many as the machine has.
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(common.threads.map_or(0, |n| n.max(1)))
+        .stack_size(STACK)
+        .build()
+        .map_err(|e| {
+            let remedy = "ask for fewer threads";
+            Fault::new("--threads", "threads", e.to_string(), remedy)
+        })
 }
 
 /// Recovers the loads of a job into a folder. Returns the outcome and the text of `result.json`.

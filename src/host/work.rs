@@ -3,6 +3,7 @@
 use crate::finding::Finding;
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
+use crate::host::file_read::FileRead;
 use crate::host::files::Inputs;
 use crate::host::outcome::{Findings, Outcome, Seconds, StatedUnits};
 use std::path::PathBuf;
@@ -64,6 +65,29 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
+    /// Returns the files, findings and notes so far, from which later commands on the same data resume.
+    pub fn into_beginning(mut self) -> Beginning {
+        Beginning {
+            read: self.inputs.files_read(),
+            findings: self.findings,
+            notes: self.notes,
+            sources: self.sources,
+        }
+    }
+
+    /// Resumes a command on a job after a beginning that was made for it or for a job with the same data.
+    pub fn resume(cx: &Context<'a>, read: &[FileRead], beginning: &Beginning) -> Self {
+        let is_new = |f: &&FileRead| !read.iter().any(|r| r.path == f.path);
+        let others = beginning.read.iter().filter(is_new);
+        let all: Vec<FileRead> = read.iter().chain(others).cloned().collect();
+        let mut work = Self::new(cx);
+        work.inputs = Inputs::resume(cx.files, &all);
+        work.findings.clone_from(&beginning.findings);
+        work.notes.clone_from(&beginning.notes);
+        work.sources.clone_from(&beginning.sources);
+        work
+    }
+
     /// Returns the outcome: the answer with everything that was collected.
     pub fn finish<A>(mut self, units: StatedUnits, answer: A) -> Outcome<A> {
         self.note_seconds("total", self.began.elapsed().as_secs_f64());
@@ -85,6 +109,15 @@ impl<'a> Work<'a> {
             answer,
         }
     }
+}
+
+/// Files, findings and notes of the first part of a command.
+pub struct Beginning {
+    /// Files that were read.
+    pub read: Vec<FileRead>,
+    findings: Vec<Finding>,
+    notes: Vec<String>,
+    sources: Vec<PathBuf>,
 }
 
 /// Returns the fault of a command that the receiver of progress stopped.

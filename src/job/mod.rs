@@ -13,6 +13,7 @@ mod not_a_job;
 mod parse;
 pub mod payload_loads;
 pub mod payload_signature;
+mod plan_files;
 mod property_names;
 pub mod quantity;
 mod raw_job;
@@ -37,7 +38,7 @@ pub use resolve::{SAME_SIDE, SAME_SIDE_REMEDY};
 pub use types::*;
 
 use crate::host::context::Files;
-use crate::host::fault::Faults;
+use crate::host::fault::{FaultList, Faults};
 use crate::host::files::Inputs;
 use crate::units::STANDARD_GRAVITY_M_S2;
 use std::path::Path;
@@ -101,6 +102,16 @@ impl AsRef<Path> for Job {
 /// # Errors
 /// Returns every fault: syntax, unknown keys, wrong types, contradictions, missing files.
 pub fn read_job(inputs: &mut Inputs, path: &Path) -> Result<Job, Faults> {
+    let (mut job, mut faults) = read_job_text(inputs, path)?;
+    candidate_lists::read_picked(inputs, &mut job, &mut faults);
+    check_job(inputs, job, faults)
+}
+
+/// Reads the text of a job and its table of gauges. Returns the job without the files of its candidates, and the faults found so far.
+///
+/// # Errors
+/// A file that is not a job.
+fn read_job_text(inputs: &mut Inputs, path: &Path) -> Result<(Job, FaultList), Faults> {
     let given = path.display().to_string();
     not_a_job::check_name(&given)?;
     let folder = Path::new("");
@@ -114,13 +125,21 @@ pub fn read_job(inputs: &mut Inputs, path: &Path) -> Result<Job, Faults> {
     let mut job = resolve::resolve_job(&given, &text, &folder, raw, &mut faults);
     job.gauges
         .extend(gauges::read_gauge_file(inputs, &job, &mut faults));
-    candidate_lists::read_picked(inputs, &mut job, &mut faults);
+    Ok((job, faults))
+}
+
+/// Reads the named spots of a job and checks the job.
+///
+/// # Errors
+/// Every fault.
+fn check_job(inputs: &mut Inputs, mut job: Job, mut faults: FaultList) -> Result<Job, Faults> {
     spots::read_spots(inputs, &mut job, &mut faults);
     resolve::check_names(&job, &mut faults);
     resolve::check_named(&job, &mut faults);
     correct::correct_legs(&mut job, &mut faults);
+    let given = &job.file;
     faults.sort_by(|a, b| {
-        (a.file != given, &a.file, a.line).cmp(&(b.file != given, &b.file, b.line))
+        (a.file != *given, &a.file, a.line).cmp(&(b.file != *given, &b.file, b.line))
     });
     faults.dedup();
     Faults::check(faults)?;

@@ -6,6 +6,8 @@ mod covariance;
 mod csv_cell;
 mod drawing;
 pub mod figure;
+#[cfg(feature = "open")]
+pub mod live;
 mod mode_blocks;
 pub mod notebook;
 pub mod page;

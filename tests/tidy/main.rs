@@ -16,8 +16,9 @@ use std::path::{Path, PathBuf};
 ///
 /// `finding` and `linalg` are below all others of row 1, because estimates carry findings and series use linear
 /// algebra. `units` is between them, because columns of series state units.
-const ROWS: [(&str, f64); 27] = [
+const ROWS: [(&str, f64); 28] = [
     ("cli", 10.0),
+    ("open", 9.5),
     ("report", 9.0),
     ("workflow", 8.0),
     ("measured", 7.8),

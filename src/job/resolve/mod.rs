@@ -22,7 +22,7 @@ pub(super) use gauge::{
 pub use gauge::{SAME_SIDE, SAME_SIDE_REMEDY};
 
 use super::faults::Collector;
-use super::raw_job::{RawCandidates, RawJob};
+use super::raw_job::{RawCandidates, RawJob, RawPlacement};
 use super::readings::readings_of;
 use super::spanned_value::SpannedValue;
 use super::types::*;
@@ -122,6 +122,11 @@ fn one_source(c: &mut Collector, raw: &RawJob) {
 /// Returns the candidates of a separate file.
 pub(super) fn candidates_of(c: &mut Collector, raw: &SpannedValue<RawCandidates>) -> Candidates {
     placement::candidates(c, Some(raw))
+}
+
+/// The placement of a file of picked lists.
+pub(super) fn placement_of(c: &mut Collector, raw: &SpannedValue<RawPlacement>) -> Placement {
+    placement::placement(c, Some(raw), None, Optimality::D)
 }
 
 /// Refuses two channels with one name, because a strain column would then belong to both. Names that differ only by case or spaces count as one name.

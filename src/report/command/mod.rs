@@ -32,6 +32,8 @@ mod study;
 mod verify;
 
 pub use outcome_text::{console_of, words};
+#[cfg(feature = "open")]
+pub use pages::live_page;
 pub use pages::{write_book, write_page};
 pub use recover::RecordFolder;
 

@@ -41,6 +41,16 @@ where
     Ok(())
 }
 
+/// Returns the page of an outcome that no folder holds.
+#[cfg(feature = "open")]
+pub fn live_page<A: Answer>(outcome: &Outcome<A>) -> Option<Page>
+where
+    Outcome<A>: Report,
+{
+    let page = outcome.page()?.with_summary(outcome.summary());
+    Some(page.with_first(first_screen(outcome)))
+}
+
 fn first_screen<A: Answer>(outcome: &Outcome<A>) -> FirstScreen
 where
     Outcome<A>: Report,

@@ -26,6 +26,8 @@ pub use load_cross_plot::{CrossPlot, cross_plot};
 pub(in crate::report) use packed_numbers::{
     STEPS, packed_deltas, round_number, round_numbers, steps_of,
 };
+#[cfg(feature = "open")]
+pub(in crate::report) use script::all_scripts;
 pub(in crate::report) use script::scripts;
 
 #[cfg(test)]

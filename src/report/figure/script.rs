@@ -5,15 +5,33 @@ const CHART: &str = "data-figure=\"chart\"";
 const SCENE: &str = "data-figure=\"scene\"";
 const POINTING: &str = "data-pointing";
 
+/// The scripts of a page in their order, each with the attribute of what it draws.
+const PARTS: [(&str, &str); 4] = [
+    (CHART, include_str!("../page/chart.js")),
+    (SCENE, include_str!("../page/scene.js")),
+    (SCENE, include_str!("../page/scene_view.js")),
+    (POINTING, include_str!("../page/pointing.js")),
+];
+
+/// Returns the scripts of all figures together with `own`, which may use their functions.
+#[cfg(feature = "open")]
+pub fn all_scripts(own: &str) -> String {
+    let parts = PARTS.map(|p| p.1).join("\n");
+    in_one_scope(&format!("{parts}\n{own}"))
+}
+
+/// Returns scripts as one scope, with their common part first and their start last.
+fn in_one_scope(parts: &str) -> String {
+    format!(
+        "\n(function () {{\n\"use strict\";\n{}\n{parts}\n{}}})();\n",
+        include_str!("../page/common.js"),
+        include_str!("../page/start.js")
+    )
+}
+
 /// Returns the script elements for a page with this body. The text is empty if the body has nothing to draw.
 pub fn scripts(body: &str) -> String {
-    let needed = [
-        (CHART, include_str!("../page/chart.js")),
-        (SCENE, include_str!("../page/scene.js")),
-        (SCENE, include_str!("../page/scene_view.js")),
-        (POINTING, include_str!("../page/pointing.js")),
-    ];
-    let parts: Vec<&str> = needed
+    let parts: Vec<&str> = PARTS
         .into_iter()
         .filter(|n| body.contains(n.0))
         .map(|n| n.1)
@@ -21,10 +39,5 @@ pub fn scripts(body: &str) -> String {
     if parts.is_empty() {
         return String::new();
     }
-    format!(
-        "<script>\n(function () {{\n\"use strict\";\n{}\n{}\n{}}})();\n</script>",
-        include_str!("../page/common.js"),
-        parts.join("\n"),
-        include_str!("../page/start.js")
-    )
+    format!("<script>{}</script>", in_one_scope(&parts.join("\n")))
 }

@@ -194,7 +194,8 @@ function drawScatter(root, traces, colour, px, py) {
 // Marks and words of both axes; what does not fit is left out, never drawn over.
 function drawAxes(root, frame, sx, sy, ax, ay) {
   const { left, right, top, bottom } = frame;
-  const grid = svg("g", { stroke: "#e6eaef" }, root), words = svg("g", { fill: "#516173", style: "font:" + FONT }, root);
+  const grid = svg("g", { stroke: "#e6eaef" }, root), words = svg("g", { fill: "#516173" }, root);
+  words.style.font = FONT;
   if (!ax.names) for (const [v] of sx.marks) svg("path", { d: `M${fixed(sx.at(v))} ${top}V${bottom}` }, grid);
   if (!ay.names) for (const [v] of sy.marks) svg("path", { d: `M${left} ${fixed(sy.at(v))}H${right}` }, grid);
   svg("rect", { x: left, y: top, width: right - left, height: bottom - top, fill: "none", stroke: "#c3ccd6" }, root);

@@ -9,18 +9,13 @@ use crate::report::drawing::{pictures, to_svg};
 use crate::report::figure::scripts;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-const STYLE: &str = include_str!("page.css");
+pub(in crate::report) const STYLE: &str = include_str!("page.css");
 
 impl Page {
     /// Returns `report.html`, which works from the file, without a network.
     pub fn to_html(&self) -> String {
-        let findings = FindingsBySeverity::from_findings(&self.findings);
-        let sections = html! {
-            @for (i, s) in self.sections.iter().enumerate() {
-                section.pair[is_pair(&s.blocks)] id=(format!("s{}", i + 1)) { h2 { (s.title) } @for b in &s.blocks { (block(b)) } }
-            }
-        };
-        let scripts = scripts(&sections.0);
+        let content = self.content();
+        let scripts = scripts(&content.0);
         html! {
             (DOCTYPE)
             html lang="en" {
@@ -32,23 +27,34 @@ impl Page {
                     noscript { style { ".controls,.pick,.bar,.tools,.canvas{display:none}" } }
                 }
                 body {
-                    main {
-                        @if self.is_of_cards() {
-                            h1 { (self.title) }
-                            p.summary { b { (self.summary) } }
-                            p.muted { (self.lead) }
-                            @if !self.findings.is_empty() { (reliability(&self.worst_first())) }
-                        } @else {
-                            (first_screen(self, &findings))
-                        }
-                        (sections)
-                        (notes_and_tests(self, &findings))
-                    }
+                    main { (content) }
                     (PreEscaped(scripts))
                 }
             }
         }
         .into_string()
+    }
+
+    /// The content of the page, without head and scripts.
+    pub(in crate::report) fn content(&self) -> Markup {
+        let findings = FindingsBySeverity::from_findings(&self.findings);
+        let sections = html! {
+            @for (i, s) in self.sections.iter().enumerate() {
+                section.pair[is_pair(&s.blocks)] id=(format!("s{}", i + 1)) { h2 { (s.title) } @for b in &s.blocks { (block(b)) } }
+            }
+        };
+        html! {
+            @if self.is_of_cards() {
+                h1 { (self.title) }
+                p.summary { b { (self.summary) } }
+                p.muted { (self.lead) }
+                @if !self.findings.is_empty() { (reliability(&self.worst_first())) }
+            } @else {
+                (first_screen(self, &findings))
+            }
+            (sections)
+            (notes_and_tests(self, &findings))
+        }
     }
 }
 

@@ -12,5 +12,7 @@ pub use block::{
     Block, Card, CellLink, FirstScreen, Page, Paper, Section, Table, figure_section, table_section,
 };
 pub(in crate::report) use findings::reliability;
+#[cfg(feature = "open")]
+pub(in crate::report) use html::STYLE;
 pub(in crate::report) use html::block as block_html;
 pub use key_number::KeyNumber;

@@ -226,6 +226,7 @@ function planning(api) {
       });
     }
     put("gauges", gaugeLines(marks, api.world));
+    figure.dispatchEvent(new Event("planned"));
   }
   for (const kind of ["places", "gauges"]) {
     const into = figure.querySelector(`[data-written=${kind}]`);

@@ -21,4 +21,4 @@ pub use pages::{HowMany, RecoveredRun, RecoveryPage, place_page, recover_page, s
 pub use points::gauges_vtu;
 pub use solution::solution_page;
 pub(in crate::report) use tables::corner_distances;
-pub use tables::{gauges_csv, gluing_sheet_csv, sensitivity_csv};
+pub use tables::{GAUGES_HEAD, gauges_csv, gluing_sheet_csv, sensitivity_csv};

@@ -29,6 +29,9 @@ pub fn sensitivity_csv(out: &mut dyn Write, s: &Sensitivity) -> io::Result<()> {
     Ok(())
 }
 
+/// First columns of `gauges.csv`.
+pub const GAUGES_HEAD: &str = "name,element,surface,dir_x,dir_y,dir_z,angle_deg,x,y,z,bridge,angle_from_element_x_deg,angle_seen_deg,leverage,role,grid_length";
+
 /// A column of `gauges.csv` that only named spots need: name, and its field for a spot.
 type SpotColumn = (&'static str, fn(&JobGauge) -> Option<String>);
 
@@ -71,10 +74,7 @@ pub fn gauges_csv(out: &mut dyn Write, placed: &[PlacedGauge], grid_length: f64)
         .into_iter()
         .filter(|(_, field)| spots().any(|s| field(s).is_some()))
         .collect();
-    write!(
-        out,
-        "name,element,surface,dir_x,dir_y,dir_z,angle_deg,x,y,z,bridge,angle_from_element_x_deg,angle_seen_deg,leverage,role,grid_length"
-    )?;
+    write!(out, "{GAUGES_HEAD}")?;
     for (name, _) in &more {
         write!(out, ",{name}")?;
     }

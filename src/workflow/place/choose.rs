@@ -83,8 +83,8 @@ pub(super) fn choose_once(
         let channels = layout
             .gauges
             .iter()
-            .enumerate()
-            .map(|(i, &c)| channel(task, kind, c, name(i, n)))
+            .zip(free_names(task, n))
+            .map(|(&c, name)| channel(task, kind, c, name))
             .collect::<Result<_, _>>()?;
         return Ok(ChosenLayout {
             channels,
@@ -157,6 +157,12 @@ fn put_instead(kind: &Kind, spec: &Spec, layout: &mut Layout, gauges: Vec<Choice
 pub(in crate::workflow) fn name(i: usize, n: usize) -> String {
     let digits = n.to_string().len().max(2);
     format!("P{:0digits$}", i + 1)
+}
+
+/// Returns names of a layout of `n` gauges, without names that a gauge has which stays.
+fn free_names(task: &Task, n: usize) -> impl Iterator<Item = String> {
+    let is_free = |name: &String| !task.kept.iter().any(|g| g.name.starts_with(&**name));
+    (0..).map(move |i| name(i, n)).filter(is_free)
 }
 
 /// Returns the gauge of a choice as a job reads it from `gauges.csv`: by its element, side, direction and grid length.
@@ -259,8 +265,8 @@ fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<ChosenLayou
     let layout = place_bundles(&of_job.bundles, &spec).map_err(ChoiceRefusal::By)?;
     let n = layout.bundles.len();
     let mut channels = Vec::new();
-    for (i, &u) in layout.bundles.iter().enumerate() {
-        channels.extend(channels_of(task, kinds, &of_job.described[u], &name(i, n))?);
+    for (&u, name) in layout.bundles.iter().zip(free_names(task, n)) {
+        channels.extend(channels_of(task, kinds, &of_job.described[u], &name)?);
     }
     Ok(ChosenLayout {
         channels,

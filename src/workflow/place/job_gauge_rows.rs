@@ -150,11 +150,10 @@ fn is_of(gauge: &Gauge, stated: &JobGauge) -> bool {
 /// Returns the variance that the installation tolerances add to the reading of each gauge, microstrain squared at the expected loads. It is equal to
 /// the variance of candidates at the same place. It is 0 for gauges whose S is calibrated as installed, and for gauges on bars.
 pub(super) fn gluing_variance(task: &Task, gauges: &[Gauge]) -> Vec<f64> {
-    let of = |gauge: &Gauge| {
-        let stated = task.job.gauges.iter().find(|g| is_of(gauge, g))?;
-        Some(gluing_effect(task, gauge, stated)?.variance)
-    };
-    gauges.iter().map(|g| of(g).unwrap_or(0.0)).collect()
+    let stated = |gauge: &Gauge| task.job.gauges.iter().find(|g| is_of(gauge, g));
+    let pairs: Vec<(&Gauge, Option<&JobGauge>)> = gauges.iter().map(|g| (g, stated(g))).collect();
+    let effects = gluing_effects(task, &pairs).into_iter();
+    effects.map(|e| e.map_or(0.0, |e| e.variance)).collect()
 }
 
 /// Effect of gluing on the reading of a gauge.
@@ -169,51 +168,61 @@ pub(super) struct GluingEffect {
     pub site: Site,
 }
 
-/// Returns the effect of gluing on a gauge of a shell; `None` on bars.
-pub(super) fn gluing_effect(task: &Task, gauge: &Gauge, stated: &JobGauge) -> Option<GluingEffect> {
+/// Returns the effect of gluing on each gauge, with the gauge as its job states it. `None` for a gauge on a bar, and for a gauge that no job states.
+pub(super) fn gluing_effects(
+    task: &Task,
+    gauges: &[(&Gauge, Option<&JobGauge>)],
+) -> Vec<Option<GluingEffect>> {
     let (job, model) = (task.job, task.fields.model());
-    if matches!(stated.place, StatedPlace::BeamPoint { .. }) {
-        return None;
-    }
     let (loads, scales) = task.nuisance_first();
-    let is_calibrated = task
-        .given_row(gauge)
-        .is_some_and(|(s, _)| s.uncertainty.is_some());
-    let site = (model.shell_ix(gauge.element)?, gauge.surface);
-    let scatter = Scatter {
-        noise: 0.0,
-        model_rel: job.placement.gauge_factor_rel,
-        ..scatter(job, model, &[site], stated.bridge, &loads, &scales)
-    };
-    let here = bridges(
-        model,
-        &[site],
-        stated.bridge,
-        &loads,
-        &scales,
-        Angles::Continuous,
-        scatter,
-    );
-    // A candidate for a shear bridge has the angle of its first grid.
-    let turn = match stated.bridge {
-        Bridge::Shear => std::f64::consts::FRAC_PI_4,
-        _ => 0.0,
-    };
-    let choice = Choice {
-        place: 0,
-        step: 0,
-        angle: gauge.angle_rad + turn,
-    };
-    let factor = stated.bridge_factor;
-    Some(GluingEffect {
-        variance: match is_calibrated {
-            true => 0.0,
-            false => (here.sd(choice) / factor).powi(2),
-        },
-        turn: here.turn_rms(choice) / factor.abs(),
-        angle: choice.angle,
-        site,
-    })
+    let mut out: Vec<Option<GluingEffect>> = gauges.iter().map(|_| None).collect();
+    // Neighbours of elements are found once for all gauges of a wiring.
+    for bridge in Bridge::ALL {
+        let of_shell = |g: &JobGauge| !matches!(g.place, StatedPlace::BeamPoint { .. });
+        let of_bridge = |g: &&JobGauge| g.bridge == bridge && of_shell(g);
+        let (at, sites): (Vec<usize>, Vec<Site>) = gauges
+            .iter()
+            .enumerate()
+            .filter(|(_, (_, stated))| stated.filter(of_bridge).is_some())
+            .filter_map(|(i, (g, _))| Some((i, (model.shell_ix(g.element)?, g.surface))))
+            .unzip();
+        if sites.is_empty() {
+            continue;
+        }
+        let scatter = Scatter {
+            noise: 0.0,
+            model_rel: job.placement.gauge_factor_rel,
+            ..scatter(job, model, &sites, bridge, &loads, &scales)
+        };
+        let angles = Angles::Continuous;
+        let here = bridges(model, &sites, bridge, &loads, &scales, angles, scatter);
+        // A candidate for a shear bridge has the angle of its first grid.
+        let turn = match bridge {
+            Bridge::Shear => std::f64::consts::FRAC_PI_4,
+            _ => 0.0,
+        };
+        for (place, (i, site)) in at.into_iter().zip(sites).enumerate() {
+            let (gauge, stated) = gauges[i];
+            let choice = Choice {
+                place: place as u32,
+                step: 0,
+                angle: gauge.angle_rad + turn,
+            };
+            let factor = stated.map_or(1.0, |s| s.bridge_factor);
+            let own = task.given_row(gauge);
+            let is_calibrated = own.is_some_and(|(s, _)| s.uncertainty.is_some());
+            out[i] = Some(GluingEffect {
+                variance: match is_calibrated {
+                    true => 0.0,
+                    false => (here.sd(choice) / factor).powi(2),
+                },
+                turn: here.turn_rms(choice) / factor.abs(),
+                angle: choice.angle,
+                site,
+            });
+        }
+    }
+    out
 }
 
 /// Returns `L^-1 A` with `L L' = w`. If rounding leaves `w` without a factor, divides the rows by the roots of the diagonal.

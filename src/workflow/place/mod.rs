@@ -5,37 +5,42 @@ mod chosen_layout;
 mod curve;
 mod installed_gauges;
 mod job_gauge_rows;
+mod kept_candidates;
 mod layout_findings;
 mod misfits;
 mod outcome;
+mod plan;
 mod pool;
 mod region;
 mod sheet;
 mod spot_layout;
 mod spots;
+mod stated_layout;
 mod task;
 mod wanted_elements;
 
 pub(super) use choose::name as placed_name;
 pub use outcome::*;
+pub use plan::Plan;
 pub(super) use pool::{angles, column_order, scales, scatter};
 pub(super) use region::allowed_sites;
 
 use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
-use crate::host::outcome::{Outcome, StatedUnits, finite_or_none};
+use crate::host::outcome::{Outcome, finite_or_none};
 use crate::host::work::Work;
 use crate::job::Job;
+use crate::placement::Spec;
 use crate::placement::quality::{evaluate_rows, reserve};
 use crate::recovery::check_planned;
 use crate::sensitivity::{Sensitivity, check_separability, common_shells};
-use crate::strain_chain::named_results::check_tables;
 use crate::strain_chain::{
-    Conditioning, Fields, GaugeMeshError, LoadSigma, WantedAt, coarse_at_gauges, mesh_errors,
-    read_fields, without_strain,
+    Conditioning, Fields, GaugeMeshError, LoadSigma, coarse_at_gauges, mesh_errors, without_strain,
 };
 use crate::workflow::recover::list_load_columns;
+use kept_candidates::KeptCandidates;
+use std::sync::Arc;
 
 /// Chooses gauges for the loads of a job from its candidates, with a certificate. If the job has installed gauges, it evaluates them as well.
 ///
@@ -58,22 +63,21 @@ use crate::workflow::recover::list_load_columns;
 /// ```
 pub fn place(job: &Job, cx: &Context) -> Result<Outcome<CertifiedLayout>, Faults> {
     let mut work = Work::of_job(cx, job);
-    check_tables(&work, job)?;
-    let fields = read_fields(&mut work, job, WantedAt::Anywhere)?;
-    let job = &job.with_property_ids(&fields.model().property_names)?;
-    let answer = lay_out_gauges(&mut work, job, &fields)?;
-    let answer = answer.into_placed(fields, job);
-    Ok(work.finish(
-        StatedUnits::from_units(job.units, &job.report_units),
-        answer,
-    ))
+    Plan::read_into(&mut work, job)?.lay_out(work, job)
 }
 
 /// Largest number of layouts until every grid fits. Each layout leaves out the places of the previous layout where a grid does not fit.
 const ROUNDS: usize = 20;
 
-/// The layout on the model.
-fn lay_out_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Faults> {
+/// Resolves a job on its model: loads, places for gauges, gauges that stay.
+///
+/// # Errors
+/// Candidates that allow no place, spots and gauges that can't be laid.
+fn task_of<'a>(
+    work: &mut Work,
+    job: &'a Job,
+    fields: &'a Fields,
+) -> Result<task::Task<'a>, Faults> {
     let cases = fields.load_cases(job);
     let (common, findings) = common_shells(&cases);
     work.findings.extend(findings);
@@ -81,18 +85,28 @@ fn lay_out_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutO
         Some(_) => (Vec::new(), None),
         None => region::allowed_sites_and_rule(job, fields, &common)?,
     };
-    let k = cases.len();
     let scales = scales(work, &cases, &common);
     let given = job_gauge_rows::read_given_sensitivity(work, job)?;
     let mut task = task::task(job, fields, cases, scales, sites, given);
     task.strict = strict;
     task.lay_spots(work)?;
     task.keep(work)?;
+    Ok(task)
+}
+
+/// The layout on the model.
+fn lay_out_gauges(
+    work: &mut Work,
+    job: &Job,
+    fields: &Fields,
+    kept: &mut KeptCandidates,
+) -> Result<LayoutOf, Faults> {
+    let mut task = task_of(work, job, fields)?;
     let mut spec = task.spec(work);
     let places = task.n_places();
     let (mut misfit, mut rounds): (Option<Fault>, usize) = (None, 0);
     let (kinds, chosen) = loop {
-        let kinds = work.stage("candidates", |_| kinds_of(&task));
+        let kinds = work.stage("candidates", |_| kinds_of(&task, kept));
         let chosen = work.stage("place", |w| choose::choose(w, &task, &kinds, &mut spec));
         work.go_on()?;
         let chosen = match (chosen, misfit.take()) {
@@ -116,6 +130,18 @@ fn lay_out_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutO
             job.candidates.grid_length
         ));
     }
+    describe_layout(work, &task, &spec, &kinds, chosen)
+}
+
+/// Returns a layout with everything that is stated of it; `kinds` are the candidates that it was chosen from, empty for a stated layout.
+fn describe_layout(
+    work: &mut Work,
+    task: &task::Task,
+    spec: &Spec,
+    kinds: &[pool::Kind],
+    chosen: chosen_layout::ChosenLayout,
+) -> Result<LayoutOf, Faults> {
+    let (job, fields, k) = (task.job, task.fields, task.cases.len());
     let rows: Vec<Vec<f64>> = chosen.channels.iter().map(|c| c.row.clone()).collect();
     let Some(quality) =
         evaluate_rows(&rows, &spec.prior, k).map(|q| layout_findings::in_job_order(q, &task.order))
@@ -126,7 +152,7 @@ fn lay_out_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutO
         };
         return Err(task.refusal(&singular).into());
     };
-    let validation = reserve_gauges(work, &task, &rows, &spec.prior)?;
+    let validation = reserve_gauges(work, task, &rows, &spec.prior)?;
     let chosen_gauges = chosen.channels.iter().map(|c| c.gauge.clone());
     let all: Vec<_> = chosen_gauges.chain(task.kept.clone()).collect();
     let s = task
@@ -137,15 +163,15 @@ fn lay_out_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutO
         .extend(coarse_at_gauges(&all, &mesh_error, fields.mesh_left()));
     let listed = list_load_columns(job, &s)?;
     let units = &listed.units[..k];
-    let gauges = sheet::list_placed_gauges(&task, &chosen, &spec.prior, &quality, &validation);
-    let installed = match kinds.first().filter(|_| choose::is_plain(&task)) {
-        Some(kind) => installed_gauges::evaluate_installed(work, &task, &kind.candidates, &spec)?,
+    let gauges = sheet::list_placed_gauges(task, &chosen, &spec.prior, &quality, &validation);
+    let installed = match kinds.first().filter(|_| choose::is_plain(task)) {
+        Some(kind) => installed_gauges::evaluate_installed(work, task, &kind.candidates, spec)?,
         None => None,
     };
     work.findings
         .extend(check_separability(&s.without_prior_loads()));
-    layout_findings::report_layout_findings(work, job, &chosen, &quality, &spec, &gauges, k);
-    let recovered = layout_findings::chosen_as_recovered(&task, &spec, &chosen.channels);
+    layout_findings::report_layout_findings(work, job, &chosen, &quality, spec, &gauges, k);
+    let recovered = layout_findings::chosen_as_recovered(task, spec, &chosen.channels);
     let as_glued = layout_findings::installed_covariance(job, &quality, k);
     let load_sigma =
         layout_findings::sigma_rows(job, &listed, recovered.as_deref(), &as_glued, &task.scales);
@@ -157,8 +183,7 @@ fn lay_out_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutO
     let how_many = if job.placement.curve.is_empty() {
         Vec::new()
     } else {
-        let (points, left_out) =
-            work.stage("curve", |_| curve::curve(&task, &kinds, &spec, &listed));
+        let (points, left_out) = work.stage("curve", |_| curve::curve(task, kinds, spec, &listed));
         work.go_on()?;
         work.findings
             .extend(curve::incomplete_curve_finding(&left_out));
@@ -193,17 +218,21 @@ fn lay_out_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutO
     })
 }
 
-/// Returns the candidates of every wiring, or the named spots.
-fn kinds_of(task: &task::Task) -> Vec<pool::Kind> {
+/// Returns the candidates of every wiring, or the named spots. Candidates of an earlier layout of the same job are used again.
+fn kinds_of(task: &task::Task, kept: &mut KeptCandidates) -> Arc<Vec<pool::Kind>> {
     if let Some(spots) = &task.spots {
-        return vec![spot_layout::kind(task, spots)];
+        return Arc::new(vec![spot_layout::kind(task, spots)]);
+    }
+    if let Some(kinds) = kept.find_kinds(task.job, &task.sites) {
+        return kinds;
     }
     let (ordered, scales) = task.nuisance_first();
     let errors = task.errors_nuisance_first();
     let angles = angles(task.job.candidates.angles);
     let strain = (ordered.as_slice(), errors.as_slice());
     let model = task.fields.model();
-    pool::kinds(task.job, model, &task.sites, strain, &scales, &angles)
+    let kinds = pool::kinds(task.job, model, &task.sites, strain, &scales, &angles);
+    kept.store(task.job, &task.sites, kinds)
 }
 
 /// A layout before model and job are handed to the outcome.
@@ -222,7 +251,7 @@ struct LayoutOf {
 }
 
 impl LayoutOf {
-    fn into_placed(self, fields: Fields, job: &Job) -> CertifiedLayout {
+    fn into_placed(self, fields: Arc<Fields>, job: &Job) -> CertifiedLayout {
         CertifiedLayout {
             gauges: self.gauges,
             files: outcome::FILES,

@@ -2,15 +2,16 @@
 
 use crate::estimate::NORMAL_95;
 use crate::fe::strain_tensor::Surface;
-use crate::gauge::Gauge;
+use crate::gauge::{Bridge, Gauge};
 use crate::host::outcome::Answer;
 use crate::host::words::count_of;
-use crate::job::{Job, JobGauge};
+use crate::job::{Job, JobGauge, StatedPlace};
 use crate::placement::Role;
 use crate::sensitivity::Sensitivity;
 use crate::strain_chain::{Conditioning, Fields, GaugeMeshError, LoadSigma};
 use crate::units::{factor, half_width};
 use serde::Serialize;
+use std::sync::Arc;
 
 /// A layout of gauges with its certificate.
 #[derive(Serialize)]
@@ -63,7 +64,7 @@ pub struct CertifiedLayout {
     pub sensitivity: Sensitivity,
     /// Model and strain fields.
     #[serde(skip)]
-    pub fields: Fields,
+    pub fields: Arc<Fields>,
     /// The job.
     #[serde(skip)]
     pub job: Job,
@@ -180,6 +181,33 @@ impl PlacedGauge {
     /// Returns the length of the gauge's grid: the length in its spot, else the length of the candidates.
     pub fn grid_length(&self, of_candidates: f64) -> f64 {
         self.spot.as_ref().map_or(of_candidates, |s| s.grid_length)
+    }
+
+    /// Returns the gauge as a job states it, like its row of `gauges.csv`; `of_candidates` is the grid length of the candidates.
+    pub fn to_job_gauge(&self, of_candidates: f64) -> JobGauge {
+        if let Some(spot) = &self.spot {
+            return spot.clone();
+        }
+        JobGauge {
+            name: self.gauge.name.clone(),
+            place: StatedPlace::Element(self.gauge.element),
+            position: Some(self.position),
+            surface: self.gauge.surface,
+            surface_stated: true,
+            direction: Some(self.direction),
+            cid: 0,
+            angle_deg: 0.0,
+            bridge: Bridge::from_name(self.bridge).unwrap_or(Bridge::Quarter),
+            bridge_factor: 1.0,
+            grid_length: self.grid_length(of_candidates),
+            pair: None,
+            rosette: None,
+            transverse_sensitivity: 0.0,
+            role: self.role,
+            member: String::new(),
+            file: String::new(),
+            line: 0,
+        }
     }
 
     /// Returns the angle as the technician sees that side.

@@ -1,7 +1,7 @@
 //! Layouts of named spots: chosen one by one, or within a budget.
 
 use super::chosen_layout::{ChoiceRefusal, ChosenLayout};
-use super::job_gauge_rows::gluing_effect;
+use super::job_gauge_rows::{GluingEffect, gluing_effects};
 use super::pool::Kind;
 use super::spots::{LaidSpot, Leg};
 use super::task::Task;
@@ -13,6 +13,7 @@ use crate::job::readings::readings_of;
 use crate::placement::bundles::{BundleSpec, Bundles, place_bundles};
 use crate::placement::candidates::{Candidates, Scatter};
 use crate::placement::{Layout, Loss, PlaceError, Spec};
+use crate::sensitivity::NoStrain;
 use crate::strain_chain::{lay_gauges, without_strain};
 
 impl Task<'_> {
@@ -28,18 +29,23 @@ impl Task<'_> {
         };
         self.check_budget()?;
         let mut laid = lay_gauges(work, &as_gauges, self.fields)?.into_iter();
-        let mut missing = Vec::new();
-        let mut spots = Vec::new();
-        for spot in stated {
-            let legs: Vec<Gauge> = laid.by_ref().take(readings_of(&spot.gauge).len()).collect();
-            match self.s_of(&legs) {
-                Ok(_) => spots.push(self.laid_spot(spot, legs)),
-                Err(absent) => missing.extend(absent),
-            }
-        }
+        let legs_of = |spot: &NamedSpot| -> Vec<Gauge> {
+            laid.by_ref().take(readings_of(&spot.gauge).len()).collect()
+        };
+        let legs: Vec<Vec<Gauge>> = stated.iter().map(legs_of).collect();
+        let absent = legs.iter().filter_map(|l| self.s_of(l).err());
+        let missing: Vec<NoStrain> = absent.flatten().collect();
         if !missing.is_empty() {
             return Err(without_strain(&as_gauges, &missing));
         }
+        let pairs = stated.iter().zip(&legs);
+        let pairs = pairs.flat_map(|(s, legs)| legs.iter().map(move |l| (l, Some(&s.gauge))));
+        let mut effects = gluing_effects(self, &pairs.collect::<Vec<_>>()).into_iter();
+        let spots = stated.iter().zip(legs).map(|(spot, legs)| {
+            let of_legs = effects.by_ref().take(legs.len());
+            self.laid_spot(spot, legs.into_iter().zip(of_legs.collect::<Vec<_>>()))
+        });
+        let spots: Vec<LaidSpot> = spots.collect();
         self.sites = spots
             .iter()
             .flat_map(|s| &s.legs)
@@ -54,12 +60,15 @@ impl Task<'_> {
         self.spots.as_ref().map_or(self.sites.len(), Vec::len)
     }
 
-    fn laid_spot(&self, spot: &NamedSpot, legs: Vec<Gauge>) -> LaidSpot {
+    fn laid_spot(
+        &self,
+        spot: &NamedSpot,
+        legs: impl Iterator<Item = (Gauge, Option<GluingEffect>)>,
+    ) -> LaidSpot {
         let p = &self.job.placement;
-        let leg = |gauge: Gauge| {
+        let leg = |(gauge, glued): (Gauge, Option<GluingEffect>)| {
             let one = std::slice::from_ref(&gauge);
             let s = self.s_of(one).ok()?;
-            let glued = gluing_effect(self, &gauge, &spot.gauge);
             let more = [glued.as_ref().map_or(0.0, |g| g.variance)];
             let mut rows = self.rows_of(one, &s, p.model_uncertainty_rel, &more);
             Some(Leg {
@@ -71,7 +80,7 @@ impl Task<'_> {
                 gauge,
             })
         };
-        let legs: Vec<Leg> = legs.into_iter().filter_map(leg).collect();
+        let legs: Vec<Leg> = legs.filter_map(leg).collect();
         LaidSpot {
             stated: spot.gauge.clone(),
             cost: spot.cost.unwrap_or(legs.len() as f64),
