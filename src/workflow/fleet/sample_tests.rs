@@ -236,10 +236,10 @@ mod tests {
         let mut loads: Vec<f64> = (0..2 * samples).map(|i| (i % 97) as f64).collect();
         (loads[2 * 777], loads[2 * 4001 + 1]) = (1e3, -1e3);
         let judge = |piece: usize| {
-            let mut all = TestedSamples::new(3, 2, samples);
+            let mut all = TestedSamples::new(3, 2, (samples, 1));
             for first in (0..samples).step_by(piece) {
                 let end = (first + piece).min(samples);
-                let mut part = TestedSamples::new(3, 2, samples);
+                let mut part = TestedSamples::new(3, 2, (samples, 1));
                 part.add(
                     first,
                     &strain[3 * first..3 * end],

@@ -195,7 +195,7 @@ pub(super) fn remove_vibration(
     work.go_on()?;
     let of_record = (step_s, &*task.measured.strain.given);
     let mut removed = work.stage("vibration", |w| {
-        model.remove(s, task.errors, &readings, of_record, &|| Ok(w.go_on()?))
+        model.remove(s, task.errors, &readings, of_record, &|| w.go_on())
     })?;
     drop(readings);
     work.findings.append(&mut removed.findings);
