@@ -124,7 +124,7 @@ fn identify_recovers_the_parameters_of_a_simulated_record() {
     // The measured force with its weight drives the model to the motion without noise, to the noise of the record.
     let force = format!("{VEHICLE}{KNOWN}input = \"wheel_force\"\n");
     let back = run(&force, &record).unwrap();
-    let codes: Vec<&str> = back.findings.iter().map(|f| &*f.code).collect();
+    let codes: Vec<&str> = back.findings.iter().map(|f| f.code).collect();
     assert!(codes.contains(&"static-part-in-input"), "{codes:?}");
     let pairs = back
         .channel("s.stretch")
@@ -158,7 +158,11 @@ fn the_rig_moves_the_same_from_force_and_from_one_acceleration() {
         .map(|t| 40.0 * (2.0 * PI * 3.0 * t).sin().powi(3))
         .collect();
     let job = format!("{head}{known}");
-    let forward = run(&job, &table("time [s],f_1 [N]", rate, &[force.clone()])).unwrap();
+    let forward = run(
+        &job,
+        &table("time [s],f_1 [N]", rate, std::slice::from_ref(&force)),
+    )
+    .unwrap();
     let recorded = forward.channel("a_1").unwrap().to_vec();
     let backward = run(&job, &table("time [s],a_1 [m/s2]", rate, &[recorded])).unwrap();
     for name in ["f_1", "a_2", "2.displacement"] {
@@ -179,7 +183,7 @@ fn the_rig_moves_the_same_from_force_and_from_one_acceleration() {
 fn what_does_not_determine_a_simulation_is_refused() {
     let rate = 500.0;
     let wave: Vec<f64> = (0..500).map(|i| (i as f64 / 20.0).sin()).collect();
-    let force = table("time [s],f_wheel [N]", rate, &[wave.clone()]);
+    let force = table("time [s],f_wheel [N]", rate, std::slice::from_ref(&wave));
     let all = format!("{VEHICLE}{KNOWN}");
     refused(
         &format!("{VEHICLE}known = {{ m_b = 3200.0, k_s = 4.8e5 }}\n"),
@@ -216,7 +220,7 @@ fn what_does_not_determine_a_simulation_is_refused() {
         &force,
         &["did you mean `f_wheel`"],
     );
-    let body = table("time [s],a_body [m/s2]", rate, &[wave.clone()]);
+    let body = table("time [s],a_body [m/s2]", rate, std::slice::from_ref(&wave));
     refused(&all, &body, &["f_wheel", "nothing drives it"]);
     let two = table(
         "time [s],a_body [m/s2],a_wheel [m/s2]",
@@ -224,7 +228,7 @@ fn what_does_not_determine_a_simulation_is_refused() {
         &[wave.clone(), wave.clone()],
     );
     refused(&all, &two, &["no motion remains"]);
-    let nothing = table("time [s],speed [m/s]", rate, &[wave.clone()]);
+    let nothing = table("time [s],speed [m/s]", rate, std::slice::from_ref(&wave));
     refused(&all, &nothing, &["no channel that can drive"]);
     let gap = force.replacen("0.006000,", "0.006000,#", 1);
     let gap: String = gap
@@ -232,7 +236,7 @@ fn what_does_not_determine_a_simulation_is_refused() {
         .map(|l| l.split_once('#').map_or(l, |(time, _)| time).to_owned() + "\n")
         .collect();
     refused(&all, &gap, &["f_wheel", "sample 4", "cannot have a gap"]);
-    let slow = table("time [s],f_wheel [N]", 20.0, &[wave.clone()]);
+    let slow = table("time [s],f_wheel [N]", 20.0, std::slice::from_ref(&wave));
     refused(
         &all,
         &slow,
@@ -271,7 +275,7 @@ fn an_offset_of_an_acceleration_drifts_and_is_reported() {
         .collect();
     let data = table("time [s],a_wheel [m/s2]", rate, &[recorded]);
     let found = run(&format!("{VEHICLE}{KNOWN}"), &data).unwrap();
-    let codes: Vec<&str> = found.findings.iter().map(|f| &*f.code).collect();
+    let codes: Vec<&str> = found.findings.iter().map(|f| f.code).collect();
     assert_eq!(codes, ["integrated-motion-drifts"]);
     let tail = &found.channel("f_wheel").unwrap()[20_000..];
     let mean = tail.iter().sum::<f64>() / tail.len() as f64;
