@@ -43,7 +43,7 @@ fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
     let mut fitted = ConsistentFit::from_task(task, &[])?;
     let mut shifts = shift::check(task, &fitted.state);
     // Too few runs let a wrong gauge look like an error of all rows or of some runs.
-    let hidden = known_load_faults::hidden_gauge_faults(task, &shifts);
+    let hidden = known_load_faults::hidden_gauge_faults(task, &shifts, !fitted.refused.is_empty());
     let changed = known_load_faults::with_prior_of_faults(task, &hidden);
     let (stated, task) = (task, changed.as_ref().unwrap_or(task));
     if !hidden.is_empty() {

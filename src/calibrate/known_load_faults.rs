@@ -65,19 +65,25 @@ fn faults_of_gauges(task: &Task, used: &[usize]) -> Vec<DetectedFault> {
     search_faults(&misfit, &mut Vec::new, &Rules::STATED)
 }
 
-/// Returns the dead gauges, and the reversed and exchanged gauges that `shifts` do not show. The list is empty if the known loads are wrong.
-pub(super) fn hidden_gauge_faults(task: &Task, shifts: &[GaugeShift]) -> Vec<InputFault> {
+/// Returns the dead, reversed and exchanged gauges that known loads show and the calibration did not find, or whose fault it took for faults of other
+/// gauges or of runs. `is_any_run_refused`: whether runs contradict the others. The list is empty if the known loads are wrong.
+pub(super) fn hidden_gauge_faults(
+    task: &Task,
+    shifts: &[GaugeShift],
+    is_any_run_refused: bool,
+) -> Vec<InputFault> {
     let all: Vec<usize> = (0..task.runs.len()).collect();
     if task.model.is_none() || !wrong_loads(task, &all, Vec::new()).is_empty() {
         return Vec::new();
     }
     let found = faults_of_gauges(task, &all).into_iter().map(|f| f.fault);
-    let is_hidden = |f: &InputFault| match word_of(f) {
-        // A dead gauge that the shifts show still makes runs contradict each other, as the model predicts strain there.
-        Some(words) => {
-            (words.iter()).any(|(g, word)| *word == ShiftWord::Dead || shifts[*g].word != *word)
-        }
-        None => false,
+    let notable = |g: &usize| shifts[*g].word != ShiftWord::None;
+    let is_hidden = |f: &InputFault| {
+        let (of, Some(_)) = (f.gauges(), word_of(f)) else {
+            return false;
+        };
+        let mut others = (0..shifts.len()).filter(|g| !of.contains(g) && notable(g));
+        is_any_run_refused || others.next().is_some() || !of.iter().all(notable)
     };
     found.filter(is_hidden).collect()
 }
