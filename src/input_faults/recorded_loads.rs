@@ -340,9 +340,7 @@ fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
     let name = |l: usize| runs.loads.get(l).copied().unwrap_or_default();
     let acting = |l: &usize| runs.gauges().any(|g| runs.answer(g, *l) > 0.0);
     let n_acting = (0..runs.loads.len()).filter(acting).count();
-    // A load that the readings do not determine contradicts no other.
-    let n_determined = factors_of_loads(runs).len().max(1);
-    let is_all = |n: usize| n > 1 && n >= n_determined && 2 * n > n_acting;
+    let is_all = |n: usize| n > 1 && n == n_acting;
     let subject = |list: &[(usize, f64)]| match is_all(list.len()) {
         true => "all".to_owned(),
         false => list_few(&list.iter().map(|(l, _)| name(*l)).collect::<Vec<_>>()),
