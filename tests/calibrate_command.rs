@@ -904,7 +904,7 @@ fn a_gauge_without_a_column_is_said_so_and_is_not_dead() {
     assert_eq!(names, ["C1", "C2"]);
 }
 
-/// The same jack in two places. The second one is recorded in N, but the program expects kN.
+/// A jack presses in two places. Its second force is recorded in N, but the program expects kN.
 #[test]
 fn loads_of_one_unit_that_make_a_thousand_times_less_strain_are_named() {
     let folder = scratch("calibrate-uneven");

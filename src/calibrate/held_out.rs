@@ -30,18 +30,18 @@ pub(super) fn leave_out(task: &Task, state: &State) -> Vec<LeftOut> {
         .collect()
 }
 
-/// Recovers the used run `i` and compares the result with `loads`. S comes from the other runs except `beside`. Returns `None` if these runs do not
+/// Recovers the used run `i` and compares the result with `loads`. S comes from the other runs except `left_out`. Returns `None` if these runs do not
 /// determine the loads of run `i`.
 pub(super) fn recover_left_out(
     task: &Task,
     state: &State,
     i: usize,
-    beside: &[usize],
+    left_out: &[usize],
     loads: &KnownLoads,
 ) -> Option<LeftOut> {
     let number = *state.used.get(i)?;
     let run = task.runs.get(number)?;
-    let gone: Vec<usize> = std::iter::once(i).chain(beside.iter().copied()).collect();
+    let gone: Vec<usize> = std::iter::once(i).chain(left_out.iter().copied()).collect();
     if task.model.is_none() && !others_span(state, &gone) {
         return None;
     }
@@ -61,7 +61,7 @@ pub(super) fn recover_left_out(
         .filter(|j| task.runs[state.used[*j]].group == run.group)
         .collect();
     let with_repeats = cheap
-        && beside.is_empty()
+        && left_out.is_empty()
         && state.scatter.common > 0.0
         && group.len() > 1
         && (task.model.is_some() || others_span(state, &group));

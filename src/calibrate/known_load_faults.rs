@@ -105,7 +105,8 @@ fn word_of(fault: &InputFault) -> Option<Vec<(usize, ShiftWord)>> {
 pub(super) fn with_prior_of_faults(task: &Task, faults: &[InputFault]) -> Option<Task> {
     let model = task.model.as_ref().filter(|_| !faults.is_empty())?;
     let change = |rows: &mut Matrix| {
-        for fault in faults {
+        // Readings are corrected in the order of the faults, and rows change in the opposite order.
+        for fault in faults.iter().rev() {
             let scale = match fault {
                 InputFault::Sign(_) => -1.0,
                 InputFault::Dead(_) => 0.0,
@@ -166,9 +167,13 @@ pub(super) fn add_faults(shifts: &mut [GaugeShift], stated: &Task, faults: &[Inp
         let own: f64 = (0..scales.len()).map(|l| found(l) * row(l)).sum();
         let all: f64 = (0..scales.len()).map(|l| row(l) * row(l)).sum();
         let shift = &mut shifts[g];
-        shift.scale *= own / all;
-        shift.shift = moved / (model.uncertainty_rel * size);
         shift.word = word;
+        // A row of zeros, or a model that is stated as exact, has no such measure.
+        let (scale, sigmas) = (own / all, moved / (model.uncertainty_rel * size));
+        if scale.is_finite() && sigmas.is_finite() {
+            shift.scale *= scale;
+            shift.shift = sigmas;
+        }
     }
 }
 

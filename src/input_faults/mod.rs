@@ -9,7 +9,7 @@ mod fault;
 pub mod identical_columns;
 mod known_loads;
 mod motion;
-mod recorded_loads;
+pub(crate) mod recorded_loads;
 mod search;
 #[cfg(test)]
 mod tests;

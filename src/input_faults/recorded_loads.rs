@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// Ratio of measured strain to the strain that the model makes of the loads, from which a unit is wrong. Units of force differ by 4.448 (pounds read
 /// as newtons), 9.81 (kilograms) and 1000, and a model may take a tenth off the first. A smaller ratio may come from a badly scaled model (a wall of
 /// half the thickness or less), which runs correct. A model with a larger stated error has a larger ratio, four of its sd.
-const UNIT: f64 = 4.0;
+pub const UNIT: f64 = 4.0;
 /// Ratio under which a sign is wrong: -1 with a third of it lost to errors, other loads and other gauges.
 const SIGN: f64 = -1.0 / 3.0;
 /// Standard deviations from which a gauge's readings determine the factor of a load.
@@ -29,7 +29,7 @@ const BEYOND: f64 = 4.0;
 /// Number of loads up to which two exchanged pairs are searched for: some thousand combinations.
 const PAIRED: usize = 12;
 /// Largest distance of a factor from the factor of a pair of units that it identifies.
-const NEAR: f64 = 0.15;
+pub const NEAR: f64 = 0.15;
 
 /// Factors between readings and recorded loads, with the cause of each.
 const UNITS: [(f64, &str); 9] = [

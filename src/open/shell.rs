@@ -30,7 +30,7 @@ pub fn shell() -> Result<Response, String> {
                     section.live aria-label="plan" {
                         (tools())
                         p.muted data-live="said" role="status" aria-live="polite" { "Reading the job." }
-                        p.muted { "The same by command: " code data-live="command" {} }
+                        p.muted { "Command with the same result: " code data-live="command" {} }
                         div.lost data-live="lost" role="alert" hidden {
                             p { b { "Connection lost; your lines are here." } " Copy them into the files, or start `strainbridge open` again." }
                             pre tabindex="0" data-live="lines" {}

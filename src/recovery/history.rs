@@ -34,7 +34,7 @@ pub struct Filter {
     typical: Vec<f64>,
     widening: Widening,
     /// Error of the readings in addition to these errors, sample by sample.
-    doubt: Option<ReadingCovariance>,
+    doubt: Option<Arc<ReadingCovariance>>,
     /// Sums of loads that are listed after the loads.
     sums: Vec<Vec<(usize, f64)>>,
     /// Estimates by the set of gauges that read.
@@ -81,7 +81,7 @@ impl Filter {
     }
 
     /// Adds further errors of the readings beyond the errors of the filter. Call it before sums of loads are added.
-    pub fn add_reading_covariance(&mut self, doubt: ReadingCovariance) {
+    pub fn add_reading_covariance(&mut self, doubt: Arc<ReadingCovariance>) {
         let noise = doubt.of_noise(&self.whole.used);
         self.whole = Arc::new(self.whole.with_noise(&noise));
         self.doubt = Some(doubt);

@@ -17,6 +17,7 @@ use crate::sensitivity::Sensitivity;
 ///
 /// The loads that the gauges of a sample don't determine are blank in that sample. Whether a load can be recovered depends on the whole record
 /// ([`check_gaps`]), not on the selected samples. `run-not-solvable` remains only if all gauges together don't determine a load: this is no gap.
+#[cfg(test)]
 pub fn recover_samples(s: &Sensitivity, samples: Vec<Readings>, errors: ErrorModel) -> Recovery {
     recover_samples_with_alternatives(s, samples, errors, (Vec::new(), &mut Vec::new))
 }

@@ -8,7 +8,7 @@ pub type Limits = &'static [(&'static str, f64, f64)];
 
 /// Wing box of laminates.
 ///
-/// Its elements are next to shear panels, which changes their strain. The median therefore tests the formula of each
+/// The elements of this deck are next to shear panels, which changes their strain. The median therefore tests the formula of each
 /// element on the displacements of MSC.
 pub const WING_BOX: Limits = &[
     ("displacement", 1e-3, 0.01),

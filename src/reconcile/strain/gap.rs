@@ -220,7 +220,7 @@ impl<'a> ValidationPredictor<'a> {
     /// Returns the patterns whose amplitudes are estimated. The fit runs determine amplitudes that repeat: m = T B P r, M = T - T B P B' T. B
     /// contains the patterns over the readings of the fit runs, and T the variances of the repeating amplitudes. P is the precision of the fit runs
     /// and r their residual.
-    fn patterns(&self, anew: ReestimatedUnknowns) -> Patterns {
+    fn patterns(&self, reestimated: ReestimatedUnknowns) -> Patterns {
         let mut values = Vec::new();
         let (mut steady, mut scatter) = (Vec::new(), Vec::new());
         let known = self.frame.nuisance_amplitudes();
@@ -229,7 +229,7 @@ impl<'a> ValidationPredictor<'a> {
             steady.extend(u.amplitudes.kinds.iter().map(|&k| u.steady_variance(k)));
             scatter.extend(u.amplitudes.kinds.iter().map(|&k| u.scatter_variance(k)));
         }
-        if anew == ReestimatedUnknowns::AmplitudesAndLoads {
+        if reestimated == ReestimatedUnknowns::AmplitudesAndLoads {
             let state = StrainState::from_members(self.frame, self.members);
             let [n_g, _, n_c] = state.shape;
             let column = |l: usize| {
@@ -316,9 +316,9 @@ struct ProofRun<'a> {
 }
 
 impl<'a> Proof<'a> {
-    fn new(told: &'a ValidationPredictor<'a>, anew: ReestimatedUnknowns) -> Self {
+    fn new(told: &'a ValidationPredictor<'a>, reestimated: ReestimatedUnknowns) -> Self {
         Self {
-            patterns: told.patterns(anew),
+            patterns: told.patterns(reestimated),
             told,
         }
     }
@@ -410,31 +410,31 @@ impl ProofRun<'_> {
 /// Each tested reading j is predicted from the readings u of the other half of its run. K i_u is subtracted, with K = J_j V J_u' G_uu^-1. The
 /// innovation i is the residual minus its mean given the fit runs. G is the covariance of i, and J V J' the part of G from the patterns. Given i_u, a
 /// right model leaves the mean square (m_j + (G_ju G_uu^-1 - K) i_u)^2 + G_jj - G_ju G_uu^-1 G_uj. The vector m contains the model errors that the
-/// fit runs show. The residual before has no effects. Its only patterns are the nuisance loads and, if `anew` includes them, the wheel loads.
+/// fit runs show. The residual before has no effects. Its only patterns are the nuisance loads and, if `reestimated` includes them, the wheel loads.
 pub fn proof_residuals(
     finer: &StrainFrame,
     members: &[Member<'_>],
     unknown: &[SizedAmplitudes],
-    anew: ReestimatedUnknowns,
+    reestimated: ReestimatedUnknowns,
 ) -> Option<ValidationResiduals> {
-    let before = proof_residuals_before(finer, &[anew])?.pop()?;
-    verdict_after_removal(finer, members, unknown, &[(anew, before)])?.pop()
+    let before = proof_residuals_before(finer, &[reestimated])?.pop()?;
+    verdict_after_removal(finer, members, unknown, &[(reestimated, before)])?.pop()
 }
 
-/// Returns the residuals of the held-out runs by the analyst's model, for each of `anew`. They do not depend on the active effects.
+/// Returns the residuals of the held-out runs by the analyst's model, for each of `reestimated`. They do not depend on the active effects.
 pub(super) fn proof_residuals_before(
     finer: &StrainFrame,
-    anew: &[ReestimatedUnknowns],
+    reestimated: &[ReestimatedUnknowns],
 ) -> Option<Vec<Vec<f64>>> {
     let own = finer.as_modelled();
     let told = ValidationPredictor::new(finer, &[], &[])?;
-    let of = |anew: &ReestimatedUnknowns| {
-        let without = Proof::new(&told, *anew);
+    let of = |reestimated: &ReestimatedUnknowns| {
+        let without = Proof::new(&told, *reestimated);
         let runs = finer.observations.proof_runs().into_iter();
         runs.flat_map(|run| without.run(&own, run).residual_and_floor().0)
             .collect()
     };
-    Some(anew.iter().map(of).collect())
+    Some(reestimated.iter().map(of).collect())
 }
 
 /// Returns the residuals of [`proof_residuals`] for each of `ways`: the unknowns to estimate, with the residuals of [`proof_residuals_before`].
@@ -446,8 +446,8 @@ pub(super) fn verdict_after_removal(
 ) -> Option<Vec<ValidationResiduals>> {
     let own = finer.as_modelled();
     let told = ValidationPredictor::new(finer, members, unknown)?;
-    let of = |(anew, before): &(ReestimatedUnknowns, Vec<f64>)| {
-        let with = Proof::new(&told, *anew);
+    let of = |(reestimated, before): &(ReestimatedUnknowns, Vec<f64>)| {
+        let with = Proof::new(&told, *reestimated);
         let mut out = ValidationResiduals::default();
         for run in finer.observations.proof_runs() {
             let now = with.run(&own, run);

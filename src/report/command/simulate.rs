@@ -76,7 +76,11 @@ impl Report for Outcome<SimulatedResponse> {
                     )
                 })
                 .collect();
-            let caption = format!("Simulated {kind} over the first {} s.", number(SHOWN_S));
+            let span = match shown < self.samples {
+                true => format!("over the first {} s", number(SHOWN_S)),
+                false => "over the whole record".to_owned(),
+            };
+            let caption = format!("Simulated {kind} {span}.");
             let label = format!("{kind}, {unit}");
             let figure = lines(&groups, "time, s", &label, Scale::Linear, &caption);
             sections.push(Section::new(capitalise(kind), vec![Block::Figure(figure)]));

@@ -23,11 +23,11 @@ pub(super) type DeadPart = (usize, Gives, Range<usize>);
 pub(super) fn dead_parts(
     record: &Record,
     r: &RecordRecovery,
-    judged: &TestedSamples,
+    tested: &TestedSamples,
     errors: ErrorModel,
     noise_factor: f64,
 ) -> Result<Vec<DeadPart>, Fault> {
-    let samples: Vec<(usize, &[f64])> = judged.numbered_samples().collect();
+    let samples: Vec<(usize, &[f64])> = tested.numbered_samples().collect();
     check(&r.sensitivity, &samples, errors, noise_factor)
         .into_iter()
         .map(|stuck| {

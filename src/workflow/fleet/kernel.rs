@@ -41,7 +41,7 @@ struct Pass {
     counters: Vec<Counter>,
     health: Health,
     missing: MissingReadings,
-    judged: TestedSamples,
+    tested: TestedSamples,
     /// Number of samples with a missing reading, by the gauges that read.
     by_gauges: BTreeMap<Vec<usize>, u64>,
     /// Noise of each load for the count of its cycles, report unit.
@@ -91,7 +91,7 @@ impl Kernel {
         } = opened;
         let mut r = self.prepare_recovery(&record, &corrections, &mut findings)?;
         let mut pass = self.pass(&record, &r)?;
-        let dead = dead_parts(&record, &r, &pass.judged, self.errors, self.noise_factor)?;
+        let dead = dead_parts(&record, &r, &pass.tested, self.errors, self.noise_factor)?;
         r.blank = blank_of(&dead);
         let quasi_static = self.remove_vibration(&record, &mut r, &mut findings)?;
         let is_changed = quasi_static.is_some();
@@ -105,17 +105,17 @@ impl Kernel {
         let stated = |f: &Finding| !(by_filter && f.code == "samples-with-gaps");
         let gaps = check_gaps("samples", &r.sensitivity, &pass.missing);
         findings.extend(gaps.into_iter().filter(stated));
-        let judged = std::mem::take(&mut pass.judged);
-        let mut ends = judged.ends();
+        let tested = std::mem::take(&mut pass.tested);
+        let mut ends = tested.ends();
         let time_s = |i| record.clock.time_s(i);
-        let (mut widened, noise) = self.test_samples(&r, judged, time_s, &mut findings);
+        let (mut widened, noise) = self.test_samples(&r, tested, time_s, &mut findings);
         if noise.is_some()
             && let Some(filter) = widened.take()
         {
             // Another pass uses the weights for the noise that the record shows.
             r.filter = filter;
             pass = self.pass(&record, &r)?;
-            ends = pass.judged.ends();
+            ends = pass.tested.ends();
         }
         let filter = widened.as_ref().unwrap_or(&r.filter);
         findings.extend(self.check_range_and_sign(filter, &ends, record.clock.samples));
@@ -164,7 +164,7 @@ impl Kernel {
             counters: (0..k).map(counter).collect(),
             health: Health::new(&r.s),
             missing: MissingReadings::new(k),
-            judged: r.tested_samples(),
+            tested: r.tested_samples(),
             by_gauges: BTreeMap::new(),
             noise,
         };
@@ -183,7 +183,7 @@ impl Kernel {
             for part in &mut parts {
                 pass.health.merge(&part.health);
                 pass.missing.merge(&part.missing);
-                pass.judged.merge(std::mem::take(&mut part.judged));
+                pass.tested.merge(std::mem::take(&mut part.tested));
                 for (gauges, n) in std::mem::take(&mut part.by_gauges) {
                     *pass.by_gauges.entry(gauges).or_insert(0) += n;
                 }
@@ -198,19 +198,19 @@ impl Kernel {
     fn test_samples(
         &self,
         r: &RecordRecovery,
-        judged: TestedSamples,
+        tested: TestedSamples,
         time_s: impl Fn(usize) -> f64,
         findings: &mut Vec<Finding>,
     ) -> (Option<Filter>, Option<GaugeNoise>) {
-        let with = (self.errors, r.noise_factor, r.errors_beyond.as_ref());
+        let with = (self.errors, r.noise_factor, r.errors_beyond.as_deref());
         let installed = self.alternatives.iter().map(|a| a.of_gauges(&r.used));
         let installed: Vec<AlternativeRows> = installed.collect();
-        let judgements = judged.recover_loads((&r.sensitivity, &installed), with, time_s);
-        let Some(first) = judgements.first() else {
+        let recoveries = tested.recover_loads((&r.sensitivity, &installed), with, time_s);
+        let Some(first) = recoveries.first() else {
             return (None, None);
         };
         let (widening, noise) = (first.widening.clone(), first.noise.clone());
-        let found = findings_of(judgements);
+        let found = findings_of(recoveries);
         let explained = found.iter().all(|f| f.code != UNEXPLAINED);
         findings.extend(found);
         if !explained || (widening == Widening::none() && noise.is_none()) {

@@ -112,7 +112,7 @@ pub struct Vehicle {
 
 /// Returns the files that count, by vehicle and in the order of their days, and the status of every file in the given order.
 ///
-/// Of two files for one day, or with the same bytes, the file with the first path counts. The result does not depend on the order of `files`.
+/// The file with the first path counts if two files have the same day or the same bytes. The result does not depend on the order of `files`.
 pub fn sort_files(
     files: &[FileHead],
     days_in: DayOrder,

@@ -7,6 +7,7 @@ use crate::host::fault::{Fault, Faults};
 use crate::measured::faults::record_fault;
 use crate::recovery::Widening;
 use crate::series::record::{MemoryRecord, Record, Times};
+use std::sync::Arc;
 
 impl Kernel {
     /// Returns the record without vibration, and changes `r` to its readings and their errors. `None` for a job without `[dynamic]`.
@@ -53,7 +54,7 @@ impl Kernel {
         r.scale = [vec![1.0; n], vec![0.0; n]];
         r.blank.clear();
         r.noise_factor = noise_factor;
-        r.errors_beyond = Some(removed.doubt);
+        r.errors_beyond = Some(Arc::new(removed.doubt));
         r.apart = removed.apart;
         r.blank_by_filter = removed.blank as u64;
         let filter = self.filter(&r.sensitivity, r, Widening::none());

@@ -13,6 +13,7 @@ use crate::series::record::Record;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Number of samples in a batch, whose strain stays in the nearest cache. The thinned residuals of [`Health`] restart with each batch.
@@ -75,7 +76,7 @@ pub(super) struct RecordRecovery {
     /// Noise variance of a reading less zero, in units of the variance of a single reading.
     pub noise_factor: f64,
     /// Errors of the readings beyond this noise, if vibration was removed from them.
-    pub errors_beyond: Option<ReadingCovariance>,
+    pub errors_beyond: Option<Arc<ReadingCovariance>>,
     /// Number of samples after which noise is independent.
     pub apart: usize,
     /// Number of samples that are blank because vibration was removed.
@@ -90,7 +91,7 @@ pub(super) struct Part {
     pub marks: Vec<u64>,
     pub health: Health,
     pub missing: MissingReadings,
-    pub judged: TestedSamples,
+    pub tested: TestedSamples,
     /// Number of samples with a missing reading, by the gauges that read.
     pub by_gauges: BTreeMap<Vec<usize>, u64>,
 }
@@ -157,7 +158,7 @@ impl RecordRecovery {
             marks: Vec::with_capacity(end - begin),
             health: Health::new(&self.s),
             missing: MissingReadings::new(k),
-            judged: self.tested_samples(),
+            tested: self.tested_samples(),
             by_gauges: BTreeMap::new(),
         };
         let [factors, offsets] = &self.scale;
@@ -191,7 +192,7 @@ impl RecordRecovery {
                     }
                 });
                 part.health.add(&strain, loads);
-                part.judged.add(first, &strain, loads);
+                part.tested.add(first, &strain, loads);
                 part.loads.extend_from_slice(loads);
                 marks.append_marks(loads, &mut part.marks);
             }

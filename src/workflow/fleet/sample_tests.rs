@@ -235,7 +235,7 @@ mod tests {
         let strain: Vec<f64> = (0..3 * samples).map(|i| i as f64).collect();
         let mut loads: Vec<f64> = (0..2 * samples).map(|i| (i % 97) as f64).collect();
         (loads[2 * 777], loads[2 * 4001 + 1]) = (1e3, -1e3);
-        let judge = |piece: usize| {
+        let select = |piece: usize| {
             let mut all = TestedSamples::new(3, 2, (samples, 1));
             for first in (0..samples).step_by(piece) {
                 let end = (first + piece).min(samples);
@@ -249,7 +249,7 @@ mod tests {
             }
             all
         };
-        let (whole, cut) = (judge(samples), judge(33));
+        let (whole, cut) = (select(samples), select(33));
         assert_eq!(format!("{whole:?}"), format!("{cut:?}"));
         assert!((150..=TESTED_SAMPLES).contains(&(whole.spread.len() + whole.extremes.len())));
         assert_eq!((whole.extremes[0].at, whole.extremes[3].at), (777, 4001));

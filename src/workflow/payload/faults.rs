@@ -5,6 +5,7 @@ use super::task::Task;
 use crate::estimate::median;
 use crate::finding::{Finding, Severity};
 use crate::host::work::Work;
+use crate::input_faults::recorded_loads::{NEAR, UNIT};
 use crate::input_faults::{FaultTreatment, SIGN_OF_ALL};
 use crate::payload::{PayloadRun, Refusal, WeighSpec, Weighing, faults_of_gauges, payload_rows};
 use crate::strain_chain::alternatives_of;
@@ -93,12 +94,11 @@ fn strain_contradicts_wheels(weighing: &Weighing) -> Option<Finding> {
         .map(ratio)
         .collect::<Option<_>>()?;
     let common = median(ratios.clone())?;
-    let rules = CommonRatio::default();
-    let alike = |c: &f64| (c / common - 1.0).abs() < rules.alike;
+    let alike = |c: &f64| (c / common - 1.0).abs() < NEAR;
     if ratios.len() < 2 || !ratios.iter().all(alike) {
         return None;
     }
-    let is_unit = common.abs() > rules.unit || common.abs() < 1.0 / rules.unit;
+    let is_unit = common.abs() > UNIT || common.abs() < 1.0 / UNIT;
     let (code, what) = match (is_unit, common < 0.0) {
         (true, _) => (
             "input-unit",
@@ -116,22 +116,5 @@ fn strain_contradicts_wheels(weighing: &Weighing) -> Option<Finding> {
     );
     let remedy = "check sign and unit of the readings, and of the wheel forces ([runs] units)";
     let finding = Finding::new(Severity::Error, code, "all", message, remedy);
-    Some(finding.with_numbers(common, rules.unit))
-}
-
-/// Limits of the ratio of two payloads.
-struct CommonRatio {
-    /// Largest relative difference of a run from the common ratio: payloads of a few percent uncertainty from strain differ by less.
-    alike: f64,
-    /// Ratio from which a unit is wrong. The smallest ratio of units is 4.448 (lbf and N), less a tenth for errors of the model.
-    unit: f64,
-}
-
-impl Default for CommonRatio {
-    fn default() -> Self {
-        Self {
-            alike: 0.15,
-            unit: 4.0,
-        }
-    }
+    Some(finding.with_numbers(common, UNIT))
 }

@@ -179,7 +179,7 @@ impl VibrationModel {
 /// Returns the record without the vibration of the structure, and its errors, if the job asks for it.
 ///
 /// # Errors
-/// As [`VibrationModel::of_job`] and [`VibrationModel::remove`], or a record that is too long.
+/// Returns the errors of [`VibrationModel::of_job`] and [`VibrationModel::remove`], or a fault of a record that is too long.
 pub(super) fn remove_vibration(
     work: &mut Work,
     task: &Task,

@@ -73,23 +73,23 @@ pub(super) fn record(
     let recorded = compare::record_of_job(work, task, &names)?;
     let parts = sections::parts(task.job, &record, &clock)?;
     let rested = remove_vibration(work, task, &record, &sensitivity)?;
-    let (judged, errors, at_rest, motion, blank) = match rested {
+    let (tested, errors, at_rest, motion, blank) = match rested {
         Some((quasi_static, r)) => {
             let noise_factor = r.noise_factor(task.noise_factor);
             let readings = spread((noise_factor, r.apart), &quasi_static, &zero)?;
-            let judged = recover_quasi_static_samples(task, &sensitivity, readings, &r.doubt);
+            let tested = recover_quasi_static_samples(task, &sensitivity, readings, &r.doubt);
             let errors = (noise_factor, Some(r.doubt));
-            (judged, errors, Some(quasi_static), Some(r.motion), r.blank)
+            (tested, errors, Some(quasi_static), Some(r.motion), r.blank)
         }
         None => {
-            let judged = recover_tested_samples(work, task, &sensitivity, readings);
-            (judged, (task.noise_factor, None), None, None, 0)
+            let tested = recover_tested_samples(work, task, &sensitivity, readings);
+            (tested, (task.noise_factor, None), None, None, 0)
         }
     };
     let filter = filter(
         work,
         (task, errors),
-        judged,
+        tested,
         &sensitivity,
         zero,
         &combinations,
@@ -255,24 +255,24 @@ pub(super) fn look(
 fn filter(
     work: &mut Work,
     (task, (noise_factor, doubt)): (&Task, (f64, Option<ReadingCovariance>)),
-    judged: Recovery,
+    tested: Recovery,
     s: &Sensitivity,
     zero: Vec<f64>,
     combinations: &[Vec<(usize, f64)>],
 ) -> Result<Filter, Faults> {
-    work.findings.extend(judged.findings.iter().cloned());
-    let s = &judged.s(s);
+    work.findings.extend(tested.findings.iter().cloned());
+    let s = &tested.s(s);
     let filter = Filter::new(
         s,
         zero,
         task.errors,
         noise_factor,
-        &judged.typical,
-        judged.widening,
+        &tested.typical,
+        tested.widening,
     );
     let mut filter = filter.ok_or_else(|| sensitivity_fault(task))?;
     if let Some(doubt) = doubt {
-        filter.add_reading_covariance(doubt);
+        filter.add_reading_covariance(Arc::new(doubt));
     }
     filter.combine(combinations);
     Ok(filter)
