@@ -360,8 +360,8 @@ impl Search<'_> {
             .collect()
     }
 
-    /// Returns the exchanges of two gauges that explain more than any fault of one, the best first. One gauge of each pair is in `order`: the other
-    /// may agree with the loads that the exchanged readings give.
+    /// Returns the exchanges of two gauges that explain more than any fault of one, and as much as the best of them, the best first. One gauge of each
+    /// pair is in `order`: the other may agree with the loads that the exchanged readings give.
     fn exchanges(
         &self,
         inputs: &Inputs,
@@ -374,12 +374,14 @@ impl Search<'_> {
             .flat_map(|(a, _)| gauges.iter().map(move |b| (*a.min(b), *a.max(b))))
             .filter(|(a, b)| a != b)
             .collect();
-        let mut tried: Vec<CandidateFault> = pairs
+        let exchanged = |(a, b)| self.try_fault(inputs, InputFault::Exchanged(a, b), 0);
+        // Fits hold a prediction of every reading, so that only their sums are kept.
+        let mut tried: Vec<(f64, (usize, usize))> = pairs
             .into_par_iter()
-            .map(|(a, b)| self.try_fault(inputs, InputFault::Exchanged(a, b), 0))
+            .map(|pair| (exchanged(pair).fit.chi2, pair))
             .collect();
-        tried.sort_by(|x, y| x.fit.chi2.total_cmp(&y.fit.chi2));
-        let Some(InputFault::Exchanged(a, b)) = tried.first().map(|t| t.fault) else {
+        tried.sort_by(|x, y| x.0.total_cmp(&y.0));
+        let Some(&(best, (a, b))) = tried.first() else {
             return Vec::new();
         };
         let silent = InputFault::Unlike(a).correct_inputs(inputs, &[]);
@@ -395,8 +397,13 @@ impl Search<'_> {
             .iter()
             .map(|t| t.fit.chi2)
             .fold(f64::INFINITY, f64::min);
-        tried.retain(|t| t.fit.chi2 < limit && t.fit.chi2 < of_one.max(own));
-        tried
+        let scale = both.reduced_chi2().max(1.0);
+        let close = limit
+            .min(of_one.max(own))
+            .min(best + self.rules.apart * scale);
+        let found = tried.into_iter().filter(|t| t.0 < close || t.0 == best);
+        let found = found.filter(|t| t.0 < limit && t.0 < of_one.max(own));
+        found.map(|t| exchanged(t.1)).collect()
     }
 }
 

@@ -88,7 +88,8 @@ pub fn read_strain_file(
 ) -> Result<StrainFile, Faults> {
     let bytes = inputs.read_named(job, named).map_err(Faults::from)?;
     let record = |bytes| {
-        let record = Record::open(job, (&named.given, None), bytes, wanted)?.with_all_strain(job);
+        let record =
+            Record::open(job, (&named.given, None), bytes, (wanted, &[]))?.with_all_strain(job);
         Ok(StrainFile::Means(StrainMeans {
             readings: record.sums()?,
             first: record.first_microstrain(FIRST)?,

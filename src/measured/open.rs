@@ -2,7 +2,7 @@
 
 use super::conditioning;
 use super::faults::{no_runs, record_fault};
-use super::record::Record;
+use super::record::{Record, section_channels};
 use super::strain_file::{read_strain, wanted_columns};
 use super::strain_table::{StrainRows, StrainTable};
 use crate::host::fault::Faults;
@@ -70,8 +70,13 @@ fn open_first_sheet(
     let wanted = wanted_columns(inputs, job);
     if is_record(&bytes) {
         let of_file = (named.given.as_str(), measured.time_unit_s);
-        let record =
-            conditioning::condition(job, Record::open(job, of_file, bytes, &wanted)?, &wanted)?;
+        // Rules of sections select samples of the measured record only.
+        let rules = match named.given == measured.strain.given {
+            true => section_channels(job).collect(),
+            false => Vec::new(),
+        };
+        let record = Record::open(job, of_file, bytes, (&wanted, &rules))?;
+        let record = conditioning::condition(job, record, &wanted)?;
         return Ok(MeasuredStrain::Record(Box::new(record)));
     }
     let table = read_strain(inputs, job, named, &wanted);

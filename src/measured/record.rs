@@ -53,7 +53,8 @@ pub(crate) fn section_channels(job: &Job) -> impl Iterator<Item = String> + '_ {
 }
 
 impl Record {
-    /// Opens the record in a strain file of a job, to read the columns `wanted`. `time_unit_s` is used if the file states no unit of time.
+    /// Opens the record in a strain file of a job, to read the columns `wanted` and the channels `also`. `time_unit_s` is used if the file states no
+    /// unit of time.
     ///
     /// # Errors
     /// Faults of the file: its format, its times, units that are not units of strain.
@@ -61,9 +62,12 @@ impl Record {
         job: &Job,
         (file, time_unit_s): (&str, Option<f64>),
         bytes: FileBytes,
-        wanted: &[String],
+        (wanted, also): (&[String], &[String]),
     ) -> Result<Self, Faults> {
-        let options = Self::options(job, time_unit_s, wanted);
+        let mut options = Self::options(job, time_unit_s, wanted);
+        if !wanted.is_empty() {
+            options.wanted.extend_from_slice(also);
+        }
         let inner = open_record(Arc::new(bytes), &options).map_err(|e| record_fault(file, &e))?;
         Self::from_series(job, file, inner, wanted)
     }
@@ -77,9 +81,6 @@ impl Record {
             .and_then(|c| c.temperature.as_ref());
         if let Some(t) = temperature.filter(|_| !wanted.is_empty()) {
             wanted.push(t.channel.clone());
-        }
-        if !wanted.is_empty() {
-            wanted.extend(section_channels(job));
         }
         Options {
             declared_hz: None,

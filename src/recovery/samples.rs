@@ -13,16 +13,18 @@ use crate::finding::{Finding, Severity, list_few};
 use crate::input_faults::FaultTreatment;
 use crate::sensitivity::Sensitivity;
 
-/// Recovers the loads of samples of a record. Samples without any reading are dropped, unless all samples lack readings.
-///
-/// The loads that the gauges of a sample don't determine are blank in that sample. Whether a load can be recovered depends on the whole record
-/// ([`check_gaps`]), not on the selected samples. `run-not-solvable` remains only if all gauges together don't determine a load: this is no gap.
+/// Recovers samples without further errors and alternatives.
 #[cfg(test)]
 pub fn recover_samples(s: &Sensitivity, samples: Vec<Readings>, errors: ErrorModel) -> Recovery {
     recover_samples_with_alternatives(s, samples, errors, (Vec::new(), &mut Vec::new))
 }
 
-/// Recovers the loads of samples whose readings have errors beyond noise, and whose gauges may be installed otherwise. `beyond` is by sample, or
+/// Recovers the loads of samples of a record. Samples without any reading are dropped, unless all samples lack readings.
+///
+/// The loads that the gauges of a sample don't determine are blank in that sample. Whether a load can be recovered depends on the whole record
+/// ([`check_gaps`]), not on the selected samples. `run-not-solvable` remains only if all gauges together don't determine a load: this is no gap.
+///
+/// Readings may have errors beyond noise, and gauges may be installed otherwise. `beyond` is by sample, or
 /// empty. All gauges contribute to the record's loads, even if some contradict other gauges.
 pub fn recover_samples_with_alternatives(
     s: &Sensitivity,

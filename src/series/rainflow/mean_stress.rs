@@ -49,7 +49,8 @@ impl MeanStress {
         let (least, most) = (mean - amplitude, mean + amplitude);
         let reversed = match self {
             Self::None => amplitude,
-            Self::Goodman { ultimate } if mean >= ultimate => f64::INFINITY,
+            Self::Goodman { ultimate } if mean >= ultimate && amplitude > 0.0 => f64::INFINITY,
+            Self::Goodman { ultimate } if mean >= ultimate => 0.0,
             Self::Goodman { ultimate } => amplitude / (1.0 - mean.max(0.0) / ultimate),
             Self::SmithWatsonTopper => (most.max(0.0) * amplitude).sqrt(),
             Self::Sensitivity { m } => {

@@ -117,6 +117,11 @@ impl Health {
         }
     }
 
+    /// Returns the noise of each gauge from second differences, microstrain.
+    pub fn noise(&self) -> Vec<f64> {
+        self.sums.iter().map(Sums::noise).collect()
+    }
+
     /// Returns the result of each gauge for storing. `leverage` is by gauge.
     pub fn days(&self, names: &[String], leverage: &[f64]) -> Vec<GaugeDay> {
         let gauges = names.iter().zip(&self.sums).zip(leverage);
@@ -203,6 +208,11 @@ impl Sums {
         }
     }
 
+    /// Returns the noise from second differences, microstrain.
+    fn noise(&self) -> f64 {
+        (self.seconds / self.n_seconds as f64 / 6.0).sqrt() / MICROSTRAIN
+    }
+
     fn day(&self, name: &str, leverage: f64) -> GaugeDay {
         let n = self.n as f64;
         let mean = self.sum / n;
@@ -217,7 +227,7 @@ impl Sums {
             name: name.to_owned(),
             mean: mean / MICROSTRAIN,
             sd: variance.sqrt() / MICROSTRAIN,
-            noise: (self.seconds / self.n_seconds as f64 / 6.0).sqrt() / MICROSTRAIN,
+            noise: self.noise(),
             residual: (rr / m).sqrt() / MICROSTRAIN,
             gain: with / own,
             offset: out * r / m / MICROSTRAIN,

@@ -86,6 +86,8 @@ impl Kernel {
     pub fn day(&self, opened: FleetRecord) -> Result<Day, Faults> {
         let FleetRecord {
             record,
+            clock,
+            is_low_pass,
             corrections,
             mut findings,
         } = opened;
@@ -93,6 +95,8 @@ impl Kernel {
         let mut pass = self.pass(&record, &r)?;
         let dead = dead_parts(&record, &r, &pass.tested, self.errors, self.noise_factor)?;
         r.blank = blank_of(&dead);
+        // Noise is a property of the readings as measured; vibration is removed with a filter.
+        let noise_as_measured = pass.health.noise();
         let quasi_static = self.remove_vibration(&record, &mut r, &mut findings)?;
         let is_changed = quasi_static.is_some();
         let record = quasi_static.map_or(record, Arc::new);
@@ -136,6 +140,11 @@ impl Kernel {
         let missing = &pass.missing;
         let known = missing.whole + missing.known_in_gaps.iter().max().copied().unwrap_or(0);
         let mut gauges = pass.health.days(&r.sensitivity.gauges, leverage);
+        for (gauge, noise) in gauges.iter_mut().zip(noise_as_measured) {
+            if is_changed || is_low_pass {
+                gauge.noise = if is_low_pass { f64::NAN } else { noise };
+            }
+        }
         let hours = |samples: f64| samples / record.clock.rate_hz / 3600.0;
         findings.extend(report_dead_parts(&dead, &mut gauges, &record.clock));
         gauges.extend(r.silent.iter().map(|name| GaugeDay::without_readings(name)));
@@ -144,7 +153,7 @@ impl Kernel {
         Ok(Day {
             rate_hz: record.clock.rate_hz,
             hours: hours(known as f64),
-            missing: record.clock.missing,
+            missing: clock.missing,
             loads: loads.collect(),
             gauges,
             findings,
@@ -239,6 +248,11 @@ impl Kernel {
             filter.combine(&self.listed.sums);
             filter
         })
+    }
+
+    /// Returns whether the readings of a record are in memory as a whole.
+    pub(super) fn holds_whole_records(&self) -> bool {
+        self.vibration.is_some() || self.job.conditioning.is_some()
     }
 
     /// Returns the columns that a record is read for.

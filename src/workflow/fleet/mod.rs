@@ -320,22 +320,24 @@ fn evaluate_files(
         .map_err(|e| not_kept(&spec.folder.display().to_string(), &e))?;
     let (source, progress) = (work.cx.files, work.cx.progress);
     progress.parts(mine.len());
-    let results: Vec<Result<(FileHead, Came), Fault>> = mine
-        .par_iter()
-        .map(|path| {
-            if progress.is_cancelled() {
-                return Err(cancelled_fault());
-            }
-            let told = spec.digests.get(*path);
-            let told = told.and_then(|d| kept.head(path, d));
-            let done = match told.filter(|before| is_as_then(source, before)) {
-                Some(before) => Ok((before, Came::Kept)),
-                None => evaluate_file(kernel, kept, form, path, source),
-            };
-            progress.advance(1);
-            done
-        })
-        .collect();
+    let evaluate = |path: &&String| {
+        if progress.is_cancelled() {
+            return Err(cancelled_fault());
+        }
+        let told = spec.digests.get(*path);
+        let told = told.and_then(|d| kept.head(path, d));
+        let done = match told.filter(|before| is_as_then(source, before)) {
+            Some(before) => Ok((before, Came::Kept)),
+            None => evaluate_file(kernel, kept, form, path, source),
+        };
+        progress.advance(1);
+        done
+    };
+    // A record that is in memory as a whole is alone there. The threads share its pieces.
+    let results: Vec<Result<(FileHead, Came), Fault>> = match kernel.holds_whole_records() {
+        true => mine.iter().map(evaluate).collect(),
+        false => mine.par_iter().map(evaluate).collect(),
+    };
     work.go_on()?;
     let mut files = Vec::new();
     let (mut reused, mut replaced) = (0, Vec::new());
@@ -479,7 +481,8 @@ fn reason(faults: Faults) -> String {
 /// The reason why the loads or their damage can't be computed.
 pub fn day_of(kernel: &Kernel, opened: &OpenedFile) -> Result<Day, Faults> {
     let noise = kernel.errors.noise_variance(1.0).sqrt();
-    let record = FleetRecord::open(&kernel.job, &kernel.wanted_columns(), noise, opened)?;
+    let columns = (&*kernel.wanted_columns(), &*kernel.sensitivity.gauges);
+    let record = FleetRecord::open(&kernel.job, columns, noise, opened)?;
     let day = kernel.day(record)?;
     let is_number = |l: &&day::LoadDay| {
         let sums = &l.tally.sums;

@@ -36,6 +36,7 @@ impl Kernel {
             of_record,
             &|| Ok(()),
         )?;
+        drop(readings);
         let noise_factor = removed.noise_factor(self.noise_factor);
         findings.extend(removed.findings);
         let quasi_static = MemoryRecord {

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 /// Folder of the stored results within the output folder.
 pub const FOLDER: &str = "days";
 /// Number of the form of a stored result, raised when its meaning changes.
-const FORM: u32 = 10;
+const FORM: u32 = 11;
 /// Text before the digest at the end of a stored result.
 const SEAL: &[u8] = b",\"content\":\"";
 

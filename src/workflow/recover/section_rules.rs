@@ -41,8 +41,13 @@ pub(super) fn stretches_within(
             (least, most) = (least.min(*value), most.max(*value));
         }
         inside.truncate(values.len());
-        let [least, most] = [least, most].map(format_number);
-        seen.push(format!("`{channel}` covers {least} to {most}"));
+        seen.push(match least <= most {
+            true => {
+                let [least, most] = [least, most].map(format_number);
+                format!("`{channel}` covers {least} to {most}")
+            }
+            false => format!("`{channel}` has no number"),
+        });
     }
     // Durations are rounded. A stretch that is a millionth of a step too short counts.
     let shortest = (rule.at_least_s * clock.rate_hz - 1e-6).ceil().max(1.0) as usize;

@@ -142,20 +142,26 @@ fn samples_between([from, to]: [f64; 2], clock: &Clock) -> Result<Range<usize>, 
 
 /// The fault of a section that contains samples of an earlier one.
 fn overlap(job: &Job, first: &Part, second: &Part, clock: &Clock) -> Option<Fault> {
-    let pairs = second.stretches.iter();
-    let at = pairs
-        .flat_map(|b| {
-            first
-                .stretches
-                .iter()
-                .map(move |a| (a.start.max(b.start), a.end.min(b.end)))
-        })
-        .find(|(from, to)| from < to)?;
+    // Both lists ascend.
+    let (mut ours, mut theirs) = (first.stretches.iter().peekable(), second.stretches.iter());
+    let mut other = theirs.next();
+    let at = loop {
+        let (a, b) = (*ours.peek()?, other?);
+        let from = a.start.max(b.start);
+        if from < a.end.min(b.end) {
+            break from;
+        }
+        if a.end <= b.end {
+            ours.next();
+        } else {
+            other = theirs.next();
+        }
+    };
     let wrong = format!(
         "section `{}` overlaps section `{}` at {} s: the duty cycle would count these samples twice",
         second.section.name,
         first.section.name,
-        format_number(clock.time_s(at.0))
+        format_number(clock.time_s(at))
     );
     let remedy = "change the times or ranges so that no sample is in two sections";
     let line = second.section.line;

@@ -161,7 +161,7 @@ fn compute_response(work: &mut Work, job: &Job) -> Result<StressResponse, Faults
             work.findings.push(about_damage(&law));
             let places: Vec<&ResponseRow> = order.iter().filter_map(|i| rows.get(*i)).collect();
             let found = work.stage("fatigue", |_| damage_of(&places, &states, law));
-            check_finite(job, &found)?;
+            check_finite(job, &law, &found)?;
             found
         }
         None => Vec::new(),
@@ -211,17 +211,27 @@ fn damage_of(places: &[&ResponseRow], states: &[LoadState], law: StressLaw) -> V
     places.iter().zip(found).map(one).collect()
 }
 
-/// Refuses a mean stress, or an upper end of its interval, that reaches the ultimate strength.
-fn check_finite(job: &Job, found: &[ElementFatigue]) -> Result<(), Faults> {
+/// Refuses a mean stress, or an upper end of its interval, that reaches the ultimate strength, and damage beyond the range of numbers.
+fn check_finite(job: &Job, law: &StressLaw, found: &[ElementFatigue]) -> Result<(), Faults> {
     let beyond = found.iter().find(|f| !f.damage_high.is_finite());
     beyond.map_or(Ok(()), |f| {
-        let wrong = format!(
-            "the mean stress of a cycle at element {} reaches this strength, within its 95 % interval: Goodman's line ends there",
-            f.element
-        );
-        let remedy = "correct the strength, or exclude the element with `elements`";
+        let element = f.element;
+        let (field, wrong, remedy) = match law.mean_stress {
+            MeanStress::Goodman { .. } => (
+                "respond.ultimate",
+                format!(
+                    "the mean stress of a cycle at element {element} reaches this strength, within its 95 % interval: Goodman's line ends there"
+                ),
+                "correct the strength, or exclude the element with `elements`",
+            ),
+            _ => (
+                "respond.slope",
+                format!("the damage at element {element} exceeds the range of numbers"),
+                "report stress in a larger unit, or state a lower slope",
+            ),
+        };
         let line = job.respond.line;
-        Err(Fault::with_line(&*job.file, line, "respond.ultimate", wrong, remedy).into())
+        Err(Fault::with_line(&*job.file, line, field, wrong, remedy).into())
     })
 }
 

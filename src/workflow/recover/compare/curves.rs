@@ -1,11 +1,13 @@
 //! Spectra, coherence and level crossings of recovered and recorded loads.
 
+use crate::series::butterworth::{Passes, filter_without_phase};
 use crate::series::level_crossing::count_crossings;
 use crate::series::welch::cross_spectra;
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// Choices for spectra and levels, each with its reason.
-struct CurveRules {
+pub(super) struct CurveRules {
     /// Segments that are averaged, where the record is long enough. The standard deviation of a density is then about 20 %.
     averages: usize,
     /// Longest segment, samples. Longer ones resolve more lines than a page can show.
@@ -14,13 +16,17 @@ struct CurveRules {
     shortest: usize,
     /// Levels of each load, at the middles of equal classes over both loads.
     levels: usize,
+    /// Corner of the filter for a faster recording, a share of the sample rate of the strain. Content that folds back to half of the corner is
+    /// beyond twice the corner, where the filter passes 0.4 % of the amplitude.
+    pub low_pass: f64,
 }
 
-const RULES: CurveRules = CurveRules {
+pub(super) const RULES: CurveRules = CurveRules {
     averages: 32,
     longest: 8192,
     shortest: 64,
     levels: 40,
+    low_pass: 0.4,
 };
 
 /// How the spectra of a comparison were computed.
@@ -34,7 +40,8 @@ pub struct ComparisonSpectra {
     pub segment_s: f64,
     /// Segments averaged, by load the smallest number.
     pub averages: usize,
-    /// Frequencies, Hz, up to half of the lower sample rate.
+    /// Frequencies, Hz, up to half of the sample rate if both records have samples at the same times. Otherwise up to an eighth of the rate of the
+    /// recording: the curve between its samples loses 1 % of the density there.
     #[serde(skip)]
     pub f_hz: Vec<f64>,
     /// By load.
@@ -91,6 +98,20 @@ fn segment_of(n: usize) -> Option<usize> {
     Some(1 << shortened).filter(|s| *s >= RULES.shortest)
 }
 
+/// Returns recorded loads without their content above the sample rate of the strain; `None` if the recording is not faster. `rates` is the sample rate
+/// of the strain over the rate of the recording.
+pub(super) fn without_alias(recorded: &[Vec<f32>], rates: f64) -> Option<Vec<Vec<f32>>> {
+    let is_faster = rates < 0.9;
+    is_faster.then(|| {
+        let of_load = |samples: &Vec<f32>| {
+            let mut x: Vec<f64> = samples.iter().map(|v| f64::from(*v)).collect();
+            filter_without_phase(&mut x, Passes::Low, RULES.low_pass * rates);
+            x.into_iter().map(|v| v as f32).collect()
+        };
+        recorded.par_iter().map(of_load).collect()
+    })
+}
+
 /// Returns spectra and coherence of loads at `rate_hz`, up to `highest_hz`; `None` for a record that is too short.
 pub(super) fn spectra_of(
     loads: &[SampledLoad],
@@ -108,6 +129,9 @@ pub(super) fn spectra_of(
     };
     for load in loads {
         let found = cross_spectra(&load.recorded, &load.recovered, rate_hz, segment);
+        if found.n_segments == 0 {
+            continue;
+        }
         let kept = found.f_hz.iter().filter(|f| **f <= highest_hz).count();
         let cut = |x: &[f64]| x[..kept].to_vec();
         out.averages = out.averages.min(found.n_segments);
@@ -122,7 +146,7 @@ pub(super) fn spectra_of(
             phase_deg: cut(&phase.collect::<Vec<f64>>()),
         });
     }
-    (out.averages > 0).then_some(out)
+    (!out.loads.is_empty()).then_some(out)
 }
 
 /// Returns the crossings of levels over the range of both loads; `None` for loads that are constant or unknown.

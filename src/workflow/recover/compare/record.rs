@@ -1,6 +1,6 @@
 //! A recovered record against a record of loads: times are brought together, samples compared at the times of the recovered loads.
 
-use super::curves::{SampledLoad, levels_of, spectra_of};
+use super::curves::{RULES, SampledLoad, levels_of, spectra_of, without_alias};
 use super::{Comparison, ComparisonShift, Differences, LoadLevels, POINTS, Pair};
 use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity};
@@ -120,13 +120,12 @@ pub fn record(
     if range.len() < 2 {
         return Err(both.nothing_common(job, compare).into());
     }
-    let lower_hz = both.recorded.clock.rate_hz.min(1.0 / head.step_s);
     let mut out = Comparison {
         shift: Some(shift),
         spectra: spectra_of(
             &both.sampled_loads(&range),
             1.0 / head.step_s,
-            0.5 * lower_hz,
+            both.highest_hz(range.start),
         ),
         levels: both.levels(&range),
         ..Comparison::default()
@@ -170,6 +169,21 @@ impl LoadRecordPair<'_> {
         let from = (place(self.start_s) - 1e-6).ceil().max(0.0) as usize;
         let to = ((place(end_s) + 1e-6).floor() + 1.0).max(0.0) as usize;
         from.min(n)..to.min(n).max(from.min(n))
+    }
+
+    /// Returns the highest frequency of the spectra. It is half of the sample rate if both records have samples at the same times. The curve between
+    /// recorded samples loses 1 % of the density at an eighth of their rate, and 80 % at half of it. A faster recording passes a filter first, which
+    /// loses less than 1 % up to half of its corner.
+    fn highest_hz(&self, first: usize) -> f64 {
+        let head = self.counting.head;
+        let (own, theirs) = (1.0 / head.step_s, self.recorded.clock.rate_hz);
+        let time = head.first_s + first as f64 * head.step_s;
+        let place = (time - self.start_s) * theirs;
+        let is_same_rate = (own / theirs - 1.0).abs() * self.recorded.clock.samples as f64 <= 1e-3;
+        if is_same_rate && (place - place.round()).abs() <= 1e-3 {
+            return 0.5 * own;
+        }
+        (theirs / 8.0).min(0.5 * RULES.low_pass * own)
     }
 
     fn nothing_common(&self, job: &Job, compare: &Compare) -> Fault {
@@ -266,7 +280,12 @@ impl LoadRecordPair<'_> {
     fn sampled_loads(&self, range: &Range<usize>) -> Vec<SampledLoad> {
         let head = self.counting.head;
         let recovered = recovered_columns(self.counting, &self.columns);
-        let sampled = self.recorded_samples();
+        let rates = 1.0 / (head.step_s * self.recorded.clock.rate_hz);
+        let filtered = without_alias(&self.recorded.samples, rates);
+        let sampled = SampledSignals {
+            signals: filtered.as_ref().unwrap_or(&self.recorded.samples),
+            ..self.recorded_samples()
+        };
         let time = |at: usize| head.first_s + at as f64 * head.step_s;
         let load = |(i, recovered): (usize, Vec<f32>)| {
             let column = self.columns[i];
@@ -291,10 +310,17 @@ impl LoadRecordPair<'_> {
         let of_load = |(i, recovered): (usize, Vec<f32>)| {
             let column = self.columns[i];
             let samples = recovered[range.clone()].iter().map(|v| f64::from(*v));
-            let recorded = self
-                .recorded_between(i, range)
-                .iter()
-                .map(|v| f64::from(*v));
+            // Only times count at which both are known.
+            let step = head.step_s * self.recorded.clock.rate_hz;
+            let is_known = |j: usize| {
+                let place = range.start + (j as f64 / step).round() as usize;
+                recovered.get(place).is_none_or(|v| v.is_finite())
+            };
+            let recorded = self.recorded_between(i, range).iter().enumerate();
+            let recorded = recorded.map(|(j, v)| match is_known(j) {
+                true => f64::from(*v),
+                false => f64::NAN,
+            });
             let name = (
                 head.names[column].as_str(),
                 head.units[column].name.as_str(),
