@@ -360,8 +360,8 @@ impl Search<'_> {
             .collect()
     }
 
-    /// Returns the exchanges of two gauges that explain more than any fault of one, and as much as the best of them, the best first. One gauge of each
-    /// pair is in `order`: the other may agree with the loads that the exchanged readings give.
+    /// Returns the exchanges of two gauges that explain more than any fault of one, and as much as the best of them, the best first. One gauge
+    /// of each pair is in `order`: the other may agree with the loads that the exchanged readings give.
     fn exchanges(
         &self,
         inputs: &Inputs,

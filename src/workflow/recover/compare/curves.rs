@@ -98,8 +98,8 @@ fn segment_of(n: usize) -> Option<usize> {
     Some(1 << shortened).filter(|s| *s >= RULES.shortest)
 }
 
-/// Returns recorded loads without their content above the sample rate of the strain; `None` if the recording is not faster. `rates` is the sample rate
-/// of the strain over the rate of the recording.
+/// Returns recorded loads without their content above the sample rate of the strain; `None` if the recording is not faster. `rates` is the
+/// sample rate of the strain over the rate of the recording.
 pub(super) fn without_alias(recorded: &[Vec<f32>], rates: f64) -> Option<Vec<Vec<f32>>> {
     let is_faster = rates < 0.9;
     is_faster.then(|| {
