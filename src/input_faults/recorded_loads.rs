@@ -161,7 +161,7 @@ pub fn faults_of_recorded_loads(runs: &RecordedRuns) -> Vec<RecordFault> {
         return vec![RecordFault::Exchanged(pairs, by_exchange)];
     }
     if by_factor > UNDONE {
-        return common_unit(runs, base).into_iter().collect();
+        return common_unit(runs).into_iter().collect();
     }
     let unit = (!units.is_empty()).then_some(RecordFault::Unit(units));
     let sign = (!signs.is_empty()).then_some(RecordFault::Sign(signs));
@@ -176,8 +176,8 @@ pub fn findings_of_recorded_loads(runs: &RecordedRuns, file: &str) -> Vec<Findin
 
 /// Returns the fault that all loads, or all readings, are in another unit, by one factor for all gauges and loads. Readings that are too small for
 /// their noise determine no factor of a single load, but still this one: `c = sum y m / sum m^2` with the strain `m` of the model, sd
-/// `noise / sqrt(sum m^2)`. `base` is the sum of squares with the loads as recorded.
-fn common_unit(runs: &RecordedRuns, base: f64) -> Option<RecordFault> {
+/// `noise / sqrt(sum m^2)`.
+fn common_unit(runs: &RecordedRuns) -> Option<RecordFault> {
     let k = runs.loads.len();
     let without_loads = runs.differences(&vec![0.0; k]);
     let as_recorded = runs.differences(&vec![1.0; k]);
@@ -189,7 +189,9 @@ fn common_unit(runs: &RecordedRuns, base: f64) -> Option<RecordFault> {
     let c = product / model;
     let is_determined = c.abs() > DETERMINED * runs.noise / model.sqrt();
     let is_small = c.abs() < 1.0 / UNIT.max(1.0 + 4.0 * runs.model_rel);
-    if !(is_determined && is_small) || squares(&runs.differences(&vec![c; k])) > UNDONE * base {
+    // A load that does not act, such as a payload on its own wheels, also leaves little of the model. The rest of the readings then remains.
+    let most = (UNDONE * squares(&without_loads)).max(BEYOND * runs.noise_squares());
+    if !(is_determined && is_small) || squares(&runs.differences(&vec![c; k])) > most {
         return None;
     }
     let acts = |l: &usize| runs.gauges().any(|g| runs.answer(g, *l) > 0.0);
