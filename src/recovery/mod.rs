@@ -45,9 +45,7 @@ pub use noise::{NOISE_ASSUMED, noise_without_load};
 pub use outlier::ALARM;
 pub use run_estimates::estimate;
 pub use runs::{recover, recover_with_alternatives};
-#[cfg(test)]
-pub use samples::recover_samples;
-pub use samples::{check_gaps, recover_samples_with_alternatives};
+pub use samples::{check_gaps, recover_samples, recover_samples_with_alternatives};
 pub use sums::Sums;
 pub use types::*;
 pub use verdict::{NOT_SOLVABLE, UNEXPLAINED};

@@ -14,7 +14,6 @@ use crate::input_faults::FaultTreatment;
 use crate::sensitivity::Sensitivity;
 
 /// Recovers samples without further errors and alternatives.
-#[cfg(test)]
 pub fn recover_samples(s: &Sensitivity, samples: Vec<Readings>, errors: ErrorModel) -> Recovery {
     recover_samples_with_alternatives(s, samples, errors, (Vec::new(), &mut Vec::new))
 }
