@@ -21,6 +21,9 @@ fn job(folder: &std::path::Path, runs: &str, extra: &str) {
     .unwrap();
 }
 
+/// Masses that the deck contains and the job lacks, from front to rear (Table 3.2), kg.
+const OWN_MASSES: [f64; 2] = [1638.0, 5157.8];
+
 fn reaction_errors_percent(result: &serde_json::Value) -> Vec<f64> {
     result["reactions"]
         .as_array()
@@ -66,7 +69,7 @@ fn table_3_2_two_masses_bring_the_truck_to_the_measured_reactions() {
         .map(|m| m["mass"].as_f64().unwrap())
         .sum();
     assert!(
-        (total / 6795.8 - 1.0).abs() < 0.03,
+        (total / 6795.8 - 1.0).abs() < 0.02,
         "the thesis found 1638.0 and 5157.8 kg, here {total}"
     );
 }
@@ -89,8 +92,19 @@ fn reactions_of_a_truck_with_its_masses_are_matched_and_the_ranges_hold_the_trut
     );
     assert_eq!(code, 0, "{err}");
     let e = reaction_errors_percent(&result);
-    println!("3.2: own masses: {e:.3?} %");
-    assert!(e.iter().all(|e| *e < 2.0), "{e:?}");
+    println!("3.2: own masses: {e:?} %");
+    // The table of wheel forces has four decimals of a kN. Half of the last one is 4e-4 % of 12 kN.
+    assert!(e.iter().all(|e| *e < 4e-4), "{e:?}");
+    let mut masses = result["masses"].as_array().unwrap().clone();
+    masses.sort_by(|a, b| {
+        let x = |m: &serde_json::Value| m["position"][0].as_f64().unwrap();
+        x(a).total_cmp(&x(b))
+    });
+    // The masses of the model from front to rear, kg.
+    for (found, truth) in masses.iter().zip(OWN_MASSES) {
+        let [low, high] = [0, 1].map(|i| found["mass_range"][i].as_f64().unwrap());
+        assert!(low <= truth && truth <= high, "{found} {truth}");
+    }
     let together = &result["together"];
     assert!(
         (together["mass"].as_f64().unwrap() / 6795.8 - 1.0).abs() < 1e-3,
@@ -169,7 +183,11 @@ fn section_6_4_eleven_gauges_as_poor_as_the_thesis_end_in_exit_code_1_and_say_wh
         codes(&result, "error")
     );
     assert_eq!(code, 1, "{err}");
-    assert!(err.contains("gauges"), "{err}");
+    assert!(
+        codes(&result, "error").contains(&"loads-not-determined".to_owned()),
+        "{err}"
+    );
     let condition = result["condition_number"].as_f64().unwrap();
-    assert!(condition > 50.0, "{condition}");
+    // Measured 205. The thesis accepted 120.
+    assert!(condition > 120.0, "{condition}");
 }

@@ -29,6 +29,7 @@ mod nuisance;
 mod other_model;
 mod own_model;
 mod payload;
+mod plan_of_the_model;
 mod program;
 mod story;
 mod world;

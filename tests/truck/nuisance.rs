@@ -187,7 +187,10 @@ fn table_6_3_vertical_loads_among_thirty_others() {
         alone.rms, alone.coverage
     );
     assert!((alone.coverage - 0.95).abs() < 0.015, "{}", alone.coverage);
-    for (n, limit) in [(14, 5.0), (20, 2.0)] {
+    // Measured 5.95 %: MX of the hubs remains in the wheel loads.
+    assert!((3.0..8.0).contains(&alone.rms), "{}", alone.rms);
+    // Measured 0.94 and 0.65 %, and 11 % with the other loads left out of S.
+    for (n, limit) in [(14, 1.5), (20, 1.0)] {
         let mut gauges = on_axles();
         gauges.extend(layout(n - gauges.len(), &gauges));
         assert_eq!(gauges.len(), n);
@@ -204,6 +207,6 @@ fn table_6_3_vertical_loads_among_thirty_others() {
         );
         assert!(with.rms < limit, "{n} gauges: {:.2} %", with.rms);
         assert!((with.coverage - 0.95).abs() < 0.015, "{}", with.coverage);
-        assert!(blind.rms > 2.0 * with.rms && blind.coverage < 0.9);
+        assert!(blind.rms > 6.0 && blind.coverage < 0.1);
     }
 }

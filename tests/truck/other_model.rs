@@ -195,7 +195,7 @@ fn the_thesis_algorithm_repeats_gauges_and_the_proved_layout_of_distinct_ones_do
             *o = s[(g, l)] / MICRO * EXPECTED;
         }
     });
-    for n in [6, 7, 8, 9, 10, 20, 40] {
+    for n in 6..=40 {
         let start = std::time::Instant::now();
         let ours = place(&c, &Spec::new(n, 6)).unwrap();
         let seconds = start.elapsed().as_secs_f64();
@@ -316,7 +316,8 @@ fn table_6_10_ten_of_forty_four_and_ten_of_all_on_readings_of_the_other_model() 
             *o = s.values[(g, l)] / MICRO * EXPECTED;
         }
     });
-    for n in 6..=10 {
+    // Condition numbers of the layouts that an exchange search of another program found, with sixty starts.
+    for (n, other) in (6..).zip([27.27, 33.68, 33.69, 26.29, 25.09]) {
         let layout = place(&c, &Spec::new(n, 6)).unwrap();
         let chosen: Vec<Gauge> = layout
             .gauges
@@ -336,9 +337,10 @@ fn table_6_10_ten_of_forty_four_and_ten_of_all_on_readings_of_the_other_model() 
             "6.10: {n} of 44: mean {:.2} %, max {:.2} %, condition {condition:.1}, coverage {:.3}",
             e.mean, e.max, e.coverage
         );
-        if n == 10 {
-            assert!(e.mean < 4.0 && e.max < 6.0, "{} {}", e.mean, e.max);
-        }
+        // The spots are the nearest shells to the printed stations, which moved by a few millimetres since.
+        assert!((condition / other - 1.0).abs() < 0.03, "{condition}");
+        // Measured 3.4, 2.9, 2.9, 2.4, 2.2 % (mean) and 5.8 to 3.7 % (largest).
+        assert!(e.mean < 4.4 && e.max < 7.0, "{} {}", e.mean, e.max);
     }
     let best = best_ten();
     let condition =
@@ -348,7 +350,8 @@ fn table_6_10_ten_of_forty_four_and_ten_of_all_on_readings_of_the_other_model() 
         "6.10: 10 of all candidates: mean {:.2} %, max {:.2} %, condition {condition:.1}, coverage {:.3}",
         e.mean, e.max, e.coverage
     );
-    assert!(e.mean < 4.0 && e.max < 6.0, "{} {}", e.mean, e.max);
+    // Measured 1.6 and 2.7 %.
+    assert!(e.mean < 3.0 && e.max < 5.0, "{} {}", e.mean, e.max);
     assert!(e.coverage > 0.90, "{}", e.coverage);
 }
 
@@ -507,9 +510,9 @@ fn table_6_9_shell_sensitivities_on_the_beam_truck_are_a_bias_of_the_model() {
     // joints. Measured 2.3 %.
     assert!(mean(&hot) < 4.0, "{hot:?}");
     // Measured .8 % (the thesis: 32 %). Fifteen gauges average the differences of those with large strain.
-    assert!(mean(&e) < 1.5, "{e:?}");
+    assert!(mean(&e) < 1.5 && largest_value(&e) < 2.5, "{e:?}");
     assert!(
-        mean(&shares) < 5.0,
+        mean(&shares) < 0.5,
         "two models of one truck share the weight alike: {shares:?}"
     );
 }
@@ -549,5 +552,6 @@ fn strains_of_the_two_meshes_differ_by_little_where_gauges_go() {
         .iter()
         .map(|g| [g.position.x, g.position.y, g.position.z])
         .collect();
-    assert!(mean(&off) < 3.0, "{off:?} {at:.0?}");
+    // Measured 0.8 %.
+    assert!(mean(&off) < 1.5, "{off:?} {at:.0?}");
 }

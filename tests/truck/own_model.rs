@@ -40,7 +40,8 @@ fn table_6_1_reactions_of_a_separately_supported_solution_come_back_to_1e_5() {
     let s = sensitivity(gauges, &vertical_load_cases(analyst_truck()));
     let errors = percent(&solve_least_squares(&s.values, &y), &truth);
     println!("6.1: largest error {:.2e} %", largest_value(&errors));
-    assert!(largest_value(&errors) < 1e-3, "{errors:?}");
+    // Measured 9e-8 %.
+    assert!(largest_value(&errors) < 1.8e-7, "{errors:?}");
 }
 
 #[test]

@@ -101,7 +101,8 @@ fn size_and_place_of_the_payload_from_wheel_forces_and_from_strain_of_the_other_
         region: Some([[-3000.0, 3000.0], [-500.0, 500.0]]),
     };
     let trials = 60;
-    for (source, limit) in [("wheel forces", 2.0), ("strain", 5.0), ("both", 2.0)] {
+    // Measured 0.4, 4.0 and 0.3 %.
+    for (source, limit) in [("wheel forces", 0.8), ("strain", 5.0), ("both", 0.6)] {
         let mut lot = Lot::new(65);
         let (mut square, mut held, mut off) = (0.0, 0, 0.0);
         for _ in 0..trials {
@@ -153,6 +154,8 @@ fn size_and_place_of_the_payload_from_wheel_forces_and_from_strain_of_the_other_
             "6.5: from {source}: rms {rms:.2} %, place off by {off:.0} mm, region holds it in {held} of {trials}"
         );
         assert!(rms < limit, "{source}: {rms} %");
+        // Measured 9 mm.
+        assert!(source != "both" || off < 18.0, "{off} mm");
         assert!(held * 10 >= trials * 9, "{source}: {held} of {trials}");
     }
 }

@@ -30,7 +30,8 @@ fn the_story_names_what_was_hidden_and_gets_the_loads_back() {
         result["payload_error"]
     );
     assert!(after < 0.06 && after < 0.5 * before, "{before} {after}");
-    assert!(number(&result["payload_error"]) < 0.02);
+    // Measured 0.35 %.
+    assert!(number(&result["payload_error"]) < 0.007);
     for chapter in [
         "1-solve",
         "2-place",
