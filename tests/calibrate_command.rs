@@ -123,7 +123,7 @@ fn a_truck_between_two_lanes_is_named_and_its_intervals_hold_one_lane_too() {
     let findings = result["findings"].as_array().unwrap();
     let named: Vec<&Value> = findings
         .iter()
-        .filter(|f| f["code"] == "loads-unlike-known-runs")
+        .filter(|f| f["code"] == "loads-unlike-calibration-runs")
         .collect();
     // The finding does not name the three trucks that are in one lane.
     assert_eq!(named.len(), 1, "{named:?}");
@@ -154,7 +154,7 @@ fn the_largest_known_load_is_stated_where_no_model_checks_its_unit() {
     let findings = result["findings"].as_array().unwrap();
     let found = findings
         .iter()
-        .find(|f| f["code"] == "known-loads-unchecked");
+        .find(|f| f["code"] == "known-loads-unit-untested");
     let message = found.expect("a finding")["message"].as_str().unwrap();
     assert!(message.contains("22434 kN"), "{message}");
 }
@@ -917,7 +917,7 @@ fn loads_of_one_unit_that_make_a_thousand_times_less_strain_are_named() {
         let job = write_job(&folder, job, &runs, strain);
         let (code, result, said) = run("calibrate", &job, &folder.join("out"));
         assert_eq!(code, Some(0), "{said}");
-        let found = of_code(&result, "known-loads-uneven");
+        let found = of_code(&result, "known-loads-unit-doubtful");
         assert_eq!(found.len(), named, "{said}");
         assert!(found.iter().all(|f| f["subject"] == "right"), "{said}");
     }
@@ -926,7 +926,10 @@ fn loads_of_one_unit_that_make_a_thousand_times_less_strain_are_named() {
     let runs = "run,left,right\nA,10,0\nB,20,0\nC,0,10\nD,0,20\n";
     let job = write_job(&folder, job, runs, strain);
     let (_, result, said) = run("calibrate", &job, &folder.join("out"));
-    assert!(of_code(&result, "known-loads-uneven").is_empty(), "{said}");
+    assert!(
+        of_code(&result, "known-loads-unit-doubtful").is_empty(),
+        "{said}"
+    );
 }
 
 /// Returns the strain of a payload: microstrain per kN and per kN m about y, for four gauges.

@@ -715,5 +715,5 @@ fn relief_that_is_stated_for_a_structure_that_supports_hold_is_reported() {
     let deck = strip("SPC1,1,123456,1\n").replace("CEND\n", "CEND\nSPC = 1\n");
     let (code, told, _) = solve("idle_relief", &deck);
     assert_eq!(code, 0, "{told}");
-    assert!(told.contains("inertia-relief-idle"), "{told}");
+    assert!(told.contains("inertia-relief-unused"), "{told}");
 }

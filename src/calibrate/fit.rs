@@ -274,7 +274,7 @@ fn statements(
             (Severity::Info, "")
         };
         out.push(
-            Finding::new(severity, "model-error-learnt", "model", message, remedy)
+            Finding::new(severity, "model-error-estimated", "model", message, remedy)
                 .with_numbers(worst, model.uncertainty_rel),
         );
     }

@@ -20,7 +20,7 @@ pub(super) fn findings(
         out.push(
             Finding::new(
                 Severity::Warning,
-                "run-far-off",
+                "run-deviates",
                 &l.estimate.run,
                 format!("run `{}` deviates by {far:.1} sigma from the other runs: {}. It is used", l.estimate.run, words(task, l)),
                 "check its place, its zero and its label; exclude it with `[calibration] runs` if it is wrong",

@@ -92,7 +92,7 @@ pub(super) fn findings(task: &Task, all: &[UndeterminedCombination]) -> Vec<Find
     let finding = if task.model.is_some() {
         Finding::new(
             Severity::Info,
-            "known-from-model-only",
+            "loads-from-model-only",
             list.join("; "),
             format!(
                 "no run determines these combinations of loads: {}. They are known from the model only",

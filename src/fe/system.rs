@@ -387,7 +387,7 @@ fn relief_without_motion(spc: Option<u32>) -> Finding {
     let held = spc.map_or("its supports".to_owned(), |set| format!("SPC set {set}"));
     Finding::new(
         Severity::Warning,
-        "inertia-relief-idle",
+        "inertia-relief-unused",
         "PARAM,INREL",
         format!(
             "PARAM,INREL,-2 is stated, and {held} leaves no rigid motion free: inertia balances no load, and the supports take all of it"

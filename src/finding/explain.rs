@@ -57,16 +57,38 @@ pub fn codes() -> &'static [Code] {
 }
 
 /// Former codes, each with the one that means the same today.
-const RENAMED: [(&str, &str); 9] = [
+const RENAMED: [(&str, &str); 31] = [
+    ("as-glued-untold", "installed-positions-uncertain"),
     ("dead_channel", "gauge-silent"),
+    ("flat-floor", "flat-floor-assumed"),
     ("gauge-missing", "gauge-without-strain"),
-    ("gauge_swap", "inputs-exchanged"),
     ("gauge-wired-backwards", "input-sign-reversed"),
+    ("gauge_swap", "inputs-exchanged"),
     ("gauges-exchanged", "inputs-exchanged"),
+    ("hot-at-a-joint", "hot-spot-at-joint"),
+    ("inertia-relief-idle", "inertia-relief-unused"),
+    ("known-from-model-only", "loads-from-model-only"),
     ("known-loads-sign", "input-sign-reversed"),
+    ("known-loads-unchecked", "known-loads-unit-untested"),
+    ("known-loads-uneven", "known-loads-unit-doubtful"),
     ("known-loads-unit", "input-unit"),
+    ("load-moved", "load-changed-by-effect"),
+    ("loads-unlike-known-runs", "loads-unlike-calibration-runs"),
+    ("mesh-error-not-weighed", "mesh-error-unknown"),
+    ("model-error-learnt", "model-error-estimated"),
     ("no-element-in-deck", "element-not-in-deck"),
+    ("no-gauge-may-fail", "no-spare-gauge"),
     ("no-grid-in-deck", "grid-not-in-deck"),
+    ("payload-elsewhere", "payload-place-differs"),
+    ("payload-vague", "payload-uncertain"),
+    ("readings-all-alike", "readings-all-equal"),
+    ("record-stands-still", "record-constant"),
+    ("run-far-off", "run-deviates"),
+    ("states-left-out", "load-states-skipped"),
+    ("stress-not-formed", "stress-not-computed"),
+    ("stress-not-turned-to-strain", "stress-not-converted"),
+    ("vibration-taken-out", "vibration-removed"),
+    ("zero-followed", "zero-interpolated"),
 ];
 
 /// Returns the entry of a code, or of the code that replaced it; `None` if no finding has the code.

@@ -292,7 +292,7 @@ pub(crate) fn zeros_by_row(
     work.findings.push(
         Finding::new(
             Severity::Info,
-            "zero-followed",
+            "zero-interpolated",
             "measured.zero_runs",
             format!(
                 "the zero is interpolated between {} runs without load; it changes by {:.2} microstrain from run to run (rms over gauges)",

@@ -12,7 +12,7 @@ use crate::linalg::spd;
 use crate::sensitivity::Uncertainty;
 
 /// Code of runs with several loads that act together in no calibration run.
-pub const CODE: &str = "loads-unlike-known-runs";
+pub const CODE: &str = "loads-unlike-calibration-runs";
 
 /// Number of runs with several loads that shows normal use, if most runs have several loads. Of runs with a single load, one in a hundred appears to
 /// have several loads.

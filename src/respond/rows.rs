@@ -209,7 +209,7 @@ fn left_out(anisotropic: usize, absent: usize) -> Vec<Finding> {
         findings.push(
             Finding::new(
                 Severity::Warning,
-                "stress-not-formed",
+                "stress-not-computed",
                 "elements",
                 format!("{anisotropic} elements have a material that is not isotropic: they have strain, and no von Mises stress here"),
                 "assess them by strain",

@@ -458,7 +458,7 @@ pub(super) fn uncertainty(
         );
         let remedy =
             "use fewer gauges at a time, or state the remaining error in `model_uncertainty_rel`";
-        let code = "mesh-error-not-weighed";
+        let code = "mesh-error-unknown";
         work.findings.push(
             Finding::new(Severity::Warning, code, "model.mesh_error", message, remedy)
                 .with_numbers((n * k) as f64, MOST_ENTRIES as f64),

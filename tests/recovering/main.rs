@@ -398,7 +398,7 @@ fn a_zero_that_drifts_is_followed_through_runs_without_load() {
         }
     }
     let codes = result["findings"].as_array().unwrap();
-    assert!(codes.iter().any(|f| f["code"] == "zero-followed"));
+    assert!(codes.iter().any(|f| f["code"] == "zero-interpolated"));
     let (code, said, _, _) = recover(
         "zero-runs-none",
         &drifting_strain_table(),

@@ -159,7 +159,7 @@ fn blank_readings_and_runs_without_a_measurement_are_said() {
             assert_eq!(code, 0, "{said}");
             for code in [
                 "readings-missing",
-                "readings-all-alike",
+                "readings-all-equal",
                 "readings-repeated",
             ] {
                 let is_said = said.contains(&format!("warning [{code}]"));
@@ -178,7 +178,7 @@ fn blank_readings_and_runs_without_a_measurement_are_said() {
     let (_, said) = call(&dir, &["recover", "recover.toml"]);
     assert!(said.contains("[readings-missing] P03 in R02"), "{said}");
     change(&|i, c, f| if i == 2 && c > 0 { "0" } else { f }.to_owned());
-    asked(&["readings-all-alike"]);
+    asked(&["readings-all-equal"]);
     let first: Vec<&str> = whole.lines().nth(1).unwrap().split(',').collect();
     change(&|i, c, f| if i == 2 && c > 0 { first[c] } else { f }.to_owned());
     let (_, said) = call(&dir, &["recover", "recover.toml"]);
@@ -210,7 +210,7 @@ fn a_record_that_repeats_itself_in_a_part_is_said_to_stand_still_or_to_be_no_mea
         assert_eq!(code, 0, "{said}");
         said
     };
-    assert!(!said(&whole).contains("record-stands-still"));
+    assert!(!said(&whole).contains("record-constant"));
     // From t = 14.95 s to 17.40 s at 20 Hz: zeros that a logger inserts, and values that a frozen logger repeats.
     let stuck = |i: usize| (300..350).contains(&i);
     let zeros = fields(&whole, |i, c, f| {
@@ -224,7 +224,7 @@ fn a_record_that_repeats_itself_in_a_part_is_said_to_stand_still_or_to_be_no_mea
     for text in [zeros, repeated] {
         let said = said(&text);
         assert!(
-            said.contains("warning [record-stands-still]")
+            said.contains("warning [record-constant]")
                 && said.contains("From t = 14.950000 s to t = 17.400000 s"),
             "{said}"
         );

@@ -176,7 +176,7 @@ fn weigh(name: &str, seeds: std::ops::Range<u64>) -> Option<WeighingResults> {
             let name = &b.runs[*i].0;
             let mut said = found.findings.iter().filter(|f| f.subject == *name);
             if lane == b.runs[*i].1 {
-                out.alarms += usize::from(said.any(|f| f.code == "loads-unlike-known-runs"));
+                out.alarms += usize::from(said.any(|f| f.code == "loads-unlike-calibration-runs"));
                 continue;
             }
             out.wrong_lanes.push(name.clone());

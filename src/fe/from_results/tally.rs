@@ -132,7 +132,7 @@ fn finding(met: Irregularity, entry: &Entry, name: &str) -> Finding {
         ),
         Irregularity::NotIsotropic => (
             Warning,
-            "stress-not-turned-to-strain",
+            "stress-not-converted",
             format!(
                 "{n} elements have stress only and no isotropic material; they were left out: {ids}"
             ),

@@ -273,7 +273,7 @@ pub(super) fn report_mass_findings(
     let job = task.job;
     work.findings.push(Finding::new(
         Severity::Info,
-        "flat-floor",
+        "flat-floor-assumed",
         "reactions",
         "the model is on a flat, level, frictionless floor; its springs determine how the wheels share the weight, and tyres are rigid",
         "",

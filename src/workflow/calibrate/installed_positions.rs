@@ -248,7 +248,7 @@ pub(super) fn report_undetermined_values(gauges: &[CalibratedGauge]) -> Option<F
     (count > 0).then(|| {
         Finding::new(
             Severity::Info,
-            "as-glued-untold",
+            "installed-positions-uncertain",
             "calibration",
             format!(
                 "the runs reduce the stated variance of these values by less than half: {}",

@@ -68,7 +68,7 @@ pub(super) fn report_unchecked_loads(task: &Task, listed: &ListedLoads) -> Optio
     (!each.is_empty()).then(|| {
         Finding::new(
             Severity::Info,
-            "known-loads-unchecked",
+            "known-loads-unit-untested",
             "runs",
             message,
             "check whether this load was applied, and its unit ([runs] units)",
@@ -119,7 +119,7 @@ pub(super) fn report_uneven_loads(
     odd.map(|(a, most, times)| {
         Finding::new(
             Severity::Warning,
-            "known-loads-uneven",
+            "known-loads-unit-doubtful",
             listed.names[a].clone(),
             format!(
                 "one {} of this load causes {} times less strain than one of `{}`: the recorded units may differ",

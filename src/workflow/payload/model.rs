@@ -319,7 +319,7 @@ fn build_model_on_wheels(
     task.nominal = [at[b] * task.length, at[c] * task.length];
     work.findings.push(Finding::new(
         Severity::Info,
-        "flat-floor",
+        "flat-floor-assumed",
         "payload",
         "without measured wheel forces, the structure is assumed on a flat, level, frictionless floor; its springs determine how the wheels share the payload, and tyres are rigid",
         "",

@@ -150,7 +150,7 @@ fn check_stated_place(
         work.findings.push(
             Finding::new(
                 Severity::Warning,
-                "payload-elsewhere",
+                "payload-place-differs",
                 &r.run,
                 format!(
                     "the moments of the wheel forces put the payload at {}, {} {unit}, not at the place in the job",
@@ -218,7 +218,7 @@ pub(super) fn findings(
             work.findings.push(
                 Finding::new(
                     Severity::Warning,
-                    "payload-vague",
+                    "payload-uncertain",
                     &r.run,
                     format!(
                         "the readings do not distinguish a payload from an empty structure: it is at most {} {}, with 97.5 % probability",
@@ -233,7 +233,7 @@ pub(super) fn findings(
             work.findings.push(
                 Finding::new(
                     Severity::Warning,
-                    "payload-vague",
+                    "payload-uncertain",
                     &r.run,
                     "the 95 % interval is wider than half of the payload",
                     "add gauges where the payload strains the structure, longer means, or wheel forces",

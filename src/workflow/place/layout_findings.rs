@@ -274,7 +274,7 @@ pub(super) fn report_layout_findings(
     if q.worst_loss == 0.0 {
         work.findings.push(Finding::new(
             Severity::Warning,
-            "no-gauge-may-fail",
+            "no-spare-gauge",
             "placement.gauges",
             format!("{} gauges for {k} loads have no redundancy: if one gauge fails, the loads cannot be separated, and no residual shows a fault", placed.len()),
             "place several gauges more than loads",

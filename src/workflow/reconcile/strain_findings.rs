@@ -108,7 +108,7 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
                 work.findings.push(
                     Finding::new(
                         Severity::Info,
-                        "load-moved",
+                        "load-changed-by-effect",
                         format!("{} in {}", l.load, l.run),
                         format!(
                             "with the effect, the recovered load changes from {:.2} to {:.2} {}",

@@ -93,7 +93,7 @@ fn report_constant_parts(record: &Record, parts: &[[usize; 2]]) -> Option<Findin
     };
     let finding = Finding::new(
         Severity::Warning,
-        "record-stands-still",
+        "record-constant",
         record.file(),
         format!(
             "from t = {from:.6} s to t = {to:.6} s{others} all gauges are constant. Either the structure is at standstill, or the logger \

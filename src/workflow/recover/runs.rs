@@ -121,7 +121,7 @@ fn blanks(table: &StrainTable, names: &[String], gauges: &[(usize, &str)]) -> Ve
         out.push(
             Finding::new(
                 Severity::Warning,
-                "readings-all-alike",
+                "readings-all-equal",
                 list_few(&alike),
                 "in these runs all gauges have one common reading, as a logger without signal gives. The readings are used",
                 "leave the run out if nothing was measured; leave missing readings blank",

@@ -90,7 +90,7 @@ pub(super) fn vibration_finding(motion: &Motion, asked: &Dynamic, file: &str) ->
     };
     let finding = Finding::new(
         Severity::Info,
-        "vibration-taken-out",
+        "vibration-removed",
         file,
         format!(
             "loads up to {} Hz, with {} modes{first}, {damping}: {as_at_rest}; {:.3} s at either end and next to gaps are blank",

@@ -311,7 +311,7 @@ fn report_findings(
         work.findings.push(
             Finding::new(
                 Severity::Warning,
-                "hot-at-a-joint",
+                "hot-spot-at-joint",
                 list_few(&at_joint),
                 "these elements touch a rigid element: their stress is the stress of the idealised joint and grows as the mesh is refined",
                 "assess the joint by its forces, or by elements a plate thickness away",

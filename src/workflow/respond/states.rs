@@ -144,7 +144,7 @@ fn finish(
         work.findings.push(
             Finding::new(
                 Severity::Warning,
-                "states-left-out",
+                "load-states-skipped",
                 &named.given,
                 format!("{blank} rows lack a load and are left out"),
                 "fill them, or cut the record",
