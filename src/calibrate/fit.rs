@@ -70,8 +70,8 @@ fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
         state.lack = lack.covariance;
         left_out = held_out::leave_out(task, &state);
     }
-    let judged = held_out::test_coverage(&left_out, state.scatter.dof);
-    let mut sensitivity = state.sensitivity(task, judged.factor);
+    let coverage_test = held_out::test_coverage(&left_out, state.scatter.dof);
+    let mut sensitivity = state.sensitivity(task, coverage_test.factor);
     if let Some(uncertainty) = &mut sensitivity.uncertainty {
         uncertainty.is_tested = !left_out.is_empty();
         uncertainty.add_common_scale(&sensitivity.values, task.scale_sd);
@@ -89,8 +89,14 @@ fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
     let gone = exchanged.iter().filter(|e| e.certain).count() + refused.len();
     let suspect = held_out::suspects(&left_out).len();
     findings.extend(excluded_runs::too_many(gone + suspect, task.runs.len()));
-    findings.extend(excluded_runs::held_too_few(&judged));
-    findings.extend(statements(task, &state, model_error, &judged, &left_out));
+    findings.extend(excluded_runs::held_too_few(&coverage_test));
+    findings.extend(statements(
+        task,
+        &state,
+        model_error,
+        &coverage_test,
+        &left_out,
+    ));
     findings.extend(undetermined_combinations::findings(task, &undetermined));
     if undetermined.is_empty() || task.model.is_some() {
         findings.extend(undetermined_combinations::too_wide(
@@ -121,7 +127,7 @@ fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
         repeat_scatter_rel: state.scatter.dof.is_finite().then(|| state.scatter.rms()),
         noise_rel: task.noise / signal.sqrt(),
         left_out,
-        coverage: judged,
+        coverage: coverage_test,
         refused: {
             let certain = exchanged.iter().filter(|e| e.certain);
             let labels = certain.flat_map(|e| e.runs);

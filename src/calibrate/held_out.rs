@@ -109,8 +109,8 @@ pub(super) fn recover_left_out(
         found.estimate.covariance[at] + loads.covariance[at]
     };
     let covariance: Vec<f64> = (0..w * w).map(entry).collect();
-    let told = KnownLoadPart::from_known_loads(loads, &wanted, &state.scales[..k]);
-    if told.combinations == 0 {
+    let known_part = KnownLoadPart::from_known_loads(loads, &wanted, &state.scales[..k]);
+    if known_part.combinations == 0 {
         return None;
     }
     let apart: Vec<f64> = wanted
@@ -128,11 +128,11 @@ pub(super) fn recover_left_out(
             .sum();
         off * off / variance
     };
-    let each = told.alone.iter();
+    let each = known_part.alone.iter();
     let each = each.map(|&i| apart[i] * apart[i] / covariance[i * w + i]);
     Some(LeftOut {
-        each: each.sum::<f64>() / told.alone.len().max(1) as f64,
-        alone: told.alone.len(),
+        each: each.sum::<f64>() / known_part.alone.len().max(1) as f64,
+        alone: known_part.alone.len(),
         sums: task
             .sums
             .iter()
@@ -141,7 +141,7 @@ pub(super) fn recover_left_out(
             .collect(),
         number,
         distance: mahalanobis(&covariance, &apart)?,
-        loads: told.combinations,
+        loads: known_part.combinations,
         dof,
         misfit: found.chi2 / found.dof.max(1) as f64,
         known: loads.mean.clone(),

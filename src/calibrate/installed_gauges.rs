@@ -42,7 +42,7 @@ pub fn calibrate_installed_gauges(
     .filter(|m| m.1 > 0.0)
     .collect();
     // S may contain more than the field gives, such as a correction for the mesh. This part moves with the gauge.
-    let besides: Vec<Vec<f64>> = (0..n)
+    let corrections: Vec<Vec<f64>> = (0..n)
         .map(|g| match row(g, [0.0; 3]) {
             Some(r) => (0..k).map(|l| drawn.values[(g, l)] - r[l]).collect(),
             None => vec![0.0; k],
@@ -56,7 +56,7 @@ pub fn calibrate_installed_gauges(
         let mut changes = vec![Matrix::zeros(n, k); kinds.len()];
         for g in 0..n {
             let Some(here) = row(g, at[g]) else { continue };
-            (0..k).for_each(|l| values[(g, l)] = here[l] + besides[g][l]);
+            (0..k).for_each(|l| values[(g, l)] = here[l] + corrections[g][l]);
             for (change, (kind, sd)) in changes.iter_mut().zip(&kinds) {
                 let side = |sign: f64| {
                     let mut place = at[g];

@@ -19,7 +19,7 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<UndeterminedCombination> 
     let runs: Vec<&KnownRun> = (state.used.iter())
         .filter_map(|r| task.runs.get(*r))
         .collect();
-    let directions = UnknownDirections::from_runs(&runs, &state.scales).untold;
+    let directions = UnknownDirections::from_runs(&runs, &state.scales).undetermined;
     let one = |z: &Vec<f64>| {
         let terms: Vec<f64> = z.iter().zip(&state.scales).map(|(v, c)| v * c).collect();
         let top = terms
@@ -148,9 +148,9 @@ pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Fi
         estimate(s, &readings, errors)
     });
     let k = s.loads.len();
-    let (told, untold): (Vec<_>, Vec<_>) = recovered.partition(|r| r.rank == k);
-    let unsolved = untold.len();
-    let told: Vec<&LoadEstimate> = told.iter().map(|r| &r.estimate).collect();
+    let (determined, undetermined_runs): (Vec<_>, Vec<_>) = recovered.partition(|r| r.rank == k);
+    let unsolved = undetermined_runs.len();
+    let determined: Vec<&LoadEstimate> = determined.iter().map(|r| &r.estimate).collect();
     let width = |l: usize| -> f64 {
         let kind = task.loads[l].quantity;
         let alike = (0..k).filter(|m| task.loads[*m].wanted && task.loads[*m].quantity == kind);
@@ -162,7 +162,7 @@ pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Fi
             let [low, high] = e.interval(l);
             (high - low) / 2.0
         };
-        let mut all: Vec<f64> = (told.iter())
+        let mut all: Vec<f64> = (determined.iter())
             .map(|e| half(e) / most)
             .chain(std::iter::repeat_n(f64::INFINITY, unsolved))
             .collect();
@@ -202,7 +202,7 @@ pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Fi
         format!(
             "with this S the gauges do not determine these loads. The half width of the 95 % interval in percent of the largest load is: {}{why}{}",
             each.join("; "),
-            describe_determined_sums(task, &told)
+            describe_determined_sums(task, &determined)
         ),
         "add runs in which each of these loads acts alone, repeats, or gauges at places where they differ; or use combinations of loads only",
     );

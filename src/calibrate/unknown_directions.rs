@@ -23,8 +23,8 @@ pub(super) struct UnknownDirections {
     /// Known parts of the loads by run: the loads without their components along unknown directions.
     pub parts: Vec<Vec<f64>>,
     /// Orthonormal directions along which the known part of the loads is zero in every run.
-    pub untold: Vec<Vec<f64>>,
-    /// Orthonormal directions among `untold` along which the loads are unknown, by run.
+    pub undetermined: Vec<Vec<f64>>,
+    /// Orthonormal directions among `undetermined` along which the loads are unknown, by run.
     pub free: Vec<Vec<Vec<f64>>>,
     /// See [`FREE`].
     variance: f64,
@@ -55,11 +55,14 @@ impl UnknownDirections {
             parts.push(part);
             wide.push(directions);
         }
-        let untold = null_space(&gram, k);
-        let free = wide.iter().map(|w| common_directions(&untold, w)).collect();
+        let undetermined = null_space(&gram, k);
+        let free = wide
+            .iter()
+            .map(|w| common_directions(&undetermined, w))
+            .collect();
         Self {
             parts,
-            untold,
+            undetermined,
             free,
             variance: FREE * runs.len() as f64,
         }

@@ -15,12 +15,12 @@ use std::process::{Command, ExitCode, Stdio};
 pub(super) fn verify(a: &VerifyArguments) -> ExitCode {
     // Jobs that a command writes contain paths relative to their folder. The scratch folder is next to the given folder, so these paths agree.
     let folder = std::fs::canonicalize(&a.folder).unwrap_or_else(|_| a.folder.clone());
-    let beside = format!(".strainbridge-verify-{}", std::process::id());
-    let scratch = Scratch(folder.with_file_name(beside));
+    let scratch_name = format!(".strainbridge-verify-{}", std::process::id());
+    let scratch = Scratch(folder.with_file_name(scratch_name));
     Run::from_arguments(&a.common, &a.folder).question(a.common.out.as_deref(), |cx| {
-        let anew =
+        let recompute =
             |made: &ResultProvenance, main: &Path| rerun_command(&a.folder, made, main, &scratch.0);
-        crate::workflow::verify::verify(&a.folder, anew, cx)
+        crate::workflow::verify::verify(&a.folder, recompute, cx)
     })
 }
 

@@ -114,11 +114,11 @@ pub(super) fn weak_unknowns(assembled: &AssembledStiffness, autospc: bool) -> Ve
 /// Gershgorin: every eigenvalue is above 1e-4 of the largest diagonal entry.
 fn well_held(k: &DMatrix<f64>, largest: f64) -> bool {
     (0..k.nrows()).all(|i| {
-        let beside: f64 = (0..k.ncols())
+        let off_diagonal: f64 = (0..k.ncols())
             .filter(|&j| j != i)
             .map(|j| k[(i, j)].abs())
             .sum();
-        k[(i, i)] - beside > 1e-4 * largest
+        k[(i, i)] - off_diagonal > 1e-4 * largest
     })
 }
 

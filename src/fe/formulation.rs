@@ -6,7 +6,7 @@ use nastran::cards::ShellShape;
 
 /// Returns findings on elements that the solver computes with another formulation than Nastran.
 pub(super) fn formulations(model: &Model) -> Vec<Finding> {
-    let told: [(&[ShellShape], &str, &str); 2] = [
+    let groups: [(&[ShellShape], &str, &str); 2] = [
         (
             &[ShellShape::QuadR, ShellShape::TriaR],
             "CQUADR, CTRIAR",
@@ -18,7 +18,7 @@ pub(super) fn formulations(model: &Model) -> Vec<Finding> {
             "solved as one quadrilateral at each corner around a point in the middle, on the curved surface through the grids",
         ),
     ];
-    let mut all: Vec<Finding> = told
+    let mut all: Vec<Finding> = groups
         .into_iter()
         .filter_map(|(shapes, cards, what)| {
             let n = model.shells.iter().filter(|s| shapes.contains(&s.shape)).count();

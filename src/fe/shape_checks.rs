@@ -32,7 +32,7 @@ pub fn check_shapes(model: &Model) -> Vec<Finding> {
         .collect();
     let worst = folded.iter().map(|f| f.1).fold(0.0, f64::max);
     let folded: Vec<u32> = folded.into_iter().map(|f| f.0).collect();
-    let told = [
+    let checks = [
         (
             inverted,
             "inverted-solid",
@@ -55,7 +55,8 @@ pub fn check_shapes(model: &Model) -> Vec<Finding> {
             Some((worst, FOLDED)),
         ),
     ];
-    told.into_iter()
+    checks
+        .into_iter()
         .filter(|t| !t.0.is_empty())
         .map(|(ids, code, what, remedy, numbers)| {
             let finding = Finding::new(

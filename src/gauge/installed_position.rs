@@ -141,8 +141,8 @@ impl<'m> NominalGauge<'m> {
             let across = self.gauge.normal.cross(&axis);
             let off = x - self.at;
             let (a, c) = (off.dot(&axis), off.dot(&across));
-            let beside = (a - unit.along * asked).hypot(c - unit.across * asked);
-            if beside > MAX_STEP_MISS_REL * asked.abs() {
+            let miss = (a - unit.along * asked).hypot(c - unit.across * asked);
+            if miss > MAX_STEP_MISS_REL * asked.abs() {
                 return None;
             }
             Some((a * unit.along + c * unit.across, read(&gauge)?))

@@ -70,16 +70,16 @@ pub fn column_remedy(gauges: &[&str], columns: &[&str]) -> String {
         }));
     }
     pairs.sort_unstable();
-    let mut told: Vec<(usize, &str, &str)> = Vec::new();
+    let mut suggestions: Vec<(usize, &str, &str)> = Vec::new();
     for p in pairs {
-        if told.iter().all(|t| t.1 != p.1) {
-            told.push(p);
+        if suggestions.iter().all(|t| t.1 != p.1) {
+            suggestions.push(p);
         }
     }
-    if told.is_empty() {
+    if suggestions.is_empty() {
         return "name the columns after the gauges".to_owned();
     }
-    let list: Vec<String> = told
+    let list: Vec<String> = suggestions
         .iter()
         .map(|(_, c, g)| format!("`{c}` for `{g}`"))
         .collect();

@@ -362,8 +362,8 @@ pub fn known_column(
         );
         faults.push(Fault::with_line(&*t.file, 1, header, wrong, remedy));
     } else if unit != of_job {
-        let doubt = find_ambiguous_noise(job, runs, quantity, unit, of_job);
-        if let Some(fault) = doubt.filter(|f| !faults.contains(f)) {
+        let ambiguous = find_ambiguous_noise(job, runs, quantity, unit, of_job);
+        if let Some(fault) = ambiguous.filter(|f| !faults.contains(f)) {
             faults.push(fault);
         }
     }

@@ -134,10 +134,10 @@ fn units_of_a_runs_file_stand_in_its_header_or_below_and_contradict_nothing() {
     let plain = si("run,LF.FZ,LF.MX\nR1,2,3\n", "");
     assert_eq!(plain, [2e3, 3.0]);
     let below = si("run,LF.FZ,LF.MX\n-,N,kN m\nR1,2000,0.003\n", "");
-    let beside = si("run,LF.FZ [N],LF.MX (N*m)\nR1,2000,3\n", "");
+    let in_name = si("run,LF.FZ [N],LF.MX (N*m)\nR1,2000,3\n", "");
     // 0.003 times a thousand is rounded in its last digit.
     assert!(below[0] == 2e3 && (below[1] - 3.0).abs() < 1e-12);
-    assert_eq!(beside, plain);
+    assert_eq!(in_name, plain);
     let named = "columns = { \"LF.FZ\" = \"axle (front)\" }\n";
     assert_eq!(si("run,axle (front),LF.MX\nR1,2,3\n", named), plain);
     // A unit that the job also states must be the same.
@@ -354,13 +354,13 @@ fn units_that_contradict_each_other_are_faults_of_what_is_asked_for() {
         "{said}"
     );
     // `MN` and `mN`, or `N` and `kN`, are different units: two units for one column are a fault.
-    for [beside, below] in [["MN", "mN"], ["N", "kN"]] {
-        let table = format!("run,LF.FZ [{beside}],LF.MX\n-,{below},N m\nR1,2,3\n");
-        let named = format!("columns = {{ \"LF.FZ\" = \"LF.FZ [{beside}]\" }}\n");
+    for [in_name, below] in [["MN", "mN"], ["N", "kN"]] {
+        let table = format!("run,LF.FZ [{in_name}],LF.MX\n-,{below},N m\nR1,2,3\n");
+        let named = format!("columns = {{ \"LF.FZ\" = \"LF.FZ [{in_name}]\" }}\n");
         for more in ["", &named] {
             let said = runs_of(&table, more).unwrap_err()[0].to_string();
             let wrong =
-                format!("`{beside}` after the name, and `{below}` as the unit of the column");
+                format!("`{in_name}` after the name, and `{below}` as the unit of the column");
             assert!(said.contains(&wrong), "{said}");
         }
     }

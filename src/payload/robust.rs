@@ -133,11 +133,11 @@ pub fn robust_payload(gauges: &[GaugeEstimates], spec: &RobustSpec) -> Option<Ro
 /// Returns three standard deviations of the joint estimate of gauges with these standard deviations: an empty structure may read so far below zero.
 /// The weights are `1 / s`, so the mean of `n` has the standard deviation `sqrt(n) / sum(1 / s)`.
 pub(super) fn joint_uncertainty(sigma: impl Iterator<Item = f64>) -> f64 {
-    let (n, told) = sigma
+    let (n, inverse_sum) = sigma
         .filter(|s| *s > 0.0 && s.is_finite())
         .fold((0.0_f64, 0.0), |a, s| (a.0 + 1.0, a.1 + 1.0 / s));
-    if told > 0.0 {
-        SIGN_SIGMAS * n.sqrt() / told
+    if inverse_sum > 0.0 {
+        SIGN_SIGMAS * n.sqrt() / inverse_sum
     } else {
         0.0
     }

@@ -52,12 +52,12 @@ pub fn weigh(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     if has_strain && !has_wheels && spec.place == Place::Known && !is_correlated {
         return apply_calibration(model, runs, spec, by_strain(model, runs, spec));
     }
-    let told: Vec<bool> = runs
+    let is_determined: Vec<bool> = runs
         .iter()
         .map(|r| determines_payload(model, r, spec))
         .collect();
-    if told.contains(&false) && told.contains(&true) {
-        let some = runs.iter().zip(&told).filter(|(_, t)| **t);
+    if is_determined.contains(&false) && is_determined.contains(&true) {
+        let some = runs.iter().zip(&is_determined).filter(|(_, t)| **t);
         let some: Vec<PayloadRun> = some.map(|(r, _)| r.clone()).collect();
         let found = weigh(model, &some, spec);
         let mut weighed = found.runs.into_iter();
@@ -66,7 +66,7 @@ pub fn weigh(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
             found.unwrap_or_else(|| undetermined_run(r, n))
         };
         return Weighing {
-            runs: runs.iter().zip(&told).map(of).collect(),
+            runs: runs.iter().zip(&is_determined).map(of).collect(),
             gauges: found.gauges,
             unlike: found.unlike,
         };
@@ -237,7 +237,7 @@ fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     // First each run is tested separately. A run with a significantly negative payload, or without a payload, must not reduce the weight of its
     // gauges in other runs. The noise level of a gauge is common to all runs.
     let mut out: Vec<WeighedRun> = Vec::new();
-    let mut judged: Vec<usize> = Vec::new();
+    let mut accepted: Vec<usize> = Vec::new();
     // The model error is proportional to the payload. The first round uses the median of the gauges as payload, later rounds use the answer.
     let mut sizes: Vec<f64> = Vec::new();
     for (i, run) in runs.iter().enumerate() {
@@ -250,7 +250,7 @@ fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
         };
         let refused = refused_by_itself(&estimates, &estimate_sigma, spec.largest);
         if refused.is_none() {
-            judged.push(i);
+            accepted.push(i);
             sizes.push(size);
         }
         let force = match refused {
@@ -267,21 +267,21 @@ fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     }
     let mut answer = None;
     for _ in 0..2 {
-        for (i, size) in judged.iter().zip(&sizes) {
+        for (i, size) in accepted.iter().zip(&sizes) {
             let found = alone_on_floor(model, &runs[*i], size.max(0.0), spec);
             (out[*i].estimates, out[*i].estimate_sigma) = found;
         }
         let of_gauge = |g: usize| GaugeEstimates {
             name: model.gauges[g].clone(),
-            estimates: judged.iter().map(|i| out[*i].estimates[g]).collect(),
-            sigma: Some(judged.iter().map(|i| out[*i].estimate_sigma[g]).collect()),
+            estimates: accepted.iter().map(|i| out[*i].estimates[g]).collect(),
+            sigma: Some(accepted.iter().map(|i| out[*i].estimate_sigma[g]).collect()),
         };
         let gauges: Vec<GaugeEstimates> = (0..n).map(of_gauge).collect();
         let robust = RobustSpec {
             relative_scatter: spec.model_rel.max(GAUGE_FACTOR_REL),
             largest: spec.largest,
         };
-        answer = match judged.is_empty() {
+        answer = match accepted.is_empty() {
             true => None,
             false => robust_payload(&gauges, &robust),
         };
@@ -290,7 +290,7 @@ fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
         }
     }
     let Some(answer) = answer else {
-        for i in &judged {
+        for i in &accepted {
             out[*i].refused = Some(Refusal::Undetermined);
         }
         return Weighing {
@@ -299,7 +299,7 @@ fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
             unlike: Vec::new(),
         };
     };
-    for (i, a) in judged.iter().zip(&answer.runs) {
+    for (i, a) in accepted.iter().zip(&answer.runs) {
         // The common model error widens the joint interval of the gauges.
         let whole = spec.model_rel * a.value;
         let widen = |edge: f64| {

@@ -63,7 +63,7 @@ pub fn find_least_condition(
         k,
         rows: &rows,
         base,
-        judged: TESTED_ROWS[many],
+        tested: TESTED_ROWS[many],
         excludes: &excludes,
     };
     let known: Vec<usize> = (0..layout.gauges.len()).collect();
@@ -169,7 +169,7 @@ struct Search<'a, E> {
     k: usize,
     rows: &'a [f64],
     base: &'a [f64],
-    judged: usize,
+    tested: usize,
     excludes: &'a E,
 }
 
@@ -269,7 +269,7 @@ impl<E: Fn(usize, usize) -> bool> Search<'_, E> {
             })
             .collect();
         let by = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-        let sure = (8 * self.judged).min(keyed.len());
+        let sure = (8 * self.tested).min(keyed.len());
         if sure > 0 && sure < keyed.len() {
             keyed.select_nth_unstable_by(sure - 1, by);
             keyed.truncate(sure);
@@ -279,7 +279,7 @@ impl<E: Fn(usize, usize) -> bool> Search<'_, E> {
             .into_iter()
             .map(|x| x.1)
             .filter(|&i| self.fits(rows, slot, i))
-            .take(self.judged)
+            .take(self.tested)
             .collect()
     }
 }

@@ -223,12 +223,12 @@ fn evaluate_cause_set(observations: &Observations, noise: &[f64], causes: &[&Cau
         for (k, slopes) in out.slopes.iter_mut().enumerate() {
             let column: Vec<f64> = ch.runs.iter().map(|&r| slope_variance * at(k, r)).collect();
             let value: f64 = column.iter().zip(&weighted).map(|(a, b)| a * b).sum();
-            let told: f64 = column
+            let explained: f64 = column
                 .iter()
                 .zip(p.apply(&column))
                 .map(|(a, b)| a * b)
                 .sum();
-            let left = (slope_variance - told).max(0.0).sqrt();
+            let left = (slope_variance - explained).max(0.0).sqrt();
             slopes.push((value / x[k].1, left / x[k].1));
         }
         for run in observations.proof_runs() {

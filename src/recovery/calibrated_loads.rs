@@ -106,9 +106,10 @@ pub(super) fn estimate_with(
     out.dof = (used.len() + priors.iter().flatten().count()).saturating_sub(solved.fit.rank);
     out.rank = solved.fit.rank;
     out.estimate.values = f;
-    let told = solved.fit.covariance.transpose();
-    let told = spd::cholesky(told.as_slice(), k).map_or(f64::NAN, |l| spd::log_det(&l, k));
-    let likelihood = 0.5 * (told - solved.log_det - out.chi2);
+    let posterior = solved.fit.covariance.transpose();
+    let posterior =
+        spd::cholesky(posterior.as_slice(), k).map_or(f64::NAN, |l| spd::log_det(&l, k));
+    let likelihood = 0.5 * (posterior - solved.log_det - out.chi2);
     (out, likelihood)
 }
 

@@ -34,7 +34,7 @@ pub struct Filter {
     typical: Vec<f64>,
     widening: Widening,
     /// Error of the readings in addition to these errors, sample by sample.
-    doubt: Option<Arc<ReadingCovariance>>,
+    reading_covariance: Option<Arc<ReadingCovariance>>,
     /// Sums of loads that are listed after the loads.
     sums: Vec<Vec<(usize, f64)>>,
     /// Estimates by the set of gauges that read.
@@ -67,7 +67,7 @@ impl Filter {
             gain: Vec::new(),
             rows: Vec::new(),
             sums: Vec::new(),
-            doubt: None,
+            reading_covariance: None,
             zero,
             s: s.clone(),
             errors,
@@ -81,10 +81,10 @@ impl Filter {
     }
 
     /// Adds further errors of the readings beyond the errors of the filter. Call it before sums of loads are added.
-    pub fn add_reading_covariance(&mut self, doubt: Arc<ReadingCovariance>) {
-        let noise = doubt.of_noise(&self.whole.used);
+    pub fn add_reading_covariance(&mut self, reading_covariance: Arc<ReadingCovariance>) {
+        let noise = reading_covariance.of_noise(&self.whole.used);
         self.whole = Arc::new(self.whole.with_noise(&noise));
-        self.doubt = Some(doubt);
+        self.reading_covariance = Some(reading_covariance);
         self.others = RwLock::new(HashMap::new());
     }
 
@@ -239,8 +239,8 @@ impl Filter {
             self.noise_factor,
             &self.typical,
         )
-        .map(|g| match &self.doubt {
-            Some(doubt) => g.with_noise(&doubt.of_noise(&g.used)),
+        .map(|g| match &self.reading_covariance {
+            Some(reading_covariance) => g.with_noise(&reading_covariance.of_noise(&g.used)),
             None => g,
         })
         .map(|g| Arc::new(g.with_sums(&self.sums)));
@@ -298,8 +298,8 @@ impl Filter {
 
     /// Returns the variance that motion leaves in load `l`; the widening by residuals does not change it.
     fn of_motion(&self, gain: &Gain, sample: Option<usize>, l: usize) -> f64 {
-        let doubt = self.doubt.as_ref();
-        doubt.map_or(0.0, |d| d.of_motion(sample, &gain.used, &gain.weights(l)))
+        let reading_covariance = self.reading_covariance.as_ref();
+        reading_covariance.map_or(0.0, |d| d.of_motion(sample, &gain.used, &gain.weights(l)))
     }
 
     /// Returns the half width of the 95 % interval divided by sigma.

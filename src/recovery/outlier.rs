@@ -46,20 +46,20 @@ pub(super) fn check(
     readings: &[Readings],
     (solved, beyond): (&RunEstimates, &[AddedCovariance]),
     errors: ErrorModel,
-    judged: Option<&PatternTest>,
+    pattern_test: Option<&PatternTest>,
 ) -> Suspects {
     let mut out = Suspects {
         findings: Vec::new(),
         shifts: Vec::new(),
     };
-    let Some(judged) = judged.filter(|j| j.joint.dof > 1) else {
+    let Some(pattern_test) = pattern_test.filter(|j| j.joint.dof > 1) else {
         return out;
     };
-    let Some(suspect) = suspect(judged) else {
+    let Some(suspect) = suspect(pattern_test) else {
         return out;
     };
     let test = suspect.test;
-    let p = judged.joint.gauges.len() as f64 * suspect.chance();
+    let p = pattern_test.joint.gauges.len() as f64 * suspect.chance();
     if !(p < NOTE && suspect.accounts_for_it()) {
         return out;
     }
@@ -77,7 +77,7 @@ pub(super) fn check(
         ShiftKind::Offset => None,
     };
     let [size, half] = match by_others {
-        Some([size, sigma]) => [size, wider * sigma / judged.projection.share().sqrt()],
+        Some([size, sigma]) => [size, wider * sigma / pattern_test.projection.share().sqrt()],
         None => [test.size, wider * (test.size / test.t).abs()],
     };
     // An interval that contains zero is no evidence against a gauge, however rare its residuals are.
@@ -246,8 +246,8 @@ impl Suspect {
 
 /// Returns the gauge with the largest error relative to its uncertainty. An error shifts the loads and their covariance, which hides a part of the
 /// error. The largest errors are therefore tested with the loads from the corrected reading.
-fn suspect(judged: &PatternTest) -> Option<Suspect> {
-    let joint = &judged.joint;
+fn suspect(pattern_test: &PatternTest) -> Option<Suspect> {
+    let joint = &pattern_test.joint;
     let mut order: Vec<&GaugeTest> = joint.gauges.iter().collect();
     order.sort_by(|a, b| b.t.abs().total_cmp(&a.t.abs()));
     let as_it_stands = Suspect {
@@ -257,20 +257,20 @@ fn suspect(judged: &PatternTest) -> Option<Suspect> {
     };
     let worth = order.iter().take(TRIED);
     let worth = worth.filter(|t| t.t.abs() > WORTH_TRYING);
-    let tried = worth.filter_map(|t| put_right(judged, t));
+    let tried = worth.filter_map(|t| put_right(pattern_test, t));
     let best = tried.max_by(|a, b| a.test.t.abs().total_cmp(&b.test.t.abs()));
     Some(best.unwrap_or(as_it_stands))
 }
 
 /// Returns the error of a gauge computed again with the loads of all runs, after the reading of that gauge is corrected by the error.
-fn put_right(judged: &PatternTest, first: &GaugeTest) -> Option<Suspect> {
+fn put_right(pattern_test: &PatternTest, first: &GaugeTest) -> Option<Suspect> {
     let PatternTest {
         pattern,
         gain,
         projection,
         strain,
         joint,
-    } = judged;
+    } = pattern_test;
     let i = pattern.used.binary_search(&first.gauge).ok()?;
     let mut suspect = Suspect {
         test: *first,

@@ -137,9 +137,12 @@ fn determined_loads<'a>(
 }
 
 /// Returns the root mean square of each of `k` loads over its determined values; 0 for a load without values.
-pub(super) fn root_mean_squares(k: usize, told: impl Iterator<Item = (usize, f64)>) -> Vec<f64> {
+pub(super) fn root_mean_squares(
+    k: usize,
+    determined: impl Iterator<Item = (usize, f64)>,
+) -> Vec<f64> {
     let mut sums = vec![(0.0, 0_usize); k];
-    for (l, v) in told {
+    for (l, v) in determined {
         sums[l].0 += v * v;
         sums[l].1 += 1;
     }

@@ -156,17 +156,17 @@ fn recover_calibrated(
     (known, faults): (&Uncertainty, (FaultTreatment, &mut Alternatives)),
     mut findings: Vec<Finding>,
 ) -> Recovery {
-    let (runs, judged) = by_calibration::recover(s, readings, errors, (known, faults));
-    findings.extend(judged);
+    let (runs, tested) = by_calibration::recover(s, readings, errors, (known, faults));
+    findings.extend(tested);
     let (residual_rms, gauge_residual_rms, gauge_leverage) = residual_sizes(s.gauges.len(), &runs);
     findings.extend(load_determinacy::check(s, &runs));
-    let told = runs.iter().flat_map(|r| {
+    let determined = runs.iter().flat_map(|r| {
         let values = r.estimate.values.iter().enumerate();
         values
             .filter(|(l, _)| r.determines_load(*l))
             .map(|(l, v)| (l, *v))
     });
-    let typical = root_mean_squares(s.loads.len(), told);
+    let typical = root_mean_squares(s.loads.len(), determined);
     Recovery {
         residual_rms,
         gauge_residual_rms,
@@ -184,16 +184,16 @@ fn recover_calibrated(
 
 /// Joins both lists without repeating a gauge. An identified cause replaces the finding that a gauge deviates; of two such findings, the one with the
 /// size of the deviation stays. Findings on gauges come first, because a reader can correct them.
-fn merge_gauge_findings(mut judged: Vec<Finding>, mut named: Vec<Finding>) -> Vec<Finding> {
+fn merge_gauge_findings(mut tested: Vec<Finding>, mut named: Vec<Finding>) -> Vec<Finding> {
     named.retain(|n| {
         n.code != GAUGE_SUSPECT
-            || !judged
+            || !tested
                 .iter()
                 .any(|f| f.code == n.code && f.subject == n.subject)
     });
-    judged.retain(|f| f.code != GAUGE_SUSPECT || !named.iter().any(|n| n.subject == f.subject));
+    tested.retain(|f| f.code != GAUGE_SUSPECT || !named.iter().any(|n| n.subject == f.subject));
     let (of_gauges, general): (Vec<Finding>, Vec<Finding>) =
-        judged.into_iter().partition(|f| f.code == GAUGE_SUSPECT);
+        tested.into_iter().partition(|f| f.code == GAUGE_SUSPECT);
     named.extend(of_gauges);
     named.extend(general);
     named

@@ -85,8 +85,8 @@ pub(super) fn check(
         ));
         return verdict;
     }
-    let judged = test_patterns(s, readings, (solved, beyond, share), errors);
-    let joints: Vec<&Joint> = judged.iter().map(|j| &j.joint).collect();
+    let pattern_tests = test_patterns(s, readings, (solved, beyond, share), errors);
+    let joints: Vec<&Joint> = pattern_tests.iter().map(|j| &j.joint).collect();
     let mut evidence = combine_tests(s, runs, &joints);
     if !beyond.is_empty() {
         // Errors that all samples share are overestimated, so small residuals are not evidence.
@@ -111,7 +111,7 @@ pub(super) fn check(
     verdict
         .findings
         .extend(size_finding(&evidence, &sizes, errors));
-    let gauges = outlier::check(s, readings, (solved, beyond), errors, judged.first());
+    let gauges = outlier::check(s, readings, (solved, beyond), errors, pattern_tests.first());
     verdict.findings.extend(gauges.findings);
     for w in verdict.by_run.iter_mut().chain([&mut verdict.widening]) {
         w.shifts.clone_from(&gauges.shifts);

@@ -146,7 +146,7 @@ fn point_tolerance(job: &Job) -> f64 {
 /// Returns the findings on gauges whose stated point is off their stated element. One of the two is wrong. The finding is an error if their distance
 /// exceeds the size of the element, else a warning. The strain of the element is used.
 fn off_their_elements(model: &Model, job: &Job) -> Vec<Finding> {
-    let beside = |g: &JobGauge, x: Vec3| match g.place {
+    let distance_of = |g: &JobGauge, x: Vec3| match g.place {
         StatedPlace::Element(id) => distance_to_shell(model, model.shell_ix(id)?, x),
         StatedPlace::BeamPoint { element, .. } => {
             distance_to_beam(model, model.beam_ix(element)?, x)
@@ -157,7 +157,7 @@ fn off_their_elements(model: &Model, job: &Job) -> Vec<Finding> {
     let tolerance = point_tolerance(job);
     let of = |g: &JobGauge| {
         let found = stated_points(model, g)
-            .filter_map(|x| beside(g, x))
+            .filter_map(|x| distance_of(g, x))
             .min_by(|a, b| a.distance.total_cmp(&b.distance))?;
         let element = match g.place {
             StatedPlace::Element(id) | StatedPlace::BeamPoint { element: id, .. } => id,

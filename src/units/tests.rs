@@ -69,7 +69,7 @@ fn a_number_that_is_not_known_is_a_dash() {
 /// Tests two wrong systems in which the modulus alone fits some material: 2.1e5 psi is a plastic, 3e7 kPa a light metal.
 #[test]
 fn densities_of_no_material_are_an_error_where_all_is_a_metal_in_another_system() {
-    let judged = |declared, unitsys, e, rho| {
+    let tested = |declared, unitsys, e, rho| {
         let found = check_units(declared, unitsys, &[(1, e)], &[(1, rho)]);
         let of_density = found.iter().find(|f| f.code == "units-density").unwrap();
         (of_density.severity, of_density.remedy.clone())
@@ -80,13 +80,13 @@ fn densities_of_no_material_are_an_error_where_all_is_a_metal_in_another_system(
         (UnitSystem::InLbfS, "mm-t-s", 70e3, 2.7e-9),
         (UnitSystem::MmKgS, "in-lbf-s", 30.46e6, 7.345e-4),
     ] {
-        let (severity, remedy) = judged(declared, None, e, rho);
+        let (severity, remedy) = tested(declared, None, e, rho);
         assert_eq!(severity, Error, "{right}");
         assert!(remedy.contains(right), "{remedy}");
     }
     // The weight density of steel in place of its mass density, and a deck that states its system.
-    assert_eq!(judged(UnitSystem::InLbfS, None, 30.46e6, 0.2836).0, Warning);
-    let said = judged(UnitSystem::InLbfS, Some("IN-LBF"), 210e3, 7.85e-9);
+    assert_eq!(tested(UnitSystem::InLbfS, None, 30.46e6, 0.2836).0, Warning);
+    let said = tested(UnitSystem::InLbfS, Some("IN-LBF"), 210e3, 7.85e-9);
     assert_eq!(said.0, Warning);
 }
 

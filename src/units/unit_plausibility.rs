@@ -67,8 +67,8 @@ pub fn check_units(
         system,
     ));
     // If the deck states its system, the densities are wrong, not the units.
-    let is_said = unitsys.and_then(UnitSystem::from_unitsys) == Some(system);
-    let meant = metal_elsewhere(system, moduli, densities).filter(|_| !is_said);
+    let is_stated = unitsys.and_then(UnitSystem::from_unitsys) == Some(system);
+    let meant = metal_elsewhere(system, moduli, densities).filter(|_| !is_stated);
     let density = find_implausible_value(
         "density",
         "kg/m3",

@@ -53,7 +53,7 @@ pub fn chassis_forces(
 ) -> Vec<ChassisForce> {
     let v = &found.vehicle;
     let links = link_forces(v, &found.values, motion);
-    let told = |i: usize| found.scaled[i] && found.values[i].is_finite();
+    let is_determined = |i: usize| found.scaled[i] && found.values[i].is_finite();
     let bodies = (0..v.bodies.len()).filter(|&b| v.bodies[b].sprung && !v.is_witness(b));
     bodies
         .filter_map(|b| {
@@ -69,7 +69,7 @@ pub fn chassis_forces(
                 (0..n).map(move |t| v.term_index(*l, t))
             });
             let has_links = own.is_empty() == v.links.is_empty();
-            if !has_links || !inertias.iter().copied().chain(terms).all(told) {
+            if !has_links || !inertias.iter().copied().chain(terms).all(is_determined) {
                 return None;
             }
             let n = motion.n_samples();

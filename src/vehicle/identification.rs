@@ -122,13 +122,13 @@ impl Identification {
     /// Returns a finding of error severity if the record determines no parameter.
     pub fn verdict(&self) -> Option<Finding> {
         let mut parameters = self.parameters.iter();
-        let told = parameters.any(|p| p.identifiable && !p.known);
+        let determines_any = parameters.any(|p| p.identifiable && !p.known);
         // A wrong input explains the lack of parameters. Without links, the job only asks for the forces of stated masses.
         let is_explained = self.vehicle.links.is_empty()
             || self
                 .wrong_input()
                 .is_some_and(|f| f.severity == Severity::Error);
-        (!told && !is_explained).then(|| {
+        (!determines_any && !is_explained).then(|| {
             let message = "This record determines no parameter.";
             Finding::new(
                 Severity::Error,

@@ -75,15 +75,15 @@ pub fn identify(
             .transpose()
             .map_err(|e| VehicleError::HeldOut(Box::new(e)))?;
         // A change of mass or spring occurs at a time of the fitted record. Only this record can test it.
-        let judged = hold_out.filter(|_| !part.part.changes()).unwrap_or(record);
+        let tested = hold_out.filter(|_| !part.part.changes()).unwrap_or(record);
         let floors = if part.fit.is_some() {
             let (values, blend) = (&part.values, &part.blend);
-            let treatment = in_record(judged);
+            let treatment = in_record(tested);
             channel_floors(
                 &part.part,
                 values,
                 blend,
-                judged,
+                tested,
                 &treatment,
                 &declared_tolerances(task),
             )?

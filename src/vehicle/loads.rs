@@ -260,10 +260,10 @@ pub fn static_loads(found: &Identification, gravity: f64, run: &str) -> LoadEsti
             .map(|w| w.channel.as_str())
             .collect();
         let masses = v.masses(&bodies);
-        let told = masses
+        let is_determined = masses
             .iter()
             .all(|&i| found.scaled[i] && found.values[i].is_finite());
-        if let ([wheel], true) = (wheels.as_slice(), told) {
+        if let ([wheel], true) = (wheels.as_slice(), is_determined) {
             let value = masses.iter().map(|&i| found.values[i]).sum::<f64>() * gravity;
             loads.push(((*wheel).to_owned(), value, masses));
         }

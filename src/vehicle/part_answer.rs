@@ -180,20 +180,20 @@ fn put_fit(
     floors: &[ChannelFloor],
 ) {
     let fitted = channel_misfits(&part.part, &part.values, &part.motion, &part.blend);
-    let judged = held.map(|h| channel_misfits(&part.part, &part.values, h, &part.blend));
+    let hold_out_misfits = held.map(|h| channel_misfits(&part.part, &part.values, h, &part.blend));
     // A model without parameter values explains none of the signal.
     let share = |error: &f64, size: &f64| match (error / size).is_finite() {
         true => error / size,
         false => 1.0,
     };
     for (i, (channel, error, size)) in fitted.iter().enumerate() {
-        let held_out = judged.as_ref().and_then(|j| j.get(i));
+        let held_out = hold_out_misfits.as_ref().and_then(|j| j.get(i));
         let own = share(error, size);
         let (relative_rms, size, on) = match held_out {
             Some((_, e, s)) => (share(e, s), *s, "hold-out"),
             None => (own, *size, "fitted"),
         };
-        let (told, size, on_told) = if part.part.changes() {
+        let (tested_share, size, tested_on) = if part.part.changes() {
             (own, fitted[i].2, "fitted")
         } else {
             (relative_rms, size, on)
@@ -203,12 +203,14 @@ fn put_fit(
             let shares = [f.expected / size, f.limit / size];
             answer
                 .findings
-                .extend(check_adequacy(channel, told, shares, on_told));
+                .extend(check_adequacy(channel, tested_share, shares, tested_on));
             answer
                 .findings
-                .extend(check_noise(channel, f.noise / size, on_told));
+                .extend(check_noise(channel, f.noise / size, tested_on));
         } else {
-            answer.findings.extend(check_lost(channel, told, on_told));
+            answer
+                .findings
+                .extend(check_lost(channel, tested_share, tested_on));
         }
         answer.fit.push(ChannelFit {
             channel: channel.clone(),

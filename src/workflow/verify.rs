@@ -157,8 +157,8 @@ pub fn verify(
     let made = read_made(folder)?;
     work.sources.push(folder.join("result.json"));
     let main = main_input(folder, &made)?;
-    let anew = work.stage("recompute", |_| again(&made, &main))?;
-    let found = work.stage("compare", |_| compare(folder, &anew))?;
+    let recomputed = work.stage("recompute", |_| again(&made, &main))?;
+    let found = work.stage("compare", |_| compare(folder, &recomputed))?;
     work.findings.extend(found.findings(folder));
     Ok(work.finish(StatedUnits::default(), found))
 }
@@ -169,9 +169,9 @@ pub fn verify(
 /// Returns a fault if the file is in neither place.
 pub fn main_input(folder: &Path, made: &ResultProvenance) -> Result<PathBuf, Fault> {
     let given = made.inputs.first().map(|i| PathBuf::from(&i.path));
-    let beside = |p: &PathBuf| Some(folder.parent()?.join(p.file_name()?));
-    let beside = given.as_ref().and_then(beside);
-    let mut places = [given, beside].into_iter().flatten();
+    let next_to_folder = |p: &PathBuf| Some(folder.parent()?.join(p.file_name()?));
+    let next_to_folder = given.as_ref().and_then(next_to_folder);
+    let mut places = [given, next_to_folder].into_iter().flatten();
     places.find(|p| p.is_file()).ok_or_else(|| {
         Fault::new(
             folder.display().to_string(),

@@ -80,9 +80,9 @@ fn is_absolute(name: &str) -> bool {
 }
 
 /// Returns the path of `name` in the folder of another file.
-fn join(beside: &str, name: &str) -> String {
-    match beside.rfind(['/', '\\']) {
-        Some(i) => format!("{}{name}", beside.get(..=i).unwrap_or_default()),
+fn join(from: &str, name: &str) -> String {
+    match from.rfind(['/', '\\']) {
+        Some(i) => format!("{}{name}", from.get(..=i).unwrap_or_default()),
         None => name.to_owned(),
     }
 }

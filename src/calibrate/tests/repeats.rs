@@ -82,9 +82,9 @@ fn tally(trials: &[Vec<[f64; 3]>], which: usize) -> Tally {
 }
 
 /// Simulates six loadings of a bridge, five passages of each, and one more truck that is weighed. The offset of a loading from its lane moves `aside`
-/// (1 sd, of the strain) from one lane's pattern to the other's. The offset of each passage moves `passage`. `told` is whether the job states which
+/// (1 sd, of the strain) from one lane's pattern to the other's. The offset of each passage moves `passage`. `stated` is whether the job states which
 /// runs are repeats.
-fn passages(aside: f64, passage: f64, told: bool, seed: u64) -> Vec<[f64; 3]> {
+fn passages(aside: f64, passage: f64, stated: bool, seed: u64) -> Vec<[f64; 3]> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let s = lanes(&mut random);
     let strain = |f: [f64; 2], off: f64, random: &mut ChaCha8Rng| -> Vec<f64> {
@@ -108,7 +108,7 @@ fn passages(aside: f64, passage: f64, told: bool, seed: u64) -> Vec<[f64; 3]> {
                 strain: strain(f, off, &mut random),
                 noise_factor: 1.0,
                 loads: KnownLoads::from_exact(f.to_vec()),
-                group: if told { group as usize } else { runs.len() },
+                group: if stated { group as usize } else { runs.len() },
             });
         }
     }
@@ -127,19 +127,19 @@ fn passages(aside: f64, passage: f64, told: bool, seed: u64) -> Vec<[f64; 3]> {
         .collect()
 }
 
-fn all_passages(aside: f64, passage: f64, told: bool) -> Vec<Vec<[f64; 3]>> {
+fn all_passages(aside: f64, passage: f64, stated: bool) -> Vec<Vec<[f64; 3]>> {
     (0..400)
         .into_par_iter()
-        .map(|seed| passages(aside, passage, told, seed))
+        .map(|seed| passages(aside, passage, stated, seed))
         .collect()
 }
 
 #[test]
 fn with_repeats_named_intervals_hold_where_a_loading_stands_aside_of_its_lane() {
-    let told = all_passages(0.03, 0.005, true);
-    let untold = all_passages(0.03, 0.005, false);
+    let stated = all_passages(0.03, 0.005, true);
+    let unstated = all_passages(0.03, 0.005, false);
     for load in 0..2 {
-        let (with, without) = (tally(&told, load), tally(&untold, load));
+        let (with, without) = (tally(&stated, load), tally(&unstated, load));
         // The limit is three standard deviations of a binomial of 400, 3.3 %.
         assert!((0.915..0.985).contains(&with.held), "{with:?} {without:?}");
         assert!(without.held < 0.915, "{with:?} {without:?}");
@@ -148,10 +148,10 @@ fn with_repeats_named_intervals_hold_where_a_loading_stands_aside_of_its_lane() 
 
 #[test]
 fn repeats_that_have_nothing_in_common_tell_as_much_as_any_other_runs() {
-    let told = all_passages(0.0, 0.03, true);
-    let untold = all_passages(0.0, 0.03, false);
+    let stated = all_passages(0.0, 0.03, true);
+    let unstated = all_passages(0.0, 0.03, false);
     for load in 0..2 {
-        let (with, without) = (tally(&told, load), tally(&untold, load));
+        let (with, without) = (tally(&stated, load), tally(&unstated, load));
         assert!((0.915..0.985).contains(&with.held), "{with:?} {without:?}");
         // One trial in twenty finds a common error by chance.
         assert!(with.half < 1.1 * without.half, "{with:?} {without:?}");
@@ -233,8 +233,8 @@ fn by_sums(apart: LoadSeparation, seed: u64) -> Vec<[f64; 3]> {
     let prior = (apart == LoadSeparation::Model).then_some(prior);
     let c = calibrate(&task(3, runs, prior)).unwrap();
     // If only the sum is known, two of three combinations are undetermined.
-    let untold = if apart == LoadSeparation::Runs { 0 } else { 2 };
-    assert_eq!(c.undetermined.len(), untold, "{apart:?}");
+    let expected = if apart == LoadSeparation::Runs { 0 } else { 2 };
+    assert_eq!(c.undetermined.len(), expected, "{apart:?}");
     let f = draw(&mut random);
     let found = recover_with_intervals(&c.sensitivity, read(f, &mut random), NOISE);
     let truth = [f[0], f[1], f[2], f.iter().sum()];

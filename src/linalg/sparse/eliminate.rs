@@ -40,13 +40,13 @@ pub(super) fn eliminate(mut panel: MatMut<'_, f64>, tiles: Tiles) -> Result<(), 
             .subrows_mut(k, rows)
             .subcols_mut(0, n)
             .split_at_row_mut(n);
-        let (beside, done_below) = done.split_at_row(n);
-        subtract(own.rb_mut(), beside, beside);
+        let (left_block, done_below) = done.split_at_row(n);
+        subtract(own.rb_mut(), left_block, left_block);
         cholesky(own.rb_mut()).map_err(|i| k + i)?;
         let own = own.into_const();
         let finish = |(at, mut tile): (usize, MatMut<'_, f64>)| {
             let rows = tile.nrows();
-            subtract(tile.rb_mut(), done_below.subrows(at, rows), beside);
+            subtract(tile.rb_mut(), done_below.subrows(at, rows), left_block);
             solve(own, tile);
         };
         match tiles {
@@ -74,8 +74,8 @@ fn cholesky(a: MatMut<'_, f64>) -> Result<(), usize> {
     let (mut a00, _, mut a10, mut a11) = a.split_at_mut(left, left);
     cholesky(a00.rb_mut())?;
     solve(a00.rb(), a10.rb_mut());
-    let beside = a10.into_const();
-    subtract(a11.rb_mut(), beside, beside);
+    let left_block = a10.into_const();
+    subtract(a11.rb_mut(), left_block, left_block);
     cholesky(a11).map_err(|i| left + i)
 }
 

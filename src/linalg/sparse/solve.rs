@@ -45,14 +45,14 @@ impl Factor<'_> {
     /// The measure is Nastran's epsilon, |x'(b - A x)| / |x'b|: the share of the work of the loads that rounding lost.
     /// Columns above `limit` are refined, x + A^-1 (b - A x), and the correction is kept if it improves them.
     pub fn solve_refined(&self, x: &mut [f64], limit: f64) -> Vec<SolutionAccuracy> {
-        let mut told = Vec::new();
+        let mut accuracies = Vec::new();
         self.each_part(x, |part, k| {
             let mut y = self.scale_columns(part, k);
             self.substitute(&mut y, k);
-            told.extend(self.refine(&mut y, part, k, limit));
+            accuracies.extend(self.refine(&mut y, part, k, limit));
             self.unscale(&y, part, k);
         });
-        told
+        accuracies
     }
 
     /// Calls `call` with groups of columns and the number of columns in each.
@@ -70,14 +70,16 @@ impl Factor<'_> {
     /// Returns epsilon of each of `k` solutions `y` for right-hand sides `x`. If epsilon is above `limit`, a better refinement replaces the solution.
     fn refine(&self, y: &mut [f64], x: &[f64], k: usize, limit: f64) -> Vec<SolutionAccuracy> {
         let found = self.remainders(y, x, k);
-        let mut told = Vec::with_capacity(k);
+        let mut accuracies = Vec::with_capacity(k);
         for f in &found {
-            let as_told = f.epsilon.iter();
-            told.extend(as_told.map(|&first| SolutionAccuracy { first, last: first }));
+            let epsilons = f.epsilon.iter();
+            accuracies.extend(epsilons.map(|&first| SolutionAccuracy { first, last: first }));
         }
-        let poor: Vec<usize> = (0..k).filter(|&c| !(told[c].first <= limit)).collect();
+        let poor: Vec<usize> = (0..k)
+            .filter(|&c| !(accuracies[c].first <= limit))
+            .collect();
         if poor.is_empty() {
-            return told;
+            return accuracies;
         }
         let (n, m) = (x.len() / k, poor.len());
         let mut better = Vec::with_capacity(n * m);
@@ -99,13 +101,13 @@ impl Factor<'_> {
         let after = self.remainders(&better, &loads, m);
         let after: Vec<f64> = after.into_iter().flat_map(|f| f.epsilon).collect();
         for (i, &c) in poor.iter().enumerate() {
-            if after[i] < told[c].first {
-                told[c].last = after[i];
+            if after[i] < accuracies[c].first {
+                accuracies[c].last = after[i];
                 let rows = y.chunks_exact_mut(k).zip(better.chunks_exact(m));
                 rows.for_each(|(to, from)| to[c] = from[i]);
             }
         }
-        told
+        accuracies
     }
 
     /// r = b - A y and |y'r| / |y'b| (zero for no load) of solutions `y` for right-hand sides `x`, a share of the columns a thread.

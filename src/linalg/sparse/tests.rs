@@ -119,14 +119,14 @@ fn every_unknown_is_in_one_branch_or_the_top_and_threads_change_nothing() {
     let solved = |threads: usize| {
         let mut x: Vec<f64> = (0..7 * n).map(|i| ((i * 31) % 17) as f64 - 8.0).collect();
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        let told = pool.build().unwrap().install(|| {
+        let accuracies = pool.build().unwrap().install(|| {
             let factor = Factor::new(&symbolic, matrix.clone()).unwrap();
             factor.solve_refined(&mut x, 0.0)
         });
-        (x, told.len())
+        (x, accuracies.len())
     };
-    let (one, told) = solved(1);
-    assert_eq!(told, 7);
+    let (one, accuracies) = solved(1);
+    assert_eq!(accuracies, 7);
     for threads in [2, 5] {
         // Equal in every bit, although the factor too is computed by this number of threads.
         assert!(solved(threads).0 == one);
@@ -170,7 +170,7 @@ fn epsilon_is_small_where_digits_are_lost_and_refinement_makes_it_no_larger() {
     let b: Vec<f64> = (0..2 * n).map(|i| ((i * 7) % 13) as f64 - 6.0).collect();
     let (mut plain, mut refined) = (b.clone(), b.clone());
     factor.solve(&mut plain);
-    let told = factor.solve_refined(&mut refined, 0.0);
+    let accuracies = factor.solve_refined(&mut refined, 0.0);
     let epsilon = |x: &[f64], b: &[f64]| {
         let ax = matrix.times(&symbolic, x);
         let lost: f64 = (0..n).map(|i| x[i] * (b[i] - ax[i])).sum();
@@ -182,8 +182,8 @@ fn epsilon_is_small_where_digits_are_lost_and_refinement_makes_it_no_larger() {
         // Both residuals are rounding errors, summed in a different order, so that only their sizes are similar. A residual of the wrong matrix is of
         // order one.
         assert!(epsilon(&plain[at.clone()], &b[at.clone()]) < 1e-6);
-        assert!(told[c].first < 1e-6, "{:e}", told[c].first);
-        assert!(told[c].last <= told[c].first);
+        assert!(accuracies[c].first < 1e-6, "{:e}", accuracies[c].first);
+        assert!(accuracies[c].last <= accuracies[c].first);
         assert!(epsilon(&refined[at.clone()], &b[at]) < 1e-6);
     }
 }

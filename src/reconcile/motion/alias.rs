@@ -31,7 +31,7 @@ pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<ScoredSet<MotionFit
     let best = scorer.with_own_constants(best);
     all.retain(|s| s.set != best.set);
     all.push(best.clone());
-    let beside = |fit: &MotionFit| evidence_outside_shaking(scorer.frame, fit);
+    let evidence_of = |fit: &MotionFit| evidence_outside_shaking(scorer.frame, fit);
     let of_best = with_own_background(scorer, &best).log_evidence;
     for &member in &best.set {
         let own = &candidates[member];
@@ -52,7 +52,7 @@ pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<ScoredSet<MotionFit
                 let alias = with_own_background(scorer, &scorer.with_own_constants(s));
                 let free = has_no_scale(scorer.frame, &best.fit);
                 let lead = match free && is_inverse((&best.fit, member), (&alias.fit, c)) {
-                    true => beside(&alias.fit) - beside(&best.fit),
+                    true => evidence_of(&alias.fit) - evidence_of(&best.fit),
                     false => alias.log_evidence - of_best,
                 };
                 ScoredSet {

@@ -81,7 +81,7 @@ pub fn fit(
     background: &Background,
     effort: Effort,
 ) -> Option<MotionFit> {
-    let (rounds, anew) = effort.rounds();
+    let (rounds, renewed) = effort.rounds();
     let shapes: Vec<&Change> = parts.iter().map(|p| &p.shape).collect();
     let assembled = assemble(&frame.vehicle, &shapes);
     let v = &assembled.vehicle;
@@ -96,7 +96,7 @@ pub fn fit(
         let adjust = adjustments(frame, &parts);
         let fresh = match &current {
             None => true,
-            Some((_, a)) => *a != adjust || nonlinear && round <= anew,
+            Some((_, a)) => *a != adjust || nonlinear && round <= renewed,
         };
         if fresh {
             let slow = match &values {
@@ -115,7 +115,7 @@ pub fn fit(
         let done = !was_even
             && moved < 1.0
             && last.as_ref().is_some_and(|l| {
-                (l.chi2 - s.chi2).abs() < SETTLED * s.chi2 && (!nonlinear || round > anew)
+                (l.chi2 - s.chi2).abs() < SETTLED * s.chi2 && (!nonlinear || round > renewed)
             });
         values = Some(new.clone());
         if !was_even {

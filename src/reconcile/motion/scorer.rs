@@ -391,8 +391,8 @@ impl Scorer for MotionScorer<'_> {
         };
         let lost =
             start.is_some_and(|f| share(&f.design, &f.left, &f.values) > self.frame.rules.lost);
-        let anew = if lost { from_there(None) } else { None };
-        let first = (from_there(start).into_iter().chain(anew))
+        let from_start = if lost { from_there(None) } else { None };
+        let first = (from_there(start).into_iter().chain(from_start))
             .min_by(|a, b| a.misfit().total_cmp(&b.misfit()))?;
         // If the same set is scored again, its background has changed. Constants that were estimated with a larger background are then estimated
         // again.

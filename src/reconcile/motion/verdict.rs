@@ -239,7 +239,7 @@ fn find_nameable_set(
         let of_vehicle = |m: &usize| !scorer.candidates[*m].is_channel();
         s.set.iter().copied().all(|member| {
             let rest: Vec<usize> = s.set.iter().copied().filter(|m| *m != member).collect();
-            let beside = rest.iter().any(of_vehicle);
+            let has_other_effect = rest.iter().any(of_vehicle);
             // Two nonlinear functions of the stretch of one spring are one force law. An error in the form of the first function looks like the
             // second one.
             let spring = scorer.candidates[member].bends_spring();
@@ -253,14 +253,15 @@ fn find_nameable_set(
                 frame.rules.next_form
             };
             // Without a vehicle effect, a channel fault is tested by its size against its tolerance (`beyond_tolerance`).
-            let tolerance = match (of_vehicle(&member), beside) {
+            let tolerance = match (of_vehicle(&member), has_other_effect) {
                 (true, _) => own.floor.tolerance,
                 (false, true) => 0.0,
                 (false, false) => return true,
             };
             power(&rest).is_none_or(|without| {
                 // For a single effect, the share refers to the whole squared gap without effects.
-                let others = power(&[]).map_or(0.0, |p| if beside { p - without } else { p });
+                let others =
+                    power(&[]).map_or(0.0, |p| if has_other_effect { p - without } else { p });
                 let least = tolerance + share * others.max(0.0);
                 without - own.gap * own.gap > least
             })

@@ -58,18 +58,18 @@ pub(super) fn find_alternative_sets(
     };
     let near: Vec<&ScoredSet<Fit>> = all.iter().filter(other).take(TRIED).collect();
     // Noise effects of the best set are not names, so an alternative may contain them as well.
-    let besides: Vec<usize> = (best.set.iter().copied())
+    let noise_members: Vec<usize> = (best.set.iter().copied())
         .filter(|c| !own.contains(c))
         .collect();
     let alike = |s: &&ScoredSet<Fit>| {
         let alone = under_own_covariance(frame, candidates, &s.set, s);
         let mut set = named_part(candidates, &s.set);
-        set.extend(&besides);
+        set.extend(&noise_members);
         set.sort_unstable();
-        let beside = (set != s.set).then(|| with_members(frame, candidates, &set, s));
+        let with_noise = (set != s.set).then(|| with_members(frame, candidates, &set, s));
         let better =
             |a: &ScoredSet<Fit>, b: &ScoredSet<Fit>| a.log_evidence.total_cmp(&b.log_evidence);
-        let both = alone.into_iter().chain(beside.flatten());
+        let both = alone.into_iter().chain(with_noise.flatten());
         both.max_by(better).unwrap_or_else(|| (*s).clone())
     };
     let mut out: Vec<ScoredSet<Fit>> = near.par_iter().map(alike).collect();

@@ -100,7 +100,7 @@ pub fn covariance(
     for pattern in &columns {
         add_outer(&mut block, pattern, frame.load_noise * frame.load_noise);
     }
-    let doubt = frame.relative_uncertainty();
+    let uncertainty = frame.relative_uncertainty();
     let known = frame.nuisance_amplitudes();
     for u in unknown.iter().chain(&known) {
         let correlation = u.amplitudes.correlation;
@@ -117,7 +117,7 @@ pub fn covariance(
             // The model error applies to these patterns as well.
             let own: Vec<f64> = pattern
                 .iter()
-                .zip(&doubt)
+                .zip(&uncertainty)
                 .map(|(p, d)| (p * d).powi(2))
                 .collect();
             let (scatter, steady) = (u.scatter_variance(kind), u.steady_variance(kind));

@@ -232,7 +232,7 @@ impl StrainFrame {
             let row = m.iter().skip(g * n_c).take(n_l);
             row.map(|v| v * v).sum()
         };
-        let doubt = |g: usize| {
+        let uncertainty_of_gauge = |g: usize| {
             let own = power(&self.influence, g);
             let scatter = self.scatter.iter().map(|s| match s {
                 Scatter::Together(m) | Scatter::Single(m) => power(m, g),
@@ -245,7 +245,7 @@ impl StrainFrame {
             };
             (self.model_rel.powi(2) + self.coefficient_rel.powi(2) + relative).sqrt()
         };
-        (0..self.n_gauges()).map(doubt).collect()
+        (0..self.n_gauges()).map(uncertainty_of_gauge).collect()
     }
 
     /// Returns the problem with the influence on the analyst's own mesh.

@@ -258,9 +258,9 @@ impl<'a> ValidationPredictor<'a> {
         let columns: Vec<Vec<f64>> = repeats.iter().map(|&p| over_fit(p)).collect();
         for (p, column) in repeats.iter().zip(&columns) {
             mean[*p] = steady[*p] * dot(column, &self.weighted);
-            let told = self.factor.solve(column);
+            let solved = self.factor.solve(column);
             for (q, other) in repeats.iter().zip(&columns) {
-                covariance[p * n + q] -= steady[*p] * dot(&told, other) * steady[*q];
+                covariance[p * n + q] -= steady[*p] * dot(&solved, other) * steady[*q];
             }
         }
         Patterns {
@@ -272,21 +272,23 @@ impl<'a> ValidationPredictor<'a> {
 }
 
 /// Returns mean and covariance (`n x n`) of the residual of one run, given the fit runs.
-fn given_fit(told: &ValidationPredictor<'_>, run: &Selection) -> (Vec<f64>, Vec<f64>) {
+fn given_fit(predictor: &ValidationPredictor<'_>, run: &Selection) -> (Vec<f64>, Vec<f64>) {
     let n = run.len();
-    let proof = told.both.0.iter().skip(told.fit.len());
+    let proof = predictor.both.0.iter().skip(predictor.fit.len());
     let before = proof.take_while(|e| Some(*e) != run.0.first()).count();
-    let (first, width) = (told.fit.len() + before, told.both.len());
+    let (first, width) = (predictor.fit.len() + before, predictor.both.len());
     let shared = |i: usize| {
         let row = (first + i) * width;
-        &told.joint[row..row + told.fit.len()]
+        &predictor.joint[row..row + predictor.fit.len()]
     };
-    let mean = (0..n).map(|i| dot(shared(i), &told.weighted)).collect();
+    let mean = (0..n)
+        .map(|i| dot(shared(i), &predictor.weighted))
+        .collect();
     let mut out = vec![0.0; n * n];
     for i in 0..n {
-        let known = told.factor.solve(shared(i));
+        let known = predictor.factor.solve(shared(i));
         for j in 0..n {
-            let prior = told.joint[(first + i) * width + first + j];
+            let prior = predictor.joint[(first + i) * width + first + j];
             out[i * n + j] = prior - dot(&known, shared(j));
         }
     }
@@ -295,7 +297,7 @@ fn given_fit(told: &ValidationPredictor<'_>, run: &Selection) -> (Vec<f64>, Vec<
 
 /// Held-out runs given the fit runs, with one model.
 struct Proof<'a> {
-    told: &'a ValidationPredictor<'a>,
+    predictor: &'a ValidationPredictor<'a>,
     patterns: Patterns,
 }
 
@@ -316,15 +318,15 @@ struct ProofRun<'a> {
 }
 
 impl<'a> Proof<'a> {
-    fn new(told: &'a ValidationPredictor<'a>, reestimated: ReestimatedUnknowns) -> Self {
+    fn new(predictor: &'a ValidationPredictor<'a>, reestimated: ReestimatedUnknowns) -> Self {
         Self {
-            patterns: told.patterns(reestimated),
-            told,
+            patterns: predictor.patterns(reestimated),
+            predictor,
         }
     }
 
     fn run(&self, own: &StrainFrame, run: usize) -> ProofRun<'_> {
-        let t = self.told;
+        let t = self.predictor;
         let all = Selection::of_runs(t.frame, &[run]);
         let on_own = residual(own, t.members, &all);
         let on_finer = residual(t.frame, t.members, &all);
@@ -427,9 +429,9 @@ pub(super) fn proof_residuals_before(
     reestimated: &[ReestimatedUnknowns],
 ) -> Option<Vec<Vec<f64>>> {
     let own = finer.as_modelled();
-    let told = ValidationPredictor::new(finer, &[], &[])?;
+    let predictor = ValidationPredictor::new(finer, &[], &[])?;
     let of = |reestimated: &ReestimatedUnknowns| {
-        let without = Proof::new(&told, *reestimated);
+        let without = Proof::new(&predictor, *reestimated);
         let runs = finer.observations.proof_runs().into_iter();
         runs.flat_map(|run| without.run(&own, run).residual_and_floor().0)
             .collect()
@@ -445,9 +447,9 @@ pub(super) fn verdict_after_removal(
     ways: &[(ReestimatedUnknowns, Vec<f64>)],
 ) -> Option<Vec<ValidationResiduals>> {
     let own = finer.as_modelled();
-    let told = ValidationPredictor::new(finer, members, unknown)?;
+    let predictor = ValidationPredictor::new(finer, members, unknown)?;
     let of = |(reestimated, before): &(ReestimatedUnknowns, Vec<f64>)| {
-        let with = Proof::new(&told, *reestimated);
+        let with = Proof::new(&predictor, *reestimated);
         let mut out = ValidationResiduals::default();
         for run in finer.observations.proof_runs() {
             let now = with.run(&own, run);

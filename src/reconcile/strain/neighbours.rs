@@ -19,14 +19,14 @@ pub fn neighbours_that_fail(frame: &StrainFrame, effects: &[NamedEffect]) -> Opt
         _ => None,
     });
     if let Some(place) = region {
-        let besides: Vec<&str> = (effects.iter())
+        let explained: Vec<&str> = (effects.iter())
             .filter(|e| scales_or_turns(e))
             .map(|e| e.id.as_str())
             .collect();
-        if !besides.is_empty() {
+        if !explained.is_empty() {
             return Some(format!(
                 "its sign and size indicate that the stiffness of a small region at {place} changed. The unknown shape of the region may explain {}",
-                besides.join(", ")
+                explained.join(", ")
             ));
         }
     }

@@ -41,7 +41,7 @@ pub(super) fn no_drift(
         let own = e.kind() == FaultKind::Zero && !e.parameters().is_empty();
         own && e.amplitudes(frame).is_some()
     };
-    let doubt = frame.relative_uncertainty();
+    let uncertainty = frame.relative_uncertainty();
     scored.set.iter().find_map(|&c| {
         let candidate = candidates.get(c).filter(|c| scatters(c))?;
         let &[gauge] = candidate.effect.gauges().as_slice() else {
@@ -49,13 +49,13 @@ pub(super) fn no_drift(
         };
         let read = split_reading(frame, candidates, scored, c, gauge);
         let id = full_id(candidate.effect.as_ref());
-        let doubt = doubt.get(gauge).copied().unwrap_or(0.0);
+        let uncertainty = uncertainty.get(gauge).copied().unwrap_or(0.0);
         let words = if read.bends() {
             format!(
                 "the drift of {id} is a curved function of the load. This indicates an amplifier near its limit or a gauge that yields, \
                  not a drifted zero"
             )
-        } else if read.goes_with_load(MAX_SLOPE_SD * doubt) {
+        } else if read.goes_with_load(MAX_SLOPE_SD * uncertainty) {
             format!("the drift of {id} is proportional to the load. This indicates a wrong gain, not a drifted zero")
         } else if read.has_not_moved() {
             format!("the drift of {id} scatters about zero. This indicates noise of this gauge alone, not a drifted zero")
@@ -179,12 +179,12 @@ impl ReadingSplit {
         })
     }
 
-    /// Returns whether `rest` follows `p` beyond a constant, with a slope above `doubt`.
-    fn goes_with_load(&self, doubt: f64) -> bool {
+    /// Returns whether `rest` follows `p` beyond a constant, with a slope above `uncertainty`.
+    fn goes_with_load(&self, uncertainty: f64) -> bool {
         self.scale_strain().is_some_and(|p| {
             let column = |i: usize, j: usize| [1.0, p[i]][j];
             chance(&self.rest, column, 1, 2) < CHANCE
-                && slope(&self.model, &self.rest).abs() > doubt
+                && slope(&self.model, &self.rest).abs() > uncertainty
         })
     }
 

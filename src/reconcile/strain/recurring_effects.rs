@@ -13,7 +13,7 @@ pub(super) struct Recurrence {
     /// Effects that recur: enough resampled run sets contain them.
     names: Vec<usize>,
     /// Message on the effects that do not recur; `None` if all recur.
-    pub doubt: Option<String>,
+    pub reason: Option<String>,
     /// Members of each compared set, and the number of resampled run sets that it wins.
     contest: Vec<(Vec<usize>, usize)>,
 }
@@ -48,25 +48,25 @@ impl Recurrence {
         };
         let stands = |c: &usize| holds(c) as f64 >= frame.rules.drawings * RESAMPLED_SETS as f64;
         let standing: Vec<usize> = names.iter().copied().filter(stands).collect();
-        let doubt = if standing.len() == names.len() {
+        let reason = if standing.len() == names.len() {
             None
         } else if standing.is_empty() {
             Some(seldom_ahead(candidates, &contest, &won))
         } else {
             let unsure = names.iter().filter(|c| !standing.contains(c));
-            let told =
+            let described =
                 unsure.map(|c| format!("{} in {}", ids(candidates, &[*c]).concat(), holds(c)));
-            let told: Vec<String> = told.collect();
+            let described: Vec<String> = described.collect();
             Some(format!(
                 "fewer than {:.0} of {RESAMPLED_SETS} resampled run sets contain each of these effects, and they are not reported: {}",
                 frame.rules.drawings * RESAMPLED_SETS as f64,
-                told.join(", ")
+                described.join(", ")
             ))
         };
         let sets = contest.iter().map(|s| s.set.clone());
         Self {
             names: standing,
-            doubt,
+            reason,
             contest: sets.zip(won).collect(),
         }
     }
@@ -109,9 +109,9 @@ fn seldom_ahead(candidates: &[Candidate], contest: &[&ScoredSet<Fit>], won: &[us
         })
         .collect();
     others.sort_by_key(|o| std::cmp::Reverse(o.0));
-    let told: Vec<String> = others.iter().map(|(w, s)| format!("{s} in {w}")).collect();
+    let described: Vec<String> = others.iter().map(|(w, s)| format!("{s} in {w}")).collect();
     format!(
         "{names} explains most of the gap, but is the best set in {first} of {RESAMPLED_SETS} resampled run sets only; {}",
-        told.join(", ")
+        described.join(", ")
     )
 }

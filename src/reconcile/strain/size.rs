@@ -11,7 +11,7 @@ use crate::reconcile::effect::{Amplitudes, Member, SizedAmplitudes};
 pub struct RunBlocks {
     blocks: Vec<RunBlock>,
     n_gauges: usize,
-    doubt: Vec<f64>,
+    uncertainty: Vec<f64>,
 }
 
 /// Readings of one run: their indices in the selection, their gauges, and their covariance.
@@ -53,7 +53,7 @@ impl RunBlocks {
         Self {
             blocks: runs.iter().map(block).collect(),
             n_gauges: frame.n_gauges(),
-            doubt: frame.relative_uncertainty(),
+            uncertainty: frame.relative_uncertainty(),
         }
     }
 
@@ -78,9 +78,9 @@ impl RunBlocks {
             for (pattern, &kind) in u.amplitudes.patterns.iter().zip(&u.amplitudes.kinds) {
                 let scatter = u.scatter_variance(kind);
                 add_outer(&mut out, pattern, scatter);
-                let doubted = scatter + u.steady_variance(kind);
-                for (g, (a, doubt)) in pattern.iter().zip(&self.doubt).enumerate() {
-                    out[g * n + g] += doubted * (doubt * a).powi(2);
+                let steady_variance_sum = scatter + u.steady_variance(kind);
+                for (g, (a, uncertainty)) in pattern.iter().zip(&self.uncertainty).enumerate() {
+                    out[g * n + g] += steady_variance_sum * (uncertainty * a).powi(2);
                 }
             }
         }

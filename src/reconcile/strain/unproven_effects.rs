@@ -15,7 +15,7 @@ pub(super) struct ProvenEffects {
     /// Smaller set, with at least one identified effect.
     pub set: ScoredSet<Fit>,
     /// Message on the removed effects.
-    pub doubt: String,
+    pub reason: String,
 }
 
 /// Returns `best` without effects that do not reduce the gap ([`without_useless`]); `None` if no effect is removed, or if `best` has a general form.
@@ -49,7 +49,7 @@ pub(super) fn remove_unproven(
             names.par_iter().map(without).collect(),
         ))
     });
-    let told = |u: &Useless| {
+    let described = |u: &Useless| {
         format!(
             "{} ({:.2} % with it, {:.2} % without)",
             ids(candidates, &[u.candidate]).concat(),
@@ -57,12 +57,12 @@ pub(super) fn remove_unproven(
             100.0 * u.without
         )
     };
-    let told: Vec<String> = out.iter().map(told).collect();
-    (!told.is_empty()).then(|| ProvenEffects {
+    let described: Vec<String> = out.iter().map(described).collect();
+    (!described.is_empty()).then(|| ProvenEffects {
         set,
-        doubt: format!(
+        reason: format!(
             "some of the effects that explain the fitted runs do not reduce the gap on the runs of the proof, and are not reported: {}",
-            told.join(", ")
+            described.join(", ")
         ),
     })
 }

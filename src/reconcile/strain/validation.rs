@@ -160,9 +160,9 @@ fn in_turn(
         let fitted = refit_set(&part.frame, candidates, scored)?;
         Some(part.validation_residuals(candidates, &fitted))
     };
-    let judged: Vec<Option<ValidationResidualPair>> = parts.par_iter().map(one).collect();
+    let tested: Vec<Option<ValidationResidualPair>> = parts.par_iter().map(one).collect();
     let mut out = ValidationResidualPair::default();
-    for part in judged.into_iter().flatten() {
+    for part in tested.into_iter().flatten() {
         for (all, more) in out.iter_mut().zip(part) {
             all.extend(more);
         }

@@ -141,13 +141,15 @@ pub(super) fn test_best_set(
     let standing = Recurrence::compare(frame, candidates, all, &alike, &rivals);
     let stands = standing.keep_recurring_effects(frame, candidates, best);
     let proven = remove_unproven(proofs, candidates, stands.as_ref().unwrap_or(best));
-    let few = standing.doubt.clone().filter(|_| stands.is_some());
+    let few = standing.reason.clone().filter(|_| stands.is_some());
     let (taken_out, fewer) = match proven {
-        Some(p) => (Some(p.doubt), Some(p.set)),
+        Some(p) => (Some(p.reason), Some(p.set)),
         None => (None, stands),
     };
     let (fewer, no_zero) = without_false_zeros(frame, candidates, fewer.as_ref().unwrap_or(best))
-        .map_or((fewer, None), |(set, told)| (Some(set), Some(told)));
+        .map_or((fewer, None), |(set, drift_words)| {
+            (Some(set), Some(drift_words))
+        });
     let best = fewer.as_ref().unwrap_or(best);
     let level = fewer.as_ref().map_or(alike.log_evidence, level);
     let explained = Explanation::from_fit(frame, candidates, best);
@@ -285,7 +287,7 @@ fn checks_of(set: &EffectSetChecks<'_>) -> [Check; 10] {
         Check::from_condition(
             wins as f64 >= rules.drawings * RESAMPLED_SETS as f64,
             || {
-                set.standing.doubt.clone().unwrap_or_else(|| {
+                set.standing.reason.clone().unwrap_or_else(|| {
                     format!(
                         "{wins} of {RESAMPLED_SETS} resampled run sets contain every effect of it"
                     )
@@ -366,23 +368,23 @@ fn without_false_zeros(
     best: &ScoredSet<Fit>,
 ) -> Option<(ScoredSet<Fit>, String)> {
     let mut set = best.clone();
-    let mut told = Vec::new();
-    while let Some(doubted) = no_drift(frame, candidates, &set) {
+    let mut drift_words = Vec::new();
+    while let Some(drift) = no_drift(frame, candidates, &set) {
         let rest: Vec<usize> = (set.set.iter().copied())
-            .filter(|c| *c != doubted.candidate)
+            .filter(|c| *c != drift.candidate)
             .collect();
         if named_part(candidates, &rest).is_empty() {
             return None;
         }
         set = under_own_covariance(frame, candidates, &rest, &set)?;
-        told.push(doubted.words);
+        drift_words.push(drift.words);
     }
     let reaches = || {
         let left = adequacy_of(frame, candidates, &set);
         let noise = noise_factor(frame, candidates, &set);
         reaches_floor(frame, candidates, &set, &left, noise).0
     };
-    (!told.is_empty() && reaches()).then(|| (set, told.join("; ")))
+    (!drift_words.is_empty() && reaches()).then(|| (set, drift_words.join("; ")))
 }
 
 /// Returns the measurement that separates faults of gauges from faults of runs, for a gap that no effect of the library explains.

@@ -48,7 +48,7 @@ pub(super) struct Stretches {
 
 /// Sums of squares of loads.
 struct Squares {
-    told: f64,
+    sample_count: f64,
     motion: Vec<f64>,
     load: Vec<f64>,
     sum: Vec<f64>,
@@ -176,7 +176,7 @@ impl Stretches {
 impl Squares {
     fn new(k: usize) -> Self {
         Self {
-            told: 0.0,
+            sample_count: 0.0,
             motion: vec![0.0; k],
             load: vec![0.0; k],
             sum: vec![0.0; k],
@@ -185,23 +185,24 @@ impl Squares {
 
     /// Adds the squares of a block and returns the number of its samples.
     fn add(&mut self, block: &Block) -> usize {
-        let told = block.loads.first().map_or(0, Vec::len);
-        self.told += told as f64;
+        let added = block.loads.first().map_or(0, Vec::len);
+        self.sample_count += added as f64;
         for (l, (moves, load)) in block.motion.iter().zip(&block.loads).enumerate() {
             self.motion[l] += moves.iter().map(|v| v * v).sum::<f64>();
             self.load[l] += load.iter().map(|v| v * v).sum::<f64>();
             self.sum[l] += load.iter().sum::<f64>();
         }
-        told
+        added
     }
 
     /// Returns the mean squares of the motion errors of the loads, and of the loads minus their means.
     fn means(&self) -> (Vec<f64>, Vec<f64>) {
         let load = self.load.iter().zip(&self.sum);
-        let load = load.map(|(q, s)| (q / self.told - (s / self.told).powi(2)).max(0.0));
-        let known = |v: f64| if self.told > 0.0 { v } else { f64::NAN };
+        let load =
+            load.map(|(q, s)| (q / self.sample_count - (s / self.sample_count).powi(2)).max(0.0));
+        let known = |v: f64| if self.sample_count > 0.0 { v } else { f64::NAN };
         (
-            self.motion.iter().map(|q| q / self.told).collect(),
+            self.motion.iter().map(|q| q / self.sample_count).collect(),
             load.map(known).collect(),
         )
     }

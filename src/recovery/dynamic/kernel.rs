@@ -94,7 +94,9 @@ impl Kernel {
         if !(wanted <= LONGEST as f64) {
             return Err(narrow);
         }
-        let at_rest = plant.gain_at_rest().ok_or(Unfit::Untold { hz: 0.0 })?;
+        let at_rest = plant
+            .gain_at_rest()
+            .ok_or(Unfit::NotSeparable { hz: 0.0 })?;
         let first = (wanted as usize).next_power_of_two();
         let mut length = first;
         loop {
@@ -239,7 +241,7 @@ fn is_narrow(plant: &Plant<'_>, at_rest: &Matrix, length: usize, rate_hz: f64) -
 fn bin(plant: &Plant<'_>, hz: f64) -> Result<Bin, Unfit> {
     let band = plant.band(hz);
     let added = plant.added_strain(hz);
-    let gain = plant.gain(&added).ok_or(Unfit::Untold { hz })?;
+    let gain = plant.gain(&added).ok_or(Unfit::NotSeparable { hz })?;
     Ok(Bin {
         band,
         gain,

@@ -17,7 +17,7 @@ pub struct ReadingCovariance {
     /// Lower triangle by rows, by window.
     motion: Vec<f64>,
     /// Number of samples in the mean of each window.
-    told: Vec<f64>,
+    sample_counts: Vec<f64>,
     /// Lower triangle by rows, mean of all windows.
     mean: Vec<f64>,
     /// Gauges that read, and their noise, `n_used x n_used`; the set that reads most often is first.
@@ -55,7 +55,7 @@ impl ReadingCovariance {
             n,
             window: window.max(1),
             motion: vec![0.0; windows * triangle(n)],
-            told: vec![0.0; windows],
+            sample_counts: vec![0.0; windows],
             mean: vec![0.0; triangle(n)],
             noise: Vec::new(),
         }
@@ -72,11 +72,11 @@ impl ReadingCovariance {
     pub(super) fn add(&mut self, used: &[usize], block: &Block, n_told: usize) {
         let size = triangle(self.n);
         for i in 0..n_told {
-            let at = (block.first_told + i * block.step) / self.window;
-            let Some(told) = self.told.get_mut(at) else {
+            let at = (block.first_computed + i * block.step) / self.window;
+            let Some(count) = self.sample_counts.get_mut(at) else {
                 continue;
             };
-            *told += 1.0;
+            *count += 1.0;
             let sums = &mut self.motion[at * size..(at + 1) * size];
             for by_gauge in &block.errors {
                 for (a, [x, y]) in used.iter().zip(by_gauge) {
@@ -91,11 +91,15 @@ impl ReadingCovariance {
     /// Converts sums to means.
     pub(super) fn settle(&mut self) {
         let size = triangle(self.n);
-        let all: f64 = self.told.iter().sum();
-        for (sums, told) in self.motion.chunks_exact_mut(size.max(1)).zip(&self.told) {
+        let all: f64 = self.sample_counts.iter().sum();
+        for (sums, count) in self
+            .motion
+            .chunks_exact_mut(size.max(1))
+            .zip(&self.sample_counts)
+        {
             for (mean, sum) in self.mean.iter_mut().zip(sums) {
                 *mean += *sum / all.max(1.0);
-                *sum /= told.max(1.0);
+                *sum /= count.max(1.0);
             }
         }
     }
@@ -103,10 +107,10 @@ impl ReadingCovariance {
     /// Returns the covariance of the motion error at a sample: of its window, or of the nearest window with a computed error.
     fn motion_at(&self, sample: usize) -> &[f64] {
         let size = triangle(self.n);
-        let (at, windows) = (sample / self.window, self.told.len());
+        let (at, windows) = (sample / self.window, self.sample_counts.len());
         let near = (0..windows).flat_map(|d| [at.checked_sub(d), at.checked_add(d)]);
-        let told = |w: &usize| self.told.get(*w).is_some_and(|t| *t > 0.0);
-        match near.flatten().find(told) {
+        let has_samples = |w: &usize| self.sample_counts.get(*w).is_some_and(|t| *t > 0.0);
+        match near.flatten().find(has_samples) {
             Some(w) => &self.motion[w * size..(w + 1) * size],
             None => &self.mean,
         }

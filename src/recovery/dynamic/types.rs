@@ -46,7 +46,7 @@ pub enum Unfit {
     },
     /// Loads that the gauges can't separate.
     #[error("at {hz:.4} Hz the gauges do not separate the loads")]
-    Untold {
+    NotSeparable {
         /// Frequency at which they can't, Hz.
         hz: f64,
     },

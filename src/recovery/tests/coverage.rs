@@ -71,7 +71,7 @@ fn of_record(s: &Sensitivity, size: impl Fn(usize) -> f64, silent: Option<usize>
             (f, strain)
         })
         .collect();
-    let judged: Vec<Readings> = trials
+    let readings_of_trials: Vec<Readings> = trials
         .iter()
         .step_by(10)
         .map(|t| Readings {
@@ -80,14 +80,14 @@ fn of_record(s: &Sensitivity, size: impl Fn(usize) -> f64, silent: Option<usize>
             noise_factor: 1.0,
         })
         .collect();
-    let judged = recover(s, &judged, NOISE);
+    let recovery = recover(s, &readings_of_trials, NOISE);
     let filter = Filter::new(
         s,
         vec![0.0; n],
         NOISE,
         1.0,
-        &judged.typical,
-        judged.widening,
+        &recovery.typical,
+        recovery.widening,
     )
     .unwrap();
     let samples: Vec<f64> = trials.iter().flat_map(|t| t.1.clone()).collect();

@@ -204,8 +204,8 @@ fn chart(traces: &[Value], layout: &Value, sheet: Sheet) -> Picture {
     };
     let below = [(left + right) / 2.0, picture.size[1] - 1.0];
     picture.word(below, [0.5, 1.0], &title("x"));
-    let beside = [0.0, (top + bottom) / 2.0];
-    picture.word_upwards(beside, [0.0, 0.5], &title("y"));
+    let left_middle = [0.0, (top + bottom) / 2.0];
+    picture.word_upwards(left_middle, [0.0, 0.5], &title("y"));
     let bars = series.iter().filter(|s| s.kind == Kind::Bars).count();
     let mut bar = 0;
     for s in &series {

@@ -127,12 +127,12 @@ fn sizes(found: &InstalledPositionSummary) -> Vec<String> {
         Some(s) => [s.value.to_string(), s.sigma.to_string()],
         None => Default::default(),
     };
-    let told: Vec<&str> = named
+    let determined: Vec<&str> = named
         .iter()
         .filter(|n| n.1.is_some_and(|s| s.told))
         .map(|n| n.0)
         .collect();
     let mut out: Vec<String> = named.iter().flat_map(|n| pair(&n.1)).collect();
-    out.push(told.join(" "));
+    out.push(determined.join(" "));
     out
 }

@@ -91,14 +91,15 @@ pub fn identify_page(
 }
 
 fn parameters(found: &Identification) -> Section {
-    let told = |v: Option<f64>, known: &str| v.map_or(known.to_owned(), |v| format!("{v:.5e}"));
+    let format_value =
+        |v: Option<f64>, known: &str| v.map_or(known.to_owned(), |v| format!("{v:.5e}"));
     let row = |p: &Estimate| {
         vec![
             format!("{}{}", p.name, if p.known { " (known)" } else { "" }),
-            told(p.value, "not determined"),
+            format_value(p.value, "not determined"),
             p.sigma.map_or(String::new(), |s| format!("{s:.2e}")),
-            told(p.interval.map(|i| i[0]), ""),
-            told(p.interval.map(|i| i[1]), ""),
+            format_value(p.interval.map(|i| i[0]), ""),
+            format_value(p.interval.map(|i| i[1]), ""),
             p.unit.clone(),
         ]
     };

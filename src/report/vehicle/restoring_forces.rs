@@ -30,9 +30,10 @@ pub fn asked_force(found: &Identification, motion: &Motion, l: usize) -> Option<
 /// Returns the links whose forces the record determines. Without a scale of forces, coefficients are ratios to a mass and not forces.
 pub(super) fn find_determined_links(found: &Identification) -> impl Iterator<Item = usize> + '_ {
     let v = &found.vehicle;
-    let told = |i: usize| found.scaled[i] && found.values[i].is_finite();
-    let all_told = move |l: &usize| (0..v.links[*l].terms.len()).all(|t| told(v.term_index(*l, t)));
-    (0..v.links.len()).filter(all_told)
+    let is_determined = |i: usize| found.scaled[i] && found.values[i].is_finite();
+    let all_determined =
+        move |l: &usize| (0..v.links[*l].terms.len()).all(|t| is_determined(v.term_index(*l, t)));
+    (0..v.links.len()).filter(all_determined)
 }
 
 /// Returns the mean force of every link that the record determines, by bins of its stretch. The force is from the model, and from `asked_force` if

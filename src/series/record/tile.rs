@@ -36,8 +36,8 @@ impl Tile {
         values: &mut [f64],
         k: usize,
     ) -> &mut [f64] {
-        let beside = j == self.first + self.n && self.n < WIDE && rows == self.rows;
-        if !beside {
+        let is_next = j == self.first + self.n && self.n < WIDE && rows == self.rows;
+        if !is_next {
             self.lay_out(values, k);
             (self.first, self.rows) = (j, rows);
         }

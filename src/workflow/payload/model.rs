@@ -40,8 +40,8 @@ pub(super) fn model_of(
     use_strain: bool,
 ) -> Result<Parts, Faults> {
     // A calibrated S can be used together with the model, which contains the signature of the payload.
-    let beside_model = has_covariance(task.job) && task.job.model.is_some();
-    if task.job.sensitivity.is_some() && !beside_model {
+    let calibrated_with_model = has_covariance(task.job) && task.job.model.is_some();
+    if task.job.sensitivity.is_some() && !calibrated_with_model {
         return read_model_tables(work, task, use_strain);
     }
     let prepared = if use_strain {

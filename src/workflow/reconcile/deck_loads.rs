@@ -29,7 +29,7 @@ pub(super) struct SignatureLoads {
     /// Name and grid of each load that is asked for.
     wheels: Vec<(String, GridIx)>,
     /// Names of the side loads.
-    besides: Vec<String>,
+    side_loads: Vec<String>,
     /// Names of the places of masses.
     places: Vec<String>,
     first_heat: usize,
@@ -50,14 +50,14 @@ impl SignatureLoads {
             nuisance,
         } = job_loads(job, model)?;
         let mut loads = columns.clone();
-        let mut besides = Vec::new();
+        let mut side_loads = Vec::new();
         for (name, grid) in &wheels {
             // A side load that is a nuisance load of the job is not a missing effect.
             for c in SIDE_COMPONENTS
                 .into_iter()
                 .filter(|c| !has_nuisance(job, model, *grid, *c))
             {
-                besides.push(format!(
+                side_loads.push(format!(
                     "{}_{}",
                     c.name(),
                     name.split('.').next().unwrap_or(name)
@@ -84,7 +84,7 @@ impl SignatureLoads {
             loads,
             columns,
             wheels,
-            besides,
+            side_loads,
             places,
             first_heat,
             first_nuisance,
@@ -106,9 +106,9 @@ impl SignatureLoads {
             [x[0] * length_m, x[1] * length_m]
         };
         let at_grid = payload_grid(job, model).map_or([0.0; 2], |g| place_of(&g));
-        let first_beside = self.columns.len();
-        let first_mass = first_beside + self.besides.len();
-        let besides = self.besides.iter().enumerate();
+        let first_side_load = self.columns.len();
+        let first_mass = first_side_load + self.side_loads.len();
+        let side_loads = self.side_loads.iter().enumerate();
         let masses = self.places.iter().enumerate();
         let nuisance = self.nuisance.iter().enumerate();
         ModelPart {
@@ -118,8 +118,8 @@ impl SignatureLoads {
                 nominal_x_m(job).unwrap_or(at_grid[0]),
                 nominal_y_m(job).unwrap_or(at_grid[1]),
             ],
-            other_loads: besides
-                .map(|(k, n)| (n.clone(), column(first_beside + k)))
+            other_loads: side_loads
+                .map(|(k, n)| (n.clone(), column(first_side_load + k)))
                 .collect(),
             masses: masses
                 .map(|(k, place)| MassSignature {
@@ -159,8 +159,11 @@ impl SignatureLoads {
         let along = mechanical(&heated.pattern, pattern)
             .filter(|_| self.heat_is_missing)
             .map(|m| {
-                let besides = apparent.iter().zip(rises);
-                m.iter().zip(besides).map(|(m, (a, t))| m + a * t).collect()
+                let side_loads = apparent.iter().zip(rises);
+                m.iter()
+                    .zip(side_loads)
+                    .map(|(m, (a, t))| m + a * t)
+                    .collect()
             });
         let shows = even.iter().any(|v| v.abs() > NOTHING);
         [shows.then_some(even), along]

@@ -229,7 +229,7 @@ struct Residual {
 impl Residual {
     fn from_frame(frame: &StrainFrame) -> Self {
         let nominal = StrainState::from_nominal_model(frame);
-        let doubt = frame.relative_uncertainty();
+        let uncertainty = frame.relative_uncertainty();
         let runs = frame.observations.fit_runs();
         let entries = frame
             .observations
@@ -237,7 +237,7 @@ impl Residual {
             .into_iter()
             .filter_map(|(run, g)| {
                 let there = *nominal.strain(run).get(g)?;
-                let sd = frame.noise_of(g).hypot(doubt.get(g)? * there);
+                let sd = frame.noise_of(g).hypot(uncertainty.get(g)? * there);
                 let weight = 1.0 / sd.max(f64::MIN_POSITIVE);
                 Some((run, g, frame.observations.value(run, g) - there, weight))
             })

@@ -212,7 +212,7 @@ fn independent_spacing(dynamics: &Dynamics, step_s: f64) -> usize {
 fn remedy_of(e: &Unfit) -> &'static str {
     match e {
         Unfit::Rate { .. } => "state a lower `up_to_hz`, or sample faster",
-        Unfit::Untold { .. } => {
+        Unfit::NotSeparable { .. } => {
             "state a lower `up_to_hz`, add gauges, or give nuisance loads `expected`"
         }
         Unfit::Narrow { .. } => {

@@ -127,13 +127,13 @@ pub fn recover_into(
     job.without_validation_gauges()?;
     check_tables(&work, job)?;
     let mut prepared = prepare_with_noise(&mut work, job)?;
-    let (states, beside) = recover_measured_loads(&mut work, (job, measured), &prepared, sink)?;
+    let (states, additional) = recover_measured_loads(&mut work, (job, measured), &prepared, sink)?;
     prepared.retain(&task::validation_rows(job, &prepared.sensitivity).1);
     let answer = RecoveredLoads {
-        reading_conditioning: beside.reading_conditioning,
-        validation: beside.validation,
-        comparison: beside.comparison,
-        sections: Sections::from_loads(job, beside.sections),
+        reading_conditioning: additional.reading_conditioning,
+        validation: additional.validation,
+        comparison: additional.comparison,
+        sections: Sections::from_loads(job, additional.sections),
         conditioning: Conditioning::from_sensitivity(&prepared.sensitivity),
         states,
         mesh_error: prepared.mesh_error.clone(),
@@ -169,12 +169,12 @@ fn recover_measured_loads(
             work.findings.extend(report_conditioning(&steps));
             let noise = task.errors.noise_variance(1.0).sqrt();
             work.findings.extend(report_doubtful_drift(&steps, noise));
-            let (record, mut beside) =
+            let (record, mut additional) =
                 work.stage("stream", |w| record::record(w, &task, &record, sink))?;
-            beside.reading_conditioning = steps;
+            additional.reading_conditioning = steps;
             let of_files = section_files::count_files(work, &task)?;
-            beside.sections.extend(of_files);
-            (States::Record(Box::new(record)), beside)
+            additional.sections.extend(of_files);
+            (States::Record(Box::new(record)), additional)
         }
         MeasuredStrain::Runs(table) => {
             let unused = job
@@ -182,8 +182,8 @@ fn recover_measured_loads(
                 .as_ref()
                 .map(|_| vibration_findings::without_record());
             work.findings.extend(unused);
-            let (runs, beside) = runs::runs(work, &task, &table)?;
-            (States::Runs(Box::new(runs)), beside)
+            let (runs, additional) = runs::runs(work, &task, &table)?;
+            (States::Runs(Box::new(runs)), additional)
         }
     })
 }

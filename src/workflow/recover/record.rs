@@ -132,7 +132,7 @@ pub(super) fn record(
     work.findings
         .extend(validation::report_contradictions(&validation));
     let slope = task.job.recover.slope;
-    let mut beside = AdditionalResults {
+    let mut additional = AdditionalResults {
         validation,
         ..AdditionalResults::default()
     };
@@ -145,11 +145,11 @@ pub(super) fn record(
         };
         if let Some(recorded) = recorded {
             let with = (&clock, recorded);
-            beside.comparison = work.stage("compare", |w| {
+            additional.comparison = work.stage("compare", |w| {
                 compare::record(w, task.job, (counting, &gaps), with)
             })?;
         }
-        beside.sections = work.stage("sections", |_| sections::count_all(counting, &parts));
+        additional.sections = work.stage("sections", |_| sections::count_all(counting, &parts));
     }
     let damage = match head.files.contains(&LoadFile::Rainflow) {
         true => {
@@ -161,7 +161,7 @@ pub(super) fn record(
     };
     about_files(work, task, &head, &sums, (&sensitivity, blank));
     let extras = (content, motion, damage);
-    Ok((answer(sensitivity, head, sums, spans, extras), beside))
+    Ok((answer(sensitivity, head, sums, spans, extras), additional))
 }
 
 /// Returns the findings on loads beyond the range of a calibrated S, and on vertical loads that all pull, by the smallest and the largest load.
@@ -254,7 +254,7 @@ pub(super) fn look(
 /// Returns the filter that estimates every sample. Its typical loads and the widening of its intervals come from samples spread over the record.
 fn filter(
     work: &mut Work,
-    (task, (noise_factor, doubt)): (&Task, (f64, Option<ReadingCovariance>)),
+    (task, (noise_factor, reading_covariance)): (&Task, (f64, Option<ReadingCovariance>)),
     tested: Recovery,
     s: &Sensitivity,
     zero: Vec<f64>,
@@ -271,8 +271,8 @@ fn filter(
         tested.widening,
     );
     let mut filter = filter.ok_or_else(|| sensitivity_fault(task))?;
-    if let Some(doubt) = doubt {
-        filter.add_reading_covariance(Arc::new(doubt));
+    if let Some(reading_covariance) = reading_covariance {
+        filter.add_reading_covariance(Arc::new(reading_covariance));
     }
     filter.combine(combinations);
     Ok(filter)

@@ -36,17 +36,17 @@ pub(super) fn recover_tested_samples(
     recover_samples_with_alternatives(s, readings, task.errors, (Vec::new(), &mut others))
 }
 
-/// Recovers quasi-static samples, each with its number, and tests loads, gauges and intervals. `doubt` is the covariance of their errors.
+/// Recovers quasi-static samples, each with its number, and tests loads, gauges and intervals. `reading_covariance` is the covariance of their errors.
 pub(super) fn recover_quasi_static_samples(
     task: &Task,
     s: &Sensitivity,
     readings: Vec<(usize, Readings)>,
-    doubt: &ReadingCovariance,
+    reading_covariance: &ReadingCovariance,
 ) -> Recovery {
     let beyond = |(i, r): &(usize, Readings)| {
         let reads = |g: &usize| r.strain[*g].is_finite();
         let used: Vec<usize> = (0..r.strain.len()).filter(reads).collect();
-        doubt.covariances_at(*i, &used)
+        reading_covariance.covariances_at(*i, &used)
     };
     let beyond = readings.iter().map(beyond).collect();
     let readings = readings.into_iter().map(|r| r.1).collect();

@@ -252,13 +252,13 @@ pub(super) fn runs(
         run.estimate.add_sums(&names[k..], &combinations);
     }
     let runs = RecoveredRuns::from_recovery(&s, readings, recovery, names, units);
-    let beside = AdditionalResults {
+    let additional = AdditionalResults {
         validation,
         comparison,
         sections: Vec::new(),
         reading_conditioning: Vec::new(),
     };
-    Ok((runs, beside))
+    Ok((runs, additional))
 }
 
 /// Returns axis and size of the weight that total loads carry; `None` if loads are changes. With the reference "gravity", wheels carry the

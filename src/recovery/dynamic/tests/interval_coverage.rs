@@ -9,24 +9,24 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 /// Returns the share of weighted loads within their intervals, the mean square error over the predicted variance, that variance, and its part from
-/// noise. Frequencies of the real structures differ randomly from the model. `blank` removes readings; `judged` selects the samples.
+/// noise. Frequencies of the real structures differ randomly from the model. `blank` removes readings; `is_tested` selects the samples.
 fn simulate_coverage(
     weights: [f64; 2],
     of_loads: impl Fn(&mut ChaCha8Rng) -> Waves,
     blank: impl Fn(&mut [Vec<f64>]),
-    judged: impl Fn(usize) -> bool,
+    is_tested: impl Fn(usize) -> bool,
 ) -> [f64; 4] {
     let mut random = ChaCha8Rng::seed_from_u64(15);
     let mut normal = || draw_normal(&mut random);
-    let (told, sd, noise, rate, samples) = (STRUCTURE, [0.01, 0.0], 1e-4, 250.0, 1500);
-    let (s, dynamics) = told.build_model(20.0, sd);
+    let (stated, sd, noise, rate, samples) = (STRUCTURE, [0.01, 0.0], 1e-4, 250.0, 1500);
+    let (s, dynamics) = stated.build_model(20.0, sd);
     let (mut inside, mut all, mut errors, mut variances) = (0, 0, 0.0, 0.0);
     let mut by_noise = 0.0;
     for trial in 0..100 {
         let mut real = STRUCTURE;
         for j in 0..3 {
             real.hz[j] *= 1.0 + sd[0] * normal();
-            let share = (real.hz[j] / told.hz[j]).powi(2);
+            let share = (real.hz[j] / stated.hz[j]).powi(2);
             real.work[j] = real.work[j].map(|w| w * share);
         }
         let waves = of_loads(&mut ChaCha8Rng::seed_from_u64(200 + trial));
@@ -38,7 +38,7 @@ fn simulate_coverage(
             .collect();
         blank(&mut record);
         let rested = readings_at_rest(&s, &dynamics, noise, &record, rate).unwrap();
-        for i in (0..samples as usize).step_by(37).filter(|i| judged(*i)) {
+        for i in (0..samples as usize).step_by(37).filter(|i| is_tested(*i)) {
             let reads = |g: &usize| rested.readings[*g][i].is_finite();
             let used: Vec<usize> = (0..N_GAUGES).filter(reads).collect();
             if used.is_empty() {

@@ -278,15 +278,15 @@ fn a_gap_takes_what_hangs_on_it_and_the_rest_stays() {
 fn intervals_hold_what_frequencies_damping_and_noise_make() {
     let mut random = ChaCha8Rng::seed_from_u64(5);
     let mut normal = || draw_normal(&mut random);
-    let (told, sd, noise, rate) = (STRUCTURE, [0.02, 0.3], 2e-5, 250.0);
-    let (s, dynamics) = told.build_model(20.0, sd);
+    let (stated, sd, noise, rate) = (STRUCTURE, [0.02, 0.3], 2e-5, 250.0);
+    let (s, dynamics) = stated.build_model(20.0, sd);
     let (mut held, mut all) = (0, 0);
     for trial in 0..100 {
         let mut real = STRUCTURE;
         for j in 0..3 {
             real.hz[j] *= 1.0 + sd[0] * normal();
             // A mode with a higher frequency due to less mass has the same static strain under the same loads.
-            let share = (real.hz[j] / told.hz[j]).powi(2);
+            let share = (real.hz[j] / stated.hz[j]).powi(2);
             real.work[j] = real.work[j].map(|w| w * share);
         }
         real.damping *= 1.0 + sd[1] * normal().clamp(-2.5, 2.5);
@@ -335,13 +335,13 @@ fn noise_alone_keeps_the_variance_that_is_told() {
             .map(|i| loads_at(&s, &rested, i)[l].powi(2))
             .sum();
         let got = square / range.len() as f64;
-        let told = variance(&s, &rested, 1.0, 20_000, &load_weights(&s, l));
+        let expected = variance(&s, &rested, 1.0, 20_000, &load_weights(&s, l));
         // There are about 40,000 x 50 / 250 independent numbers, which scatter by 1.6 %. The limit is three times this scatter.
-        assert!((got / told - 1.0).abs() < 0.05, "{l} {got} {told}");
+        assert!((got / expected - 1.0).abs() < 0.05, "{l} {got} {expected}");
         // Without motion error, the variance of filtered white noise can't be below the share of the band.
         assert!(
-            told > 0.5 * 2.0 * 20.0 / 250.0 * gain.row(l).norm_squared(),
-            "{told}"
+            expected > 0.5 * 2.0 * 20.0 / 250.0 * gain.row(l).norm_squared(),
+            "{expected}"
         );
     }
 }
@@ -356,8 +356,8 @@ fn what_cannot_be_is_said() {
     let (_, mut dynamics) = oscillator(0.02, 20.0);
     dynamics.modes[0].work = vec![1.0, 1.0];
     let s = sensitivity(Matrix::from_element(1, 2, 1.0));
-    let untold = readings_at_rest(&s, &dynamics, 0.0, &record, 500.0).unwrap_err();
-    assert!(matches!(untold, Unfit::Untold { .. }), "{untold}");
+    let unfit = readings_at_rest(&s, &dynamics, 0.0, &record, 500.0).unwrap_err();
+    assert!(matches!(unfit, Unfit::NotSeparable { .. }), "{unfit}");
     // Bands of less than a billionth of the rate for any structure, and a band whose reach is too long. A lower band would have a longer reach.
     let (s, mut dynamics) = oscillator(0.02, 20.0);
     for (up_to_hz, rate) in [(1e-18, 500.0), (1e-300, 500.0), (0.001, 50.0)] {

@@ -195,8 +195,8 @@ fn history(
     if whole(6, 20, 30) != Some(1) {
         return Err(bad("its steps are uneven"));
     }
-    let told = |t: String| Some(t).filter(|t| !t.is_empty() && !t.eq_ignore_ascii_case("none"));
-    let time_unit = told(field(7, 47, 67)).unwrap_or_default();
+    let stated = |t: String| Some(t).filter(|t| !t.is_empty() && !t.eq_ignore_ascii_case("none"));
+    let time_unit = stated(field(7, 47, 67)).unwrap_or_default();
     let second = seconds_in(&time_unit).ok_or_else(|| {
         bad(&format!(
             "`{time_unit}` of its abscissa is not a unit of time"
@@ -235,13 +235,13 @@ fn history(
         other => other.unwrap_or(0).to_string(),
     };
     let titles = [
-        told(field(0, 0, 80)).unwrap_or_default(),
-        told(field(8, 26, 46)).unwrap_or_default(),
+        stated(field(0, 0, 80)).unwrap_or_default(),
+        stated(field(8, 26, 46)).unwrap_or_default(),
         format!("{}:{direction}", field(5, 41, 51)),
     ];
     Ok(Some(Dataset {
         column: Column::of_channel("", ""),
-        unit: told(field(8, 47, 67)).unwrap_or_default(),
+        unit: stated(field(8, 47, 67)).unwrap_or_default(),
         titles,
         twice: None,
         start_s,
