@@ -58,8 +58,8 @@ fn main() {
     let mut tally = Tally::default();
     let cases: Vec<usize> = (from..to).collect();
     for some in cases.chunks(rayon::current_num_threads()) {
-        let said: Vec<Said> = some.par_iter().map(|c| case(&bases, *c)).collect();
-        for (case, s) in some.iter().zip(&said) {
+        let results: Vec<Said> = some.par_iter().map(|c| case(&bases, *c)).collect();
+        for (case, s) in some.iter().zip(&results) {
             let found = match &s.found {
                 Ok((verdict, names)) => {
                     tally.judged += 1;

@@ -58,8 +58,8 @@ fn load(result: &Value, run: &str, name: &str) -> (f64, f64) {
 #[test]
 fn trucks_that_nobody_weighed_are_weighed_by_the_bridge_within_their_intervals() {
     let folder = scratch("calibrate-bridge");
-    let (code, result, said) = run("calibrate", &example("bridge"), &folder.join("cal"));
-    assert_eq!(code, Some(0), "{said}");
+    let (code, result, printed) = run("calibrate", &example("bridge"), &folder.join("cal"));
+    assert_eq!(code, Some(0), "{printed}");
     let c = &result["calibration"];
     assert_eq!(c["runs"], 12);
     assert_eq!(c["prior"], "none");
@@ -69,12 +69,12 @@ fn trucks_that_nobody_weighed_are_weighed_by_the_bridge_within_their_intervals()
     let scatter = c["repeat_scatter_rel"].as_f64().unwrap();
     assert!((0.015..0.1).contains(&scatter), "{scatter}");
     assert!(c["noise_rel"].as_f64().unwrap() < scatter / 3.0);
-    let (code, result, said) = run(
+    let (code, result, printed) = run(
         "recover",
         &folder.join("cal/calibrated.toml"),
         &folder.join("loads"),
     );
-    assert_eq!(code, Some(0), "{said}");
+    assert_eq!(code, Some(0), "{printed}");
     for (run, lane, truth) in [
         ("R13", "west", 310.0),
         ("R14", "middle", 150.0),
@@ -115,11 +115,11 @@ fn a_truck_between_two_lanes_is_named_and_its_intervals_hold_one_lane_too() {
     let _ = writeln!(strain, "BETWEEN,{}", mean.join(","));
     std::fs::write(folder.join("strain.csv"), strain).unwrap();
     let job = folder.join("calibrate.toml");
-    let (code, _, said) = run("calibrate", &job, &folder.join("cal"));
-    assert_eq!(code, Some(0), "{said}");
+    let (code, _, printed) = run("calibrate", &job, &folder.join("cal"));
+    assert_eq!(code, Some(0), "{printed}");
     let calibrated = folder.join("cal/calibrated.toml");
-    let (code, result, said) = run("recover", &calibrated, &folder.join("loads"));
-    assert_eq!(code, Some(0), "{said}");
+    let (code, result, printed) = run("recover", &calibrated, &folder.join("loads"));
+    assert_eq!(code, Some(0), "{printed}");
     let findings = result["findings"].as_array().unwrap();
     let named: Vec<&Value> = findings
         .iter()
@@ -149,8 +149,8 @@ fn the_largest_known_load_is_stated_where_no_model_checks_its_unit() {
     let runs = std::fs::read_to_string(from.join("runs.csv")).unwrap();
     std::fs::write(folder.join("runs.csv"), runs.replace("220", "22434")).unwrap();
     let job = folder.join("calibrate.toml");
-    let (code, result, said) = run("calibrate", &job, &folder.join("cal"));
-    assert_eq!(code, Some(0), "{said}");
+    let (code, result, printed) = run("calibrate", &job, &folder.join("cal"));
+    assert_eq!(code, Some(0), "{printed}");
     let findings = result["findings"].as_array().unwrap();
     let found = findings
         .iter()
@@ -185,10 +185,10 @@ fn a_run_whose_name_differs_between_the_files_is_named() {
         for file in ["calibrate.toml", "runs.csv"] {
             std::fs::write(job.join(file), text(file)).unwrap();
         }
-        let (_, result, said) = run("calibrate", &job.join("calibrate.toml"), &job.join("out"));
+        let (_, result, printed) = run("calibrate", &job.join("calibrate.toml"), &job.join("out"));
         let findings = result["findings"]
             .as_array()
-            .unwrap_or_else(|| panic!("{said}"));
+            .unwrap_or_else(|| panic!("{printed}"));
         let found = findings.iter().find(|f| f["code"] == "run-without-record");
         assert_eq!(
             found.and_then(|f| f["subject"].as_str()),
@@ -201,8 +201,8 @@ fn a_run_whose_name_differs_between_the_files_is_named() {
 #[test]
 fn a_payload_of_which_the_sum_alone_is_known_teaches_too() {
     let folder = scratch("calibrate-onboard");
-    let (code, result, said) = run("calibrate", &example("onboard"), &folder.join("cal"));
-    assert_eq!(code, Some(0), "{said}");
+    let (code, result, printed) = run("calibrate", &example("onboard"), &folder.join("cal"));
+    assert_eq!(code, Some(0), "{printed}");
     assert_eq!(
         result["calibration"]["runs"], 9,
         "eight weighed bay by bay, one by its sum"
@@ -224,12 +224,12 @@ fn a_payload_of_which_the_sum_alone_is_known_teaches_too() {
     assert!(low < value - sigma && value + sigma < high, "{of_sum}");
     // One held-out run in twenty is outside its interval. A difference of this size occurs once in a few hundred runs.
     assert!((known - value).abs() < 3.5 * sigma, "{of_sum}");
-    let (code, result, said) = run(
+    let (code, result, printed) = run(
         "recover",
         &folder.join("cal/calibrated.toml"),
         &folder.join("loads"),
     );
-    assert_eq!(code, Some(0), "{said}");
+    assert_eq!(code, Some(0), "{printed}");
     for (run, bay, truth) in [
         ("L1", "front", 12.0),
         ("L1", "rear", 31.0),
@@ -255,12 +255,12 @@ fn an_sd_has_the_unit_of_its_load_and_other_columns_may_have_units_too() {
             let text = std::fs::read_to_string(path).unwrap();
             std::fs::write(folder.join(file), change(file, text)).unwrap();
         }
-        let (code, _, said) = run(
+        let (code, _, printed) = run(
             "calibrate",
             &folder.join("calibrate.toml"),
             &folder.join("cal"),
         );
-        assert_eq!(code, Some(0), "{said}");
+        assert_eq!(code, Some(0), "{printed}");
         let text = std::fs::read_to_string(folder.join("cal/sensitivity.csv")).unwrap();
         let row =
             |l: &str| -> Vec<f64> { l.split(',').skip(1).map(|v| v.parse().unwrap()).collect() };
@@ -322,11 +322,11 @@ fn runs_that_do_not_determine_s_are_said_so_and_known_loads_that_are_missing_are
         text.replace("[calibration]", "[calibration]\nruns = [\"R13\"]"),
     )
     .unwrap();
-    let (code, _, said) = run("calibrate", &job, &folder.join("out"));
+    let (code, _, printed) = run("calibrate", &job, &folder.join("out"));
     assert_eq!(code, Some(2));
     assert!(
-        said.contains("runs.csv:14: run: the loads of run `R13` are not known"),
-        "{said}"
+        printed.contains("runs.csv:14: run: the loads of run `R13` are not known"),
+        "{printed}"
     );
 }
 
@@ -364,8 +364,8 @@ fn of_lorries_that_a_scale_weighed_whole_the_whole_is_known_and_the_axles_are_no
         let _ = writeln!(strain);
     }
     let job = write_job(&folder, job, &runs, &strain);
-    let (code, result, said) = run("calibrate", &job, &folder.join("cal"));
-    assert_eq!(code, Some(1), "{said}");
+    let (code, result, printed) = run("calibrate", &job, &folder.join("cal"));
+    assert_eq!(code, Some(1), "{printed}");
     let undetermined = result["calibration"]["undetermined"].as_array().unwrap();
     let [apart] = undetermined.as_slice() else {
         panic!("{undetermined:?}")
@@ -375,17 +375,17 @@ fn of_lorries_that_a_scale_weighed_whole_the_whole_is_known_and_the_axles_are_no
         (share("front") + share("rear")).abs() < 1e-6,
         "what takes from one axle and gives to the other: {apart}"
     );
-    let words: Vec<&str> = said.split_whitespace().collect();
+    let words: Vec<&str> = printed.split_whitespace().collect();
     assert!(
         words
             .join(" ")
             .contains("The runs determine these sums: front + rear."),
-        "{said}"
+        "{printed}"
     );
     let calibrated = folder.join("cal/calibrated.toml");
-    let (code, result, said) = run("recover", &calibrated, &folder.join("loads"));
-    assert_eq!(code, Some(1), "{said}");
-    assert!(said.contains("loads-not-determined"), "{said}");
+    let (code, result, printed) = run("recover", &calibrated, &folder.join("loads"));
+    assert_eq!(code, Some(1), "{printed}");
+    assert!(printed.contains("loads-not-determined"), "{printed}");
     // With the true S: noise times the root of the sum of (S'S)^-1.
     let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
     for [x, y] in ROWS {
@@ -495,8 +495,8 @@ fn strip_job_with(offsets: &[[f64; 3]; 6]) -> String {
 fn sensitivity(folder: &Path, job: &str, out: &str) -> Vec<Vec<f64>> {
     let path = folder.join(format!("{out}.toml"));
     std::fs::write(&path, job).unwrap();
-    let (code, _, said) = run("sensitivity", &path, &folder.join(out));
-    assert_eq!(code, Some(0), "{said}");
+    let (code, _, printed) = run("sensitivity", &path, &folder.join(out));
+    assert_eq!(code, Some(0), "{printed}");
     let text = std::fs::read_to_string(folder.join(out).join("sensitivity.csv")).unwrap();
     let row = |l: &str| l.split(',').skip(1).map(|v| v.parse().unwrap()).collect();
     text.lines().skip(1).map(row).collect()
@@ -567,8 +567,8 @@ fn a_turned_gauge_is_told_from_a_gain_where_a_model_stands_behind_s() {
         }
         write_pushes(&folder, &truth);
         std::fs::write(&path, &job).unwrap();
-        let (code, result, said) = run("calibrate", &path, &folder.join("out"));
-        assert_eq!(code, Some(0), "{said}");
+        let (code, result, printed) = run("calibrate", &path, &folder.join("out"));
+        assert_eq!(code, Some(0), "{printed}");
         for g in 0..6 {
             let word = &result["calibration"]["gauges"][g]["looks_like"];
             let wanted = if g == gauge { wanted } else { "none" };
@@ -590,8 +590,8 @@ fn gauges_are_found_where_they_were_glued_and_their_table_makes_the_true_s() {
         + "[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 1.0\n[runs]\nfile = \"runs.csv\"\nunits = { force = \"N\", moment = \"N mm\" }\n\
            [calibration]\nmodel_uncertainty_rel = 0.001\nposition_tolerance = 5.0\nangle_tolerance_deg = 3.0\n";
     std::fs::write(folder.join("job.toml"), &job).unwrap();
-    let (code, result, said) = run("calibrate", &folder.join("job.toml"), &folder.join("cal"));
-    assert_eq!(code, Some(0), "{said}");
+    let (code, result, printed) = run("calibrate", &folder.join("job.toml"), &folder.join("cal"));
+    assert_eq!(code, Some(0), "{printed}");
     let (mut told, mut off) = (0, 0);
     for (g, truth) in GLUED.iter().enumerate() {
         let found = &result["calibration"]["gauges"][g]["as_glued"];
@@ -748,14 +748,14 @@ fn reconcile_other_runs(
     let folder = scratch(name);
     std::fs::write(folder.join("job.toml"), BRIDGE).unwrap();
     write_runs(&folder, bridge, true, None);
-    let (code, _, said) = run("calibrate", &folder.join("job.toml"), &folder.join("cal"));
-    assert_eq!(code, Some(0), "{said}");
+    let (code, _, printed) = run("calibrate", &folder.join("job.toml"), &folder.join("cal"));
+    assert_eq!(code, Some(0), "{printed}");
     write_runs(&folder, bridge, false, turned);
     let job = folder.join("cal/calibrated.toml");
-    let (_, result, said) = run("reconcile", &job, &folder.join("found"));
+    let (_, result, printed) = run("reconcile", &job, &folder.join("found"));
     let named = result["named"]
         .as_array()
-        .unwrap_or_else(|| panic!("{said}"));
+        .unwrap_or_else(|| panic!("{printed}"));
     let words = named.iter().map(|n| n.as_str().unwrap().to_owned());
     (result.clone(), words.collect())
 }
@@ -849,11 +849,11 @@ fn an_sd_that_is_none_is_a_fault_of_its_field_for_check_too() {
         let folder = scratch("calibrate-sd");
         let runs = format!("run,jack,jack_sd\nA,10,0.1\nB,20,{sd}\nC,30,0.1\n");
         let job = write_job(&folder, JOB, &runs, STRAIN);
-        let (code, _, said) = run("calibrate", &job, &folder.join("out"));
-        assert_eq!(code, Some(2), "{said}");
+        let (code, _, printed) = run("calibrate", &job, &folder.join("out"));
+        assert_eq!(code, Some(2), "{printed}");
         assert!(
-            said.contains("runs.csv:3") && said.contains("jack_sd"),
-            "{said}"
+            printed.contains("runs.csv:3") && printed.contains("jack_sd"),
+            "{printed}"
         );
         let (code, _, of_check) = run("check", &job, &folder.join("checked"));
         assert_eq!(code, Some(2), "{of_check}");
@@ -869,8 +869,8 @@ fn legs_of_a_rosette_teach_where_no_model_stands_behind_s() {
                [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\n[runs]\nfile = \"runs.csv\"\n";
     let strain = "run,C1,R1.a,R1.b,R1.c\nA,10.1,20.2,5.1,-4.2\nB,20.1,40.3,10.2,-8.1\nC,30.2,60.1,14.9,-12.1\n";
     let job = write_job(&folder, job, "run,jack\nA,10\nB,20\nC,30\n", strain);
-    let (code, result, said) = run("calibrate", &job, &folder.join("out"));
-    assert_eq!(code, Some(0), "{said}");
+    let (code, result, printed) = run("calibrate", &job, &folder.join("out"));
+    assert_eq!(code, Some(0), "{printed}");
     let gauges = result["calibration"]["gauges"].as_array().unwrap();
     let names: Vec<&str> = gauges.iter().map(|g| g["name"].as_str().unwrap()).collect();
     assert_eq!(names, ["C1", "R1.a", "R1.b", "R1.c"]);
@@ -891,12 +891,12 @@ fn a_gauge_without_a_column_is_said_so_and_is_not_dead() {
     let strain = "run,C1,C2\nA,10.1,20.2\nB,20.1,40.3\nC,30.2,60.1\n";
     let job = write_job(&folder, job, "run,jack\nA,10\nB,20\nC,30\n", strain);
     for command in ["calibrate", "check"] {
-        let (code, result, said) = run(command, &job, &folder.join(command));
-        assert_eq!(code, Some(0), "{said}");
+        let (code, result, printed) = run(command, &job, &folder.join(command));
+        assert_eq!(code, Some(0), "{printed}");
         let missing = of_code(&result, "gauge-without-strain");
-        assert_eq!(missing.len(), 1, "{command}: {said}");
+        assert_eq!(missing.len(), 1, "{command}: {printed}");
         assert_eq!(missing[0]["subject"], "C3");
-        assert!(of_code(&result, "gauge-dead").is_empty(), "{said}");
+        assert!(of_code(&result, "gauge-dead").is_empty(), "{printed}");
     }
     let (_, result, _) = run("calibrate", &job, &folder.join("calibrate"));
     let gauges = result["calibration"]["gauges"].as_array().unwrap();
@@ -915,20 +915,20 @@ fn loads_of_one_unit_that_make_a_thousand_times_less_strain_are_named() {
         let [c, d] = [10.0 * factor, 20.0 * factor];
         let runs = format!("run,left,right\nA,10,0\nB,20,0\nC,0,{c}\nD,0,{d}\n");
         let job = write_job(&folder, job, &runs, strain);
-        let (code, result, said) = run("calibrate", &job, &folder.join("out"));
-        assert_eq!(code, Some(0), "{said}");
+        let (code, result, printed) = run("calibrate", &job, &folder.join("out"));
+        assert_eq!(code, Some(0), "{printed}");
         let found = of_code(&result, "known-loads-unit-doubtful");
-        assert_eq!(found.len(), named, "{said}");
-        assert!(found.iter().all(|f| f["subject"] == "right"), "{said}");
+        assert_eq!(found.len(), named, "{printed}");
+        assert!(found.iter().all(|f| f["subject"] == "right"), "{printed}");
     }
     // If a load causes no strain in the gauges, they read noise. Its unit is then not wrong.
     let strain = "run,C1,C2\nA,1010.1,210.3\nB,2019.8,420.1\nC,0.2,-0.3\nD,0.4,0.1\n";
     let runs = "run,left,right\nA,10,0\nB,20,0\nC,0,10\nD,0,20\n";
     let job = write_job(&folder, job, runs, strain);
-    let (_, result, said) = run("calibrate", &job, &folder.join("out"));
+    let (_, result, printed) = run("calibrate", &job, &folder.join("out"));
     assert!(
         of_code(&result, "known-loads-unit-doubtful").is_empty(),
-        "{said}"
+        "{printed}"
     );
 }
 
@@ -971,12 +971,12 @@ fn payloads_of_known_mass_and_place_teach_and_then_every_lift_is_weighed() {
         let _ = writeln!(strain, "L{i}{}", lift(*kg, *x, 0.05));
     }
     let job = write_job(&folder, job, &runs, &strain);
-    let (code, result, said) = run("calibrate", &job, &folder.join("cal"));
-    assert_eq!(code, Some(0), "{said}");
+    let (code, result, printed) = run("calibrate", &job, &folder.join("cal"));
+    assert_eq!(code, Some(0), "{printed}");
     assert_eq!(result["calibration"]["runs"], 6);
     let calibrated = folder.join("cal/calibrated.toml");
-    let (code, result, said) = run("recover", &calibrated, &folder.join("loads"));
-    assert_eq!(code, Some(0), "{said}");
+    let (code, result, printed) = run("recover", &calibrated, &folder.join("loads"));
+    assert_eq!(code, Some(0), "{printed}");
     for (i, (kg, x)) in unknown.iter().enumerate() {
         let weight = kg * 9.80665e-3;
         for (name, truth) in [("payload", weight), ("payload.MY", weight * x)] {
@@ -988,8 +988,8 @@ fn payloads_of_known_mass_and_place_teach_and_then_every_lift_is_weighed() {
             assert!(sigma < 0.05 * weight, "{name}: {sigma}");
         }
     }
-    let (code, result, said) = run("payload", &calibrated, &folder.join("weighed"));
-    assert_eq!(code, Some(0), "{said}");
+    let (code, result, printed) = run("payload", &calibrated, &folder.join("weighed"));
+    assert_eq!(code, Some(0), "{printed}");
     for (i, (kg, _)) in unknown.iter().enumerate() {
         let all = result["payload"].as_array().unwrap();
         let one = all.iter().find(|p| p["run"] == format!("L{i}")).unwrap();
@@ -1023,16 +1023,16 @@ fn weight_and_moment_of_a_payload_share_the_error_of_its_weight() {
     }
     let _ = writeln!(strain, "L0{}", lift(1000.0, 1.0, 0.0));
     let job = write_job(&folder, job, &runs, &strain);
-    let (code, result, said) = run("calibrate", &job, &folder.join("cal"));
-    assert_eq!(code, Some(0), "{said}");
+    let (code, result, printed) = run("calibrate", &job, &folder.join("cal"));
+    assert_eq!(code, Some(0), "{printed}");
     assert_eq!(
         result["calibration"]["refused"],
         serde_json::json!(["W0"]),
-        "{said}"
+        "{printed}"
     );
     let calibrated = folder.join("cal/calibrated.toml");
-    let (code, result, said) = run("recover", &calibrated, &folder.join("loads"));
-    assert_eq!(code, Some(0), "{said}");
+    let (code, result, printed) = run("recover", &calibrated, &folder.join("loads"));
+    assert_eq!(code, Some(0), "{printed}");
     // Eight runs are in the place of the payload. The error of both loads is 5 % over the root of eight.
     let shared = 1000.0 * 9.80665 * 0.05 / 8_f64.sqrt();
     for name in ["payload", "payload.MY"] {
@@ -1051,11 +1051,11 @@ fn a_combination_that_no_calibrated_job_could_recover_is_a_fault_of_calibrate_an
     let strain = "run,C1,C2\nA,10.1,20.2\nB,20.1,-40.3\nC,40.2,40.1\n";
     let job = write_job(&folder, job, runs, strain);
     for command in ["calibrate", "check"] {
-        let (code, _, said) = run(command, &job, &folder.join(command));
-        assert_eq!(code, Some(2), "{command}: {said}");
+        let (code, _, printed) = run(command, &job, &folder.join(command));
+        assert_eq!(code, Some(2), "{command}: {printed}");
         assert!(
-            said.contains("combination.terms: `both` adds forces and moments"),
-            "{command}: {said}"
+            printed.contains("combination.terms: `both` adds forces and moments"),
+            "{command}: {printed}"
         );
     }
 }
@@ -1068,11 +1068,11 @@ fn a_payload_that_no_load_of_the_job_is_can_t_be_taken_for_the_others() {
     let runs = "run,jack,payload_mass\nA,10,0\nB,20,500\nC,30,0\n";
     let strain = "run,C1,C2\nA,10.1,20.2\nB,20.1,40.3\nC,30.2,60.1\n";
     let job = write_job(&folder, job, runs, strain);
-    let (code, _, said) = run("calibrate", &job, &folder.join("out"));
-    assert_eq!(code, Some(2), "{said}");
+    let (code, _, printed) = run("calibrate", &job, &folder.join("out"));
+    assert_eq!(code, Some(2), "{printed}");
     assert!(
-        said.contains("runs.csv:3") && said.contains("payload_mass"),
-        "{said}"
+        printed.contains("runs.csv:3") && printed.contains("payload_mass"),
+        "{printed}"
     );
 }
 
@@ -1095,16 +1095,16 @@ fn a_sum_that_its_loads_do_not_make_is_a_fault_of_its_line_and_one_that_was_roun
         let runs = format!("run,front,rear,total,total_sd\n{rows}");
         let job = write_job(&folder, JOB, &runs, STRAIN);
         for command in ["calibrate", "check"] {
-            let (code, _, said) = run(command, &job, &folder.join(command));
+            let (code, _, printed) = run(command, &job, &folder.join(command));
             match wrong {
                 Some(place) => {
-                    assert_eq!(code, Some(2), "{command}: {said}");
+                    assert_eq!(code, Some(2), "{command}: {printed}");
                     assert!(
-                        said.contains(place) && said.contains("`total` is"),
-                        "{said}"
+                        printed.contains(place) && printed.contains("`total` is"),
+                        "{printed}"
                     );
                 }
-                None => assert_ne!(code, Some(2), "{command}: {said}"),
+                None => assert_ne!(code, Some(2), "{command}: {printed}"),
             }
         }
     }

@@ -334,9 +334,9 @@ fn the_schema_knows_every_key_of_a_job_and_no_misspelt_one() {
 fn explain_says_what_a_finding_means_and_offers_the_code_that_was_meant() {
     let out = strainbridge(&["explain", "loads-not-separable"]);
     assert_eq!(out.status.code(), Some(0));
-    let said = text(&out.stdout);
+    let printed = text(&out.stdout);
     for word in ["cause", "limit", "remedy", "example"] {
-        assert!(said.contains(word), "{said}");
+        assert!(printed.contains(word), "{printed}");
     }
     let out = strainbridge(&["explain", "loads-not-seperable"]);
     assert_eq!(out.status.code(), Some(2));
@@ -361,11 +361,11 @@ fn faults_are_json_where_that_is_asked_for() {
     std::fs::write(&job, "units = \"m-kg-s\"\n[placement]\ngauges = \"ten\"\n").unwrap();
     let out = strainbridge(&["place", job.to_str().unwrap(), "--json"]);
     assert_eq!(out.status.code(), Some(2));
-    let said: serde_json::Value = serde_json::from_slice(&out.stdout).unwrap();
-    let faults = said["faults"].as_array().unwrap();
+    let printed: serde_json::Value = serde_json::from_slice(&out.stdout).unwrap();
+    let faults = printed["faults"].as_array().unwrap();
     assert_eq!(faults[0]["line"], 3);
     for key in ["file", "field", "wrong", "remedy"] {
-        assert!(faults[0][key].is_string(), "{said}");
+        assert!(faults[0][key].is_string(), "{printed}");
     }
     assert!(!dir.join("job.out").exists());
 }
@@ -457,9 +457,9 @@ fn init_writes_a_job_for_a_purpose_whose_only_faults_are_files_to_be_named() {
         // fill in.
         let path = dir.join("job.toml");
         let checked = strainbridge(&["check", path.to_str().unwrap(), "--json"]);
-        let said: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
-        assert!(!said["faults"].as_array().unwrap().is_empty());
-        for fault in said["faults"].as_array().unwrap() {
+        let printed: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
+        assert!(!printed["faults"].as_array().unwrap().is_empty());
+        for fault in printed["faults"].as_array().unwrap() {
             let wrong = fault.as_str().unwrap();
             let to_be_named = ["no such file", "payload.grid"];
             assert!(
@@ -585,10 +585,10 @@ fn a_name_that_is_not_utf_8_is_a_fault_that_says_so() {
         .output()
         .unwrap();
     assert_eq!(done.status.code(), Some(2));
-    let said = text(&done.stderr);
+    let printed = text(&done.stderr);
     assert!(
-        said.contains("is not UTF-8") && said.contains("rename it"),
-        "{said}"
+        printed.contains("is not UTF-8") && printed.contains("rename it"),
+        "{printed}"
     );
     // The same letter in UTF-8 is a valid name, also for results.
     let named = folder("code_page_utf8").join("Träger");

@@ -83,14 +83,17 @@ fn every_command_that_reads_a_cut_op2_says_so_and_ends_with_2() {
                 vec!["solve", cut, "--out", out],
             ] {
                 let done = strainbridge(&arguments);
-                let said = String::from_utf8_lossy(&done.stderr);
-                let at = format!("{arguments:?} on {} at {percent} %: {said}", op2.display());
+                let printed = String::from_utf8_lossy(&done.stderr);
+                let at = format!(
+                    "{arguments:?} on {} at {percent} %: {printed}",
+                    op2.display()
+                );
                 assert_eq!(done.status.code(), Some(2), "{at}");
                 if arguments[0] == "init" && lacks_grids {
-                    assert!(said.contains("contains no grid"), "{at}");
+                    assert!(printed.contains("contains no grid"), "{at}");
                     without_grids += 1;
                 } else {
-                    assert!(said.contains("cut short"), "{at}");
+                    assert!(printed.contains("cut short"), "{at}");
                     cut_short += 1;
                 }
             }
@@ -130,9 +133,9 @@ fn a_job_whose_results_are_cut_names_the_cut() {
     let job = job.to_str().unwrap();
     for command in ["sensitivity", "place", "check"] {
         let done = strainbridge(&[command, job]);
-        let said = String::from_utf8_lossy(&done.stderr);
-        assert_eq!(done.status.code(), Some(2), "{command}: {said}");
-        assert!(said.contains("cut"), "{command}: {said}");
+        let printed = String::from_utf8_lossy(&done.stderr);
+        assert_eq!(done.status.code(), Some(2), "{command}: {printed}");
+        assert!(printed.contains("cut"), "{command}: {printed}");
     }
 }
 
@@ -160,15 +163,15 @@ fn strains_and_init_on_a_cut_deck_end_with_2() {
                 std::fs::write(&cut, part).unwrap();
                 for command in ["strains", "init"] {
                     let done = strainbridge(&[command, &cut, &op2, "--out", &out]);
-                    let said = String::from_utf8_lossy(&done.stderr);
+                    let printed = String::from_utf8_lossy(&done.stderr);
                     assert_eq!(
                         done.status.code(),
                         Some(2),
-                        "{command} {set} {percent} %: {said}"
+                        "{command} {set} {percent} %: {printed}"
                     );
                     assert!(
-                        said.contains("ENDDATA"),
-                        "{command} {set} {percent} %: {said}"
+                        printed.contains("ENDDATA"),
+                        "{command} {set} {percent} %: {printed}"
                     );
                 }
             }
@@ -257,17 +260,17 @@ fn init_recommends_place_where_the_deck_has_shells_that_tell_its_loads_alone() {
         arguments.extend(["--out", &out]);
         let done = strainbridge(&arguments);
         // Further lines of a finding are indented.
-        let said = String::from_utf8_lossy(&done.stderr).replace("\n    ", " ");
-        assert_eq!(done.status.code(), Some(0), "{names:?}: {said}");
+        let printed = String::from_utf8_lossy(&done.stderr).replace("\n    ", " ");
+        assert_eq!(done.status.code(), Some(0), "{names:?}: {printed}");
         let recommended = recommends_place(&done.stdout);
-        assert_eq!(recommended, deck.shells.is_some(), "{names:?}: {said}");
+        assert_eq!(recommended, deck.shells.is_some(), "{names:?}: {printed}");
         let job = folder.join("job.toml");
         let placed = strainbridge(&["place", job.to_str().unwrap()]);
         let errors = String::from_utf8_lossy(&placed.stderr);
         let code = if recommended { 0 } else { 2 };
         assert_eq!(placed.status.code(), Some(code), "{names:?}: {errors}");
         let Some(shells) = deck.shells else {
-            assert!(said.contains(deck.says), "{names:?}: {said}");
+            assert!(printed.contains(deck.says), "{names:?}: {printed}");
             continue;
         };
         let text = std::fs::read_to_string(job).unwrap();
@@ -424,19 +427,19 @@ fn every_command_on_a_job_whose_results_are_cut_ends_with_2() {
             .unwrap();
             for command in COMMANDS {
                 let done = strainbridge(&[command, job.to_str().unwrap(), "--no-cache"]);
-                let said = String::from_utf8_lossy(&done.stderr);
-                let at = format!("{command} on {} at {percent} %: {said}", op2.display());
+                let printed = String::from_utf8_lossy(&done.stderr);
+                let at = format!("{command} on {} at {percent} %: {printed}", op2.display());
                 let code = done.status.code();
                 if comes_there {
                     assert_eq!(code, Some(2), "{at}");
-                    assert!(said.contains("cut short"), "{at}");
+                    assert!(printed.contains("cut short"), "{at}");
                 } else {
                     // An incomplete deck may also cause an error of an answer that needs no results.
                     assert!(matches!(code, Some(1 | 2)), "{at}");
                 }
                 if has_shells {
                     tried += 1;
-                    named += usize::from(said.contains("cut short"));
+                    named += usize::from(printed.contains("cut short"));
                 }
             }
         }
@@ -477,9 +480,9 @@ fn devices_folders_and_texts_are_refused_as_input() {
         for command in ["check", "solve", "strains", "init"] {
             let out = folder.join("out").display().to_string();
             let done = strainbridge(&[command, input, "--out", &out]);
-            let said = String::from_utf8_lossy(&done.stderr);
-            assert_eq!(done.status.code(), Some(2), "{command} {input}: {said}");
-            assert!(!said.contains("secret:"), "{command} {input}: {said}");
+            let printed = String::from_utf8_lossy(&done.stderr);
+            assert_eq!(done.status.code(), Some(2), "{command} {input}: {printed}");
+            assert!(!printed.contains("secret:"), "{command} {input}: {printed}");
         }
     }
 }
@@ -502,9 +505,9 @@ fn a_missing_include_of_case_or_executive_control_stops_every_command() {
         for command in ["check", "solve", "strains", "init"] {
             let out = folder.join("out").display().to_string();
             let done = strainbridge(&[command, deck.to_str().unwrap(), "--out", &out]);
-            let said = String::from_utf8_lossy(&done.stderr);
-            assert_eq!(done.status.code(), Some(2), "{command} {name}: {said}");
-            assert!(said.contains("gone.inc"), "{command} {name}: {said}");
+            let printed = String::from_utf8_lossy(&done.stderr);
+            assert_eq!(done.status.code(), Some(2), "{command} {name}: {printed}");
+            assert!(printed.contains("gone.inc"), "{command} {name}: {printed}");
         }
     }
 }

@@ -319,24 +319,24 @@ fn the_console_names_each_of_39_loads_with_its_interval_in_25_lines() {
             let done = on_large_job(command, &folder, locale);
             assert_fits(&done, command);
             assert_states_summary(&done, &folder.join(command), command);
-            let said = String::from_utf8_lossy(&done.stdout);
+            let printed = String::from_utf8_lossy(&done.stdout);
             assert_eq!(
-                said.is_ascii(),
-                locale == "C" || !said.contains('±'),
-                "{said}"
+                printed.is_ascii(),
+                locale == "C" || !printed.contains('±'),
+                "{printed}"
             );
             if command == "check" {
                 continue;
             }
             for load in many_loads() {
-                let after = said.split_once(&load).map(|s| s.1);
-                let after = after.unwrap_or_else(|| panic!("{command} {load}\n{said}"));
+                let after = printed.split_once(&load).map(|s| s.1);
+                let after = after.unwrap_or_else(|| panic!("{command} {load}\n{printed}"));
                 // The text until the next load of the line.
                 let own = after.lines().next().unwrap().split('W').next().unwrap();
                 let has_interval = own.contains(plus_minus);
                 assert!(
                     has_interval || command == "sensitivity",
-                    "{load}: {own}\n{said}"
+                    "{load}: {own}\n{printed}"
                 );
             }
         }

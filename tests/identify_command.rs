@@ -253,14 +253,14 @@ fn a_model_that_leaves_most_of_a_channel_is_an_error_where_no_noise_is_declared(
         std::fs::write(here.join("oscillator.csv"), changed).unwrap();
         let output = run(&here.join("oscillator.toml"), &here.join("out"));
         let code = if lost.is_some() { 1 } else { 0 };
-        let said = String::from_utf8_lossy(&output.stdout);
-        assert_eq!(output.status.code(), Some(code), "{name}: {said}");
+        let printed = String::from_utf8_lossy(&output.stdout);
+        assert_eq!(output.status.code(), Some(code), "{name}: {printed}");
         let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
         let findings = result["findings"].as_array().unwrap();
         let codes = ["input-sign-reversed", "model-incomplete"];
         let mut errors = findings.iter().filter_map(|f| f["code"].as_str());
         let told = errors.find(|code| codes.contains(code));
-        assert_eq!(told, lost, "{name}: {said}");
+        assert_eq!(told, lost, "{name}: {printed}");
     }
 }
 
@@ -322,10 +322,13 @@ fn one_accelerometer_and_a_known_sprung_mass_give_the_chassis_force_with_its_int
     );
     std::fs::write(here.join("job.toml"), &job).unwrap();
     let output = run(&here.join("job.toml"), &here.join("out"));
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(0), "{said}");
+    let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{printed}");
     let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert!(result["findings"].as_array().unwrap().is_empty(), "{said}");
+    assert!(
+        result["findings"].as_array().unwrap().is_empty(),
+        "{printed}"
+    );
     let open = result["unidentifiable"][0].as_str().unwrap();
     assert!(open.contains("k_s") && open.contains("a_wheel"), "{open}");
     let table = columns(&here.join("out/chassis_forces.csv"));
@@ -354,9 +357,9 @@ fn one_accelerometer_and_a_known_sprung_mass_give_the_chassis_force_with_its_int
     let without = job.replace(&format!("known = {{ m_b = {mass} }}\n"), "");
     std::fs::write(here.join("job.toml"), without).unwrap();
     let output = run(&here.join("job.toml"), &here.join("without"));
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("a_wheel"), "{said}");
+    let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{printed}");
+    assert!(printed.contains("a_wheel"), "{printed}");
 }
 
 /// For a measured quarter truck, the mass alone gives the force of spring and damper.
@@ -382,8 +385,8 @@ fn the_force_by_a_known_mass_is_that_of_spring_and_damper() {
     let known = format!("{job}known = {{ m_b = {mass} }}\n");
     write("known.toml", &known.replace("data.csv", "body.csv"));
     let output = run(&here.join("known.toml"), &here.join("known"));
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(0), "{said}");
+    let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{printed}");
     let full = columns(&here.join("out/chassis_forces.csv"));
     let alone = columns(&here.join("known/chassis_forces.csv"));
     assert!(!alone.contains_key("b.by_springs") && !alone.contains_key("s"));
@@ -427,8 +430,8 @@ fn a_reversed_wheel_force_is_an_error_of_identify_and_reconcile() {
             .args(["--out", here.join(command).to_str().unwrap()])
             .output()
             .unwrap();
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(1), "{command}: {said}");
+        let printed = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{command}: {printed}");
         let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
         let findings = result["findings"].as_array().unwrap();
         let wrong: Vec<_> = findings
@@ -438,7 +441,10 @@ fn a_reversed_wheel_force_is_an_error_of_identify_and_reconcile() {
         assert_eq!(wrong.len(), 1, "{command}: {findings:?}");
         assert_eq!(wrong[0]["code"], "input-sign-reversed", "{command}");
         assert_eq!(wrong[0]["subject"], "f_wheel", "{command}");
-        for text in [said, String::from_utf8_lossy(&output.stdout).into_owned()] {
+        for text in [
+            printed,
+            String::from_utf8_lossy(&output.stdout).into_owned(),
+        ] {
             assert!(!text.contains("NaN") && !text.contains("()"), "{text}");
         }
         if command == "reconcile" {

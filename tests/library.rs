@@ -62,10 +62,10 @@ fn a_rule_that_leaves_no_place_is_named() {
     let files = files().with_file("clear.toml", format!("{JOB}{candidates}"));
     let job = Job::read("clear.toml", &files).unwrap();
     let faults = place(&job, &Context::new(&files)).err().unwrap();
-    let said = faults.to_string();
+    let printed = faults.to_string();
     assert!(
-        said.contains("`clear_of` loads = 1000 leaves 0 of"),
-        "{said}"
+        printed.contains("`clear_of` loads = 1000 leaves 0 of"),
+        "{printed}"
     );
     for (rules, named) in [
         (
@@ -91,10 +91,13 @@ fn a_rule_that_leaves_no_place_is_named() {
             .with_file("rule.toml", format!("{JOB}[candidates]\n{rules}"));
         let job = Job::read("rule.toml", &files).unwrap();
         let faults = place(&job, &Context::new(&files)).err().unwrap();
-        let said = faults.to_string();
+        let printed = faults.to_string();
         let rule = named.split(" leaves").next().unwrap();
-        assert!(said.contains(named), "{said}");
-        assert!(said.contains(&format!("widen or delete {rule}")), "{said}");
+        assert!(printed.contains(named), "{printed}");
+        assert!(
+            printed.contains(&format!("widen or delete {rule}")),
+            "{printed}"
+        );
     }
 }
 

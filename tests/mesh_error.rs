@@ -187,9 +187,13 @@ fn run(folder: &Path, command: &str, job: &str) -> serde_json::Value {
         .unwrap();
     // S of the coarse mesh does not explain the readings of the fine one, and the output reports it.
     let code = i32::from(job == "recover_coarse.toml");
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(code), "{said}");
-    assert_eq!(said.contains("[strain-not-explained]"), code == 1, "{said}");
+    let printed = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{printed}");
+    assert_eq!(
+        printed.contains("[strain-not-explained]"),
+        code == 1,
+        "{printed}"
+    );
     serde_json::from_slice(&output.stdout).unwrap()
 }
 

@@ -378,14 +378,14 @@ fn a_mass_that_changes_much_is_named_alone_with_its_size() {
     ] {
         let case = moving::generator::hide_mass_change(layout, share, seed);
         let o = examine(&frame_of(&case), &[]).unwrap();
-        let said = format!("{layout:?} {share} {seed}: {:?}", o.best_attempt);
-        assert_eq!(score(&case, &o), Score::Exact, "{said}");
-        assert_eq!(o.effects.len(), 1, "{said}");
+        let printed = format!("{layout:?} {share} {seed}: {:?}", o.best_attempt);
+        assert_eq!(score(&case, &o), Score::Exact, "{printed}");
+        assert_eq!(o.effects.len(), 1, "{printed}");
         let size = o.effects[0].size[0];
         let truth = share * case.sprung;
         // Sensor noise of a few tenths of a per cent.
-        assert!((size / truth - 1.0).abs() < 0.01, "{said} for {truth}");
-        assert!(o.gap.after < 1.5 * o.gap.floor, "{said} {:?}", o.gap);
+        assert!((size / truth - 1.0).abs() < 0.01, "{printed} for {truth}");
+        assert!(o.gap.after < 1.5 * o.gap.floor, "{printed} {:?}", o.gap);
     }
 }
 
@@ -445,8 +445,8 @@ fn the_smallest_size_that_is_stated_is_where_naming_begins() {
             }
         }
         let o = examine(&frame, &[]).unwrap();
-        let said = o.effects.iter().any(|e| e.id == "accel_gain:a_wheel");
-        assert_eq!(said, named, "{times}: {:?} {:?}", o.verdict, o.effects);
+        let printed = o.effects.iter().any(|e| e.id == "accel_gain:a_wheel");
+        assert_eq!(printed, named, "{times}: {:?} {:?}", o.verdict, o.effects);
     }
 }
 
@@ -514,8 +514,8 @@ fn a_name_needs_a_gap_that_falls_by_it_on_the_second_record() {
     assert_eq!(o.verdict, Verdict::Unknown);
     // Either accelerometer may be reported. A zero error of a load cell of 1 % leaves this open if friction and a gain
     // occur together.
-    let said = "explains more of the fitted record, but does not reduce the gap of the proof";
-    let either = ["a_body", "a_wheel"].map(|c| format!("accel_gain:{c} {said}"));
+    let printed = "explains more of the fitted record, but does not reduce the gap of the proof";
+    let either = ["a_body", "a_wheel"].map(|c| format!("accel_gain:{c} {printed}"));
     assert!(
         either.iter().any(|w| o.remains.contains(w.as_str())),
         "{}",

@@ -24,17 +24,17 @@ fn assert_fault_named(
     let case = generate_faulty_case(layout, fault, channel, background, seed);
     let o = examine(&frame_of(&case), &[]).unwrap();
     let found = score(&case, &o);
-    let said = format!(
+    let printed = format!(
         "{layout:?} {fault:?} {channel} {seed}: {found:?} {:?} {:?}",
         o.best_attempt, o.rivals
     );
-    assert_eq!(found, Score::Exact, "{said}");
-    assert_eq!(o.effects.len(), 1, "{said}");
+    assert_eq!(found, Score::Exact, "{printed}");
+    assert_eq!(o.effects.len(), 1, "{printed}");
     let size = o.effects[0].size[0];
-    assert!((size / fault.size() - 1.0).abs() < near, "{said}");
+    assert!((size / fault.size() - 1.0).abs() < near, "{printed}");
     // If the held-out record lost no samples, it tests only parameters. Its gap is small before.
     let closed = o.gap.explained_share() > 0.9 || o.gap.after < 1.3 * o.gap.floor;
-    assert!(closed, "{said} {:?}", o.gap);
+    assert!(closed, "{printed} {:?}", o.gap);
 }
 
 #[test]
@@ -185,8 +185,8 @@ fn run(command: &str, job: &Path, out: &Path) -> Output {
 }
 
 fn answer(done: &Output) -> serde_json::Value {
-    let said = String::from_utf8_lossy(&done.stderr);
-    serde_json::from_slice(&done.stdout).unwrap_or_else(|e| panic!("{e}: {said}"))
+    let printed = String::from_utf8_lossy(&done.stderr);
+    serde_json::from_slice(&done.stdout).unwrap_or_else(|e| panic!("{e}: {printed}"))
 }
 
 /// The named fault is in the extended job, and a second run with that job names nothing.
@@ -263,10 +263,10 @@ fn a_second_record_that_cannot_judge_is_said_by_its_name() {
         assert_eq!(r["verdict"], "none", "{channel}: {}", r["gap"]);
         assert_eq!(r["gap"]["judged_by"], "cross-validated", "{channel}");
         let findings = r["findings"].as_array().unwrap();
-        let said = findings.iter().any(|f| {
+        let printed = findings.iter().any(|f| {
             f["code"] == "no-hold-out" && f["message"].as_str().unwrap().contains(channel)
         });
-        assert!(said, "{channel}: {findings:?}");
+        assert!(printed, "{channel}: {findings:?}");
     }
 }
 
@@ -295,6 +295,6 @@ fn a_dead_accelerometer_is_told_by_the_command_without_a_made_up_gap() {
     let findings = r["findings"].as_array().unwrap();
     let not_in = findings.iter().find(|f| f["code"] == "effect-not-in-model");
     assert_eq!(not_in.unwrap()["subject"], "dead_channel:a_body");
-    let said = std::fs::read_to_string(folder.join("out/report.html")).unwrap();
-    assert!(said.contains("No equation can be compared without"));
+    let printed = std::fs::read_to_string(folder.join("out/report.html")).unwrap();
+    assert!(printed.contains("No equation can be compared without"));
 }

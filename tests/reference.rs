@@ -91,7 +91,7 @@ fn every_code_that_the_program_gives_has_an_entry_and_every_entry_is_given() {
     let sources = sources();
     let known: BTreeSet<&str> = explain_all().iter().map(|c| c.code).collect();
     let mut given = 0;
-    let mut said = BTreeSet::new();
+    let mut reported = BTreeSet::new();
     for (name, text) in &sources {
         for code in codes_of_calls(text) {
             assert!(
@@ -107,14 +107,14 @@ fn every_code_that_the_program_gives_has_an_entry_and_every_entry_is_given() {
             || text.contains("pub const CODE")
             || text.contains("pub const GAUGE_SUSPECT")
         {
-            said.extend(literals(text));
+            reported.extend(literals(text));
         }
     }
     assert!(
         given > 100,
         "{given} calls found: does the search still work?"
     );
-    let silent: Vec<&&str> = known.iter().filter(|c| !said.contains(**c)).collect();
+    let silent: Vec<&&str> = known.iter().filter(|c| !reported.contains(**c)).collect();
     assert!(
         silent.is_empty(),
         "entries of codes that nothing gives: {silent:?}"

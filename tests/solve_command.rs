@@ -195,10 +195,12 @@ fn mechanisms_are_named_before_anything_is_solved() {
     assert_eq!(code, 2, "{err}");
     assert!(err.contains("is not held"), "{err}");
     // The message names the set and the motions: the strip slides along x and along y.
-    let said = err.lines().find(|l| l.contains("SPC set 5")).unwrap();
+    let printed = err.lines().find(|l| l.contains("SPC set 5")).unwrap();
     assert!(
-        said.contains("motions remain") && said.contains("dof 1") && said.contains("dof 2"),
-        "{said}"
+        printed.contains("motions remain")
+            && printed.contains("dof 1")
+            && printed.contains("dof 2"),
+        "{printed}"
     );
     // If no set is selected, the message states it.
     let (_, err, _) = solve("hinge_again", &hinge);
@@ -560,8 +562,11 @@ fn a_refused_payload_says_why_in_its_row_and_leaves_the_others_alone() {
     assert_eq!(rows[2][1], "");
     assert!(rows[2][9].contains("cannot be negative"), "{table}");
     // 200 N are 0.0204 t.
-    let said = text(&out.stdout);
-    assert!(said.contains("0.020") || said.contains("0.019"), "{said}");
+    let printed = text(&out.stdout);
+    assert!(
+        printed.contains("0.020") || printed.contains("0.019"),
+        "{printed}"
+    );
 }
 
 #[test]

@@ -67,8 +67,8 @@ fn rerun_command(
     if out.join("result.json").is_file() {
         return Ok(out.to_owned());
     }
-    let said = String::from_utf8_lossy(&done.stderr);
-    let first = said
+    let stderr_text = String::from_utf8_lossy(&done.stderr);
+    let first = stderr_text
         .lines()
         .next()
         .unwrap_or("nothing was written")

@@ -41,19 +41,21 @@ mod tests {
 
     #[test]
     fn a_name_of_a_megabyte_is_shown_by_its_ends_and_what_people_write_is_left_as_it_is() {
-        let said = "`strain.csv`: columns that belong to no gauge are left out: P1, P2, [µm/m] äöü";
-        assert_eq!(shorten_names(said.repeat(3)), said.repeat(3));
+        let message =
+            "`strain.csv`: columns that belong to no gauge are left out: P1, P2, [µm/m] äöü";
+        assert_eq!(shorten_names(message.repeat(3)), message.repeat(3));
         let name = format!("a{}z", "µ".repeat(1_000_000));
-        let said = shorten_names(format!("no column `{name}` in `strain.csv`: rename it"));
-        assert!(said.chars().count() < 250, "{said}");
+        let message = shorten_names(format!("no column `{name}` in `strain.csv`: rename it"));
+        assert!(message.chars().count() < 250, "{message}");
         assert!(
-            said.starts_with("no column `aµ") && said.ends_with("µz` in `strain.csv`: rename it")
+            message.starts_with("no column `aµ")
+                && message.ends_with("µz` in `strain.csv`: rename it")
         );
         let many: Vec<String> = (0..300_000).map(|i| format!("`c{i}`")).collect();
-        let said = shorten_names(many.join(", "));
+        let message = shorten_names(many.join(", "));
         assert!(
-            said.chars().count() <= TEXT && said.ends_with("`c299999`"),
-            "{said}"
+            message.chars().count() <= TEXT && message.ends_with("`c299999`"),
+            "{message}"
         );
     }
 }

@@ -320,7 +320,7 @@ mod tests {
             warned,
             format!("{fine} The result is usable, with 1 warning.")
         );
-        let said = summary(
+        let summary_text = summary(
             0,
             &[
                 (error, "gauge-silent", "P1"),
@@ -334,7 +334,7 @@ mod tests {
             ],
         );
         assert_eq!(
-            said,
+            summary_text,
             "The answer cannot be relied on: gauge silent (P1, P2); loads not separable."
         );
         let refused = summary(2, &[(error, "gauge-silent", "P1")]);

@@ -145,16 +145,16 @@ fn units_of_a_runs_file_stand_in_its_header_or_below_and_contradict_nothing() {
     assert_eq!(si("run,LF.FZ [kN],LF.MX\nR1,2,3\n", stated), plain);
     let fault = |table: &str, more: &str| runs_of(table, more).unwrap_err().into_list().remove(0);
     let f = fault("run,LF.FZ [N],LF.MX\nR1,2,3\n", stated);
-    let said = f.to_string();
+    let message = f.to_string();
     assert!(
-        said.starts_with("runs.csv:1: LF.FZ [N]: the column states `N`, the job states `kN`"),
-        "{said}"
+        message.starts_with("runs.csv:1: LF.FZ [N]: the column states `N`, the job states `kN`"),
+        "{message}"
     );
     let f = fault("run,LF.FZ [kg],LF.MX\nR1,2,3\n", "");
-    let said = f.to_string();
+    let message = f.to_string();
     assert!(
-        said.contains("`kg` is not a unit of force") && said.contains("kN"),
-        "{said}"
+        message.contains("`kg` is not a unit of force") && message.contains("kN"),
+        "{message}"
     );
 }
 
@@ -175,7 +175,7 @@ fn labels_rows_of_units_and_noise_of_a_runs_file_are_not_mistaken() {
     let bare = "LF.FZ,LF.MX,run\n,,R0\n2,3,R1\n";
     assert_eq!(si(bare, ""), plain);
     assert_eq!(runs_of(bare, "").unwrap().len(), 2);
-    let said = |table: &str, more: &str| runs_of(table, more).unwrap_err()[0].to_string();
+    let message = |table: &str, more: &str| runs_of(table, more).unwrap_err()[0].to_string();
     let stated = format!("{named}units = {{ force = \"kN\" }}\n");
     for (table, more, wrong) in [
         (
@@ -200,8 +200,8 @@ fn labels_rows_of_units_and_noise_of_a_runs_file_are_not_mistaken() {
             "runs.noise.force: the unit of 50 may be `kN` or",
         ),
     ] {
-        let said = said(table, more);
-        assert!(said.contains(wrong), "{said}");
+        let message = message(table, more);
+        assert!(message.contains(wrong), "{message}");
     }
     let both = "units = { force = \"N\" }\nnoise = { force = 50.0 }\n";
     assert_eq!(si("run,LF.FZ [N],LF.MX\nR1,2000,3\n", both), plain);
@@ -241,10 +241,10 @@ fn labels_and_units_of_gauges_are_told_apart() {
             "run,G1 (mV/V)\nR1,1\n",
             "run,G1 [mV/V]\nR1,1\n",
         ] {
-            let said = read(text, gauges).unwrap_err()[0].to_string();
+            let message = read(text, gauges).unwrap_err()[0].to_string();
             assert!(
-                said.contains("G1: `mV/V` is not a unit of strain"),
-                "{said}"
+                message.contains("G1: `mV/V` is not a unit of strain"),
+                "{message}"
             );
         }
     }
@@ -324,8 +324,8 @@ fn a_table_and_a_record_give_one_verdict_on_a_header() {
 #[test]
 fn where_no_gauges_are_known_a_unit_of_anything_else_is_no_strain() {
     for header in ["torque (N m)", "torque (kNm)", "G1 [mV/V]", "way (mm)"] {
-        let said = columns_of_text(header, &[]).unwrap_err()[0].to_string();
-        assert!(said.contains("is not a unit of strain"), "{said}");
+        let message = columns_of_text(header, &[]).unwrap_err()[0].to_string();
+        assert!(message.contains("is not a unit of strain"), "{message}");
         // A record contains other channels too, which are left out.
         let column = [name_and_unit(header)];
         let found = find_gauge_columns("r.parquet", &column, &[]).unwrap();
@@ -341,40 +341,49 @@ fn units_that_contradict_each_other_are_faults_of_what_is_asked_for() {
     };
     let text = "run,G1 [m/m],G2 [um/m]\n-,um/m,microstrain\nR1,1,2\n";
     for gauges in [&["G1", "G2"][..], &["G1 [m/m]", "G2"], &[]] {
-        let said = read(text, gauges).unwrap_err()[0].to_string();
+        let message = read(text, gauges).unwrap_err()[0].to_string();
         let wrong = "G1 [m/m]: `m/m` after the name, and `um/m` as the unit of the column";
-        assert!(said.contains(wrong), "{said}");
+        assert!(message.contains(wrong), "{message}");
     }
     let table = read(text, &["G2"]).unwrap();
     assert_eq!(table.gauges[1], "G2");
     assert_eq!(table.microstrain[1], 2.0);
-    let said = read("time [s],G1\nms,um/m\n0,1\n1,2\n", &["G1"]).unwrap_err()[0].to_string();
+    let message = read("time [s],G1\nms,um/m\n0,1\n1,2\n", &["G1"]).unwrap_err()[0].to_string();
     assert!(
-        said.contains("`s` after the name, and `ms` as the unit of the column"),
-        "{said}"
+        message.contains("`s` after the name, and `ms` as the unit of the column"),
+        "{message}"
     );
     // `MN` and `mN`, or `N` and `kN`, are different units: two units for one column are a fault.
     for [in_name, below] in [["MN", "mN"], ["N", "kN"]] {
         let table = format!("run,LF.FZ [{in_name}],LF.MX\n-,{below},N m\nR1,2,3\n");
         let named = format!("columns = {{ \"LF.FZ\" = \"LF.FZ [{in_name}]\" }}\n");
         for more in ["", &named] {
-            let said = runs_of(&table, more).unwrap_err()[0].to_string();
+            let message = runs_of(&table, more).unwrap_err()[0].to_string();
             let wrong =
                 format!("`{in_name}` after the name, and `{below}` as the unit of the column");
-            assert!(said.contains(&wrong), "{said}");
+            assert!(message.contains(&wrong), "{message}");
         }
     }
 }
 
 #[test]
 fn a_column_of_runs_that_is_written_otherwise_is_asked_for() {
-    let said = strain_text::strain_from_text("s.csv", "Runs,G1\nR1,2\n", &["G1".to_owned()]);
-    let said = said.unwrap_err()[0].to_string();
-    assert!(said.contains("did you mean `Runs` for `run`?"), "{said}");
-    let said = runs_of("Runs,LF.FZ\nR1,2\n", "").unwrap_err()[0].to_string();
-    assert!(said.contains("did you mean `Runs` for `run`?"), "{said}");
-    let said = strain_text::strain_from_text("s.csv", "a,b\n1,2\n", &[]).unwrap_err();
-    assert!(!said[0].to_string().contains("did you mean"), "{said:?}");
+    let message = strain_text::strain_from_text("s.csv", "Runs,G1\nR1,2\n", &["G1".to_owned()]);
+    let message = message.unwrap_err()[0].to_string();
+    assert!(
+        message.contains("did you mean `Runs` for `run`?"),
+        "{message}"
+    );
+    let message = runs_of("Runs,LF.FZ\nR1,2\n", "").unwrap_err()[0].to_string();
+    assert!(
+        message.contains("did you mean `Runs` for `run`?"),
+        "{message}"
+    );
+    let message = strain_text::strain_from_text("s.csv", "a,b\n1,2\n", &[]).unwrap_err();
+    assert!(
+        !message[0].to_string().contains("did you mean"),
+        "{message:?}"
+    );
 }
 
 #[test]
@@ -383,8 +392,8 @@ fn a_row_of_units_tells_which_of_two_columns_holds_a_load() {
     let rows = runs_of(table, "").unwrap();
     assert_eq!(rows[0].loads_si["LF.FZ"], 2e3);
     let twice = "run,LF.FZ [kN],LF.FZ [N],LF.MX\nR1,2,2000,3\n";
-    let said = runs_of(twice, "").unwrap_err()[0].to_string();
-    assert!(said.contains("two columns contain `LF.FZ`"), "{said}");
+    let message = runs_of(twice, "").unwrap_err()[0].to_string();
+    assert!(message.contains("two columns contain `LF.FZ`"), "{message}");
 }
 
 #[test]

@@ -138,8 +138,8 @@ pub(crate) fn subtract_and_test_zero(
     };
     let (kept, findings) = reading_plausibility::check(gauges, readings, errors);
     for finding in findings {
-        let said = |f: &Finding| f.code == finding.code && f.subject == finding.subject;
-        if !work.findings.iter().any(said) {
+        let is_reported = |f: &Finding| f.code == finding.code && f.subject == finding.subject;
+        if !work.findings.iter().any(is_reported) {
             work.findings.push(finding);
         }
     }

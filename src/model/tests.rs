@@ -510,13 +510,13 @@ fn sets_that_sum_each_other_in_a_circle_are_called_that() {
     let (_, faults) = model(&format!(
         "{QUAD}CQUAD4,9,1,1,2,3,4\nLOAD,3,1.,1.,4\nLOAD,4,1.,1.,5\nLOAD,5,1.,1.,3\nSPCADD,7,8\nSPCADD,8,7\n"
     ));
-    let said: Vec<String> = faults
+    let messages: Vec<String> = faults
         .iter()
         .filter(|f| matches!(f.kind, FaultKind::SumCycle { .. }))
         .map(ToString::to_string)
         .collect();
     assert_eq!(
-        said,
+        messages,
         [
             "LOAD 3: the sets name each other in a circle: 3 -> 4 -> 5 -> 3",
             "SPCADD 7: the sets name each other in a circle: 7 -> 8 -> 7",

@@ -86,8 +86,8 @@ fn densities_of_no_material_are_an_error_where_all_is_a_metal_in_another_system(
     }
     // The weight density of steel in place of its mass density, and a deck that states its system.
     assert_eq!(tested(UnitSystem::InLbfS, None, 30.46e6, 0.2836).0, Warning);
-    let said = tested(UnitSystem::InLbfS, Some("IN-LBF"), 210e3, 7.85e-9);
-    assert_eq!(said.0, Warning);
+    let of_weight_density = tested(UnitSystem::InLbfS, Some("IN-LBF"), 210e3, 7.85e-9);
+    assert_eq!(of_weight_density.0, Warning);
 }
 
 #[test]

@@ -48,7 +48,7 @@ pub fn weak_sentences(fit: &Fit, parameters: &[Parameter], unknown: &[usize]) ->
     /// Share of a direction above which a parameter takes part in it.
     const PART: f64 = 0.3;
     let mut sentences = Vec::new();
-    let mut said: Vec<usize> = Vec::new();
+    let mut reported: Vec<usize> = Vec::new();
     for direction in fit.solution.directions.iter().rev() {
         let members: Vec<usize> = direction
             .iter()
@@ -58,11 +58,11 @@ pub fn weak_sentences(fit: &Fit, parameters: &[Parameter], unknown: &[usize]) ->
             .collect();
         if !members
             .iter()
-            .any(|m| unknown.contains(m) && !said.contains(m))
+            .any(|m| unknown.contains(m) && !reported.contains(m))
         {
             continue;
         }
-        said.extend(&members);
+        reported.extend(&members);
         let names: Vec<&str> = members
             .iter()
             .filter_map(|&i| parameters.get(i))

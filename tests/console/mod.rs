@@ -21,10 +21,10 @@ pub fn assert_states_summary(done: &Output, folder: &Path, command: &str) {
     let result: Value = serde_json::from_str(&file).unwrap();
     let summary = on_one_line(result["summary"].as_str().unwrap());
     assert!(summary.ends_with('.'), "{command}: {summary}");
-    let said = text(&done.stdout);
+    let printed = text(&done.stdout);
     assert!(
-        on_one_line(&said).contains(&summary),
-        "{command}: {summary}\n{said}"
+        on_one_line(&printed).contains(&summary),
+        "{command}: {summary}\n{printed}"
     );
     if let Ok(page) = std::fs::read_to_string(folder.join("report.html")) {
         let escaped = summary

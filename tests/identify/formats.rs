@@ -56,9 +56,9 @@ fn identify(dir: &Path, file: &str, bytes: &[u8]) -> (Option<i32>, Value, String
         .args(["identify", dir.join("job.toml").to_str().unwrap(), "--json"])
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&done.stderr).into_owned();
+    let printed = String::from_utf8_lossy(&done.stderr).into_owned();
     let result = serde_json::from_slice(&done.stdout).unwrap_or(Value::Null);
-    (done.status.code(), result, said)
+    (done.status.code(), result, printed)
 }
 
 fn folder(name: &str) -> PathBuf {
@@ -74,8 +74,8 @@ fn every_format_of_a_record_gives_the_parameters_of_the_plain_table() {
     let of_g = in_g(&si);
     let commas = [",", "."];
     let plain = table("t,a_body,a_wheel,f_wheel", &times, &si, commas);
-    let (code, expected, said) = identify(&dir, "plain.csv", plain.as_bytes());
-    assert_eq!(code, Some(0), "{said}");
+    let (code, expected, printed) = identify(&dir, "plain.csv", plain.as_bytes());
+    assert_eq!(code, Some(0), "{printed}");
     let ms: Vec<f64> = times.iter().map(|t| 1e3 * t).collect();
     let german = "Zeit [ms];a_body;a_wheel;f_wheel\n;g;g;kN";
     let german = table(german, &ms, &of_g, [";", ","]);
@@ -109,8 +109,8 @@ fn every_format_of_a_record_gives_the_parameters_of_the_plain_table() {
     #[cfg(all(feature = "xlsx", feature = "report"))]
     files.push(("record.xlsx", xlsx(&of_g, &times), 1e-6));
     for (file, bytes, tolerance) in files {
-        let (code, found, said) = identify(&dir, file, &bytes);
-        assert_eq!(code, Some(0), "{file}: {said}");
+        let (code, found, printed) = identify(&dir, file, &bytes);
+        assert_eq!(code, Some(0), "{file}: {printed}");
         let lists = [&expected, &found].map(|r| r["parameters"].as_array().unwrap().clone());
         assert_eq!(lists[0].len(), 4);
         for (a, b) in lists[0].iter().zip(&lists[1]) {
@@ -137,8 +137,8 @@ fn units_of_channels_that_are_not_used_do_not_matter_and_those_of_used_ones_do()
         let rows = rows.map(|(i, l)| format!("{l},{:.4}\n", 21.5 + (0.01 * i as f64).sin()));
         format!("{head},{name}\n{}", rows.collect::<String>())
     };
-    let (code, _, said) = identify(&dir, "other.csv", with("temperature [degC]").as_bytes());
-    assert_eq!(code, Some(0), "{said}");
+    let (code, _, printed) = identify(&dir, "other.csv", with("temperature [degC]").as_bytes());
+    assert_eq!(code, Some(0), "{printed}");
     for (wrong, expected) in [
         ("a_body [N]", "`N` is not a unit of acceleration"),
         ("a_body [degC]", "`degC` is not a unit of acceleration"),
@@ -147,9 +147,12 @@ fn units_of_channels_that_are_not_used_do_not_matter_and_those_of_used_ones_do()
         let name = wrong.split(' ').next().unwrap();
         let right = head.split(',').find(|h| h.starts_with(name)).unwrap();
         let text = text.replacen(right, wrong, 1);
-        let (code, _, said) = identify(&dir, "wrong.csv", text.as_bytes());
-        assert_eq!(code, Some(2), "{wrong}: {said}");
-        assert!(said.contains(expected) && said.contains(name), "{said}");
+        let (code, _, printed) = identify(&dir, "wrong.csv", text.as_bytes());
+        assert_eq!(code, Some(2), "{wrong}: {printed}");
+        assert!(
+            printed.contains(expected) && printed.contains(name),
+            "{printed}"
+        );
     }
 }
 

@@ -339,8 +339,12 @@ fn the_command_writes_its_files_and_check_accepts_its_job() {
         "{}",
         String::from_utf8_lossy(&checked.stdout)
     );
-    let said: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
-    assert_eq!(said["faults"].as_array().map(Vec::len), Some(0), "{said}");
+    let printed: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
+    assert_eq!(
+        printed["faults"].as_array().map(Vec::len),
+        Some(0),
+        "{printed}"
+    );
     let shown = start("check", &[]);
     let shown = String::from_utf8_lossy(&shown.stdout).into_owned()
         + &String::from_utf8_lossy(&shown.stderr);

@@ -79,11 +79,11 @@ fn a_gauge_that_is_dragged_over_a_coarser_picture_lands_on_the_elements() {
         steps.push(json!(["lines"]));
         from = *to;
     }
-    let Some(said) = run_page_steps(&report, 1280, &json!(steps)) else {
+    let Some(printed) = run_page_steps(&report, 1280, &json!(steps)) else {
         return;
     };
     for k in 0..places.len() {
-        let row = said["lines"][k][1]
+        let row = printed["lines"][k][1]
             .as_str()
             .unwrap()
             .lines()

@@ -117,10 +117,10 @@ pub fn run_page_steps(report: &Path, width: u32, steps: &Value) -> Option<Value>
     let text = json!({ "width": width, "touch": width < 600, "steps": steps }).to_string();
     std::fs::write(&plan, text).unwrap();
     let paths = [report, &plan].map(|p| p.to_str().unwrap());
-    let said = read_by("point_report.py", &paths)?;
-    assert_eq!(said["errors"], json!([]));
-    assert_eq!(said["requests"], json!([]));
-    Some(said)
+    let printed = read_by("point_report.py", &paths)?;
+    assert_eq!(printed["errors"], json!([]));
+    assert_eq!(printed["requests"], json!([]));
+    Some(printed)
 }
 
 /// Returns the ids of a list in the lines of the page, by key.
@@ -144,8 +144,8 @@ fn ids(lines: &str, key: &str) -> BTreeSet<u32> {
     }
 }
 
-fn lines(said: &Value, k: usize) -> &str {
-    said["lines"][k][0].as_str().unwrap()
+fn lines(printed: &Value, k: usize) -> &str {
+    printed["lines"][k][0].as_str().unwrap()
 }
 
 /// Steps on the page of `place` or `check`.
@@ -215,19 +215,19 @@ fn lines_written_by_pointing_with_mouse_and_finger_give_the_layout_that_was_poin
         (dir.join("free.out/report.html"), 390),
         (checked.join("report.html"), 1280),
     ] {
-        let Some(said) = run_page_steps(&report, width, &steps()) else {
+        let Some(printed) = run_page_steps(&report, width, &steps()) else {
             return;
         };
-        assert_eq!(lines(&said, 0), "[candidates]\nproperties = [1]\n");
-        assert_eq!(ids(lines(&said, 1), "exclude_elements"), brushed);
-        assert_eq!(lines(&said, 1), lines(&said, 2));
-        let last = lines(&said, 3);
+        assert_eq!(lines(&printed, 0), "[candidates]\nproperties = [1]\n");
+        assert_eq!(ids(lines(&printed, 1), "exclude_elements"), brushed);
+        assert_eq!(lines(&printed, 1), lines(&printed, 2));
+        let last = lines(&printed, 3);
         assert_eq!(ids(last, "wanted_elements"), wanted);
         let allowed: BTreeSet<u32> = left.difference(&brushed).copied().collect();
         assert_eq!(ids(last, "elements"), allowed);
         // The saved file contains the same lines. The job names the file or contains the lines.
-        assert_eq!(said["saved"]["name"], "picked.toml");
-        assert_eq!(said["saved"]["text"], last);
+        assert_eq!(printed["saved"]["name"], "picked.toml");
+        assert_eq!(printed["saved"]["text"], last);
         std::fs::write(dir.join("picked.toml"), last).unwrap();
         let named = layout(&dir, "named", "[candidates]\nfile = \"picked.toml\"\n");
         assert_eq!(named, layout(&dir, "inline", last));
@@ -242,7 +242,7 @@ fn lines_written_by_pointing_with_mouse_and_finger_give_the_layout_that_was_poin
             assert!(on >= 1, "{e} of {elements:?}");
         }
         // Two fingers, or the wheel of a mouse, zoom in and do not rotate.
-        let [before, after] = [0, 1].map(|k| said["camera"][k].clone());
+        let [before, after] = [0, 1].map(|k| printed["camera"][k].clone());
         assert!(after[0].as_f64() < before[0].as_f64());
         assert_eq!(before[1], after[1]);
     }
@@ -280,10 +280,10 @@ fn a_gauge_that_is_dragged_is_written_with_the_place_on_the_surface_where_it_was
             ["gauges"],
             ["lines"],
         ]);
-        let Some(said) = run_page_steps(&report, width, &steps) else {
+        let Some(printed) = run_page_steps(&report, width, &steps) else {
             return;
         };
-        let written = said["lines"][0][1].as_str().unwrap();
+        let written = printed["lines"][0][1].as_str().unwrap();
         let (head, row) = written.trim().split_once('\n').unwrap();
         let cells: Vec<&str> = row.split(',').collect();
         let of = |name: &str| cells[head.split(',').position(|h| h == name).unwrap()];
@@ -291,7 +291,7 @@ fn a_gauge_that_is_dragged_is_written_with_the_place_on_the_surface_where_it_was
         assert_eq!(of("name"), "P01");
         // The gauge is dropped within two pixels of the place, on the middle surface of the shell (z = 0). The points
         // of the picture have steps of 2e-4 mm.
-        let pixel = said["gauges"][0][0]["pixel"].as_f64().unwrap();
+        let pixel = printed["gauges"][0][0]["pixel"].as_f64().unwrap();
         let away = (number("x") - x).hypot(number("y") - y);
         assert!(away < 2.0 * pixel, "{away} of {pixel}");
         assert!(number("z").abs() < 1e-3, "{row}");
@@ -317,7 +317,7 @@ fn a_gauge_that_is_dragged_is_written_with_the_place_on_the_surface_where_it_was
             assert!((a - b).abs() < 0.02 * most, "{moved:?} {there:?}");
         }
         // The other gauges do not move.
-        let all = said["gauges"].as_array().unwrap();
+        let all = printed["gauges"].as_array().unwrap();
         for (a, b) in all[0]
             .as_array()
             .unwrap()
@@ -379,10 +379,10 @@ fn picked_on_a_tube(rings: u32, bytes: u64) {
         ["lines"],
     ]);
     for width in [1280, 390] {
-        let Some(said) = run_page_steps(&report, width, &steps) else {
+        let Some(printed) = run_page_steps(&report, width, &steps) else {
             return;
         };
-        let brushed = ids(lines(&said, 0), "exclude_elements");
+        let brushed = ids(lines(&printed, 0), "exclude_elements");
         // The stroke passes over the middles of these squares: the 25th of wall 3 from y = 500, rings 50 to 199.
         let under: Vec<u32> = (50..200).map(|i| 1 + 200 * i + 100 + 24).collect();
         assert!(under.iter().all(|e| brushed.contains(e)), "{brushed:?}");
@@ -402,7 +402,10 @@ fn picked_on_a_tube(rings: u32, bytes: u64) {
                 "{e} at {middle:?}"
             );
         }
-        assert_eq!(lines(&said, 1), "[candidates]\nproperties = [3]\n");
-        assert_eq!(lines(&said, 2), "[candidates]\nproperties = [1, 2, 3, 4]\n");
+        assert_eq!(lines(&printed, 1), "[candidates]\nproperties = [3]\n");
+        assert_eq!(
+            lines(&printed, 2),
+            "[candidates]\nproperties = [1, 2, 3, 4]\n"
+        );
     }
 }

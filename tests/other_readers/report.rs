@@ -279,8 +279,8 @@ fn a_finding_shows_the_gauge_that_it_names() {
         let shown = page["shown"].as_array().unwrap();
         let of_gauge = shown.iter().find(|s| s["name"] == gauge);
         let of_gauge = of_gauge.unwrap_or_else(|| panic!("{gauge}: {shown:?}"));
-        let said = of_gauge["said"].as_str().unwrap();
-        assert!(said.starts_with(&format!("{gauge}: ")), "{said}");
+        let printed = of_gauge["said"].as_str().unwrap();
+        assert!(printed.starts_with(&format!("{gauge}: ")), "{printed}");
         // One label of the first screen and one label of the model.
         assert_eq!(of_gauge["lit"], serde_json::json!([gauge, gauge]));
         assert_eq!(of_gauge["after"], serde_json::json!([]));

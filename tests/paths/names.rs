@@ -280,13 +280,14 @@ fn a_misspelt_parameter_is_noted() {
         ("GRDPTN", "GRDPNT"),
         ("COUPMAS", "COUPMASS"),
     ] {
-        let said = format!("line {CARD_LINE}: PARAM,{name} is not read: did you mean `{meant}`?");
-        assert!(noted("", &format!("PARAM,{name},1\n")).contains(&said));
+        let printed =
+            format!("line {CARD_LINE}: PARAM,{name} is not read: did you mean `{meant}`?");
+        assert!(noted("", &format!("PARAM,{name},1\n")).contains(&printed));
     }
-    let said = noted("PARAM,INRELL,-1\n", "");
+    let printed = noted("PARAM,INRELL,-1\n", "");
     assert!(
-        said.contains("line 5: PARAM,INRELL is not read: did you mean `INREL`?"),
-        "{said}"
+        printed.contains("line 5: PARAM,INRELL is not read: did you mean `INREL`?"),
+        "{printed}"
     );
     for other in ["AUTOSPCR", "POSTU", "MYPARAM", "PRGPST", "WTMASS"] {
         assert_eq!(noted("", &format!("PARAM,{other},1\n")), "", "{other}");
@@ -364,7 +365,7 @@ fn sequences_that_are_not_linear_are_refused() {
         );
     }
     assert!(with("SOL 101", "PARAM,LGDISP,-1\n").solved.is_ok());
-    for (sol, said) in [
+    for (sol, printed) in [
         ("SOL 101", false),
         ("SOL 105", false),
         ("SOL 200", false),
@@ -374,7 +375,7 @@ fn sequences_that_are_not_linear_are_refused() {
         let findings = with(sol, "").solved.unwrap();
         assert_eq!(
             findings.iter().any(|f| f.code == "solution-sequence"),
-            said,
+            printed,
             "{sol}"
         );
     }
@@ -393,10 +394,10 @@ fn superelements_that_are_not_read_are_refused() {
 
 #[test]
 fn suport_without_inrel_is_reported() {
-    let said = |deck: String| {
+    let printed = |deck: String| {
         let findings = check_and_solve(&deck).solved.unwrap();
         findings.iter().any(|f| f.code == "suport-without-inrel")
     };
-    assert!(said(rod("", "SUPORT,1,1\n")));
-    assert!(!said(rod("", "")));
+    assert!(printed(rod("", "SUPORT,1,1\n")));
+    assert!(!printed(rod("", "")));
 }

@@ -332,8 +332,8 @@ fn faults_of_spots_have_file_line_field_and_remedy() {
         ),
     ];
     for (table, expected) in tables {
-        let said = collect_placement_faults(&files(&three, table));
-        assert!(said.contains(expected), "{expected}\n{said}");
+        let printed = collect_placement_faults(&files(&three, table));
+        assert!(printed.contains(expected), "{expected}\n{printed}");
     }
     let of_candidates =
         |key: &str| format!("[candidates]\nfile = \"spots.csv\"\n{key}\n[placement]\ngauges = 3\n");
@@ -369,23 +369,23 @@ fn faults_of_spots_have_file_line_field_and_remedy() {
         jobs.push((format!("{SPOTS}{key}\n"), expected.to_owned()));
     }
     for (job, expected) in jobs {
-        let said = collect_placement_faults(&files(&job, plain));
+        let printed = collect_placement_faults(&files(&job, plain));
         assert!(
-            said.contains(&format!(": {expected}")),
-            "{expected}\n{said}"
+            printed.contains(&format!(": {expected}")),
+            "{expected}\n{printed}"
         );
-        assert!(said.contains("job.toml:"), "{said}");
+        assert!(printed.contains("job.toml:"), "{printed}");
     }
-    let said = collect_placement_faults(&files(&three, &table(true)));
+    let printed = collect_placement_faults(&files(&three, &table(true)));
     assert!(
-        said.contains("placement.budget: `spots.csv` states costs"),
-        "{said}"
+        printed.contains("placement.budget: `spots.csv` states costs"),
+        "{printed}"
     );
     let keep = "[[gauge]]\nname = \"A\"\nelement = 3\n[candidates]\nfile = \"spots.csv\"\n[placement]\ngauges = 1\nkeep = \"all\"\n";
-    let said = collect_placement_faults(&files(keep, plain));
+    let printed = collect_placement_faults(&files(keep, plain));
     assert!(
-        said.contains("spots.csv:2: name: spot `A`: [placement] `keep` names"),
-        "{said}"
+        printed.contains("spots.csv:2: name: spot `A`: [placement] `keep` names"),
+        "{printed}"
     );
 }
 
@@ -508,10 +508,10 @@ fn a_table_corrected_by_hand_is_not_overwritten_by_place_or_study() {
             "gauges.csv" => save(&placed, &folder).unwrap_err(),
             _ => save(&found, &folder).unwrap_err(),
         };
-        let said = faults.to_string();
+        let printed = faults.to_string();
         assert!(
-            said.contains(name) && said.contains("was changed after"),
-            "{said}"
+            printed.contains(name) && printed.contains("was changed after"),
+            "{printed}"
         );
         assert_eq!(std::fs::read_to_string(&path).unwrap(), corrected);
         std::fs::write(&path, &before).unwrap();

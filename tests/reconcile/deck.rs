@@ -110,8 +110,8 @@ fn a_zone_15_percent_thicker_is_found_through_the_solver_and_its_deck_solves_and
     for (command, table) in [("solve", "results.op2"), ("recover", "loads.csv")] {
         let folder = out.join(command);
         let done = run(command, &job, &folder);
-        let said = String::from_utf8_lossy(&done.stderr);
-        assert_eq!(done.status.code(), Some(0), "{command}: {said}");
+        let printed = String::from_utf8_lossy(&done.stderr);
+        assert_eq!(done.status.code(), Some(0), "{command}: {printed}");
         assert!(folder.join(table).exists(), "{command}");
     }
 }
@@ -132,8 +132,8 @@ fn a_turned_sign_is_found_on_a_deck_whose_mesh_makes_two_percent_and_nothing_els
         &out.join("job_extended.toml"),
         &out.join("recover"),
     );
-    let said = String::from_utf8_lossy(&done.stderr);
-    assert_eq!(done.status.code(), Some(0), "{said}");
+    let printed = String::from_utf8_lossy(&done.stderr);
+    assert_eq!(done.status.code(), Some(0), "{printed}");
     // The correction applies to the channel in all readings, including future ones. No further effect remains to
     // identify.
     let job = out.join("job_extended.toml");

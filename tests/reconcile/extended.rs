@@ -26,8 +26,8 @@ fn run(command: &str, job: &Path, out: &Path) -> (Option<i32>, Value) {
         .output()
         .expect("the program runs");
     let code = done.status.code();
-    let said = String::from_utf8_lossy(&done.stderr);
-    assert!(code != Some(2), "{command} {}: {said}", job.display());
+    let printed = String::from_utf8_lossy(&done.stderr);
+    assert!(code != Some(2), "{command} {}: {printed}", job.display());
     let result = serde_json::from_slice(&done.stdout).expect("valid json");
     (code, result)
 }
@@ -138,15 +138,15 @@ impl Found {
     /// Fails if the hidden effect is neither identified nor listed as indistinguishable from the identified effect.
     fn assert_named(&self, effect: &str) {
         let r = &self.result;
-        let said = format!("{effect} {:?}: {} {}", self.truth, r["named"], r["rivals"]);
-        assert_eq!(r["verdict"], "named", "{said} {}", r["remains"]);
+        let printed = format!("{effect} {:?}: {} {}", self.truth, r["named"], r["rivals"]);
+        assert_eq!(r["verdict"], "named", "{printed} {}", r["remains"]);
         let rivals = r["rivals"].as_array().expect("rivals");
         let alike = |t: &String| {
             let mut alike = rivals.iter().filter(|r| r["indistinguishable"] == true);
             alike.any(|r| r["id"] == t.as_str())
         };
         let is_named = r["named"] == serde_json::json!(self.truth);
-        assert!(is_named || self.truth.iter().all(alike), "{said}");
+        assert!(is_named || self.truth.iter().all(alike), "{printed}");
     }
 }
 
@@ -602,6 +602,6 @@ fn uneven_ground_is_a_load_of_the_extended_job() {
         .output()
         .expect("the program runs");
     assert_eq!(done.status.code(), Some(2));
-    let said = String::from_utf8_lossy(&done.stderr);
-    assert!(said.contains("runs.ground"), "{said}");
+    let printed = String::from_utf8_lossy(&done.stderr);
+    assert!(printed.contains("runs.ground"), "{printed}");
 }

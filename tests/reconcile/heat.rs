@@ -75,11 +75,11 @@ fn a_temperature_set_that_is_missing_or_even_is_refused_with_line_and_remedy() {
             .args(["reconcile".as_ref(), folder.join("job.toml").as_os_str()])
             .output()
             .expect("the program runs");
-        let said = String::from_utf8_lossy(&done.stderr);
-        assert_eq!(done.status.code(), Some(2), "{said}");
+        let printed = String::from_utf8_lossy(&done.stderr);
+        assert_eq!(done.status.code(), Some(2), "{printed}");
         assert!(
-            said.contains(words) && said.contains("temperature_set"),
-            "{said}"
+            printed.contains(words) && printed.contains("temperature_set"),
+            "{printed}"
         );
     }
 }

@@ -59,8 +59,11 @@ fn a_joint_of_half_its_stiffness_is_named_and_the_extended_deck_strains_as_the_t
     run("solve", &extended);
     // The residual of the mesh exceeds the stated model error of half a per cent. An error therefore states that the
     // loads are not explained.
-    let (_, said) = ends("recover", &extended, 1);
-    assert!(said.contains("error [strain-not-explained]"), "{said}");
+    let (_, printed) = ends("recover", &extended, 1);
+    assert!(
+        printed.contains("error [strain-not-explained]"),
+        "{printed}"
+    );
 }
 
 /// The user's hypothesis is a quarter of the stiffness. The truth is half, the square root of a quarter, so the

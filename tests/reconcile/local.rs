@@ -101,17 +101,17 @@ fn a_region_that_lost_stiffness_is_named_where_it_is_and_not_as_several_bad_gaug
         };
         let r = reconcile_crack(&format!("reconcile_local_{k}"), &crack, 0.45);
         let named = list_named_effects(&r);
-        let said = format!(
+        let printed = format!(
             "{k}: {} {named:?} {} {}",
             r["verdict"], r["best_attempt"], r["rivals"]
         );
         let [one] = named.as_slice() else {
-            panic!("{said}");
+            panic!("{printed}");
         };
-        let place = one.strip_prefix("local_stiffness:").expect(&said);
+        let place = one.strip_prefix("local_stiffness:").expect(&printed);
         let (found, truth) = (middle_of(place), crack.middle());
         let off = (found[0] - truth[0]).hypot(found[1] - truth[1]);
-        assert!(off <= 100.0, "{said} {off}");
+        assert!(off <= 100.0, "{printed} {off}");
         // If the region is as wide as the strip, the size is 100 times the natural logarithm of the modulus factor,
         // within a few hundredths. If a part of the strip carries on next to the region, shape and size of the region
         // compensate each other.
@@ -119,21 +119,21 @@ fn a_region_that_lost_stiffness_is_named_where_it_is_and_not_as_several_bad_gaug
         let whole = rows == [0.0, 2.0];
         assert!(
             !whole || (size - 100.0 * 0.45f64.ln()).abs() < 4.0,
-            "{said}"
+            "{printed}"
         );
-        assert!(size < -20.0, "{said}");
+        assert!(size < -20.0, "{printed}");
         // No property contains exactly the region, so no deck is written. A finding gives the reason, and the page
         // shows the place.
-        assert!(r["extended_model"].is_null(), "{said}");
+        assert!(r["extended_model"].is_null(), "{printed}");
         let findings = r["findings"].as_array().expect("findings");
         let is_said = |f: &serde_json::Value| f["code"] == "effect-not-in-model";
-        assert!(findings.iter().any(is_said), "{said}");
+        assert!(findings.iter().any(is_said), "{printed}");
         let page = Path::new(env!("CARGO_TARGET_TMPDIR"))
             .join(format!("reconcile_local_{k}/model/job.out/report.html"));
         let page = std::fs::read_to_string(page).expect("the page");
         assert!(
             page.contains(&format!("stiffness less than in the model: {one}")),
-            "{said}"
+            "{printed}"
         );
     }
 }

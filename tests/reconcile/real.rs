@@ -211,8 +211,8 @@ fn the_command_asks_for_the_record_that_separates_two_causes_and_writes_a_page()
             .arg(folder.join("job.toml"))
             .output()
             .expect("the program runs");
-        let said = String::from_utf8_lossy(&done.stderr);
-        assert!(done.status.success(), "{head}: {said}");
+        let printed = String::from_utf8_lossy(&done.stderr);
+        assert!(done.status.success(), "{head}: {printed}");
         let other: serde_json::Value = serde_json::from_slice(&done.stdout).expect("valid json");
         assert_eq!(other["rivals"], result["rivals"], "{head}");
     }

@@ -120,7 +120,7 @@ fn a_model_that_is_off_by_a_smooth_factor_is_unknown_smooth_and_its_curve_is_the
             row.iter_mut().zip(&factor).for_each(|(v, f)| *v *= f);
         }
         let outcome = examine(&frame, &[]);
-        let said = format!("{sd} {seed}: {:?} {:?}", ids(&outcome), outcome.remains);
+        let printed = format!("{sd} {seed}: {:?} {:?}", ids(&outcome), outcome.remains);
         if outcome.verdict == Verdict::Named {
             // A random curve may be a constant factor, within the noise and the model error of 1 %.
             let mean = factor.iter().sum::<f64>() / GAUGES as f64;
@@ -128,7 +128,7 @@ fn a_model_that_is_off_by_a_smooth_factor_is_unknown_smooth_and_its_curve_is_the
             let off = (off / GAUGES as f64).sqrt();
             assert!(
                 ids(&outcome) == ["global_scale"] && off < 0.02,
-                "{said} {off}"
+                "{printed} {off}"
             );
             straight += 1;
             continue;
@@ -136,20 +136,23 @@ fn a_model_that_is_off_by_a_smooth_factor_is_unknown_smooth_and_its_curve_is_the
         // Noise that is larger than stated may explain a small curve as well. In that case the outcome has no best
         // attempt.
         let Some(last) = outcome.best_attempt.last() else {
-            others.push(said);
+            others.push(printed);
             continue;
         };
         followed += 1;
-        assert_eq!(last.id, "smooth", "{said}");
+        assert_eq!(last.id, "smooth", "{printed}");
         for at in outcome.smooth.iter().filter(|s| s.load.is_none()) {
             let gauge = frame.gauges.iter().position(|g| g.name == at.gauge);
             let truth = factor[gauge.expect("a gauge")];
             // Four standard deviations of 24 gauges, plus a tenth of `sd` for waves that are shorter than the tested
             // ones.
             let allowed = 4.0 * at.sd + 0.1 * sd;
-            assert!((at.factor - truth).abs() < allowed, "{said} {at:?} {truth}");
+            assert!(
+                (at.factor - truth).abs() < allowed,
+                "{printed} {at:?} {truth}"
+            );
         }
-        assert!(!outcome.smooth.is_empty(), "{said}");
+        assert!(!outcome.smooth.is_empty(), "{printed}");
         let page = reconcile_page(&GapReport {
             title: "beam",
             outcome: &outcome,
@@ -159,9 +162,12 @@ fn a_model_that_is_off_by_a_smooth_factor_is_unknown_smooth_and_its_curve_is_the
             findings: &[],
         })
         .to_html();
-        assert!(page.contains("The smooth error of the model"), "{said}");
+        assert!(page.contains("The smooth error of the model"), "{printed}");
         let is_drawn = |g: &String| page.contains(&format!("{g} at "));
-        assert!(outcome.smooth.iter().all(|s| is_drawn(&s.gauge)), "{said}");
+        assert!(
+            outcome.smooth.iter().all(|s| is_drawn(&s.gauge)),
+            "{printed}"
+        );
     }
     // A curve of 5 % may have odds below a hundred to one, and is then not reported. This limit prevents false
     // identification.

@@ -153,9 +153,9 @@ pub fn ends(command: &str, job: &Path, code: i32) -> (PathBuf, String) {
         .arg(job)
         .output()
         .expect("the program runs");
-    let said = String::from_utf8_lossy(&done.stderr).into_owned();
-    assert_eq!(done.status.code(), Some(code), "{command}: {said}");
-    (job.with_extension("out"), said)
+    let printed = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert_eq!(done.status.code(), Some(code), "{command}: {printed}");
+    (job.with_extension("out"), printed)
 }
 
 /// Returns S of a folder's job, microstrain per N, gauges by loads.

@@ -39,8 +39,8 @@ fn calibrate_plate(name: &str, more: &str) -> std::path::PathBuf {
     let write = |name: &str, text: &str| std::fs::write(dir.join(name), text).unwrap();
     write("plate.bdf", &deck());
     write("model.toml", &job());
-    let (code, _, said) = run("sensitivity", &dir.join("model.toml"));
-    assert_eq!(code, 0, "{said}");
+    let (code, _, printed) = run("sensitivity", &dir.join("model.toml"));
+    assert_eq!(code, 0, "{printed}");
     let table = std::fs::read_to_string(dir.join("model.sensitivity.out/sensitivity.csv")).unwrap();
     let mut numbers = Numbers(7);
     let s: Vec<Vec<f64>> = table
@@ -85,8 +85,8 @@ fn calibrate_plate(name: &str, more: &str) -> std::path::PathBuf {
          [runs]\nfile = \"runs.csv\"\nunits = {{ force = \"N\" }}\n[calibration]\n{more}"
     );
     write("teach.toml", &(job() + &with));
-    let (code, _, said) = run("calibrate", &dir.join("teach.toml"));
-    assert_eq!(code, 0, "{said}");
+    let (code, _, printed) = run("calibrate", &dir.join("teach.toml"));
+    assert_eq!(code, 0, "{printed}");
     dir.join("teach.calibrate.out/calibrated.toml")
 }
 
@@ -96,10 +96,10 @@ fn place_plans_with_the_sigma_that_recover_states_by_the_calibrated_s() {
         "calibrated-place",
         "[placement]\ngauges = 6\nnoise_microstrain = 0.5\nspacing = 5\n",
     );
-    let (code, placed, said) = run("place", &job);
-    assert_eq!(code, 0, "{said}");
-    let (code, recovered, said) = run("recover", &job);
-    assert_eq!(code, 0, "{said}");
+    let (code, placed, printed) = run("place", &job);
+    assert_eq!(code, 0, "{printed}");
+    let (code, recovered, printed) = run("recover", &job);
+    assert_eq!(code, 0, "{printed}");
     let list = recovered["loads"].as_array().unwrap();
     let planned = placed["installed"]["load_sigma"].as_array().unwrap();
     assert_eq!(planned.len(), LOADS.len());
@@ -139,8 +139,8 @@ fn a_payload_is_weighed_by_the_calibrated_s_with_its_uncertainty() {
     let text = std::fs::read_to_string(&job).unwrap();
     let strain_key = text.lines().find(|l| l.starts_with("strain = ")).unwrap();
     std::fs::write(&job, text.replace(strain_key, "strain = \"lift.csv\"")).unwrap();
-    let (code, r, said) = run("payload", &job);
-    assert_eq!(code, 0, "{said}");
+    let (code, r, printed) = run("payload", &job);
+    assert_eq!(code, 0, "{printed}");
     let p = &r["payload"][0];
     let number = |key: &str| p[key].as_f64().unwrap_or_else(|| panic!("{key}: {p}"));
     let (force, sigma) = (number("force"), number("force_sigma"));
@@ -160,7 +160,7 @@ fn a_gauge_that_was_turned_is_in_the_calibrated_s_and_not_turned_again() {
         "{text}"
     );
     assert!(text.contains("gain = 1.1"), "{text}");
-    let (code, r, said) = run("recover", &job);
-    assert_eq!(code, 0, "{said}");
+    let (code, r, printed) = run("recover", &job);
+    assert_eq!(code, 0, "{printed}");
     assert_eq!(r["loads"].as_array().unwrap().len(), 26 * LOADS.len());
 }

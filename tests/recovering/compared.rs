@@ -378,18 +378,18 @@ fn what_can_not_be_compared_or_cut_is_refused_with_its_line() {
             .with_file("other.csv", "time,X\n0,1\n0.01,2\n0.02,3\n")
             .with_file("unlike.csv", unlike.clone());
         let faults = answer(&files).unwrap_err();
-        let said = faults.to_string();
+        let printed = faults.to_string();
         assert!(
-            said.contains(field) && said.contains(words),
-            "{more}: {said}"
+            printed.contains(field) && printed.contains(words),
+            "{more}: {printed}"
         );
     }
     let of_runs = files(
         "run,G1,G2,G3,G4\nR1,1,2,3,4\nR2,2,1,3,2\n".to_owned(),
         &section(0.0, 1.0),
     );
-    let said = answer(&of_runs).unwrap_err().to_string();
-    assert!(said.contains("the strain file has runs"), "{said}");
+    let printed = answer(&of_runs).unwrap_err().to_string();
+    assert!(printed.contains("the strain file has runs"), "{printed}");
 }
 
 #[test]
@@ -402,15 +402,15 @@ fn every_sample_is_in_the_table_and_the_job_thins_it() {
             .collect::<Vec<_>>()
     };
     let record = table("time", 300, as_is);
-    let (code, said, result, dir) = by_command("every-sample", &record, "");
-    assert_eq!(code, 0, "{said}");
+    let (code, printed, result, dir) = by_command("every-sample", &record, "");
+    assert_eq!(code, 0, "{printed}");
     assert_eq!(
         (rows(&dir).len(), result["csv_every"].as_u64()),
         (300, Some(1))
     );
-    let (code, said, result, dir) =
+    let (code, printed, result, dir) =
         by_command("every-seventh", &record, "[recover]\ncsv_every = 7\n");
-    assert_eq!(code, 0, "{said}");
+    assert_eq!(code, 0, "{printed}");
     let thinned = rows(&dir);
     assert_eq!((thinned.len(), result["csv_every"].as_u64()), (43, Some(7)));
     assert_eq!(thinned[1], "0.07");
@@ -429,23 +429,23 @@ fn tables_page_and_console_state_comparison_and_sections() {
     }
     let dir = super::folder("compared");
     // The first run makes the files of the job. The second run has the files that the job names.
-    let (code, said, _, dir) = {
+    let (code, printed, _, dir) = {
         let _ = dir;
         by_command("compared", &table("time", 300, as_is), more)
     };
     assert_eq!(code, 2);
-    assert!(said.contains("runs.csv"), "{said}");
+    assert!(printed.contains("runs.csv"), "{printed}");
     std::fs::write(dir.join("runs.csv"), "run,A,B\nR0,1,2\n").unwrap();
     std::fs::write(dir.join("wft.csv"), wft).unwrap();
     let out = std::process::Command::new(env!("CARGO_BIN_EXE_strainbridge"))
         .args(["recover", &dir.join("job.toml").display().to_string()])
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&[out.stdout, out.stderr].concat()).into_owned();
-    assert_eq!(out.status.code(), Some(0), "{said}");
+    let printed = String::from_utf8_lossy(&[out.stdout, out.stderr].concat()).into_owned();
+    assert_eq!(out.status.code(), Some(0), "{printed}");
     assert!(
-        said.contains("damage ratio") && said.contains("column-not-read"),
-        "{said}"
+        printed.contains("damage ratio") && printed.contains("column-not-read"),
+        "{printed}"
     );
     let read = |name: &str| std::fs::read_to_string(dir.join("job.out").join(name)).unwrap();
     let comparison = read("comparison.csv");
@@ -542,11 +542,11 @@ fn a_section_by_a_box_of_positions_needs_both_channels_inside() {
 #[test]
 fn rules_of_sections_that_select_nothing_or_too_much_are_refused() {
     let refused = |more: &str, expected: &[&str]| {
-        let said = answer(&files(record_with_channels(4000), more))
+        let printed = answer(&files(record_with_channels(4000), more))
             .unwrap_err()
             .to_string();
         for part in expected {
-            assert!(said.contains(part), "{part}: {said}");
+            assert!(printed.contains(part), "{part}: {printed}");
         }
     };
     let rule = |keys: &str| format!("[[section]]\nname = \"fast\"\n{keys}\n");

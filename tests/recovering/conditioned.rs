@@ -262,10 +262,10 @@ fn what_conditioning_cannot_do_is_a_fault() {
         let files = files([false; 5], &format!("[conditioning]\n{text}\n"));
         let run = |job: Job| strainbridge::recover(&job, &Context::new(&files)).map(|_| ());
         let fault = Job::read("job.toml", &files).and_then(run).unwrap_err();
-        let said = format!("{fault:?}");
+        let printed = format!("{fault:?}");
         assert!(
-            said.contains(&format!("conditioning.{key}")),
-            "{text}: {said}"
+            printed.contains(&format!("conditioning.{key}")),
+            "{text}: {printed}"
         );
     }
     // A step that removes static strain together with a zero file, a temperature in another unit, and a `[[section]]`

@@ -230,8 +230,8 @@ fn what_dynamic_cannot_do_is_a_fault_of_its_line() {
         "[{ up_to_hz = 5.0, damping = 0.0 }]",
     ] {
         let text = format!("[dynamic]\nup_to_hz = 10.0\ndamping = {wrong}\n");
-        let said = fault(files.clone(), job(&text));
-        assert!(said.starts_with("dynamic.damping"), "{said}");
+        let printed = fault(files.clone(), job(&text));
+        assert!(printed.starts_with("dynamic.damping"), "{printed}");
     }
     let given = "units = \"mm-t-s\"\n[sensitivity]\nfile = \"S.csv\"\nper = { force = \"N\" }\n[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.2\n\
                  [dynamic]\nup_to_hz = 10.0\ndamping = 0.02\n";
@@ -356,12 +356,12 @@ fn an_error_of_frequency_blames_no_gauge() {
     assert!(codes.contains(&"modes-contradicted"), "{codes:?}");
     let off = |g: usize, x: f64, t: f64| real(1.01, x, t) * if g == 1 { 1.3 } else { 1.0 };
     let (_, _, _, codes) = recover_tip_force(&GAUGED, 5000, more, |t| two(t).iter().sum(), off);
-    let said = [
+    let printed = [
         "gauge-suspect",
         "strain-not-explained",
         "residual-above-stated-errors",
     ];
-    assert!(codes.iter().any(|c| said.contains(c)), "{codes:?}");
+    assert!(codes.iter().any(|c| printed.contains(c)), "{codes:?}");
 }
 
 /// Two gauges, each without a reading in one half of the record. No sample has both.

@@ -51,34 +51,34 @@ fn runs_held_out_in_a_file_of_their_own_have_zeros_of_their_own() {
             .arg(&out)
             .output()
             .unwrap();
-        let said = String::from_utf8_lossy(&done.stderr).into_owned();
+        let printed = String::from_utf8_lossy(&done.stderr).into_owned();
         let text = std::fs::read_to_string(out.join("result.json"));
         let result = text.map_or(Value::Null, |t| serde_json::from_str(&t).unwrap());
-        (done.status.code(), said, result)
+        (done.status.code(), printed, result)
     };
     // The logger was switched off between the files, so every zero differs.
     let all = ["Z1", "Z2", "Z3", "Z4"];
-    let (code, said, result) = reconcile(
+    let (code, printed, result) = reconcile(
         "held-zero",
         &all,
         &with_own_zero(9, 12, -700.0, ["Z3", "Z4"]),
     );
-    assert_eq!(code, Some(0), "{said}");
+    assert_eq!(code, Some(0), "{printed}");
     assert_eq!(result["verdict"], "none");
     // Readings have an error of half a microstrain. The other zero would give a thousand times as much.
     let gap = result["gap"]["before"].as_f64().unwrap();
     assert!(gap < 5e-3, "{gap}");
     let none = table("run", 12, as_is);
-    let (code, said, _) = reconcile("held-without-zero", &all[..2], &none);
-    assert_eq!(code, Some(2), "{said}");
+    let (code, printed, _) = reconcile("held-without-zero", &all[..2], &none);
+    assert_eq!(code, Some(2), "{printed}");
     assert!(
-        said.contains("`held.csv` contains none of these runs: add a run without load"),
-        "{said}"
+        printed.contains("`held.csv` contains none of these runs: add a run without load"),
+        "{printed}"
     );
     let unknown = with_own_zero(9, 12, -700.0, ["Z3", "other"]);
-    let (code, said, _) = reconcile("held-unknown-zero", &all, &unknown);
-    assert_eq!(code, Some(2), "{said}");
-    assert!(said.contains("has a run `Z4`"), "{said}");
+    let (code, printed, _) = reconcile("held-unknown-zero", &all, &unknown);
+    assert_eq!(code, Some(2), "{printed}");
+    assert!(printed.contains("has a run `Z4`"), "{printed}");
 }
 
 #[cfg(feature = "xlsx")]
@@ -102,10 +102,10 @@ fn a_refused_spreadsheet_of_several_sheets_names_the_sheet_that_was_read() {
         .args(["recover", dir.join("sheets.toml").to_str().unwrap()])
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&done.stderr);
-    assert_eq!(done.status.code(), Some(2), "{said}");
+    let printed = String::from_utf8_lossy(&done.stderr);
+    assert_eq!(done.status.code(), Some(2), "{printed}");
     for word in ["first sheet", "`Notes`", "`Runs`", "`Old`"] {
-        assert!(said.contains(word), "{word}: {said}");
+        assert!(printed.contains(word), "{word}: {printed}");
     }
 }
 
@@ -113,8 +113,8 @@ fn a_refused_spreadsheet_of_several_sheets_names_the_sheet_that_was_read() {
 #[test]
 fn a_spreadsheet_of_runs_is_read_as_the_same_table_in_text() {
     let text = table("run", 12, as_is);
-    let (code, said, from_text, dir) = recover("runs-text", &text, "");
-    assert_eq!(code, 0, "{said}");
+    let (code, printed, from_text, dir) = recover("runs-text", &text, "");
+    assert_eq!(code, 0, "{printed}");
     let mut book = rust_xlsxwriter::Workbook::new();
     let sheet = book.add_worksheet();
     for (r, line) in text.lines().enumerate() {
@@ -142,8 +142,8 @@ fn a_spreadsheet_of_runs_is_read_as_the_same_table_in_text() {
     };
     for command in ["recover", "check"] {
         let done = run(command);
-        let said = String::from_utf8_lossy(&done.stderr);
-        assert_eq!(done.status.code(), Some(0), "{command}: {said}");
+        let printed = String::from_utf8_lossy(&done.stderr);
+        assert_eq!(done.status.code(), Some(0), "{command}: {printed}");
     }
     let result = std::fs::read(dir.join("sheet.out/result.json")).unwrap();
     let from_sheet: Value = serde_json::from_slice(&result).unwrap();
@@ -156,10 +156,10 @@ fn a_spreadsheet_of_runs_is_read_as_the_same_table_in_text() {
     bomb[list + 24..list + 28].copy_from_slice(&u32::MAX.to_le_bytes());
     std::fs::write(dir.join("strain.xlsx"), &bomb).unwrap();
     let done = run("recover");
-    let said = String::from_utf8_lossy(&done.stderr);
+    let printed = String::from_utf8_lossy(&done.stderr);
     assert!(
-        done.status.code() == Some(2) && said.contains("unpacked"),
-        "{said}"
+        done.status.code() == Some(2) && printed.contains("unpacked"),
+        "{printed}"
     );
 }
 
@@ -187,12 +187,12 @@ fn in_units(units: [(&str, f64); 4], below: bool) -> String {
 
 #[test]
 fn units_of_run_tables_are_read_as_those_of_records() {
-    let (code, said, plain, _) = recover("units-plain", &table("run", 12, as_is), "");
-    assert_eq!(code, 0, "{said}");
+    let (code, printed, plain, _) = recover("units-plain", &table("run", 12, as_is), "");
+    assert_eq!(code, 0, "{printed}");
     let units = [("um/m", 1.0), ("m/m", 1e-6), ("mm/m", 1e-3), ("µm/m", 1.0)];
     for (name, below) in [("units-row", true), ("units-header", false)] {
-        let (code, said, result, _) = recover(name, &in_units(units, below), "");
-        assert_eq!(code, 0, "{said}");
+        let (code, printed, result, _) = recover(name, &in_units(units, below), "");
+        assert_eq!(code, 0, "{printed}");
         for run in ["R0", "R11"] {
             for l in ["A", "B"] {
                 let [a, b] = [&plain, &result].map(|r| load(r, run, l)[0]);
@@ -204,26 +204,26 @@ fn units_of_run_tables_are_read_as_those_of_records() {
     // A unit that is not strain is a fault with gauge, unit and remedy. Columns that are not gauges may have any unit.
     let volts = [("um/m", 1.0), ("mV/V", 1.0), ("um/m", 1.0), ("um/m", 1.0)];
     for below in [true, false] {
-        let (code, said, _, _) = recover("units-volts", &in_units(volts, below), "");
-        assert_eq!(code, 2, "{said}");
+        let (code, printed, _, _) = recover("units-volts", &in_units(volts, below), "");
+        assert_eq!(code, 2, "{printed}");
         assert!(
-            said.contains("G2") && said.contains("`mV/V` is not a unit of strain"),
-            "{said}"
+            printed.contains("G2") && printed.contains("`mV/V` is not a unit of strain"),
+            "{printed}"
         );
     }
     let text = table("run", 12, as_is).replace("G4\n", "G4,temperature [°C]\n");
     let (head, rows) = text.split_once('\n').unwrap();
     let rows: String = rows.lines().map(|l| format!("{l},21.5\n")).collect();
-    let (code, said, result, _) = recover("units-other", &format!("{head}\n{rows}"), "");
-    assert_eq!(code, 0, "{said}");
+    let (code, printed, result, _) = recover("units-other", &format!("{head}\n{rows}"), "");
+    assert_eq!(code, 0, "{printed}");
     assert_eq!(load(&result, "R3", "A"), load(&plain, "R3", "A"));
 }
 
 #[test]
 fn a_rosette_of_a_given_s_reads_by_its_legs() {
     let strain = table("run", 8, as_is);
-    let (exit, said, single, dir) = recover("rosette", &strain, "");
-    assert_eq!(exit, 0, "{said}");
+    let (exit, printed, single, dir) = recover("rosette", &strain, "");
+    assert_eq!(exit, 0, "{printed}");
     for file in ["S.csv", "strain.csv"] {
         let text = std::fs::read_to_string(dir.join(file)).unwrap();
         let legs = [("G1", "R.a"), ("G2", "R.b"), ("G3", "R.c")];
@@ -240,8 +240,8 @@ fn a_rosette_of_a_given_s_reads_by_its_legs() {
         .arg(dir.join("legs"))
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&done.stderr).into_owned();
-    assert_eq!(done.status.code(), Some(0), "{said}");
+    let printed = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert_eq!(done.status.code(), Some(0), "{printed}");
     let text = std::fs::read_to_string(dir.join("legs/result.json")).unwrap();
     let legs: Value = serde_json::from_str(&text).unwrap();
     for run in 0..8 {

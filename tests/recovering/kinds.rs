@@ -254,13 +254,13 @@ fn another_kind_of_file_than_the_one_expected_is_one_fault() {
         .with_file("part.bdf", b"TDSm\x00\x00".to_vec())
         .with_file("rec.rsp", b"TDSm\x00\x00".to_vec());
     let found = check_files(&deck, &["main.bdf"]);
-    let said: String = found.faults.iter().map(ToString::to_string).collect();
-    assert!(said.contains("a record in TDMS form"), "{said}");
+    let printed: String = found.faults.iter().map(ToString::to_string).collect();
+    assert!(printed.contains("a record in TDMS form"), "{printed}");
     let solved =
         strainbridge::solve_deck("rec.rsp".as_ref(), Default::default(), &Context::new(&deck));
-    let said = words(&solved.err().expect("a fault"));
+    let printed = words(&solved.err().expect("a fault"));
     assert!(
-        said.contains("it is a record in TDMS form, not a Nastran deck"),
-        "{said}"
+        printed.contains("it is a record in TDMS form, not a Nastran deck"),
+        "{printed}"
     );
 }

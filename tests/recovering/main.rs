@@ -366,8 +366,8 @@ fn drifting_strain_table() -> String {
 fn a_zero_that_drifts_is_followed_through_runs_without_load() {
     let names = EMPTY.map(|i| format!("\"R{i}\"")).join(", ");
     let more = format!("zero_runs = [{names}]\n");
-    let (code, said, result, _) = recover("zero-runs", &drifting_strain_table(), &more);
-    assert_eq!(code, 0, "{said}");
+    let (code, printed, result, _) = recover("zero-runs", &drifting_strain_table(), &more);
+    assert_eq!(code, 0, "{printed}");
     let of = |run: usize, name: &str| {
         let all = result["loads"].as_array().unwrap();
         let found = all
@@ -399,20 +399,20 @@ fn a_zero_that_drifts_is_followed_through_runs_without_load() {
     }
     let codes = result["findings"].as_array().unwrap();
     assert!(codes.iter().any(|f| f["code"] == "zero-interpolated"));
-    let (code, said, _, _) = recover(
+    let (code, printed, _, _) = recover(
         "zero-runs-none",
         &drifting_strain_table(),
         "zero_runs = [\"R99\"]\n",
     );
     assert_eq!(code, 2);
     assert!(
-        said.contains("measured.zero_runs: `strain.csv` has no run `R99`"),
-        "{said}"
+        printed.contains("measured.zero_runs: `strain.csv` has no run `R99`"),
+        "{printed}"
     );
     let record = table("time", 200, as_is);
-    let (code, said, _, _) = recover("zero-runs-record", &record, "zero_runs = [\"R0\"]\n");
+    let (code, printed, _, _) = recover("zero-runs-record", &record, "zero_runs = [\"R0\"]\n");
     assert_eq!(code, 2);
-    assert!(said.contains("is a record and has no runs"), "{said}");
+    assert!(printed.contains("is a record and has no runs"), "{printed}");
 }
 
 /// Compares the results of `reconcile` for equal runs, with and without 300 microstrain at every gauge that the zero
@@ -444,8 +444,8 @@ fn a_zero_file_counts_in_reconcile_as_in_recover() {
             .arg(&out)
             .output()
             .unwrap();
-        let said = String::from_utf8_lossy(&done.stderr).into_owned();
-        let text = std::fs::read(out.join("result.json")).unwrap_or_else(|_| panic!("{said}"));
+        let printed = String::from_utf8_lossy(&done.stderr).into_owned();
+        let text = std::fs::read(out.join("result.json")).unwrap_or_else(|_| panic!("{printed}"));
         serde_json::from_slice::<Value>(&text).unwrap()
     };
     let plain = answer("zero-plain", 0.0, "");

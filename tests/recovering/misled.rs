@@ -8,10 +8,10 @@ fn a_channel_stuck_at_one_value_counts_as_one_that_is_left_out() {
         if g == 2 { "3.0".into() } else { v.to_string() }
     });
     let left_out = "[[correction]]\ngauge = \"G3\"\nignore = true\n";
-    let (code, said, without, _) = recover("left-out", &stuck, left_out);
-    assert_eq!(code, 0, "{said}");
-    let (code, said, r, _) = recover("stuck", &stuck, "");
-    assert_eq!(code, 0, "{said}");
+    let (code, printed, without, _) = recover("left-out", &stuck, left_out);
+    assert_eq!(code, 0, "{printed}");
+    let (code, printed, r, _) = recover("stuck", &stuck, "");
+    assert_eq!(code, 0, "{printed}");
     let findings = r["findings"].as_array().unwrap();
     let names = |f: &serde_json::Value| f["code"] == "gauge-silent" && f["subject"] == "G3";
     assert!(findings.iter().any(names), "{findings:?}");
@@ -30,8 +30,8 @@ fn a_channel_that_dies_within_a_record_counts_as_blank_from_there_on() {
             }
         })
     };
-    let (code, said, blank, _) = recover("died-blank", &died(""), "");
-    assert_eq!(code, 0, "{said}");
+    let (code, printed, blank, _) = recover("died-blank", &died(""), "");
+    assert_eq!(code, 0, "{printed}");
     // With G3, sigma of A in one sample is .73 of the noise. Without G3 it is .90.
     let (_, _, clean, _) = recover("died-not", &table("time", 400, as_is), "");
     let width = |r: &serde_json::Value| {
@@ -45,8 +45,8 @@ fn a_channel_that_dies_within_a_record_counts_as_blank_from_there_on() {
         width(&clean)
     );
     for value in ["0", "-37.5"] {
-        let (code, said, r, _) = recover("died", &died(value), "");
-        assert_eq!(code, 0, "{said}");
+        let (code, printed, r, _) = recover("died", &died(value), "");
+        assert_eq!(code, 0, "{printed}");
         let findings = r["findings"].as_array().unwrap();
         let names = |f: &serde_json::Value| {
             let message = f["message"].as_str().unwrap();
@@ -68,8 +68,8 @@ fn a_truck_that_stops_has_no_stuck_channels() {
     let text = table("time", 400, |i, g, v| {
         if i >= 150 { still(i, g) } else { v.to_string() }
     });
-    let (_, said, r, _) = recover("stopped", &text, "");
-    assert!(!codes(&r).contains(&"gauge-silent".to_owned()), "{said}");
+    let (_, printed, r, _) = recover("stopped", &text, "");
+    assert!(!codes(&r).contains(&"gauge-silent".to_owned()), "{printed}");
 }
 
 #[test]
@@ -88,21 +88,21 @@ fn a_truck_that_stands_still_has_no_stuck_channels() {
     for i in 0..400 {
         text += &format!("{},{first}\n", f64::from(i) * 0.01);
     }
-    let (_, said, r, _) = recover("parked", &text, "");
-    assert!(!codes(&r).contains(&"gauge-silent".to_owned()), "{said}");
+    let (_, printed, r, _) = recover("parked", &text, "");
+    assert!(!codes(&r).contains(&"gauge-silent".to_owned()), "{printed}");
 }
 
 #[test]
 fn a_held_out_run_that_no_file_has_is_a_fault_of_every_command_that_reads_runs() {
     let runs = table("run", 6, as_is);
-    let (code, said, _, dir) = recover("held", &runs, "hold_out = [\"R99\"]\n");
-    assert_eq!(code, 2, "{said}");
+    let (code, printed, _, dir) = recover("held", &runs, "hold_out = [\"R99\"]\n");
+    assert_eq!(code, 2, "{printed}");
     assert!(
-        said.contains("`strain.csv` does not contain run `R99`"),
-        "{said}"
+        printed.contains("`strain.csv` does not contain run `R99`"),
+        "{printed}"
     );
-    let (code, said, r, _) = recover("held-right", &runs, "hold_out = [\"R5\"]\n");
-    assert_eq!(code, 0, "{said}");
+    let (code, printed, r, _) = recover("held-right", &runs, "hold_out = [\"R5\"]\n");
+    assert_eq!(code, 0, "{printed}");
     assert!(load(&r, "R5", "A")[1] > 0.0);
     let checked = std::process::Command::new(env!("CARGO_BIN_EXE_strainbridge"))
         .args(["check", &dir.join("job.toml").display().to_string()])

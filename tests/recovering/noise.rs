@@ -32,8 +32,8 @@ fn two_gauges(name: &str, noise: &str) -> (i32, String, Value) {
 #[test]
 fn loads_are_weighted_by_the_stated_noise() {
     let noise = "noise_microstrain = { G1 = 0.5, G2 = 1.0 }\nnoise_correlation = 0.2";
-    let (code, said, result) = two_gauges("noise_stated", noise);
-    assert_ne!(code, 2, "{said}");
+    let (code, printed, result) = two_gauges("noise_stated", noise);
+    assert_ne!(code, 2, "{printed}");
     let load = &result["loads"][0];
     let [value, sigma] = ["value", "sigma"].map(|k| load[k].as_f64().unwrap());
     assert!(
@@ -46,19 +46,22 @@ fn loads_are_weighted_by_the_stated_noise() {
 
 #[test]
 fn noise_of_some_gauges_alone_is_a_fault() {
-    let (code, said, _) = two_gauges("noise_of_one", "noise_microstrain = { G1 = 0.5 }");
+    let (code, printed, _) = two_gauges("noise_of_one", "noise_microstrain = { G1 = 0.5 }");
     assert_eq!(code, 2);
-    assert!(said.contains("`G2` is not stated"), "{said}");
-    let (code, said, _) = two_gauges(
+    assert!(printed.contains("`G2` is not stated"), "{printed}");
+    let (code, printed, _) = two_gauges(
         "noise_negative",
         "noise_microstrain = { G1 = 0.5, G2 = -1 }",
     );
     assert_eq!(code, 2);
-    assert!(said.contains("expected a number above 0"), "{said}");
-    let (code, said, _) = two_gauges(
+    assert!(printed.contains("expected a number above 0"), "{printed}");
+    let (code, printed, _) = two_gauges(
         "noise_unknown",
         "noise_microstrain = { G1 = 0.5, G2 = 1, G22 = 1 }",
     );
     assert_eq!(code, 2);
-    assert!(said.contains("`G22` is not a gauge of the job"), "{said}");
+    assert!(
+        printed.contains("`G22` is not a gauge of the job"),
+        "{printed}"
+    );
 }

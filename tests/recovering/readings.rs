@@ -121,10 +121,10 @@ fn a_hundred_numbers_with_marks_between_thousands_are_one_fault() {
         &Context::new(&files(&text, "")),
     ));
     assert_eq!(faults.len(), 1, "{faults}");
-    let said = faults[0].to_string();
-    assert!(said.starts_with("strain.csv:2:"), "{said}");
+    let printed = faults[0].to_string();
+    assert!(printed.starts_with("strain.csv:2:"), "{printed}");
     for part in ["`2.497,6`", "mark between thousands", "89 more"] {
-        assert!(said.contains(part), "{part}: {said}");
+        assert!(printed.contains(part), "{part}: {printed}");
     }
 }
 

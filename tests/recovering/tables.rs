@@ -455,9 +455,9 @@ fn fatigue_scales_with_the_power_of_the_loads_and_needs_a_history() {
         assert!(a.damage_low < a.damage && a.damage < a.damage_high, "{a:?}");
         assert_eq!(a.angle_deg, b.angle_deg);
     }
-    let said = answer("run", 1.0).map(|_| ()).unwrap_err().to_string();
+    let printed = answer("run", 1.0).map(|_| ()).unwrap_err().to_string();
     assert!(
-        said.contains("respond.slope") && said.contains("form no cycles"),
-        "{said}"
+        printed.contains("respond.slope") && printed.contains("form no cycles"),
+        "{printed}"
     );
 }

@@ -96,10 +96,10 @@ fn check(place: &str, planted: &Planted, gauges: &[String], out: &Outcome) {
     );
     let of = |f: &&Finding| {
         let names = planted.gauges.iter().map(|g| &gauges[*g]);
-        let mut said = names.map(|n| {
+        let mut printed = names.map(|n| {
             f.subject.split(", ").any(|s| s == n) || f.message.contains(&format!("`{n}`"))
         });
-        planted.codes.contains(&f.code) && said.any(|s| s)
+        planted.codes.contains(&f.code) && printed.any(|s| s)
     };
     assert!(
         out.harmless || findings.iter().any(|f| of(&f)),
@@ -319,9 +319,13 @@ fn reconcile_names_the_gauge_at_fault_of_a_matrix() {
             })
             .collect()
         };
-        let said = [ids(&answer["named"]), ids(&answer["rivals"])].concat();
-        let of = |g: &usize| said.iter().any(|id| id.ends_with(&format!("G{g}")));
-        assert!(planted.gauges.iter().any(of), "{}: {said:?}", planted.name);
+        let printed = [ids(&answer["named"]), ids(&answer["rivals"])].concat();
+        let of = |g: &usize| printed.iter().any(|id| id.ends_with(&format!("G{g}")));
+        assert!(
+            planted.gauges.iter().any(of),
+            "{}: {printed:?}",
+            planted.name
+        );
     }
 }
 

@@ -328,10 +328,10 @@ fn what_a_connector_lacks_is_a_fault_that_says_what_to_do() {
             "`BOLT` is not known",
         ),
     ];
-    for (card, said) in cases {
+    for (card, printed) in cases {
         let faults = plates(card, "").faults();
         assert!(
-            faults.iter().any(|f| f.contains(said)),
+            faults.iter().any(|f| f.contains(printed)),
             "{card}: {faults:?}"
         );
     }

@@ -142,7 +142,7 @@ fn a_bent_spline_moves_as_bars_of_the_tube_that_it_stands_for() {
         }
     }
     // A card without a valid meaning is refused.
-    for (card, said) in [
+    for (card, printed) in [
         ("RSPLINE,9,.2,1,2,123456", "independent"),
         ("RSPLINE,9,.2,1,2,123,3,123", "independent"),
         ("RSPLINE,9,.2,1,2,123,2,123,3", "length"),
@@ -150,7 +150,7 @@ fn a_bent_spline_moves_as_bars_of_the_tube_that_it_stands_for() {
         let mut b = line(&points);
         b.card(card);
         assert!(
-            b.faults().iter().any(|f| f.contains(said)),
+            b.faults().iter().any(|f| f.contains(printed)),
             "{card}: {:?}",
             b.faults()
         );

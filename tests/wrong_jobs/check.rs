@@ -18,10 +18,10 @@ fn ask(command: &str, job: &Path) -> (i32, String) {
         asked.arg("--out").arg(job.with_extension(command));
     }
     let done = asked.output().unwrap();
-    let said = [done.stdout, done.stderr].concat();
+    let printed = [done.stdout, done.stderr].concat();
     // Further lines of a finding are indented.
-    let said = String::from_utf8_lossy(&said).replace("\n    ", " ");
-    (done.status.code().unwrap(), said)
+    let printed = String::from_utf8_lossy(&printed).replace("\n    ", " ");
+    (done.status.code().unwrap(), printed)
 }
 
 /// Name of a damage, and the change of a file.
@@ -56,12 +56,15 @@ fn agree(folder: &Path, job: &str, command: &str, file: &str, damages: &[(Damage
             Ends::Fault(words) => (2, (*words).to_owned()),
         };
         for asked in [command, "check"] {
-            let (done, said) = ask(asked, &job);
-            assert_eq!(done, code, "{name}: {asked}\n{said}");
-            assert!(said.contains(&why), "{name}: {asked}\n{said}");
+            let (done, printed) = ask(asked, &job);
+            assert_eq!(done, code, "{name}: {asked}\n{printed}");
+            assert!(printed.contains(&why), "{name}: {asked}\n{printed}");
             // A fault names the wrong file.
             let named = file.file_name().unwrap().to_str().unwrap();
-            assert!(code < 2 || said.contains(named), "{name}: {asked}\n{said}");
+            assert!(
+                code < 2 || printed.contains(named),
+                "{name}: {asked}\n{printed}"
+            );
         }
     }
     std::fs::write(&file, whole).unwrap();
@@ -243,10 +246,10 @@ fn the_record_of_a_zero_may_hold_what_a_record_may_hold() {
 fn loads_and_gauges_are_counted_where_they_were_read() {
     let folder = copy_example("check_counted", "fleet");
     std::fs::write(folder.join("job.toml"), RECORD).unwrap();
-    let (code, said) = ask("check", &folder.join("job.toml"));
-    assert_eq!(code, 0, "{said}");
+    let (code, printed) = ask("check", &folder.join("job.toml"));
+    assert_eq!(code, 0, "{printed}");
     // The header of s_wheels.csv names three loads, and its rows name twelve gauges.
-    assert!(said.contains("3 loads, 12 gauges"), "{said}");
+    assert!(printed.contains("3 loads, 12 gauges"), "{printed}");
 }
 
 #[test]
@@ -339,8 +342,11 @@ fn of_runs_check_says_what_respond_and_reconcile_say() {
     let job = folder.join("own.toml");
     std::fs::write(&job, matrix + own).unwrap();
     for command in ["reconcile", "check"] {
-        let (code, said) = ask(command, &job);
-        assert!(code == 2 && said.contains("own.csv"), "{command}: {said}");
+        let (code, printed) = ask(command, &job);
+        assert!(
+            code == 2 && printed.contains("own.csv"),
+            "{command}: {printed}"
+        );
     }
 }
 
@@ -349,19 +355,21 @@ fn a_point_away_from_the_element_beside_it_is_an_error_that_names_gauge_and_dist
     let folder = copy_example("check_point", "frame");
     let job = folder.join("recover.toml");
     let gauges = std::fs::read_to_string(folder.join("gauges.csv")).unwrap();
-    let (code, said) = ask("check", &job);
-    assert_eq!(code, 0, "{said}");
+    let (code, printed) = ask("check", &job);
+    assert_eq!(code, 0, "{printed}");
     assert!(gauges.contains(",1125,-430,3,"), "{gauges}");
     let moved = gauges.replacen(",1125,-430,3,", ",112500,-430,3,", 1);
     std::fs::write(folder.join("gauges.csv"), moved).unwrap();
     for command in ["check", "sensitivity"] {
-        let (code, said) = ask(command, &job);
-        assert_eq!(code, 1, "{command}: {said}");
+        let (code, printed) = ask(command, &job);
+        assert_eq!(code, 1, "{command}: {printed}");
         // The distance from the point to the edge of the element, which is within 125 mm of its middle.
-        let at = said.find("is 111").unwrap_or_else(|| panic!("{said}"));
+        let at = printed
+            .find("is 111")
+            .unwrap_or_else(|| panic!("{printed}"));
         assert!(
-            said[..at].contains("gauges.csv:2") && said.contains("`P01`"),
-            "{said}"
+            printed[..at].contains("gauges.csv:2") && printed.contains("`P01`"),
+            "{printed}"
         );
     }
 }
@@ -374,9 +382,9 @@ fn a_layout_that_will_not_tell_its_loads_is_an_error() {
     assert_eq!(ask("place", &job).0, 0);
     let noisy = text.replace("noise_microstrain = 0.5", "noise_microstrain = 10000");
     std::fs::write(&job, noisy).unwrap();
-    let (code, said) = ask("place", &job);
-    assert_eq!(code, 1, "{said}");
-    assert!(said.contains("loads-not-determined"), "{said}");
+    let (code, printed) = ask("place", &job);
+    assert_eq!(code, 1, "{printed}");
+    assert!(printed.contains("loads-not-determined"), "{printed}");
 }
 
 #[test]
@@ -384,10 +392,10 @@ fn a_channel_is_not_exchanged_with_itself() {
     let folder = copy_example("check_exchanged", "fleet");
     let own = "[[correction]]\ngauge = \"P01\"\nexchanged_with = \"P01\"\n";
     std::fs::write(folder.join("job.toml"), format!("{RECORD}{own}")).unwrap();
-    let (code, said) = ask("check", &folder.join("job.toml"));
+    let (code, printed) = ask("check", &folder.join("job.toml"));
     assert!(
-        code == 2 && said.contains("correction.exchanged_with"),
-        "{said}"
+        code == 2 && printed.contains("correction.exchanged_with"),
+        "{printed}"
     );
 }
 
@@ -398,16 +406,16 @@ fn fleet_says_of_a_gauge_without_a_row_of_s_what_recover_says() {
     let less: String = s.split_inclusive('\n').take(12).collect();
     std::fs::write(folder.join("s_wheels.csv"), less).unwrap();
     std::fs::write(folder.join("job.toml"), RECORD).unwrap();
-    let (_, said) = ask("recover", &folder.join("job.toml"));
-    assert!(said.contains("[strain-without-gauge] P12"), "{said}");
+    let (_, printed) = ask("recover", &folder.join("job.toml"));
+    assert!(printed.contains("[strain-without-gauge] P12"), "{printed}");
     let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
         .current_dir(&folder)
         .args(["fleet", "fleet.toml", "A_2026-05-01.csv", "--out", "out"])
         .output()
         .unwrap();
-    let said = [done.stdout, done.stderr].concat();
-    let said = String::from_utf8_lossy(&said);
-    assert!(said.contains("strain-without-gauge"), "{said}");
+    let printed = [done.stdout, done.stderr].concat();
+    let printed = String::from_utf8_lossy(&printed);
+    assert!(printed.contains("strain-without-gauge"), "{printed}");
 }
 
 #[test]

@@ -34,14 +34,17 @@ fn no_output_is_written_over_what_the_command_has_read() {
         let count = || std::fs::read_dir(&dir).unwrap().count();
         let files = count();
         for out in [".", "../own_inputs"] {
-            let (code, said) = call(&dir, &[command, "fleet.toml", "--out", out]);
-            assert_eq!(code, 2, "{said}");
-            assert!(said.contains(name) && said.contains("--out"), "{said}");
+            let (code, printed) = call(&dir, &[command, "fleet.toml", "--out", out]);
+            assert_eq!(code, 2, "{printed}");
+            assert!(
+                printed.contains(name) && printed.contains("--out"),
+                "{printed}"
+            );
         }
         assert_eq!(std::fs::read(dir.join(name)).unwrap(), before);
         assert_eq!(count(), files, "nothing is left behind");
-        let (code, said) = call(&dir, &[command, "fleet.toml", "--out", "elsewhere"]);
-        assert_eq!(code, 0, "{said}");
+        let (code, printed) = call(&dir, &[command, "fleet.toml", "--out", "elsewhere"]);
+        assert_eq!(code, 0, "{printed}");
         std::fs::remove_dir_all(dir.join("elsewhere")).unwrap();
     }
 }
@@ -61,9 +64,12 @@ fn a_file_that_no_command_wrote_is_refused_before_anything_is_computed_and_stays
         let _ = std::fs::remove_dir_all(&out);
         std::fs::create_dir_all(&out).unwrap();
         std::fs::write(out.join(name), mine).unwrap();
-        let (code, said) = call(&dir, &[command, "recover.toml", "--out", "out"]);
-        assert_eq!(code, 2, "{command}: {said}");
-        assert!(said.contains(name) && said.contains("--out"), "{said}");
+        let (code, printed) = call(&dir, &[command, "recover.toml", "--out", "out"]);
+        assert_eq!(code, 2, "{command}: {printed}");
+        assert!(
+            printed.contains(name) && printed.contains("--out"),
+            "{printed}"
+        );
         assert_eq!(std::fs::read_to_string(out.join(name)).unwrap(), mine);
         assert_eq!(std::fs::read_dir(&out).unwrap().count(), 1, "{command}");
     }
@@ -71,17 +77,17 @@ fn a_file_that_no_command_wrote_is_refused_before_anything_is_computed_and_stays
     let out = dir.join("late");
     std::fs::create_dir_all(&out).unwrap();
     std::fs::write(out.join("loads.xlsx"), mine).unwrap();
-    let (code, said) = call(&dir, &["recover", "recover.toml", "--out", "late"]);
-    assert_eq!(code, 2, "{said}");
-    assert!(said.contains("loads.xlsx"), "{said}");
+    let (code, printed) = call(&dir, &["recover", "recover.toml", "--out", "late"]);
+    assert_eq!(code, 2, "{printed}");
+    assert!(printed.contains("loads.xlsx"), "{printed}");
     assert_eq!(
         std::fs::read_to_string(out.join("loads.xlsx")).unwrap(),
         mine
     );
     assert_eq!(std::fs::read_dir(&out).unwrap().count(), 1);
     // `demo` must not overwrite a job either.
-    let (code, said) = call(&dir, &["demo", "."]);
-    assert_eq!(code, 2, "{said}");
+    let (code, printed) = call(&dir, &["demo", "."]);
+    assert_eq!(code, 2, "{printed}");
     let place = std::fs::read_to_string(dir.join("place.toml")).unwrap();
     assert!(place.contains("Three-wheeled carrier"));
 }
@@ -98,23 +104,23 @@ fn what_a_command_wrote_it_may_write_again_and_what_others_wrote_stays_and_is_sa
         names
     };
     for _ in 0..2 {
-        let (code, said) = call(&dir, &["sensitivity", "recover.toml"]);
-        assert_eq!(code, 0, "{said}");
+        let (code, printed) = call(&dir, &["sensitivity", "recover.toml"]);
+        assert_eq!(code, 0, "{printed}");
     }
     let before = std::fs::read(dir.join("recover.out/sensitivity.csv")).unwrap();
-    let (code, said) = call(&dir, &["recover", "recover.toml"]);
-    assert_eq!(code, 0, "{said}");
+    let (code, printed) = call(&dir, &["recover", "recover.toml"]);
+    assert_eq!(code, 0, "{printed}");
     assert!(
-        said.contains(
+        printed.contains(
             "also contains files of `sensitivity` (sensitivity.csv, sensitivity.report.html, sensitivity.result.json)"
         ),
-        "{said}"
+        "{printed}"
     );
     let after = std::fs::read(dir.join("recover.out/sensitivity.csv")).unwrap();
     assert_eq!(before, after);
-    let (code, said) = call(&dir, &["recover", "recover.toml", "--out", "alone"]);
-    assert_eq!(code, 0, "{said}");
-    assert!(!said.contains("also contains"), "{said}");
+    let (code, printed) = call(&dir, &["recover", "recover.toml", "--out", "alone"]);
+    assert_eq!(code, 0, "{printed}");
+    assert!(!printed.contains("also contains"), "{printed}");
     // Two commands at the same time keep the entries of each other.
     let run = |command: &str| {
         Command::new(env!("CARGO_BIN_EXE_strainbridge"))
@@ -139,17 +145,17 @@ fn what_a_command_wrote_it_may_write_again_and_what_others_wrote_stays_and_is_sa
 fn a_folder_of_two_commands_is_verified_by_the_files_of_the_last() {
     let dir = copy_example("two_commands", "frame");
     for command in ["sensitivity", "recover"] {
-        let (code, said) = call(&dir, &[command, "recover.toml"]);
-        assert_eq!(code, 0, "{said}");
+        let (code, printed) = call(&dir, &[command, "recover.toml"]);
+        assert_eq!(code, 0, "{printed}");
     }
-    let (code, said) = call(&dir, &["verify", "recover.out"]);
-    assert_eq!(code, 0, "{said}");
+    let (code, printed) = call(&dir, &["verify", "recover.out"]);
+    assert_eq!(code, 0, "{printed}");
     std::fs::remove_file(dir.join("recover.out/loads.csv")).unwrap();
-    let (code, said) = call(&dir, &["verify", "recover.out"]);
-    assert_eq!(code, 1, "{said}");
+    let (code, printed) = call(&dir, &["verify", "recover.out"]);
+    assert_eq!(code, 1, "{printed}");
     // The command would replace the files that it verifies.
-    let (code, said) = call(&dir, &["verify", "recover.out", "--out", "recover.out"]);
-    assert_eq!(code, 2, "{said}");
+    let (code, printed) = call(&dir, &["verify", "recover.out", "--out", "recover.out"]);
+    assert_eq!(code, 2, "{printed}");
 }
 
 #[test]
@@ -158,18 +164,18 @@ fn a_folder_of_a_fleet_is_verified_from_its_records() {
     let days = ["A_2026-05-01.csv", "A_2026-05-02.csv", "B_2026-05-01.csv"];
     let mut fleet = vec!["fleet", "fleet.toml"];
     fleet.extend(days);
-    let (code, said) = call(&dir, &fleet);
-    assert_eq!(code, 0, "{said}");
-    let (code, said) = call(&dir, &["verify", "fleet.out"]);
-    assert_eq!(code, 0, "{said}");
+    let (code, printed) = call(&dir, &fleet);
+    assert_eq!(code, 0, "{printed}");
+    let (code, printed) = call(&dir, &["verify", "fleet.out"]);
+    assert_eq!(code, 0, "{printed}");
     let record = std::fs::read_to_string(dir.join(days[0])).unwrap();
     let last = record.trim_end().rfind('\n').unwrap();
     std::fs::write(dir.join(days[0]), &record[..=last]).unwrap();
-    let (code, said) = call(&dir, &["verify", "fleet.out"]);
-    assert_eq!(code, 1, "{said}");
+    let (code, printed) = call(&dir, &["verify", "fleet.out"]);
+    assert_eq!(code, 1, "{printed}");
     std::fs::remove_file(dir.join(days[0])).unwrap();
-    let (code, said) = call(&dir, &["verify", "fleet.out"]);
-    assert_ne!(code, 0, "{said}");
+    let (code, printed) = call(&dir, &["verify", "fleet.out"]);
+    assert_ne!(code, 0, "{printed}");
 }
 
 #[test]
@@ -183,43 +189,43 @@ fn a_table_whose_last_number_may_be_cut_is_said_and_a_record_is_read_without_it(
         result["samples"].as_u64().unwrap()
     };
     let recover = ["recover", "fleet.toml", "--out", "out"];
-    let (code, said) = call(&dir, &recover);
-    assert_eq!(code, 0, "{said}");
-    assert!(!said.contains("table-may-be-cut"), "{said}");
+    let (code, printed) = call(&dir, &recover);
+    assert_eq!(code, 0, "{printed}");
+    assert!(!printed.contains("table-may-be-cut"), "{printed}");
     let all = samples();
     for less in [2, 3, 6] {
         std::fs::write(&record, &whole[..whole.len() - less]).unwrap();
-        let (_, said) = call(&dir, &recover);
-        assert!(said.contains("table-may-be-cut"), "{less}: {said}");
+        let (_, printed) = call(&dir, &recover);
+        assert!(printed.contains("table-may-be-cut"), "{less}: {printed}");
         assert_eq!(samples(), all - 1, "{less}");
-        let (_, said) = call(
+        let (_, printed) = call(
             &dir,
             &["fleet", "fleet.toml", "A_2026-05-01.csv", "--out", "f"],
         );
-        assert!(said.contains("table-may-be-cut"), "{less}: {said}");
+        assert!(printed.contains("table-may-be-cut"), "{less}: {printed}");
     }
     // Without the last line end, the numbers are still complete.
     std::fs::write(&record, &whole[..whole.len() - 1]).unwrap();
-    let (_, said) = call(&dir, &recover);
-    assert!(!said.contains("table-may-be-cut"), "{said}");
+    let (_, printed) = call(&dir, &recover);
+    assert!(!printed.contains("table-may-be-cut"), "{printed}");
     assert_eq!(samples(), all);
     let dir = copy_example("cut_runs", "frame");
     let strain = std::fs::read(dir.join("strain.csv")).unwrap();
     std::fs::write(dir.join("strain.csv"), &strain[..strain.len() - 2]).unwrap();
     // All numbers of the table have two decimals, but the last number has one.
     for command in ["recover", "check"] {
-        let (code, said) = call(&dir, &[command, "recover.toml"]);
-        assert_eq!(code, 1, "{said}");
-        assert!(said.contains("error [table-may-be-cut]"), "{said}");
+        let (code, printed) = call(&dir, &[command, "recover.toml"]);
+        assert_eq!(code, 1, "{printed}");
+        assert!(printed.contains("error [table-may-be-cut]"), "{printed}");
     }
     // If the number of decimals varies, as in numbers typed by hand, it shows nothing.
     let text = String::from_utf8(strain).unwrap();
     let (header, rows) = text.split_once('\n').unwrap();
     let written = format!("{header}\n{}", rows.replace("0,", ","));
     std::fs::write(dir.join("strain.csv"), &written[..written.len() - 2]).unwrap();
-    let (code, said) = call(&dir, &["recover", "recover.toml"]);
-    assert_eq!(code, 0, "{said}");
-    assert!(said.contains("warning [table-may-be-cut]"), "{said}");
+    let (code, printed) = call(&dir, &["recover", "recover.toml"]);
+    assert_eq!(code, 0, "{printed}");
+    assert!(printed.contains("warning [table-may-be-cut]"), "{printed}");
 }
 
 #[test]
@@ -230,8 +236,8 @@ fn a_record_whose_rate_changes_is_told_so_and_keeps_its_samples() {
         let result: Value = serde_json::from_str(&text).unwrap();
         result["samples"].as_u64().unwrap()
     };
-    let (code, said) = call(&dir, &["recover", "fleet.toml", "--out", "whole"]);
-    assert_eq!(code, 0, "{said}");
+    let (code, printed) = call(&dir, &["recover", "fleet.toml", "--out", "whole"]);
+    assert_eq!(code, 0, "{printed}");
     // 20 Hz. The second half has only every other sample, and it ends with the last sample.
     let half = (samples("whole") / 2) as usize;
     edit(&dir, "A_2026-05-01.csv", |t| {
@@ -241,10 +247,10 @@ fn a_record_whose_rate_changes_is_told_so_and_keeps_its_samples() {
         let kept = kept.filter(|(i, _)| *i <= half || (last - i).is_multiple_of(2));
         kept.map(|(_, l)| format!("{l}\n")).collect()
     });
-    let (_, said) = call(&dir, &["recover", "fleet.toml", "--out", "changed"]);
-    assert!(said.contains("The sample rate changes at"), "{said}");
-    assert!(said.contains("from 20 Hz to 10 Hz"), "{said}");
-    assert!(!said.contains("record-gaps"), "{said}");
+    let (_, printed) = call(&dir, &["recover", "fleet.toml", "--out", "changed"]);
+    assert!(printed.contains("The sample rate changes at"), "{printed}");
+    assert!(printed.contains("from 20 Hz to 10 Hz"), "{printed}");
+    assert!(!printed.contains("record-gaps"), "{printed}");
     assert_eq!(samples("changed"), samples("whole"));
 }
 
@@ -262,10 +268,10 @@ fn a_record_of_no_number_is_refused_without_one() {
         });
         lines.collect()
     });
-    let (code, said) = call(&dir, &["recover", "fleet.toml", "--out", "out"]);
-    assert_eq!(code, 1, "{said}");
+    let (code, printed) = call(&dir, &["recover", "fleet.toml", "--out", "out"]);
+    assert_eq!(code, 1, "{printed}");
     for word in ["NaN", "inf "] {
-        assert!(!said.contains(word), "{said}");
+        assert!(!printed.contains(word), "{printed}");
     }
     // One run without any reading.
     let dir = copy_example("no_reading", "frame");
@@ -284,13 +290,16 @@ fn a_record_of_no_number_is_refused_without_one() {
         .current_dir(&dir)
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&done.stdout);
-    assert_eq!(done.status.code(), Some(1), "{said}");
-    assert!(said.contains("run not solvable (R03)"), "{said}");
+    let printed = String::from_utf8_lossy(&done.stdout);
+    assert_eq!(done.status.code(), Some(1), "{printed}");
+    assert!(printed.contains("run not solvable (R03)"), "{printed}");
     let loads = std::fs::read_to_string(dir.join("recover.out/loads.csv")).unwrap();
     let row = loads.lines().find(|l| l.starts_with("R03,")).unwrap();
     assert!(row["R03".len()..].chars().all(|c| c == ','), "{row}");
-    assert!(!said.contains("NaN") && !said.contains("inf "), "{said}");
+    assert!(
+        !printed.contains("NaN") && !printed.contains("inf "),
+        "{printed}"
+    );
 }
 
 #[test]
@@ -299,9 +308,9 @@ fn names_of_a_megabyte_and_columns_without_number_are_not_repeated_in_messages()
     let name = "n".repeat(1_000_000);
     edit(&dir, "strain.csv", |t| t.replacen("P01", &name, 1));
     for command in ["recover", "check"] {
-        let (_, said) = call(&dir, &[command, "recover.toml", "--out", "out"]);
-        assert!(said.contains("strain-without-gauge"), "{command}");
-        assert!(said.len() < 20_000, "{command}: {} bytes", said.len());
+        let (_, printed) = call(&dir, &[command, "recover.toml", "--out", "out"]);
+        assert!(printed.contains("strain-without-gauge"), "{command}");
+        assert!(printed.len() < 20_000, "{command}: {} bytes", printed.len());
     }
     let dir = copy_example("many_columns", "frame");
     edit(&dir, "strain.csv", |t| {
@@ -314,9 +323,9 @@ fn names_of_a_megabyte_and_columns_without_number_are_not_repeated_in_messages()
         });
         lines.collect()
     });
-    let (_, said) = call(&dir, &["recover", "recover.toml", "--out", "out"]);
-    assert!(said.contains("and 19992 more"), "{said}");
-    assert!(said.len() < 20_000, "{} bytes", said.len());
+    let (_, printed) = call(&dir, &["recover", "recover.toml", "--out", "out"]);
+    assert!(printed.contains("and 19992 more"), "{printed}");
+    assert!(printed.len() < 20_000, "{} bytes", printed.len());
 }
 
 #[test]
@@ -333,11 +342,11 @@ fn steps_of_angles_below_a_tenth_of_a_degree_are_refused_at_their_line() {
         edit(&dir, "place.toml", |t| {
             t.replace(from, &format!("angle_step_deg = {step}"))
         });
-        let (code, said) = call(&dir, &["place", "place.toml"]);
-        assert_eq!(code, 2, "{said}");
+        let (code, printed) = call(&dir, &["place", "place.toml"]);
+        assert_eq!(code, 2, "{printed}");
         assert!(
-            said.contains(&format!("place.toml:{line}: candidates.angle_step_deg")),
-            "{said}"
+            printed.contains(&format!("place.toml:{line}: candidates.angle_step_deg")),
+            "{printed}"
         );
     }
 }
@@ -351,10 +360,10 @@ fn fewer_gauges_than_loads_are_not_told_that_they_stand_too_close() {
     edit(&dir, "place.toml", |t| {
         t.replace("spacing = 100.0", "spacing = 0.001")
     });
-    let (code, said) = call(&dir, &["place", "place.toml"]);
-    assert_eq!(code, 1, "{said}");
-    assert!(said.contains("loads-not-separable"), "{said}");
-    assert!(!said.contains("do not fit"), "{said}");
+    let (code, printed) = call(&dir, &["place", "place.toml"]);
+    assert_eq!(code, 1, "{printed}");
+    assert!(printed.contains("loads-not-separable"), "{printed}");
+    assert!(!printed.contains("do not fit"), "{printed}");
 }
 
 #[test]
@@ -366,11 +375,11 @@ fn a_table_of_a_header_alone_is_refused_by_every_command_that_reads_it() {
         std::fs::write(dir.join(name), header + "\n").unwrap();
     };
     let refused = |command: &str, job: &str, name: &str| {
-        let (code, said) = call(&dir, &[command, job, "--out", "out"]);
-        assert_eq!(code, 2, "{command} {job}: {said}");
+        let (code, printed) = call(&dir, &[command, job, "--out", "out"]);
+        assert_eq!(code, 2, "{command} {job}: {printed}");
         assert!(
-            said.contains(name) && said.contains("a header and no rows"),
-            "{command} {job}: {said}"
+            printed.contains(name) && printed.contains("a header and no rows"),
+            "{command} {job}: {printed}"
         );
     };
     cut("runs.csv");
@@ -390,8 +399,8 @@ fn a_table_of_a_header_alone_is_refused_by_every_command_that_reads_it() {
 #[test]
 fn results_that_a_job_names_are_opened_by_those_that_have_no_use_for_them() {
     let dir = copy_example("named_results", "frame");
-    let (code, said) = call(&dir, &["solve", "place.toml", "--out", "solved"]);
-    assert_eq!(code, 0, "{said}");
+    let (code, printed) = call(&dir, &["solve", "place.toml", "--out", "solved"]);
+    assert_eq!(code, 0, "{printed}");
     let whole = std::fs::read(dir.join("solved/results.op2")).unwrap();
     std::fs::write(dir.join("cut.op2"), &whole[..whole.len() * 3 / 5]).unwrap();
     for name in ["cut.op2", "nope.op2"] {
@@ -414,15 +423,18 @@ fn results_that_a_job_names_are_opened_by_those_that_have_no_use_for_them() {
             ("cases", "place.toml"),
             ("ballast", "ballast.toml"),
         ] {
-            let (code, said) = call(&dir, &[command, job, "--out", "out"]);
+            let (code, printed) = call(&dir, &[command, job, "--out", "out"]);
             // The results for `cases` come from a later run.
             let expected = if (command, name) == ("cases", "nope.op2") {
                 0
             } else {
                 2
             };
-            assert_eq!(code, expected, "{command} {name}: {said}");
-            assert!(expected == 0 || said.contains(name), "{command}: {said}");
+            assert_eq!(code, expected, "{command} {name}: {printed}");
+            assert!(
+                expected == 0 || printed.contains(name),
+                "{command}: {printed}"
+            );
         }
     }
 }

@@ -11,10 +11,10 @@ fn call(folder: &Path, arguments: &[&str]) -> (i32, String) {
         .current_dir(folder)
         .output()
         .unwrap();
-    let said = [done.stdout, done.stderr].concat();
+    let printed = [done.stdout, done.stderr].concat();
     // Further lines of a finding are indented.
-    let said = String::from_utf8_lossy(&said).replace("\n    ", " ");
-    (done.status.code().unwrap_or(-1), said)
+    let printed = String::from_utf8_lossy(&printed).replace("\n    ", " ");
+    (done.status.code().unwrap_or(-1), printed)
 }
 
 #[test]
@@ -30,8 +30,8 @@ fn samples_out_of_order_are_refused_by_respond_too() {
     };
     let respond = ["respond", "respond.toml"];
     table("time", ["0.0", "0.1", "0.2", "0.3"]);
-    let (code, said) = call(&dir, &respond);
-    assert_eq!(code, 0, "{said}");
+    let (code, printed) = call(&dir, &respond);
+    assert_eq!(code, 0, "{printed}");
     for (times, line) in [
         (["0.0", "0.2", "0.1", "0.3"], 4),
         (["0.0", "0.1", "0.1", "0.3"], 4),
@@ -40,16 +40,16 @@ fn samples_out_of_order_are_refused_by_respond_too() {
     ] {
         table("time", times);
         for command in [respond, ["check", "respond.toml"]] {
-            let (code, said) = call(&dir, &command);
-            assert_eq!(code, 2, "{times:?}: {said}");
+            let (code, printed) = call(&dir, &command);
+            assert_eq!(code, 2, "{times:?}: {printed}");
             let place = format!("loads.csv:{line}: time: ");
-            assert!(said.contains(&place), "{times:?}: {said}");
+            assert!(printed.contains(&place), "{times:?}: {printed}");
         }
     }
     // Run names may have any order.
     table("run", ["9", "7", "8", "1"]);
-    let (code, said) = call(&dir, &respond);
-    assert_eq!(code, 0, "{said}");
+    let (code, printed) = call(&dir, &respond);
+    assert_eq!(code, 0, "{printed}");
 }
 
 #[test]
@@ -60,9 +60,9 @@ fn a_last_number_without_the_point_that_all_others_have_is_an_error() {
     // The truncated last number is still a valid integer.
     std::fs::write(dir.join("strain.csv"), &whole[..cut]).unwrap();
     for command in ["recover", "check"] {
-        let (code, said) = call(&dir, &[command, "recover.toml"]);
-        assert_eq!(code, 1, "{said}");
-        assert!(said.contains("error [table-may-be-cut]"), "{said}");
+        let (code, printed) = call(&dir, &[command, "recover.toml"]);
+        assert_eq!(code, 1, "{printed}");
+        assert!(printed.contains("error [table-may-be-cut]"), "{printed}");
     }
 }
 
@@ -100,12 +100,18 @@ fn check_of_a_deck_says_what_solving_it_would_say_of_its_supports_and_shapes() {
         call(&dir, &["check", "cube.bdf"])
     };
     let right = hexa([1, 2, 3, 4, 5, 6, 7, 8]);
-    let (code, said) = checked(&right);
-    assert_eq!(code, 0, "{said}");
-    let (code, said) = checked(&format!("{right}SPC,4,9001,1,0.5\n"));
-    assert!(code == 1 && said.contains("[contradicting-spc]"), "{said}");
-    let (code, said) = checked(&hexa([5, 6, 7, 8, 1, 2, 3, 4]));
-    assert!(code == 0 && said.contains("[inverted-solid]"), "{said}");
+    let (code, printed) = checked(&right);
+    assert_eq!(code, 0, "{printed}");
+    let (code, printed) = checked(&format!("{right}SPC,4,9001,1,0.5\n"));
+    assert!(
+        code == 1 && printed.contains("[contradicting-spc]"),
+        "{printed}"
+    );
+    let (code, printed) = checked(&hexa([5, 6, 7, 8, 1, 2, 3, 4]));
+    assert!(
+        code == 0 && printed.contains("[inverted-solid]"),
+        "{printed}"
+    );
 }
 
 /// Returns the table with changed fields. `change` gets line (the header is 0), column and field.
@@ -124,10 +130,10 @@ fn a_zero_or_held_out_file_that_is_the_strain_file_itself_is_refused() {
         t.replace("hold_out = \"holdout.csv\"", "hold_out = \"data.csv\"")
     });
     for command in ["identify", "check"] {
-        let (code, said) = call(&dir, &[command, "identify.toml"]);
+        let (code, printed) = call(&dir, &[command, "identify.toml"]);
         assert!(
-            code == 2 && said.contains("vehicle.hold_out: ") && said.contains("held out"),
-            "{said}"
+            code == 2 && printed.contains("vehicle.hold_out: ") && printed.contains("held out"),
+            "{printed}"
         );
     }
     for (key, wrong) in [
@@ -140,11 +146,11 @@ fn a_zero_or_held_out_file_that_is_the_strain_file_itself_is_refused() {
             t.replace("noise_microstrain", &line)
         });
         for command in ["recover", "check"] {
-            let (code, said) = call(&dir, &[command, "recover.toml"]);
-            assert_eq!(code, 2, "{said}");
+            let (code, printed) = call(&dir, &[command, "recover.toml"]);
+            assert_eq!(code, 2, "{printed}");
             assert!(
-                said.contains(&format!("measured.{key}: ")) && said.contains(wrong),
-                "{said}"
+                printed.contains(&format!("measured.{key}: ")) && printed.contains(wrong),
+                "{printed}"
             );
         }
     }
@@ -155,15 +161,19 @@ fn blank_readings_and_runs_without_a_measurement_are_said() {
     let dir = copy_example("blank_runs", "frame");
     let asked = |found: &[&str]| {
         for command in ["recover", "check"] {
-            let (code, said) = call(&dir, &[command, "recover.toml"]);
-            assert_eq!(code, 0, "{said}");
+            let (code, printed) = call(&dir, &[command, "recover.toml"]);
+            assert_eq!(code, 0, "{printed}");
             for code in [
                 "readings-missing",
                 "readings-all-equal",
                 "readings-repeated",
             ] {
-                let is_said = said.contains(&format!("warning [{code}]"));
-                assert_eq!(is_said, found.contains(&code), "{command} {code}: {said}");
+                let is_said = printed.contains(&format!("warning [{code}]"));
+                assert_eq!(
+                    is_said,
+                    found.contains(&code),
+                    "{command} {code}: {printed}"
+                );
             }
         }
     };
@@ -175,22 +185,28 @@ fn blank_readings_and_runs_without_a_measurement_are_said() {
     let blank = |i: usize, c: usize| i == 2 && c == 3;
     change(&|i, c, f| if blank(i, c) { "" } else { f }.to_owned());
     asked(&["readings-missing"]);
-    let (_, said) = call(&dir, &["recover", "recover.toml"]);
-    assert!(said.contains("[readings-missing] P03 in R02"), "{said}");
+    let (_, printed) = call(&dir, &["recover", "recover.toml"]);
+    assert!(
+        printed.contains("[readings-missing] P03 in R02"),
+        "{printed}"
+    );
     change(&|i, c, f| if i == 2 && c > 0 { "0" } else { f }.to_owned());
     asked(&["readings-all-equal"]);
     let first: Vec<&str> = whole.lines().nth(1).unwrap().split(',').collect();
     change(&|i, c, f| if i == 2 && c > 0 { first[c] } else { f }.to_owned());
-    let (_, said) = call(&dir, &["recover", "recover.toml"]);
-    assert!(said.contains("[readings-repeated] R01 and R02"), "{said}");
+    let (_, printed) = call(&dir, &["recover", "recover.toml"]);
+    assert!(
+        printed.contains("[readings-repeated] R01 and R02"),
+        "{printed}"
+    );
     // If a logger gives only two different numbers, equal runs are normal.
     let coarse = |f: &str| if f.starts_with('-') { "-10" } else { "10" };
     change(&|i, c, f| {
         let read = if i == 2 && c > 0 { first[c] } else { f };
         if i > 0 && c > 0 { coarse(read) } else { f }.to_owned()
     });
-    let (_, said) = call(&dir, &["check", "recover.toml"]);
-    assert!(!said.contains("readings-repeated"), "{said}");
+    let (_, printed) = call(&dir, &["check", "recover.toml"]);
+    assert!(!printed.contains("readings-repeated"), "{printed}");
     // A gauge that the job ignores is not reported as missing.
     change(&|i, c, f| if i > 0 && c == 3 { "" } else { f }.to_owned());
     edit(&dir, "recover.toml", |t| {
@@ -204,13 +220,13 @@ fn a_record_that_repeats_itself_in_a_part_is_said_to_stand_still_or_to_be_no_mea
     let dir = copy_example("still_record", "fleet");
     let file = dir.join("A_2026-05-01.csv");
     let whole = std::fs::read_to_string(&file).unwrap();
-    let said = |text: &str| {
+    let printed = |text: &str| {
         std::fs::write(&file, text).unwrap();
-        let (code, said) = call(&dir, &["recover", "fleet.toml"]);
-        assert_eq!(code, 0, "{said}");
-        said
+        let (code, printed) = call(&dir, &["recover", "fleet.toml"]);
+        assert_eq!(code, 0, "{printed}");
+        printed
     };
-    assert!(!said(&whole).contains("record-constant"));
+    assert!(!printed(&whole).contains("record-constant"));
     // From t = 14.95 s to 17.40 s at 20 Hz: zeros that a logger inserts, and values that a frozen logger repeats.
     let stuck = |i: usize| (300..350).contains(&i);
     let zeros = fields(&whole, |i, c, f| {
@@ -222,11 +238,11 @@ fn a_record_that_repeats_itself_in_a_part_is_said_to_stand_still_or_to_be_no_mea
         if stuck(i) && c > 0 { last[c] } else { f }.to_owned()
     });
     for text in [zeros, repeated] {
-        let said = said(&text);
+        let printed = printed(&text);
         assert!(
-            said.contains("warning [record-constant]")
-                && said.contains("From t = 14.950000 s to t = 17.400000 s"),
-            "{said}"
+            printed.contains("warning [record-constant]")
+                && printed.contains("From t = 14.950000 s to t = 17.400000 s"),
+            "{printed}"
         );
     }
 }
@@ -234,14 +250,17 @@ fn a_record_that_repeats_itself_in_a_part_is_said_to_stand_still_or_to_be_no_mea
 #[test]
 fn noise_that_nobody_states_is_said_to_be_assumed() {
     let dir = copy_example("no_noise", "frame");
-    let (_, said) = call(&dir, &["recover", "recover.toml"]);
-    assert!(!said.contains("noise-assumed"), "{said}");
+    let (_, printed) = call(&dir, &["recover", "recover.toml"]);
+    assert!(!printed.contains("noise-assumed"), "{printed}");
     edit(&dir, "recover.toml", |t| {
         t.replace("noise_microstrain = 0.5\n", "")
     });
     for command in ["recover", "check"] {
-        let (code, said) = call(&dir, &[command, "recover.toml"]);
-        assert!(code == 0 && said.contains("[noise-assumed]"), "{said}");
+        let (code, printed) = call(&dir, &[command, "recover.toml"]);
+        assert!(
+            code == 0 && printed.contains("[noise-assumed]"),
+            "{printed}"
+        );
     }
 }
 
@@ -251,23 +270,23 @@ fn a_runs_file_of_other_runs_is_refused_by_payload_and_places_that_are_assumed_a
     let runs = std::fs::read_to_string(dir.join("runs.csv")).unwrap();
     let payload = ["payload", "payload.toml"];
     std::fs::write(dir.join("runs.csv"), runs.replace("\nR", "\nQ")).unwrap();
-    let (code, said) = call(&dir, &payload);
+    let (code, printed) = call(&dir, &payload);
     assert!(
-        code == 2 && said.contains("runs.csv:1: run: no row for any run of the strain file"),
-        "{said}"
+        code == 2 && printed.contains("runs.csv:1: run: no row for any run of the strain file"),
+        "{printed}"
     );
     edit(&dir, "payload.toml", |t| {
         t.replace("position = \"free\"", "position = \"known\"")
     });
     std::fs::write(dir.join("runs.csv"), &runs).unwrap();
-    let (_, said) = call(&dir, &payload);
-    assert!(!said.contains("payload-place-assumed"), "{said}");
+    let (_, printed) = call(&dir, &payload);
+    assert!(!printed.contains("payload-place-assumed"), "{printed}");
     let unplaced = fields(&runs, |i, c, f| {
         if i == 3 && (c == 2 || c == 3) { "" } else { f }.to_owned()
     });
     std::fs::write(dir.join("runs.csv"), unplaced).unwrap();
-    let (_, said) = call(&dir, &payload);
-    assert!(said.contains("[payload-place-assumed] R03"), "{said}");
+    let (_, printed) = call(&dir, &payload);
+    assert!(printed.contains("[payload-place-assumed] R03"), "{printed}");
 }
 
 /// On Linux, every write to this device fails.
@@ -288,9 +307,12 @@ fn an_answer_that_does_not_get_to_standard_output_is_no_success() {
             .stdout(full.try_clone().unwrap())
             .output()
             .unwrap();
-        let said = String::from_utf8_lossy(&done.stderr);
-        assert_eq!(done.status.code(), Some(2), "{arguments:?}: {said}");
-        assert!(said.contains("standard output cannot be written"), "{said}");
+        let printed = String::from_utf8_lossy(&done.stderr);
+        assert_eq!(done.status.code(), Some(2), "{arguments:?}: {printed}");
+        assert!(
+            printed.contains("standard output cannot be written"),
+            "{printed}"
+        );
     }
 }
 
@@ -348,8 +370,8 @@ fn a_long_chain_of_load_cards_is_solved_and_a_circle_of_them_is_named() {
         text + &format!("FORCE,{CARDS},2,,100.,1.,0.,0.\nENDDATA\n")
     };
     std::fs::write(dir.join("chain.bdf"), deck(CARDS)).unwrap();
-    let (code, said) = call(&dir, &["solve", "chain.bdf", "--out", "out"]);
-    assert_eq!(code, 0, "{said}");
+    let (code, printed) = call(&dir, &["solve", "chain.bdf", "--out", "out"]);
+    assert_eq!(code, 0, "{printed}");
     let text = std::fs::read_to_string(dir.join("out/result.json")).unwrap();
     let result: serde_json::Value = serde_json::from_str(&text).unwrap();
     // The force at the end of the chain, which the support carries.
@@ -357,16 +379,16 @@ fn a_long_chain_of_load_cards_is_solved_and_a_circle_of_them_is_named() {
     assert!((force + 100.0).abs() < 1e-6, "{force}");
     std::fs::write(dir.join("circle.bdf"), deck(5)).unwrap();
     for command in ["solve", "check"] {
-        let (code, said) = call(&dir, &[command, "circle.bdf", "--out", "out2"]);
-        assert!(code == 2 && said.contains("in a circle"), "{said}");
+        let (code, printed) = call(&dir, &[command, "circle.bdf", "--out", "out2"]);
+        assert!(code == 2 && printed.contains("in a circle"), "{printed}");
     }
 }
 
 #[test]
 fn what_follows_plus_and_minus_in_words_is_half_of_the_interval_in_the_table() {
     let dir = copy_example("half_widths", "frame");
-    let (code, said) = call(&dir, &["recover", "recover.toml", "--out", "out"]);
-    assert_eq!(code, 0, "{said}");
+    let (code, printed) = call(&dir, &["recover", "recover.toml", "--out", "out"]);
+    assert_eq!(code, 0, "{printed}");
     let table = std::fs::read_to_string(dir.join("out/loads.csv")).unwrap();
     let mut rows = table.lines();
     let header: Vec<&str> = rows.next().unwrap().split(',').collect();
@@ -377,7 +399,7 @@ fn what_follows_plus_and_minus_in_words_is_half_of_the_interval_in_the_table() {
     for (l, load) in header.iter().skip(1).step_by(3).enumerate() {
         let half = |row: &Vec<f64>| (row[3 * l + 2] - row[3 * l + 1]) / 2.0;
         let widest = rows.iter().map(half).fold(0.0, f64::max);
-        let words = said.split_whitespace().skip_while(|w| w != load);
+        let words = printed.split_whitespace().skip_while(|w| w != load);
         let mut after = words.skip_while(|w| *w != "±").skip(1);
         let shown: f64 = after.next().unwrap().parse().unwrap();
         // The output has two digits.
@@ -387,5 +409,5 @@ fn what_follows_plus_and_minus_in_words_is_half_of_the_interval_in_the_table() {
         );
         compared += 1;
     }
-    assert_eq!(compared, 7, "{said}");
+    assert_eq!(compared, 7, "{printed}");
 }

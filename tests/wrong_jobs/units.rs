@@ -497,8 +497,8 @@ fn loads_beside_a_long_record_are_answered_without_a_comparison() {
     });
     let (exit, codes, errors) = run_command(&to, &["respond", "respond.toml"]);
     assert_eq!(exit, 0, "{codes:?}\n{errors}");
-    let said = |c: &String| c.contains(" gauges-not-compared ");
-    assert!(codes.iter().any(said), "{codes:?}");
+    let printed = |c: &String| c.contains(" gauges-not-compared ");
+    assert!(codes.iter().any(printed), "{codes:?}");
 }
 
 /// A deck in mm and kg with a density in kg/m3, and a deck in inches with weight densities. No job states units.
@@ -526,12 +526,12 @@ fn a_deck_alone_is_tested_for_its_densities() {
                 .current_dir(&folder)
                 .output()
                 .unwrap();
-            let said = [done.stdout, done.stderr].concat();
-            let said = String::from_utf8_lossy(&said);
+            let printed = [done.stdout, done.stderr].concat();
+            let printed = String::from_utf8_lossy(&printed);
             assert_eq!(
-                said.contains("units-density"),
+                printed.contains("units-density"),
                 wrong,
-                "{arguments:?} {material}\n{said}"
+                "{arguments:?} {material}\n{printed}"
             );
             let _ = std::fs::remove_dir_all(folder.join("new"));
         }

@@ -174,9 +174,10 @@ fn weigh(name: &str, seeds: std::ops::Range<u64>) -> Option<WeighingResults> {
                 .max_by(|a, b| e.values[*a].total_cmp(&e.values[*b]))
                 .unwrap();
             let name = &b.runs[*i].0;
-            let mut said = found.findings.iter().filter(|f| f.subject == *name);
+            let mut findings_of_run = found.findings.iter().filter(|f| f.subject == *name);
             if lane == b.runs[*i].1 {
-                out.alarms += usize::from(said.any(|f| f.code == "loads-unlike-calibration-runs"));
+                out.alarms +=
+                    usize::from(findings_of_run.any(|f| f.code == "loads-unlike-calibration-runs"));
                 continue;
             }
             out.wrong_lanes.push(name.clone());
@@ -184,7 +185,7 @@ fn weigh(name: &str, seeds: std::ops::Range<u64>) -> Option<WeighingResults> {
                 let load = if l == b.runs[*i].1 { truth } else { 0.0 };
                 (e.values[l] - load).abs() <= e.coverage_factor * e.sigma(l)
             };
-            if said.next().is_none() && !(0..k).all(holds) {
+            if findings_of_run.next().is_none() && !(0..k).all(holds) {
                 out.unreported.push(name.clone());
             }
         }
@@ -291,12 +292,13 @@ fn a_wrong_lane_and_loggers_tared_under_load_are_named_without_being_told() {
     let c = calibrate(&task(&b, &all)).unwrap();
     let wrong: Vec<&str> = c.refused.iter().map(|r| b.runs[*r].0.as_str()).collect();
     assert_eq!(wrong, ["R39"]);
-    let said = c.findings.iter().find(|f| f.subject == "R39").unwrap();
+    let findings_of_run = c.findings.iter().find(|f| f.subject == "R39").unwrap();
     assert!(
-        said.message
+        findings_of_run
+            .message
             .contains("the stated load is `east`, and the strain fits `middle`"),
         "{}",
-        said.message
+        findings_of_run.message
     );
     let b = bridge("ashland", |_, _| true).unwrap();
     let all: Vec<usize> = (0..b.runs.len()).collect();

@@ -154,13 +154,13 @@ mod tests {
     #[test]
     fn nothing_above_the_floor_is_said_only_where_there_is_no_gap() {
         let reasons = ["three neighbours".to_owned()];
-        for (withheld, said) in [(&reasons[..], "three neighbours"), (&[], "together")] {
+        for (withheld, expected) in [(&reasons[..], "three neighbours"), (&[], "together")] {
             let words = none_alone(1.0, Some(withheld));
             assert!(
                 !words.contains("no gauge and no run exceeds its floor"),
                 "{words}"
             );
-            assert!(words.contains(said), "{words}");
+            assert!(words.contains(expected), "{words}");
         }
         assert!(none_alone(1.0, None).contains("no gauge and no run exceeds its floor"));
     }

@@ -147,9 +147,7 @@ pub(super) fn test_best_set(
         None => (None, stands),
     };
     let (fewer, no_zero) = without_false_zeros(frame, candidates, fewer.as_ref().unwrap_or(best))
-        .map_or((fewer, None), |(set, drift_words)| {
-            (Some(set), Some(drift_words))
-        });
+        .map_or((fewer, None), |(set, words)| (Some(set), Some(words)));
     let best = fewer.as_ref().unwrap_or(best);
     let level = fewer.as_ref().map_or(alike.log_evidence, level);
     let explained = Explanation::from_fit(frame, candidates, best);

@@ -272,7 +272,7 @@ fn samples_whose_gauges_never_tell_a_load_leave_that_to_the_record_unless_no_gau
         uncertainty: None,
         noise: None,
     };
-    let said = |s: &Sensitivity| {
+    let is_reported = |s: &Sensitivity| {
         let samples = half_without_b(s).into_iter().skip(1).step_by(2).collect();
         let got = recover_samples(s, samples, NOISE);
         assert!(
@@ -282,9 +282,9 @@ fn samples_whose_gauges_never_tell_a_load_leave_that_to_the_record_unless_no_gau
         );
         got.findings.iter().any(|f| f.code == NOT_SOLVABLE)
     };
-    assert!(!said(&s));
+    assert!(!is_reported(&s));
     s.values[(2, 1)] = 0.0;
-    assert!(said(&s));
+    assert!(is_reported(&s));
 }
 
 #[test]

@@ -220,7 +220,7 @@ fn the_gain_that_is_stated_of_a_suspect_is_that_against_the_others_and_its_inter
                 })
                 .collect();
             let got = recover(&s, &readings, errors);
-            let said = got.findings.iter().find(|f| {
+            let suspect_finding = got.findings.iter().find(|f| {
                 f.code == GAUGE_SUSPECT && f.subject == "G3" && f.message.contains("% (± ")
             });
             // A finding of severity error has an interval without zero for every gauge.
@@ -230,8 +230,10 @@ fn the_gain_that_is_stated_of_a_suspect_is_that_against_the_others_and_its_inter
             for [size, half] in errors.filter_map(size_and_half) {
                 assert!(size.abs() > half, "{seed}: {size} {half}");
             }
-            let Some(said) = said else { continue };
-            let [size, half] = size_and_half(said).unwrap();
+            let Some(suspect_finding) = suspect_finding else {
+                continue;
+            };
+            let [size, half] = size_and_half(suspect_finding).unwrap();
             covered += i32::from((size + 30.0).abs() <= half);
             of += 1;
         }

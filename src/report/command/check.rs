@@ -64,9 +64,9 @@ fn page(found: &Outcome<CheckedFiles>) -> Page {
         false => Block::table(&["file:line: field: what is wrong: what to do"], faults),
     };
     let mut sections = vec![Section::new("Faults", vec![list])];
-    let said = |title: &str, text: String| Section::new(title, vec![Block::Lines(text)]);
+    let lines_section = |title: &str, text: String| Section::new(title, vec![Block::Lines(text)]);
     for d in &found.decks {
-        sections.push(said("Deck", d.text()));
+        sections.push(lines_section("Deck", d.text()));
         let drawn = |m: &&Model| !(m.shells.is_empty() && m.solids.is_empty());
         if let Some(model) = d.model().filter(drawn) {
             let places = found
@@ -77,8 +77,8 @@ fn page(found: &Outcome<CheckedFiles>) -> Page {
         }
     }
     let results = found.results.iter();
-    sections.extend(results.map(|r| said("Results", r.text())));
+    sections.extend(results.map(|r| lines_section("Results", r.text())));
     let records = found.records.iter();
-    sections.extend(records.map(|r| said("Record", r.text())));
+    sections.extend(records.map(|r| lines_section("Record", r.text())));
     Page::new("Check", "Contents of the files", &found.findings, sections)
 }

@@ -329,8 +329,11 @@ fn a_rate_that_changes_is_told_with_its_time_and_no_sample_is_called_missing() {
         }
         // A caller that needs stored samples refuses the record with the reason.
         let refused = crate::series::even_record::check_even(&record).err();
-        let said = refused.map_or_else(String::new, |e| e.parts().0);
-        assert!(said.starts_with("the sample rate changes at"), "{said}");
+        let message = refused.map_or_else(String::new, |e| e.parts().0);
+        assert!(
+            message.starts_with("the sample rate changes at"),
+            "{message}"
+        );
         let fast = hz[0].max(hz[1]);
         assert!(
             (clock.rate_hz / fast - 1.0).abs() < 1e-3,

@@ -438,13 +438,13 @@ fn loads_of(
         let (left, variance) = condition(&mut mean, &mut covariance, &s.terms, value, sd);
         if left.abs() > ROUNDED * size + CONTRADICTS * variance.sqrt() {
             let line = table.rows.get(row).map_or(0, |r| r.0);
-            let [said, made] = [value, value - left].map(|v| number(v / s.unit));
+            let [stated_sum, made] = [value, value - left].map(|v| number(v / s.unit));
             return Err(Fault::with_line(
                 &*table.file,
                 line,
                 &*s.name,
                 format!(
-                    "`{}` is {said}, and the loads of this run give {made}",
+                    "`{}` is {stated_sum}, and the loads of this run give {made}",
                     s.name
                 ),
                 "correct one of the two, or state their standard deviations in columns `<load>_sd`",

@@ -48,14 +48,14 @@ pub(super) fn report_unchecked_loads(task: &Task, listed: &ListedLoads) -> Optio
         for r in 0..task.runs.len() {
             let size = known_of(task, r, terms).map_or(0.0, |v| (v * unit.factor).abs());
             if size > largest.get(unit.name.as_str()).map_or(0.0, |l| l.0) {
-                let said = format!(
+                let sentence = format!(
                     "{} {} (`{}` in run `{}`)",
                     number(size),
                     unit.name,
                     listed.names[i],
                     task.runs[r].run
                 );
-                largest.insert(&unit.name, (size, said));
+                largest.insert(&unit.name, (size, sentence));
             }
         }
     }

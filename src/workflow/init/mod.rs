@@ -293,9 +293,9 @@ fn read_strained(
         }
         // The job reports results that a file lacks, and leaves them out.
         let findings = solution.findings.iter();
-        let said =
+        let reported =
             findings.filter(|f| f.code != "no-static-results" && f.code != "no-strain-output");
-        work.findings.extend(said.cloned());
+        work.findings.extend(reported.cloned());
         let with_strain = solution
             .cases
             .iter()

@@ -44,8 +44,8 @@ pub(super) fn findings(work: &mut Work, outcome: &MotionOutcome) {
             .with_numbers(floor, DROWNED),
         );
     }
-    let said = work.findings.iter().any(|f| f.code == "no-hold-out");
-    if outcome.judged_by != Proof::HeldOut && !said {
+    let is_reported = work.findings.iter().any(|f| f.code == "no-hold-out");
+    if outcome.judged_by != Proof::HeldOut && !is_reported {
         work.findings.push(Finding::new(
             Severity::Warning,
             "no-hold-out",

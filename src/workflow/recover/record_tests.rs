@@ -36,7 +36,8 @@ pub(super) fn recover_tested_samples(
     recover_samples_with_alternatives(s, readings, task.errors, (Vec::new(), &mut others))
 }
 
-/// Recovers quasi-static samples, each with its number, and tests loads, gauges and intervals. `reading_covariance` is the covariance of their errors.
+/// Recovers quasi-static samples, each with its number, and tests loads, gauges and intervals. `reading_covariance` is the covariance of their
+/// errors.
 pub(super) fn recover_quasi_static_samples(
     task: &Task,
     s: &Sensitivity,

@@ -70,7 +70,7 @@ pub(super) fn next_measurement(
     };
     let others = names.get(1..).unwrap_or_default().join(", ");
     let first = names.first().map_or(AS_IT_IS, String::as_str);
-    let said = weighed.map(|w| {
+    let proposal = weighed.map(|w| {
         let each: Vec<String> = (names.iter().skip(1).zip(&w.worth))
             .map(|(name, worth)| format!("from {name} {worth:.0}"))
             .collect();
@@ -83,7 +83,7 @@ pub(super) fn next_measurement(
             ),
         )
     });
-    match (verdict, said) {
+    match (verdict, proposal) {
         (Verdict::Named, Some((words, each))) => format!("{} ({each}).", capitalize(&words)),
         (Verdict::Named, None) if !others.is_empty() => format!(
             "No tested road, sensor or mass separates {first} from {others}: treat them as one cause."

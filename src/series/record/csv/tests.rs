@@ -144,20 +144,20 @@ fn numbers_whose_marks_may_be_read_in_two_ways_are_refused_with_their_line() {
             "`-1,000`",
         ),
     ] {
-        let said = refusal(text);
+        let message = refusal(text);
         assert!(
-            said.contains(line) && said.contains(words),
-            "{text}: {said}"
+            message.contains(line) && message.contains(words),
+            "{text}: {message}"
         );
     }
     // A thousands separator is also refused after the rows that determine the layout.
     let mut long = String::from("time [ms];A\n");
     (0..900).for_each(|i| long.push_str(&format!("{i};{}\n", 100 + i % 800)));
     long.push_str("900;1.050\n");
-    let said = refusal(&long);
+    let message = refusal(&long);
     assert!(
-        said.contains("line 902") && said.contains("`1.050`"),
-        "{said}"
+        message.contains("line 902") && message.contains("`1.050`"),
+        "{message}"
     );
     // Three digits after the point are a fraction if other numbers prove it.
     let record = open(b"time;A\n0.000;-1.250\n0.001;12\n0.002;1.375\n0.003;15\n").unwrap();
@@ -168,8 +168,8 @@ fn numbers_whose_marks_may_be_read_in_two_ways_are_refused_with_their_line() {
 fn clocks_that_are_set_back_are_refused_and_set_forward_leave_a_gap() {
     // The repeated hour at the end of summer time, and the skipped hour at its start.
     let back = "Time;A\n2026-10-25 02:59:59.0;1.5\n2026-10-25 02:59:59.5;2.5\n2026-10-25 02:00:00.0;3.5\n2026-10-25 02:00:00.5;4.5\n";
-    let said = refusal(back);
-    assert!(said.contains("line 4"), "{said}");
+    let message = refusal(back);
+    assert!(message.contains("line 4"), "{message}");
     let midnight = "Time;A\n23:59:59.0;1.5\n23:59:59.5;2.5\n00:00:00.0;3.5\n00:00:00.5;4.5\n";
     let record = open(midnight.as_bytes()).unwrap();
     assert_eq!((record.clock.n_gaps, record.clock.samples), (0, 4));
