@@ -199,7 +199,7 @@ fn a_run_whose_name_differs_between_the_files_is_named() {
 }
 
 #[test]
-fn a_payload_of_which_the_sum_alone_is_known_teaches_too() {
+fn a_payload_with_known_sum_alone_also_calibrates() {
     let folder = scratch("calibrate-onboard");
     let (code, result, printed) = run("calibrate", &example("onboard"), &folder.join("cal"));
     assert_eq!(code, Some(0), "{printed}");
@@ -296,7 +296,7 @@ fn an_sd_has_the_unit_of_its_load_and_other_columns_may_have_units_too() {
 }
 
 #[test]
-fn runs_that_do_not_determine_s_are_said_so_and_known_loads_that_are_missing_are_a_fault() {
+fn runs_that_do_not_determine_s_are_reported_and_missing_known_loads_are_a_fault() {
     let folder = scratch("calibrate-undetermined");
     for file in ["strain.csv", "runs.csv", "calibrate.toml"] {
         std::fs::copy(example("bridge").with_file_name(file), folder.join(file)).unwrap();
@@ -540,7 +540,7 @@ fn write_pushes(folder: &Path, truth: &[Vec<f64>]) -> [f64; 4] {
 /// Without a stated tolerance, rows are those of the nominal positions. One gauge of the strip is rotated, displaced,
 /// has another gain, or has no fault.
 #[test]
-fn a_turned_gauge_is_told_from_a_gain_where_a_model_stands_behind_s() {
+fn a_turned_gauge_is_distinguished_from_a_gain_if_s_has_a_model() {
     let folder = scratch("calibrate-turned");
     std::fs::write(folder.join("strip.bdf"), strip()).unwrap();
     let job = strip_job(0.0)
@@ -862,7 +862,7 @@ fn an_sd_that_is_none_is_a_fault_of_its_field_for_check_too() {
 }
 
 #[test]
-fn legs_of_a_rosette_teach_where_no_model_stands_behind_s() {
+fn legs_of_a_rosette_calibrate_without_a_model() {
     let folder = scratch("calibrate-rosette");
     let job = "units = \"m-kg-s\"\nreport_units = { force = \"kN\" }\n[[load]]\nname = \"jack\"\n\
                [[gauge]]\nname = \"C1\"\nelement = 1\n[[gauge]]\nname = \"R1\"\nelement = 2\nrosette = \"rectangular\"\n\
@@ -883,7 +883,7 @@ fn of_code<'a>(result: &'a Value, code: &str) -> Vec<&'a Value> {
 }
 
 #[test]
-fn a_gauge_without_a_column_is_said_so_and_is_not_dead() {
+fn a_gauge_without_a_column_is_reported_and_is_not_dead() {
     let folder = scratch("calibrate-no-column");
     let job = "units = \"m-kg-s\"\nreport_units = { force = \"kN\" }\n[[load]]\nname = \"jack\"\n\
                [[gauge]]\nname = \"C1\"\nelement = 1\n[[gauge]]\nname = \"C2\"\nelement = 2\n[[gauge]]\nname = \"C3\"\nelement = 3\n\
@@ -944,7 +944,7 @@ fn lift(kg: f64, x: f64, wiggle: f64) -> String {
 }
 
 #[test]
-fn payloads_of_known_mass_and_place_teach_and_then_every_lift_is_weighed() {
+fn payloads_of_known_mass_and_place_calibrate_and_then_every_lift_is_weighed() {
     let folder = scratch("calibrate-payload");
     let job = "units = \"m-kg-s\"\nreport_units = { force = \"kN\", moment = \"kN m\" }\n[[load]]\nname = \"payload\"\n\
                [[load]]\nname = \"payload.MY\"\nrole = \"wanted\"\n[payload]\nposition = \"free\"\nregion = [[-3.0, 3.0], [-1.0, 1.0]]\n\

@@ -65,7 +65,7 @@ fn a_missing_file_is_bad_input() {
 
 /// The finding appears for a deck alone, and not only for its job. A set that no subcase selects does not count.
 #[test]
-fn a_deck_that_holds_a_grid_at_two_values_or_has_a_solid_inside_out_is_told_so() {
+fn a_deck_that_holds_a_grid_at_two_values_or_has_a_solid_inside_out_gets_a_finding() {
     let dir = folder("contradicting");
     let deck = dir.join("solid.bdf");
     let text_of = |selected: u32| {
@@ -139,7 +139,7 @@ const PLATE: &str = "SOL 101\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,
     MAT1,1,2.+11,,.3,7850.\nPSHELL,1,1,.01,1,,1\nCQUAD4,9,1,1,2,3,4\nENDDATA\n";
 
 #[test]
-fn check_and_strains_write_a_page_beside_their_result() {
+fn check_and_strains_write_a_page_next_to_their_result() {
     use nastran::op2::write_blocks;
     use nastran::results::{
         Analysis, Block, ElementType, Quantity, RowId, Rows, ShellForm, columns,
@@ -331,7 +331,7 @@ fn the_schema_knows_every_key_of_a_job_and_no_misspelt_one() {
 }
 
 #[test]
-fn explain_says_what_a_finding_means_and_offers_the_code_that_was_meant() {
+fn explain_states_the_meaning_of_a_finding_and_suggests_a_similar_code() {
     let out = strainbridge(&["explain", "loads-not-separable"]);
     assert_eq!(out.status.code(), Some(0));
     let printed = text(&out.stdout);
@@ -386,7 +386,7 @@ fn a_deck_given_as_a_job_is_one_fault_that_names_init() {
 }
 
 #[test]
-fn quiet_says_errors_alone_and_verbose_says_seconds() {
+fn quiet_prints_errors_alone_and_verbose_prints_seconds() {
     let dir = folder("quiet");
     let deck = dir.join("plate.bdf");
     // Grids 11 to 13 belong to no element. One note states their place.
@@ -569,7 +569,7 @@ fn init_leaves_a_job_that_is_there() {
 /// Folder unpacked from a Windows archive. Its name contains the letter as a single byte of code page 1252.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_name_that_is_not_utf_8_is_a_fault_that_says_so() {
+fn a_name_that_is_not_utf_8_is_a_fault() {
     use std::os::unix::ffi::OsStrExt;
     let frame = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/frame");
     let dir = folder("code_page").join(std::ffi::OsStr::from_bytes(b"Tr\xe4ger"));

@@ -59,7 +59,7 @@ fn sets() -> Option<Vec<(PathBuf, Option<PathBuf>)>> {
 }
 
 #[test]
-fn every_command_that_reads_a_cut_op2_says_so_and_ends_with_2() {
+fn every_command_that_reads_a_cut_op2_reports_it_and_ends_with_2() {
     let Some(sets) = sets() else { return };
     let folder = scratch("cut_op2");
     let (mut cut_short, mut without_grids) = (0, 0);
@@ -200,7 +200,7 @@ fn recommends_place(stdout: &[u8]) -> bool {
 }
 
 #[test]
-fn init_recommends_place_where_the_deck_has_shells_that_tell_its_loads_alone() {
+fn init_recommends_place_only_if_shells_of_the_deck_separate_its_loads() {
     let Some(shared) = find_nastran_folder() else {
         return;
     };
@@ -292,7 +292,7 @@ fn init_recommends_place_where_the_deck_has_shells_that_tell_its_loads_alone() {
 const SMALL_SET: u64 = 500_000;
 
 #[test]
-fn on_every_set_the_quick_start_gives_an_answer_or_init_says_why_not() {
+fn on_every_set_the_quick_start_gives_an_answer_or_init_states_the_reason() {
     let Some(sets) = sets() else { return };
     let all = std::env::var("STRAINBRIDGE_ALL_CUTS").is_ok();
     let folder = scratch("quick_start");

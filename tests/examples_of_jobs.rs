@@ -52,7 +52,7 @@ const PAYLOADS: [(f64, f64, f64); 9] = [
 ];
 
 #[test]
-fn the_carrier_s_unit_loads_are_in_balance_and_its_gauges_told_apart() {
+fn the_carrier_s_unit_loads_are_in_balance_and_its_gauges_distinguished() {
     let solved = run("solve", "frame", &["place.toml"]);
     assert!(!solved["balance"].as_array().unwrap().is_empty());
     for case in solved["balance"].as_array().unwrap() {

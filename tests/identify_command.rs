@@ -131,7 +131,7 @@ fn bad_records_end_with_code_2_and_name_file_line_and_remedy() {
 /// By Newton's laws, the force on the chassis is the wheel force minus the inertia force of the wheel. Hanger and
 /// shackle share it by the lever rule.
 #[test]
-fn the_chassis_force_is_told_by_mass_by_springs_and_at_the_seats_of_the_leaf() {
+fn mass_and_springs_give_the_chassis_force_also_at_the_seats_of_the_leaf() {
     let Some(case) = support::find_shared_path("hidden_effects/dynamics/dev-d1") else {
         return;
     };

@@ -326,7 +326,7 @@ causes = { settlement = "lowered", temperature = "air_C" }
 "#;
 
 #[test]
-fn causes_that_changed_together_come_as_rivals_of_the_same_type() {
+fn causes_that_changed_together_come_as_alternatives_of_the_same_type() {
     let files = InMemory::default()
         .with_file("job.toml", CAUSES)
         .with_file(
@@ -891,7 +891,7 @@ impl strainbridge::host::context::Progress for StopsAtSolve {
 }
 
 #[test]
-fn work_that_is_stopped_while_it_solves_says_so_and_blames_no_deck() {
+fn work_that_is_stopped_while_it_solves_reports_it_and_blames_no_deck() {
     let files = files();
     let job = Job::read("job.toml", &files).unwrap();
     let stops = StopsAtSolve(strainbridge::stop::Stop::new());

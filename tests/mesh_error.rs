@@ -401,7 +401,7 @@ fn loads_are_recovered_better_without_the_mesh_error_and_intervals_hold_them() {
 ///
 /// The strain is uniform, `F / (E (A + 2 A_rod))`, on any mesh. The divided mesh is tied to rods along shells.
 #[test]
-fn uniform_strain_beside_rods_has_no_mesh_error() {
+fn uniform_strain_next_to_rods_has_no_mesh_error() {
     let folder = folder("rods");
     let mut deck = String::from(
         "SOL 101\nCEND\nSPC = 1\nBEGIN BULK\nMAT1,1,210000.,,0.\nPSHELL,1,1,2.,1,,1\nPROD,2,1,50.\n\
@@ -462,7 +462,7 @@ impl nastran::bdf::Loader for NoFiles {
 /// Large meshes are divided only around the gauges. The test compares the change at a gauge with the change on a mesh
 /// that is divided everywhere.
 #[test]
-fn a_mesh_divided_round_a_gauge_says_what_one_divided_everywhere_says() {
+fn a_mesh_divided_round_a_gauge_agrees_with_one_divided_everywhere() {
     use strainbridge::fe::{SolveOptions, Support, UnitLoad, solve_unit_loads_on};
     use strainbridge::gauge::change_by_refining;
     use strainbridge::model::{Model, RefinedModel, ShellIx, Vec3};

@@ -323,7 +323,7 @@ fn grid_point_weight_of_the_solver_is_ours() {
 }
 
 #[test]
-fn curved_elements_weigh_what_the_solver_says() {
+fn curved_elements_have_the_mass_that_the_solver_states() {
     let name = "nx_quad8_replicated_deck";
     let Some(read) = case(name) else {
         return;
@@ -439,7 +439,7 @@ fn rigid_bars_and_triangles_are_those_of_older_cards() {
 
 /// SWLDPRM changes the projection of connectors. It has no effect without connectors.
 #[test]
-fn swldprm_is_refused_by_name_beside_connectors() {
+fn swldprm_is_refused_by_name_next_to_connectors() {
     let cards = |connector: &str| {
         let (model, _) = model_of(
             "",

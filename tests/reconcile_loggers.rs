@@ -230,7 +230,7 @@ fn the_extended_job_holds_the_fault_of_the_logger() {
 /// A record that is too short for its band is a fault of that file, in `identify` and in `reconcile`. A record with a
 /// dead channel is not used.
 #[test]
-fn a_second_record_that_cannot_judge_is_said_by_its_name() {
+fn a_second_record_that_cannot_test_is_reported_by_its_name() {
     let case = hide(Layout::Front, "none", 0, Background::Clean, 27);
     let some = "[\"coulomb_friction\", \"time_offset\"]";
     for (name, seconds) in [("twelve", 12.0), ("none", 0.004)] {
@@ -272,7 +272,7 @@ fn a_second_record_that_cannot_judge_is_said_by_its_name() {
 
 /// A gap without any equation is null, not a number.
 #[test]
-fn a_dead_accelerometer_is_told_by_the_command_without_a_made_up_gap() {
+fn a_dead_accelerometer_is_reported_by_the_command_without_a_made_up_gap() {
     let mut case = hide(Layout::Front, "none", 0, Background::Clean, 28);
     let still = |name: &str, x: &mut Vec<f64>| {
         if name == "a_body" {

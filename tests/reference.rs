@@ -152,7 +152,7 @@ fn codes_that_reach_a_finding_through_a_table_have_entries_too() {
 }
 
 #[test]
-fn the_pages_of_the_reference_say_what_the_code_says() {
+fn the_pages_of_the_reference_agree_with_the_code() {
     for (name, text) in reference::pages() {
         let path = root().join("docs/reference").join(name);
         let stands = std::fs::read_to_string(&path).unwrap_or_default();

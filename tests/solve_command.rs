@@ -227,7 +227,7 @@ fn a_grid_in_no_element_is_a_note_and_a_load_on_it_an_error() {
 }
 
 #[test]
-fn gravity_alone_says_that_a_free_structure_has_no_strain() {
+fn gravity_alone_on_a_free_structure_is_reported_as_without_strain() {
     let deck = strip("GRAV,7,,9810.,0.,0.,-1.\n").replace("LOAD = 1", "LOAD = 7");
     let (code, err, dir) = solve("gravity", &deck);
     assert_eq!(code, 0, "{err}");
@@ -262,7 +262,7 @@ fn list_kept_files(dir: &Path) -> Vec<PathBuf> {
 }
 
 #[test]
-fn a_kept_solution_gives_the_same_answer_and_nothing_is_kept_beside_the_deck() {
+fn a_kept_solution_gives_the_same_answer_and_nothing_is_kept_next_to_the_deck() {
     let (code, first, dir) = solve("kept", &strip(""));
     assert_eq!(code, 0, "{first}");
     assert!(!first.contains("cache"), "{first}");
@@ -475,7 +475,7 @@ fn sensitivity_of(job: &Path) -> f64 {
 }
 
 #[test]
-fn a_job_whose_deck_selects_supports_is_solved_on_them_and_free_where_it_says_so() {
+fn a_job_whose_deck_selects_supports_is_solved_on_them_and_free_if_it_states_free() {
     let job = on_support("held_job", "");
     // Beam theory: the strain at the surface under the tip load is M t / 2 / (E I) with I = b t^3 / 12.
     let exact = |x: f64| 1e6 * (1000.0 - x) * 5.0 / (210_000.0 * 100.0 * 1000.0 / 12.0);
@@ -546,7 +546,7 @@ fn weighed_plate(name: &str, forces: &[f64], unit: f64, keys: &str) -> PathBuf {
 }
 
 #[test]
-fn a_refused_payload_says_why_in_its_row_and_leaves_the_others_alone() {
+fn a_refused_payload_states_the_reason_in_its_row_and_leaves_the_others_alone() {
     let job = weighed_plate("payload_refused", &[200.0, -300.0, 500.0], 1.0, "");
     let out = strainbridge(&["payload", job.to_str().unwrap()]);
     assert_eq!(out.status.code(), Some(1), "{}", text(&out.stderr));
@@ -682,7 +682,7 @@ fn modes_of_a_held_deck_of_sol_103_are_those_of_the_clamped_beam() {
 }
 
 #[test]
-fn a_free_deck_without_relief_says_that_relief_was_assumed() {
+fn a_free_deck_without_relief_reports_that_relief_was_assumed() {
     let deck = strip("").replace("PARAM,INREL,-2\n", "");
     let (code, told, _) = solve("assumed_relief", &deck);
     assert_eq!(code, 0, "{told}");

@@ -162,7 +162,7 @@ fn numbered_records(bytes: &[u8]) -> Vec<(usize, usize)> {
 }
 
 #[test]
-fn a_record_that_is_lost_or_stands_twice_is_damage() {
+fn a_record_that_is_lost_or_is_repeated_is_damage() {
     let (mut tried, mut step) = (0, 0);
     for (path, bytes) in files(120_000) {
         for (from, to) in numbered_records(&bytes) {

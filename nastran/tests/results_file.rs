@@ -5,7 +5,7 @@ mod support;
 use nastran::results::{ResultsError, ResultsFile};
 
 #[test]
-fn every_op2_punch_and_h5_of_the_set_opens_and_each_block_decodes_or_says_why_not() {
+fn every_op2_punch_and_h5_of_the_set_opens_and_each_block_decodes_or_states_the_reason() {
     let Some(folder) = support::find_shared_path("nastran") else {
         return;
     };

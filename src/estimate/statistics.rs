@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn half_of_the_weight_lies_on_either_side() {
+    fn half_of_the_weight_is_on_either_side() {
         assert_eq!(weighted_median(&mut []), None);
         let mut even = [(3.0, 1.0), (1.0, 1.0), (2.0, 1.0)];
         assert_eq!(weighted_median(&mut even), Some(2.0));

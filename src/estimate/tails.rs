@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_over_nothing_tells_nothing_and_what_is_far_is_impossible() {
+    fn zero_over_zero_has_no_probability_and_far_values_are_impossible() {
         // Student's tail is one-sided: half of the distribution is above zero.
         for (tail, at_zero) in [
             ((|x| chi_square_tail(x, 3.0)) as fn(f64) -> f64, 1.0),

@@ -146,7 +146,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_entry_is_whole_and_stands_once() {
+    fn every_entry_is_whole_and_is_unique() {
         for c in codes() {
             let words = [c.said_by, c.cause, c.limit, c.remedy, c.example];
             assert!(words.iter().all(|w| !w.is_empty()), "{}", c.code);

@@ -321,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_cut_or_written_anew_while_it_is_read_is_refused() {
+    fn a_file_that_is_cut_or_written_again_while_it_is_read_is_refused() {
         const SIZE: usize = 1 << 20;
         let path = scratch("changing");
         let changes: [(&str, &dyn Fn()); 4] = [

@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn decks_are_told_from_jobs() {
+    fn decks_are_distinguished_from_jobs() {
         for deck in [
             "SOL 101\nCEND\nbegin bulk\n",
             "GRID,1,,0.,0.,0.\n",

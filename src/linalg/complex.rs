@@ -45,7 +45,7 @@ mod tests {
 
     /// Columns that differ by a millionth. A gain of full rank has `G H = 1` within the rounding of numbers that are a million times as large.
     #[test]
-    fn columns_that_are_nearly_alike_are_told_apart_to_rounding() {
+    fn columns_that_are_nearly_alike_are_distinguished_to_rounding() {
         let unit = |i: usize| Complex::from_polar(1.0, i as f64);
         let h = ComplexMatrix::from_fn(6, 2, |i, l| unit(i * i) + unit(7 * i) * (1e-6 * l as f64));
         let gain = least_squares_gain(&h, &[0.0, 0.0]).unwrap();

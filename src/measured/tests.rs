@@ -208,7 +208,7 @@ fn labels_rows_of_units_and_noise_of_a_runs_file_are_not_mistaken() {
 }
 
 #[test]
-fn labels_and_units_of_gauges_are_told_apart() {
+fn labels_and_units_of_gauges_are_distinguished() {
     let read = |text: &str, gauges: &[&str]| {
         let gauges: Vec<String> = gauges.iter().map(|g| (*g).to_owned()).collect();
         strain_text::strain_from_text("s.csv", text, &gauges)
@@ -387,7 +387,7 @@ fn a_column_of_runs_that_is_written_otherwise_is_asked_for() {
 }
 
 #[test]
-fn a_row_of_units_tells_which_of_two_columns_holds_a_load() {
+fn a_row_of_units_determines_which_of_two_columns_holds_a_load() {
     let table = "run,LF.FZ [kN],LF.FZ (raw),LF.MX\n-,kN,V,N m\nR1,2,9,3\n";
     let rows = runs_of(table, "").unwrap();
     assert_eq!(rows[0].loads_si["LF.FZ"], 2e3);

@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn a_card_that_is_there_twice_is_refused_if_its_content_differs_and_else_noted() {
+    fn a_card_that_is_there_twice_is_refused_if_its_content_differs_and_else_reported() {
         let table = |y| format!("TABLEM1,7\n,0.,1.,20.,{y},ENDT");
         let [two, three] = ["2.", "3."].map(table);
         let mat = "MAT1,1,1.,,0.\n";

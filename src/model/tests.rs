@@ -422,7 +422,7 @@ fn a_scalar_point_with_the_id_of_a_grid_and_an_endless_range_are_faults() {
 }
 
 #[test]
-fn cards_that_the_model_does_not_carry_are_told_and_their_loads_are_no_part_of_a_set_in_silence() {
+fn cards_that_the_model_does_not_carry_are_reported_with_the_load_sets_that_lose_them() {
     let (m, _) = model(&format!(
         "{QUAD}CQUAD4,9,1,1,2,3,4\nCSEAM,3,5,1,1,1\nCVISC,4,5,1,2\nFORCE,6,2,,1.,0.,0.,1.\nFORCEAX,6,2,1.,1,3\nLOAD,7,1.,2.,6"
     ));

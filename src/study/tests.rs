@@ -47,7 +47,7 @@ fn inverse() -> Matrix {
 }
 
 #[test]
-fn normal_noise_scatters_the_loads_as_the_covariance_says_and_intervals_cover() {
+fn normal_noise_scatters_the_loads_as_the_covariance_states_and_intervals_cover() {
     let row = study_layout(
         &pool(),
         &all_gauges_layout(),

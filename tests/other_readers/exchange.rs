@@ -388,7 +388,7 @@ fn records_that_pyarrow_and_asammdf_write_give_the_same_loads_as_the_table_they_
 
 #[cfg(not(any(feature = "mdf", feature = "parquet")))]
 #[test]
-fn a_build_that_does_not_read_a_kind_of_file_says_what_to_do() {
+fn a_build_that_does_not_read_a_kind_of_file_states_the_remedy() {
     let dir = plate("refused");
     for (file, begin, feature) in [
         ("a.parquet", &b"PAR1...."[..], "parquet"),

@@ -219,7 +219,7 @@ fn every_kind_of_page_opens_wide_and_on_a_phone_without_errors_requests_or_texts
 /// Tests the page of the demo: one card per step, each with a visible picture and no terminal text, and true loads next
 /// to their intervals.
 #[test]
-fn the_page_of_the_demo_has_a_picture_in_each_card_and_the_truth_beside_the_intervals() {
+fn the_page_of_the_demo_has_a_picture_in_each_card_and_the_truth_next_to_the_intervals() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("demo");
     let _ = std::fs::remove_dir_all(&folder);
     let told = Command::new(env!("CARGO_BIN_EXE_strainbridge"))

@@ -226,7 +226,7 @@ fn sensitivities_at_the_gauges_are_those_of_the_op2() {
 }
 
 #[test]
-fn a_layout_is_placed_beside_the_installed_one_and_its_file_serves_as_a_jobs_gauges() {
+fn a_layout_is_placed_next_to_the_installed_one_and_its_file_serves_as_a_jobs_gauges() {
     let Some((job_path, folder)) = job("frame_place", |t| t) else {
         return;
     };

@@ -61,7 +61,7 @@ fn refuses(t: &Tried, name: &str, line: usize) -> bool {
 }
 
 #[test]
-fn no_name_of_bulk_data_is_silent() {
+fn every_name_of_bulk_data_is_read_or_reported() {
     let mut silent = Vec::new();
     for (name, effect) in all_cards() {
         if ["BEGIN", "INCLUDE", "ENDDATA"].contains(&name) {
@@ -108,7 +108,7 @@ fn model_parameters_are_counted_unless_they_act() {
 }
 
 #[test]
-fn no_word_of_case_control_is_silent() {
+fn every_word_of_case_control_is_read_or_reported() {
     let mut silent = Vec::new();
     for (written, CaseWord { name, effect, .. }) in all_words() {
         // Below CEND, MODEL_CHECK is read as the word before the underscore.
@@ -268,7 +268,7 @@ fn changes_of_the_solution_sequence_are_refused_by_line() {
 }
 
 #[test]
-fn a_misspelt_parameter_is_noted() {
+fn a_misspelt_parameter_is_reported() {
     let noted = |case_control: &str, bulk: &str| {
         let t = check_and_solve(&rod(case_control, bulk));
         assert!(t.faults.is_empty() && t.solved.is_ok(), "{:?}", t.faults);

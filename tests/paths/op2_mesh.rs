@@ -163,7 +163,7 @@ fn unread_elements_are_named_with_their_count_and_refused() {
 }
 
 #[test]
-fn records_without_influence_are_silent() {
+fn records_without_influence_give_no_finding() {
     let plotel = vec![5201, 52, 11, 9, 1, 2];
     let damper = vec![201, 2, 69, 8, 5, 1, 2, 1, 1];
     let heat = [vec![2103, 21, 234], vec![3; 11]].concat();

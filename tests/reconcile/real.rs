@@ -78,7 +78,7 @@ const LOWERED: &str = "munich_support_01_lowering_02.csv";
 const NOISE: [f64; 3] = [3.0; 3];
 
 #[test]
-fn on_stage_means_of_the_bridge_settlement_and_temperature_are_rivals_and_the_lowering_record_is_asked_for()
+fn on_stage_means_of_the_bridge_settlement_and_temperature_are_alternatives_and_the_lowering_record_is_asked_for()
  {
     let Some(dir) = hidden::find_shared_folder() else {
         return;

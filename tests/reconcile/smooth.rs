@@ -179,7 +179,7 @@ fn a_model_that_is_off_by_a_smooth_factor_is_unknown_smooth_and_its_curve_is_the
 }
 
 #[test]
-fn effects_of_the_library_keep_their_names_beside_a_curve_that_could_follow_them() {
+fn effects_of_the_library_keep_their_names_next_to_a_curve_that_could_follow_them() {
     // Each effect is at least five times the noise or the residual of a model error of 1 %, at many gauges or in many
     // runs.
     let effects = [
@@ -229,7 +229,7 @@ fn a_beam_without_an_effect_has_no_curve() {
 }
 
 #[test]
-fn exact_aliases_win_drawings_of_runs_together() {
+fn exact_aliases_win_resampled_run_sets_together() {
     // A card of four channels. The next channel has no strain, so the card with it or without it is the same.
     const ALIASES: [&str; 2] = ["card_gain:G05-G08", "card_gain:G05-G09"];
     for seed in 31..37 {

@@ -186,7 +186,7 @@ fn a_beam_shaken_near_its_first_mode_gives_its_force_once_its_vibration_is_taken
 }
 
 #[test]
-fn what_lies_beyond_the_band_is_said() {
+fn content_beyond_the_band_is_reported() {
     let dynamic = format!(
         "[dynamic]\nup_to_hz = {:.4}\ndamping = 1e-5\n",
         0.8 * first_hz()

@@ -112,7 +112,7 @@ fn a_held_out_run_that_no_file_has_is_a_fault_of_every_command_that_reads_runs()
 }
 
 #[test]
-fn a_gap_blanks_what_it_touches_and_loads_that_no_sample_tells_are_an_error() {
+fn a_gap_affects_only_its_samples_and_loads_that_no_sample_determines_are_an_error() {
     // From sample 200 on, only one gauge reads for a while, which determines neither load. From 300 on, 30 lines are
     // missing.
     let lost = |i: usize, g: usize, v: f64| match (i, g) {

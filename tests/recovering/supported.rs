@@ -229,7 +229,7 @@ fn content_is_held_against_the_mode_of_the_structure_as_it_is_held() {
 }
 
 #[test]
-fn a_gauge_that_is_backwards_is_the_first_thing_said_and_no_finding_is_a_list_of_thousands() {
+fn a_gauge_with_reversed_sign_is_reported_first_and_no_finding_lists_thousands() {
     let files = record(|y| y[3] = -y[3]);
     let job = Job::read("job.toml", &files).unwrap_or_else(|f| panic!("{f:?}"));
     let got =

@@ -120,7 +120,7 @@ fn reactions_of_a_truck_with_its_masses_are_matched_and_the_ranges_hold_the_trut
 }
 
 #[test]
-fn section_6_4_eleven_gauges_as_poor_as_the_thesis_end_in_exit_code_1_and_say_why() {
+fn section_6_4_eleven_gauges_as_poor_as_the_thesis_end_in_exit_code_1_and_state_the_reason() {
     use crate::gauges::{simulate_readings, strain};
     use strainbridge::gauge::{CornerRows, GaugePlace, GaugeSpec, build};
     use strainbridge::model::{ShellIx, Vec3};

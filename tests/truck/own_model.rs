@@ -45,7 +45,7 @@ fn table_6_1_reactions_of_a_separately_supported_solution_come_back_to_1e_5() {
 }
 
 #[test]
-fn the_wheels_of_the_loaded_truck_carry_its_weight_and_share_it_as_the_levers_say() {
+fn the_wheels_of_the_loaded_truck_carry_its_weight_and_share_it_as_the_levers_state() {
     let truck = analyst_truck();
     let r = truck.reactions();
     let weight = truck.model.weight();

@@ -77,7 +77,7 @@ fn assert_reactions_balance(report: &SolveReport) {
 }
 
 #[test]
-fn a_load_that_autospc_takes_beside_a_far_stiffer_spring_is_an_error_and_without_autospc_the_answer_is_right()
+fn a_load_that_autospc_takes_next_to_a_far_stiffer_spring_is_an_error_and_without_autospc_the_answer_is_right()
  {
     // The bending stiffness of the middle grid is hundreds of N/mm. That is less than 1e-8 of the spring along x.
     let deck = |param: &str| {
@@ -162,7 +162,7 @@ fn a_moment_about_the_normal_of_a_flat_shell_is_refused_in_any_displacement_fram
 }
 
 #[test]
-fn a_moment_along_a_shell_is_carried_however_the_shell_stands() {
+fn a_moment_along_a_shell_is_carried_in_every_orientation() {
     // A moment about y of the plate. In the basic frame it has components along y and z, and neither of them is the
     // normal.
     let tip = |angle: f64| {
@@ -287,7 +287,7 @@ fn a_load_on_a_scalar_point_of_a_free_structure_that_follows_nothing_is_refused_
 }
 
 #[test]
-fn springs_and_equations_that_hold_the_structure_to_ground_unseen_are_told() {
+fn springs_and_equations_that_hold_the_structure_to_ground_unseen_are_reported() {
     let told = |card: &str, mpc: Option<u32>| {
         let mut b = cantilever(1);
         b.card("GRID,3,,500.,0.,80.");
@@ -321,7 +321,7 @@ fn springs_and_equations_that_hold_the_structure_to_ground_unseen_are_told() {
 }
 
 #[test]
-fn supports_that_all_move_alike_strain_nothing_and_are_not_said_to_lose_a_load() {
+fn supports_that_all_move_alike_strain_nothing_and_are_not_reported_as_lost_load() {
     let mut b = bar(8);
     b.card("SPC,1,1,123456,0.\nSPC,1,9,123,0.");
     b.card("SPCD,1,1,2,5.\nSPCD,1,9,2,5.");

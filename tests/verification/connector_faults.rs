@@ -84,7 +84,7 @@ fn negative_stiffness_of_a_gap_a_torsion_or_a_warping_constant_is_a_fault_at_its
 }
 
 #[test]
-fn both_sides_of_a_connector_are_told_at_once_each_at_its_field_and_nothing_false_after() {
+fn faults_of_both_sides_of_a_connector_are_reported_at_once_each_at_its_field() {
     let cases: [(&str, &[&str]); 7] = [
         ("CWELD,500,7,101,ELPAT,,,,,\n,96,196", &["SHIDA", "SHIDB"]),
         ("CWELD,500,7,101,PARTPAT,,,,,\n,96,97", &["PIDA", "PIDB"]),
@@ -109,7 +109,7 @@ fn both_sides_of_a_connector_are_told_at_once_each_at_its_field_and_nothing_fals
 }
 
 #[test]
-fn a_dof_dependent_twice_is_told_with_the_name_and_field_of_each_kind_of_card() {
+fn a_dof_dependent_twice_is_reported_with_the_name_and_field_of_each_kind_of_card() {
     let cases = [
         ("RBE2,500,1,123456,31", "RBE2 500", "GM"),
         ("RBAR,500,1,31,123456,,,123456", "RBAR 500", "CMA"),
@@ -132,7 +132,7 @@ fn a_dof_dependent_twice_is_told_with_the_name_and_field_of_each_kind_of_card() 
 }
 
 #[test]
-fn a_bad_section_is_told_once_and_not_as_a_property_that_is_missing() {
+fn a_bad_section_is_reported_once_and_not_as_a_property_that_is_missing() {
     let found = faults(&plates(
         "PBARL,9,1,,TUBE,,,,,\n,5.,9.\nCBAR,500,9,15,40,0.,1.,0.",
         LOAD,
@@ -155,7 +155,7 @@ fn findings_of(b: &Bulk) -> Vec<strainbridge::finding::Finding> {
 }
 
 #[test]
-fn a_gap_whose_axis_is_off_its_line_is_told_to_leave_a_moment_and_one_along_it_is_not() {
+fn a_gap_whose_axis_is_off_its_line_is_reported_to_leave_a_moment_and_one_along_it_is_not() {
     let told = |cid: &str| {
         let mut b = Bulk::default();
         b.card("MAT1,1,210000.,,.3\nPBAR,2,1,200.,9000.,9000.,18000.");
@@ -195,7 +195,7 @@ fn an_spc_set_that_no_case_selects_does_not_choose_which_end_of_a_rigid_bush_fol
 }
 
 #[test]
-fn sheets_at_an_angle_are_told_where_their_corners_are_named_too() {
+fn sheets_at_an_angle_are_reported_where_their_corners_are_named_too() {
     // The upper patch is inclined by 45 degrees about y.
     let mut b = plates(
         "CWELD,500,7,101,GRIDID,,,,,\n,12,17,18,13,,,,,\n,201,202,203,204",

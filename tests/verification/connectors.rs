@@ -209,7 +209,7 @@ fn a_fastener_gives_way_by_its_springs_at_the_middle_between_its_ends() {
 }
 
 #[test]
-fn the_axes_of_a_fastener_are_those_of_mcid_where_mflag_says_so() {
+fn mflag_selects_the_axes_of_mcid_for_a_fastener() {
     // KT1 = 5000 acts along basic x of system 5. The third axis of the system is the normal of the plates.
     let cards = "CORD2R,5,0,0.,0.,0.,0.,0.,1.,\n,0.,1.,0.\nPFAST,9,6.,5,1,5000.,2000.,1000.,90000.,\n,90000.,90000.";
     let bend = 100.0 * GAP * GAP / 4.0 / 90_000.0;
@@ -298,7 +298,7 @@ fn a_piercing_grid_moves_and_turns_with_the_field_of_its_patch() {
 }
 
 #[test]
-fn what_a_connector_lacks_is_a_fault_that_says_what_to_do() {
+fn a_missing_part_of_a_connector_is_a_fault_with_its_remedy() {
     let cases = [
         ("CWELD,500,7,101,GIBBON,102,103", "format `GIBBON`"),
         ("CWELD,500,7,,PARTPAT,,,,,\n,1,2", "without GS"),
@@ -515,7 +515,7 @@ impl Bulk {
 }
 
 #[test]
-fn decks_with_connectors_solve_from_cards_and_are_told_as_formulation() {
+fn decks_with_connectors_solve_from_cards_and_are_reported_as_formulation() {
     let b = plates(
         "CFAST,500,9,PROP,1,2,101\nPFAST,9,6.,,,5000.,2000.,2000.,40000.,\n,80000.,80000.",
         "FORCE,1,50,0,10.,0.,0.,1.",

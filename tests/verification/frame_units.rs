@@ -27,7 +27,7 @@ fn largest_principal_strain([ex, ey, g]: [f64; 3]) -> f64 {
 }
 
 #[test]
-fn vertical_wheel_loads_on_a_ladder_frame_strain_it_as_mystran_says() {
+fn vertical_wheel_loads_on_a_ladder_frame_strain_it_as_in_mystran() {
     let Some(deck) = find_shared_path("nastran/mystran_frame_units/frame.bdf") else {
         return;
     };

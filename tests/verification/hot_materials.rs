@@ -78,7 +78,7 @@ fn both_changes_the_material_and_heats() {
 }
 
 #[test]
-fn the_four_tables_give_what_their_formulas_say() {
+fn the_four_tables_give_what_their_formulas_state() {
     for (table, t, e) in [
         // Linear extrapolation beyond the ends, the mean value at a jump, and a descending table.
         ("TABLEM1,9\n,0.,1.+10,100.,3.+10,ENDT\n", -20.0, 0.6e10),

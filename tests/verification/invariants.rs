@@ -127,7 +127,7 @@ fn strains_from_two_supports_agree() {
 }
 
 #[test]
-fn gravity_alone_strains_a_free_structure_nowhere_and_a_finding_says_so() {
+fn gravity_alone_strains_a_free_structure_nowhere_and_a_finding_reports_it() {
     let (mut b, _) = folded_strip(0.0);
     b.card("GRAV,5,,9810.,0.3,0.1,-1.0");
     b.card("FORCE,6,20,0,1.0,0.0,0.0,100.0");

@@ -153,7 +153,7 @@ fn check(plies: &[(f64, f64)], theta: f64) {
 }
 
 #[test]
-fn a_laminate_under_tension_strains_and_curves_as_lamination_theory_says() {
+fn a_laminate_under_tension_strains_and_curves_as_lamination_theory_states() {
     check(&[(0.0, 0.5), (90.0, 0.5), (90.0, 0.5), (0.0, 0.5)], 0.0);
     // An unsymmetric laminate bends under tension.
     check(&[(0.0, 0.7), (90.0, 0.5)], 0.0);

@@ -26,7 +26,7 @@ fn cantilever(beam: bool, pins: &str, load: &str) -> Bulk {
 }
 
 #[test]
-fn distributed_loads_bend_a_cantilever_as_the_closed_forms_say() {
+fn distributed_loads_bend_a_cantilever_as_the_closed_forms_state() {
     let q = 2.0;
     for beam in [false, true] {
         for load in [

@@ -37,7 +37,7 @@ fn cantilever(n: u32) -> (Bulk, f64) {
 }
 
 #[test]
-fn a_cantilever_vibrates_as_euler_says_and_its_modal_masses_are_those_of_the_clamped_beam() {
+fn a_cantilever_vibrates_as_euler_states_and_its_modal_masses_are_those_of_the_clamped_beam() {
     let (b, l) = cantilever(80);
     let solved = modes(&b, Some(1), 6);
     assert_eq!(solved.rigid_motions, 0);
@@ -86,7 +86,7 @@ fn a_mode_strains_as_its_shape_bends() {
 }
 
 #[test]
-fn a_simply_supported_plate_vibrates_as_navier_says() {
+fn a_simply_supported_plate_vibrates_as_navier_states() {
     let (a, c, t, n) = (1000.0, 700.0, 5.0, 40);
     let mut b = Bulk::default();
     b.card(&format!("MAT1,1,{E:?},,.3,7.85-9"));
@@ -147,7 +147,7 @@ fn a_free_square_plate_has_six_rigid_motions_no_effective_mass_and_the_published
 }
 
 #[test]
-fn a_structure_without_mass_has_no_modes_and_says_so() {
+fn a_structure_without_mass_has_no_modes_and_a_finding_reports_it() {
     let mut b = Bulk::default();
     b.card("MAT1,1,210000.,,.3");
     b.card("PBAR,2,1,200.,9000.,4000.,8000.");

@@ -123,7 +123,7 @@ fn gravity_on_a_cantilever_is_carried_by_its_support_alone() {
 }
 
 #[test]
-fn a_load_on_a_held_grid_says_that_it_strains_nothing() {
+fn a_load_on_a_held_grid_is_reported_as_without_strain() {
     let mut b = bar(4);
     b.hold("123456", [1]);
     b.force(1, [0.0, 0.0, 100.0]);
@@ -194,7 +194,7 @@ fn numbers_that_overflow_are_refused() {
 }
 
 #[test]
-fn nothing_that_acts_and_gravity_without_mass_are_said() {
+fn missing_loads_and_gravity_without_mass_are_reported() {
     let mut b = bar(2);
     b.hold("123456", [1]);
     b.force(3, [0.0; 3]);

@@ -128,7 +128,7 @@ fn a_gradient_through_the_thickness_bends_a_free_sheet_to_a_bowl() {
 }
 
 #[test]
-fn a_bimetal_strip_bends_as_timoshenko_says() {
+fn a_bimetal_strip_bends_as_timoshenko_states() {
     // Timoshenko 1925: kappa = 6 (a2 - a1) dT (1 + m)^2 / (h (3 (1 + m)^2 + (1 + m n)(m^2 + 1 / (m n)))), m = t1 / t2,
     // n = E1 / E2. The formula is also valid for a plate whose layers have equal Poisson ratios.
     let (e1, e2, a1, a2, t1, t2, dt) = (210_000.0, 70_000.0, 1.2e-5, 2.3e-5, 2.0, 3.0, 50.0);

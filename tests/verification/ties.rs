@@ -158,7 +158,7 @@ fn a_bent_spline_moves_as_bars_of_the_tube_that_it_stands_for() {
 }
 
 #[test]
-fn a_gap_carries_ka_and_kt_while_closed_and_kb_alone_while_open_and_says_so() {
+fn a_gap_carries_ka_and_kt_while_closed_and_kb_alone_while_open_and_reports_it() {
     let with = |property: &str, load: &str| {
         let mut b = line(&[[0.0; 3], [10.0, 0.0, 0.0]]);
         b.card("CGAP,5,6,1,2,0.,1.,0.");
@@ -349,7 +349,7 @@ fn a_rigid_bush_to_ground_is_a_support_with_a_reaction() {
 }
 
 #[test]
-fn a_bush_without_axes_takes_the_basic_frame_and_says_so_where_it_matters() {
+fn a_bush_without_axes_takes_the_basic_frame_and_reports_it_where_it_matters() {
     let at = |property: &str, second: &str| {
         let mut b = Bulk::default();
         b.grid([3.0, 4.0, 5.0]);

@@ -330,7 +330,7 @@ fn bimoments_count_neither_as_forces_of_supports_nor_as_forces_on_a_free_body() 
 }
 
 #[test]
-fn warping_points_of_a_beam_without_warping_constant_are_told() {
+fn warping_points_of_a_beam_without_warping_constant_are_reported() {
     let told = |cw: f64| {
         let mut b = bar(1, 1500.0, (28_800.0, cw));
         b.card("SPC1,1,1,1001,1002");

@@ -106,7 +106,7 @@ fn lines(text: &str, n: usize) -> Vec<u8> {
 }
 
 #[test]
-fn of_a_record_check_says_what_recover_says() {
+fn check_reports_the_findings_of_recover_on_a_record() {
     let folder = copy_example("check_record", "fleet");
     std::fs::write(folder.join("job.toml"), RECORD).unwrap();
     let dated = |t: &str| {
@@ -253,7 +253,7 @@ fn loads_and_gauges_are_counted_where_they_were_read() {
 }
 
 #[test]
-fn of_a_vehicle_check_says_what_identify_says() {
+fn check_reports_the_findings_of_identify_on_a_vehicle() {
     let folder = copy_example("check_vehicle", "quarter_truck");
     let twice = |t: &str| {
         let rows: String = t.split_inclusive('\n').skip(1).collect();
@@ -295,7 +295,7 @@ fn of_a_vehicle_check_says_what_identify_says() {
 }
 
 #[test]
-fn of_runs_check_says_what_respond_and_reconcile_say() {
+fn check_reports_the_findings_of_respond_and_reconcile_on_runs() {
     let folder = copy_example("check_runs", "frame");
     let job = std::fs::read_to_string(folder.join("respond.toml")).unwrap();
     let loads = job.replace("hottest = 10", "hottest = 10\nloads = \"loads.csv\"");
@@ -351,7 +351,7 @@ fn of_runs_check_says_what_respond_and_reconcile_say() {
 }
 
 #[test]
-fn a_point_away_from_the_element_beside_it_is_an_error_that_names_gauge_and_distance() {
+fn a_point_away_from_its_element_is_an_error_that_names_gauge_and_distance() {
     let folder = copy_example("check_point", "frame");
     let job = folder.join("recover.toml");
     let gauges = std::fs::read_to_string(folder.join("gauges.csv")).unwrap();
@@ -375,7 +375,7 @@ fn a_point_away_from_the_element_beside_it_is_an_error_that_names_gauge_and_dist
 }
 
 #[test]
-fn a_layout_that_will_not_tell_its_loads_is_an_error() {
+fn a_layout_that_does_not_determine_its_loads_is_an_error() {
     let folder = copy_example("check_planned", "frame");
     let job = folder.join("place.toml");
     let text = std::fs::read_to_string(&job).unwrap();
@@ -400,7 +400,7 @@ fn a_channel_is_not_exchanged_with_itself() {
 }
 
 #[test]
-fn fleet_says_of_a_gauge_without_a_row_of_s_what_recover_says() {
+fn fleet_and_recover_report_a_gauge_without_a_row_of_s_alike() {
     let folder = copy_example("check_no_row", "fleet");
     let s = std::fs::read_to_string(folder.join("s_wheels.csv")).unwrap();
     let less: String = s.split_inclusive('\n').take(12).collect();
@@ -419,7 +419,7 @@ fn fleet_says_of_a_gauge_without_a_row_of_s_what_recover_says() {
 }
 
 #[test]
-fn of_a_deck_that_can_not_be_solved_or_glued_on_check_says_what_the_commands_say() {
+fn check_reports_the_faults_of_the_commands_on_a_deck_that_can_not_be_solved_or_glued_on() {
     let folder = copy_example("check_deck", "frame");
     // A hinge connects a bar to the carrier.
     let hinge = "GRID,990,,-300.,-400.,0.\nPBAR,990,1,10.,100.,100.,200.\n\
@@ -479,7 +479,7 @@ fn readings(text: &str, change: impl Fn(usize, usize, &str) -> String) -> Vec<u8
 }
 
 #[test]
-fn of_readings_that_are_no_loads_check_says_what_recover_says() {
+fn check_reports_the_findings_of_recover_on_readings_that_are_no_loads() {
     let folder = copy_example("check_readings", "frame");
     let keep = |f: &str| f.to_owned();
     let damages: [(Damage, Ends); 5] = [

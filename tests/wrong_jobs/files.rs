@@ -93,7 +93,7 @@ fn a_file_that_no_command_wrote_is_refused_before_anything_is_computed_and_stays
 }
 
 #[test]
-fn what_a_command_wrote_it_may_write_again_and_what_others_wrote_stays_and_is_said() {
+fn a_command_overwrites_its_own_files_and_reports_files_of_others() {
     let dir = copy_example("own_again", "frame");
     let files = |out: &str| -> Vec<String> {
         let entries = std::fs::read_dir(dir.join(out)).unwrap();
@@ -179,7 +179,7 @@ fn a_folder_of_a_fleet_is_verified_from_its_records() {
 }
 
 #[test]
-fn a_table_whose_last_number_may_be_cut_is_said_and_a_record_is_read_without_it() {
+fn a_table_whose_last_number_may_be_cut_is_reported_and_a_record_is_read_without_it() {
     let dir = copy_example("cut_record", "fleet");
     let record = dir.join("A_2026-05-01.csv");
     let whole = std::fs::read(&record).unwrap();
@@ -229,7 +229,7 @@ fn a_table_whose_last_number_may_be_cut_is_said_and_a_record_is_read_without_it(
 }
 
 #[test]
-fn a_record_whose_rate_changes_is_told_so_and_keeps_its_samples() {
+fn a_record_whose_rate_changes_gets_a_finding_and_keeps_its_samples() {
     let dir = copy_example("rate_changes", "fleet");
     let samples = |out: &str| -> u64 {
         let text = std::fs::read_to_string(dir.join(out).join("result.json")).unwrap();
@@ -352,7 +352,7 @@ fn steps_of_angles_below_a_tenth_of_a_degree_are_refused_at_their_line() {
 }
 
 #[test]
-fn fewer_gauges_than_loads_are_not_told_that_they_stand_too_close() {
+fn fewer_gauges_than_loads_are_not_reported_as_too_close() {
     let dir = copy_example("few_gauges", "frame");
     edit(&dir, "place.toml", |t| {
         t.replace("gauges = 12", "gauges = 5")

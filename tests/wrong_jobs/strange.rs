@@ -67,7 +67,7 @@ fn a_last_number_without_the_point_that_all_others_have_is_an_error() {
 }
 
 #[test]
-fn check_of_a_deck_says_what_solving_it_would_say_of_its_supports_and_shapes() {
+fn check_of_a_deck_reports_the_findings_of_solve_on_supports_and_shapes() {
     let dir = copy_example("strange_deck", "frame");
     let hexa = |order: [u32; 8]| {
         let ids = order.map(|i| (9000 + i).to_string());
@@ -157,7 +157,7 @@ fn a_zero_or_held_out_file_that_is_the_strain_file_itself_is_refused() {
 }
 
 #[test]
-fn blank_readings_and_runs_without_a_measurement_are_said() {
+fn blank_readings_and_runs_without_a_measurement_are_reported() {
     let dir = copy_example("blank_runs", "frame");
     let asked = |found: &[&str]| {
         for command in ["recover", "check"] {
@@ -216,7 +216,7 @@ fn blank_readings_and_runs_without_a_measurement_are_said() {
 }
 
 #[test]
-fn a_record_that_repeats_itself_in_a_part_is_said_to_stand_still_or_to_be_no_measurement() {
+fn a_record_with_a_constant_part_is_reported_as_standstill_or_no_measurement() {
     let dir = copy_example("still_record", "fleet");
     let file = dir.join("A_2026-05-01.csv");
     let whole = std::fs::read_to_string(&file).unwrap();
@@ -248,7 +248,7 @@ fn a_record_that_repeats_itself_in_a_part_is_said_to_stand_still_or_to_be_no_mea
 }
 
 #[test]
-fn noise_that_nobody_states_is_said_to_be_assumed() {
+fn noise_that_the_job_does_not_state_is_reported_as_assumed() {
     let dir = copy_example("no_noise", "frame");
     let (_, printed) = call(&dir, &["recover", "recover.toml"]);
     assert!(!printed.contains("noise-assumed"), "{printed}");
@@ -265,7 +265,7 @@ fn noise_that_nobody_states_is_said_to_be_assumed() {
 }
 
 #[test]
-fn a_runs_file_of_other_runs_is_refused_by_payload_and_places_that_are_assumed_are_said() {
+fn a_runs_file_of_other_runs_is_refused_by_payload_and_places_that_are_assumed_are_reported() {
     let dir = copy_example("other_runs", "frame");
     let runs = std::fs::read_to_string(dir.join("runs.csv")).unwrap();
     let payload = ["payload", "payload.toml"];
@@ -319,7 +319,7 @@ fn an_answer_that_does_not_get_to_standard_output_is_no_success() {
 /// A batch system terminates the command while it writes, as Ctrl-C does.
 #[cfg(unix)]
 #[test]
-fn a_command_that_is_told_to_end_leaves_no_half_files() {
+fn a_stopped_command_leaves_no_incomplete_files() {
     let dir = copy_example("told_to_end", "fleet");
     let whole = std::fs::read_to_string(dir.join("A_2026-05-01.csv")).unwrap();
     let (header, rows) = whole.split_once('\n').unwrap();

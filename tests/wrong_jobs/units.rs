@@ -249,7 +249,7 @@ fn loads_of_another_unit_give_no_stress_without_an_error() {
 }
 
 #[test]
-fn channels_that_read_less_than_their_noise_tell_nothing_of_a_vehicle() {
+fn channels_that_read_less_than_their_noise_determine_no_vehicle() {
     let quarter = "quarter_truck";
     let identify = ["identify", "identify.toml"];
     for column in [Some("f_wheel"), None] {
@@ -290,7 +290,7 @@ fn channels_that_read_less_than_their_noise_tell_nothing_of_a_vehicle() {
 }
 
 #[test]
-fn every_command_that_reads_a_job_s_deck_judges_its_modulus() {
+fn every_command_that_reads_a_job_s_deck_tests_its_modulus() {
     let to = copy_example("modulus", "frame");
     edit(&to, "frame.bdf", |t| {
         t.replace("MAT1,1,2.1+5", "MAT1,1,1.+30")
@@ -390,7 +390,7 @@ fn limits_of_a_vehicle_that_leave_no_value_are_faults_and_open_ones_change_nothi
 }
 
 #[test]
-fn strain_beside_a_table_of_loads_is_judged_too() {
+fn strain_next_to_a_table_of_loads_is_tested_too() {
     let to = copy_example("beside_loads", "frame");
     let (exit, _, errors) = run_command(&to, &["recover", "recover.toml"]);
     assert_eq!(exit, 0, "{errors}");
@@ -436,7 +436,7 @@ fn one_reading_beyond_five_per_cent_is_doubtful_and_one_beyond_twenty_is_no_stra
 /// Element 19 of the frame ends at x = 1250 mm and has a size of 260 mm. Its plate is 6 mm thick, and P01 is on its
 /// face.
 #[test]
-fn a_point_beside_its_element_is_doubtful_beyond_its_tolerance_and_wrong_beyond_its_size() {
+fn a_point_off_its_element_is_a_warning_beyond_its_tolerance_and_an_error_beyond_its_size() {
     let tolerant = "\n[placement]\nposition_tolerance = 10.0\n";
     for (x, more, severity) in [
         ("1254", "", None),
@@ -474,7 +474,7 @@ fn ballast_of_a_structure_without_density_is_held_against_its_weight_in_steel() 
 }
 
 #[test]
-fn loads_beside_a_long_record_are_answered_without_a_comparison() {
+fn loads_next_to_a_long_record_are_answered_without_a_comparison() {
     let to = copy_example("beside_record", "frame");
     let (exit, _, errors) = run_command(&to, &["recover", "recover.toml"]);
     assert_eq!(exit, 0, "{errors}");

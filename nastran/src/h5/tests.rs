@@ -222,7 +222,7 @@ fn compressed_tables_of_msc_agree_with_the_op2_that_nx_wrote_for_the_same_deck()
 }
 
 #[test]
-fn every_table_of_the_element_zoo_is_read_or_noted() {
+fn every_table_of_the_element_zoo_is_read_or_reported() {
     let Some(bytes) = read_shared_file("nx_static_elements/static_elements.h5") else {
         return;
     };

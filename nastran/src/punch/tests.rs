@@ -223,7 +223,7 @@ fn blank_margins_of_a_bar_are_no_number_and_scalar_points_have_one_component() {
 }
 
 #[test]
-fn modes_carry_their_number_and_complex_and_sort2_blocks_are_noted() {
+fn modes_carry_their_number_and_complex_and_sort2_blocks_are_reported() {
     let grid = line("         1       G", &["1.0", "0.0", "0.0"])
         + &line("-CONT-", &["0.0", "0.0", "1.234567-101"]);
     let modes = header(

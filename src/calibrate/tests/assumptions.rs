@@ -153,7 +153,7 @@ fn an_error_that_known_loads_share_is_that_of_every_recovered_load() {
 }
 
 #[test]
-fn one_run_a_load_is_an_error_and_no_gauge_is_named_by_what_it_taught() {
+fn one_run_for_each_load_is_an_error_and_names_no_gauge() {
     let mut random = ChaCha8Rng::seed_from_u64(3);
     let s = lanes(&mut random);
     let mut read = |f: [f64; 2]| -> Vec<f64> {

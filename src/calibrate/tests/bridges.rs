@@ -209,7 +209,7 @@ fn median(v: &[f64]) -> f64 {
 }
 
 #[test]
-fn half_of_the_runs_at_ponca_teach_to_weigh_the_others_within_their_intervals() {
+fn half_of_the_runs_at_ponca_calibrate_to_weigh_the_others_within_their_intervals() {
     let Some(w) = weigh("ponca", 0..20) else {
         return;
     };
@@ -232,7 +232,7 @@ fn half_of_the_runs_at_ponca_teach_to_weigh_the_others_within_their_intervals() 
 /// Sixty other splits. The residuals of some runs at 30 and 45 mph are far larger than the scatter of the calibration. The known scatter must still
 /// identify their lane.
 #[test]
-fn runs_that_scatter_more_than_those_that_taught_are_weighed_in_their_lane() {
+fn runs_that_scatter_more_than_calibration_runs_are_weighed_in_their_lane() {
     let Some(w) = weigh("ponca", 20..80) else {
         return;
     };
@@ -260,7 +260,7 @@ fn runs_that_scatter_more_than_those_that_taught_are_weighed_in_their_lane() {
 }
 
 #[test]
-fn half_of_the_runs_at_ashland_teach_to_weigh_the_others_within_their_intervals() {
+fn half_of_the_runs_at_ashland_calibrate_to_weigh_the_others_within_their_intervals() {
     let Some(w) = weigh("ashland", 0..20) else {
         return;
     };
@@ -284,7 +284,7 @@ fn half_of_the_runs_at_ashland_teach_to_weigh_the_others_within_their_intervals(
 }
 
 #[test]
-fn a_wrong_lane_and_loggers_tared_under_load_are_named_without_being_told() {
+fn a_wrong_lane_and_loggers_tared_under_load_are_identified() {
     let Some(b) = bridge("ponca", |_, _| true) else {
         return;
     };

@@ -119,7 +119,7 @@ fn a_gain_is_a_gain_and_never_an_angle_or_a_place() {
 }
 
 #[test]
-fn a_turned_gauge_is_named_so_where_the_pushes_tell() {
+fn a_turned_gauge_is_identified_if_the_pushes_determine_it() {
     for degrees in [10.0_f64, -10.0, -20.0] {
         let words = words([0.0, 0.0, degrees.to_radians()], 1.0);
         // Two of eight gauges, at 60 and 90 degrees, read little of the bending. Their change may stay within the error of the model.
@@ -128,7 +128,7 @@ fn a_turned_gauge_is_named_so_where_the_pushes_tell() {
 }
 
 #[test]
-fn a_displaced_gauge_is_named_so_where_the_pushes_tell() {
+fn a_displaced_gauge_is_identified_if_the_pushes_determine_it() {
     for across in [20.0, -20.0] {
         // Across the strip only the in-plane moment changes. Gauges at 60 and 90 degrees read little of it.
         is_named(&words([0.0, across, 0.0], 1.0), ShiftWord::Place, 60);

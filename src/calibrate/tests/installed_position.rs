@@ -208,7 +208,7 @@ fn trial(seed: u64) -> Trial {
 }
 
 #[test]
-fn six_pushes_tell_where_gauges_sit_as_well_as_can_be_told() {
+fn six_pushes_determine_positions_of_gauges_as_well_as_is_possible() {
     let trials: Vec<Trial> = (0..60).into_par_iter().map(trial).collect();
     let (held, of) = trials
         .iter()

@@ -74,7 +74,7 @@ fn two_runs_with_each_others_label_are_named_together_and_not_used() {
 }
 
 #[test]
-fn blank_readings_beside_runs_that_contradict_leave_a_covariance() {
+fn blank_readings_next_to_runs_that_contradict_leave_a_covariance() {
     // The residuals of the runs are one pattern, and gauges are many. A matrix computed for each pair from the runs that have both gauges would not
     // be a covariance.
     for seed in 0..20 {
@@ -127,7 +127,7 @@ fn loads_that_a_single_known_run_shares_out_by_chance_are_an_error() {
 }
 
 #[test]
-fn sound_gauges_are_not_blamed_where_the_runs_do_not_tell_the_loads_apart() {
+fn sound_gauges_are_not_blamed_if_the_runs_do_not_separate_the_loads() {
     for seed in 0..5 {
         let mut task = lanes(4, 0.03, seed);
         let unlike = task.runs.split_off(6);

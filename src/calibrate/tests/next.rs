@@ -115,7 +115,7 @@ fn the_next_load_buys_what_its_readings_would_take_from_the_covariance_of_s() {
 }
 
 #[test]
-fn sizes_that_are_not_one_a_load_are_said() {
+fn a_wrong_number_of_sizes_is_a_fault() {
     let found = calibrate_four_pushes();
     for sizes in [&[1.0; 3][..], &[1.0; 5], &[1.0, 1.0, 1.0, f64::NAN]] {
         assert!(next_runs(&found, NOISE, sizes).is_err(), "{sizes:?}");

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// Without shrinkage the filter is a regression on all `n - k` patterns that no loads make. The variance of its errors in other runs is
 /// `1 / (1 - (n - k) / dof)^2` times the variance of its residuals in the calibration runs.
 #[test]
-fn what_an_unshrunk_scatter_says_of_loads_is_widened_by_the_patterns_it_has_learnt() {
+fn an_unshrunk_scatter_is_widened_by_the_patterns_that_it_estimated() {
     const N: usize = 6;
     let mut random = ChaCha8Rng::seed_from_u64(3);
     let dof = 40.0;

@@ -75,7 +75,7 @@ fn task(times: usize, seed: u64) -> Task {
 }
 
 #[test]
-fn a_clean_calibration_says_nothing_against_its_runs_and_gauges() {
+fn a_clean_calibration_reports_no_fault_of_runs_and_gauges() {
     for seed in 0..20 {
         for times in [1, 3] {
             let c = calibrate(&task(times, seed)).unwrap();
@@ -211,7 +211,7 @@ fn two_exchanged_gauges_are_named_and_no_others() {
 }
 
 #[test]
-fn a_gauge_whose_gain_is_off_is_judged_by_the_error_of_the_others() {
+fn a_gauge_whose_gain_is_off_is_tested_by_the_error_of_the_others() {
     let mut task = task(1, 9);
     for run in &mut task.runs {
         run.strain[2] *= 1.8;
@@ -237,7 +237,7 @@ fn a_model_of_a_third_of_the_strain_is_put_right_by_the_runs_and_not_refused() {
 }
 
 #[test]
-fn a_gauge_wired_backwards_says_nothing_of_how_far_the_rows_of_others_may_be_off() {
+fn a_gauge_with_reversed_sign_does_not_change_the_error_of_the_other_rows() {
     // The torque acts in no run, so that only the prior determines its column.
     let mut wired = task(1, 11);
     wired.runs.truncate(2);

@@ -135,7 +135,7 @@ fn all_passages(aside: f64, passage: f64, stated: bool) -> Vec<Vec<[f64; 3]>> {
 }
 
 #[test]
-fn with_repeats_named_intervals_hold_where_a_loading_stands_aside_of_its_lane() {
+fn with_stated_repeats_intervals_cover_a_loading_off_its_lane() {
     let stated = all_passages(0.03, 0.005, true);
     let unstated = all_passages(0.03, 0.005, false);
     for load in 0..2 {
@@ -147,7 +147,7 @@ fn with_repeats_named_intervals_hold_where_a_loading_stands_aside_of_its_lane() 
 }
 
 #[test]
-fn repeats_that_have_nothing_in_common_tell_as_much_as_any_other_runs() {
+fn repeats_without_a_common_error_count_as_any_other_runs() {
     let stated = all_passages(0.0, 0.03, true);
     let unstated = all_passages(0.0, 0.03, false);
     for load in 0..2 {
@@ -268,7 +268,7 @@ fn of_runs_weighed_by_sums_and_nothing_else_the_sum_is_known_and_what_it_is_made
 }
 
 #[test]
-fn runs_weighed_by_their_sum_alone_teach_with_intervals_as_wide_as_their_errors() {
+fn runs_with_known_sum_alone_calibrate_with_intervals_as_wide_as_their_errors() {
     for apart in [LoadSeparation::Model, LoadSeparation::Runs] {
         let trials: Vec<Vec<[f64; 3]>> = (0..200)
             .into_par_iter()

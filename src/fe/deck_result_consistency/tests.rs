@@ -30,7 +30,7 @@ fn grids_that_moved_are_an_error_with_the_worst_named() {
 }
 
 #[test]
-fn reactions_are_told_where_the_structure_should_be_free() {
+fn reactions_are_reported_where_the_structure_should_be_free() {
     let text = nodal("OLOADS", 1, 1000.0) + &nodal("SPCF", 2, -1000.0);
     let file = ResultsFile::read(text.as_bytes(), "run.pch").unwrap();
     let m = model("");

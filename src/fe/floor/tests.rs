@@ -131,7 +131,7 @@ fn reactions_of_the_truck_are_those_of_a_solution_on_supports() {
 }
 
 #[test]
-fn a_payload_weighs_on_the_wheels_as_its_moments_say_and_reciprocity_holds() {
+fn a_payload_weighs_on_the_wheels_as_its_moments_state_and_reciprocity_holds() {
     let free = model(&truck_text());
     let wheels: Vec<GridIx> = WHEELS.iter().map(|g| grid(&free, *g)).collect();
     let payload = grid(&free, 900_101);

@@ -126,7 +126,7 @@ fn elements_come_out_ascending_whatever_the_order_of_blocks() {
 }
 
 #[test]
-fn strain_comes_from_stress_only_where_there_is_no_strain_and_says_so() {
+fn strain_comes_from_stress_only_where_there_is_no_strain_and_reports_it() {
     let stress = block(
         1,
         "ELEMENT STRESSES",
@@ -220,7 +220,7 @@ fn displacements_of_a_table_in_the_basic_frame_stay_as_they_are() {
 }
 
 #[test]
-fn what_does_not_fit_is_told_once_each() {
+fn each_contradiction_is_reported_once() {
     let entry = |z: f64| shell([-z, z], [1e-4; 3], [1e-4; 3]);
     let text = block(
         1,

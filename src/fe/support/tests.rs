@@ -29,7 +29,7 @@ fn model(selected: &[u32]) -> Model {
 }
 
 #[test]
-fn the_decks_own_set_holds_unless_the_job_says_free_or_names_another() {
+fn the_decks_own_set_holds_unless_the_job_states_free_or_names_another() {
     let held = |set| {
         Ok(Support {
             spc: Some(set),

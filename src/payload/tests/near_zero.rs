@@ -94,7 +94,7 @@ fn intervals_hold_the_truth_of_an_empty_structure_and_of_small_payloads() {
 }
 
 #[test]
-fn an_interval_is_cut_at_zero_as_the_equation_says_and_left_alone_above_it() {
+fn an_interval_is_cut_at_zero_as_the_equation_states_and_left_alone_above_it() {
     assert_eq!(cut_at_zero(5.0, [3.0, 7.0]), (5.0, [3.0, 7.0]));
     assert_eq!(cut_at_zero(1.0, [-1.0, 3.0]), (1.0, [0.0, 3.0]));
     assert_eq!(cut_at_zero(-1.0, [-3.0, 1.0]), (0.0, [0.0, 2.0]));

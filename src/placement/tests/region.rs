@@ -48,7 +48,7 @@ fn lattice(
 }
 
 #[test]
-fn rims_of_holes_are_told_from_the_border_of_a_plate_flat_or_bent() {
+fn rims_of_holes_are_distinguished_from_the_border_of_a_plate_flat_or_bent() {
     for bend in [0.0, 0.03] {
         // A hole of 2 x 2 cells and one of a single cell.
         let out = |i, j| (2..4).contains(&i) && (2..4).contains(&j) || (i, j) == (6, 4);

@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slope_beyond_the_doubt_of_the_model_is_no_zero_and_one_within_may_be() {
+    fn a_slope_beyond_the_uncertainty_of_the_model_is_no_zero_drift() {
         assert!(reads(|_, p| 40.0 - 0.1 * p).goes_with_load(0.05));
         assert!(!reads(|_, p| 40.0 - 0.1 * p).goes_with_load(0.2));
         assert!(!reads(|t, _| 40.0 * t).goes_with_load(0.0));

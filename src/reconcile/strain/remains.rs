@@ -152,7 +152,7 @@ mod tests {
 
     /// Tests that the text never reports nothing above the floor if a gap is present, for any reason against the set.
     #[test]
-    fn nothing_above_the_floor_is_said_only_where_there_is_no_gap() {
+    fn nothing_above_the_floor_is_reported_only_without_a_gap() {
         let reasons = ["three neighbours".to_owned()];
         for (withheld, expected) in [(&reasons[..], "three neighbours"), (&[], "together")] {
             let words = none_alone(1.0, Some(withheld));

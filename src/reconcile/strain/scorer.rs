@@ -88,7 +88,8 @@ mod tests {
     use super::is_distinguishable;
 
     #[test]
-    fn a_fault_of_one_gauge_is_told_beside_one_of_all_or_within_a_stretch_and_not_at_its_end() {
+    fn a_fault_of_one_gauge_is_found_together_with_one_of_all_or_within_a_stretch_but_not_at_its_end()
+     {
         let all: Vec<usize> = (0..9).collect();
         assert!(is_distinguishable(&[0], &all, 9) && is_distinguishable(&[4], &all, 9));
         assert!(is_distinguishable(&[4], &all[2..7], 9));

@@ -184,7 +184,7 @@ fn whole_blocks_give_what_single_samples_give_and_a_gap_spoils_its_sample_alone(
 }
 
 #[test]
-fn a_load_that_the_other_gauges_do_not_tell_is_blank_and_the_rest_is_not() {
+fn a_load_that_the_other_gauges_do_not_determine_is_blank_and_the_others_are_not() {
     let s = Sensitivity {
         gauges: ["1", "2", "3"].map(String::from).to_vec(),
         loads: ["A", "B"].map(Load::from_name).to_vec(),
@@ -228,7 +228,7 @@ fn half_without_b(s: &Sensitivity) -> Vec<Readings> {
 }
 
 #[test]
-fn the_typical_size_of_a_load_is_that_in_the_samples_that_tell_it() {
+fn the_typical_size_of_a_load_comes_from_the_samples_that_determine_it() {
     let plain = Sensitivity {
         gauges: ["1", "2", "3"].map(String::from).to_vec(),
         loads: ["A", "B"].map(Load::from_name).to_vec(),
@@ -264,7 +264,7 @@ fn the_typical_size_of_a_load_is_that_in_the_samples_that_tell_it() {
 }
 
 #[test]
-fn samples_whose_gauges_never_tell_a_load_leave_that_to_the_record_unless_no_gauge_would() {
+fn samples_without_gauges_for_a_load_give_no_finding_if_the_record_determines_it() {
     let mut s = Sensitivity {
         gauges: ["1", "2", "3"].map(String::from).to_vec(),
         loads: ["A", "B"].map(Load::from_name).to_vec(),

@@ -91,7 +91,7 @@ fn points_keep_their_run_where_readings_are_missing() {
 }
 
 #[test]
-fn a_heat_map_shows_shares_of_each_column_and_says_the_values() {
+fn a_heat_map_shows_shares_of_each_column_and_states_the_values() {
     let names = |list: [&str; 2]| list.map(str::to_owned);
     let value = |r: usize, c: usize| [[1.0, 0.0], [-4.0, 0.0]][r][c];
     let figure = heat_map(&names(["P1", "P2"]), &names(["A", "B"]), "µε", value);

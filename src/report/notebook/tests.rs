@@ -71,7 +71,7 @@ fn a_piece_has_verdict_findings_and_pictures_and_runs_nothing() {
 }
 
 #[test]
-fn a_piece_stays_small_and_says_what_it_leaves_out() {
+fn a_piece_stays_small_and_states_what_it_leaves_out() {
     let (x, y) = wave(4000);
     let names: Vec<String> = (0..8).map(|i| format!("L{i}")).collect();
     let groups: Vec<(String, Vec<Line>)> = names

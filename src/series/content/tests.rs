@@ -53,7 +53,7 @@ fn white_noise_does_not_count_as_content() {
 }
 
 #[test]
-fn pieces_of_a_record_count_together_and_short_ones_say_nothing() {
+fn pieces_of_a_record_count_together_and_short_pieces_do_not_count() {
     let (a, b) = (
         sines(8000, 100.0, &[(1.0, 1.0)]),
         sines(8000, 100.0, &[(11.0, 1.0)]),

@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn durations_are_told_with_their_unit_and_a_damaged_schema_tells_nothing_wrong() {
+    fn durations_are_reported_with_their_unit_and_a_damaged_schema_gives_no_wrong_unit() {
         for (text, worth) in [(MILLISECONDS, 1e-3), (NANOSECONDS, 1e-9)] {
             let bytes = from_base64(text).unwrap();
             let read = of_schema(&bytes).unwrap();

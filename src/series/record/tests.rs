@@ -244,7 +244,7 @@ fn table_with_times(n: usize, time: impl Fn(usize) -> f64, digits: usize) -> Str
 }
 
 #[test]
-fn steps_within_a_fiftieth_are_even_and_those_beyond_are_resampled_and_said() {
+fn steps_within_a_fiftieth_are_even_and_those_beyond_are_resampled_and_reported() {
     let jitter =
         |share: f64| move |i: usize| (i as f64 + if i % 2 == 1 { share } else { 0.0 }) * 0.01;
     let even = open(&table_with_times(500, jitter(0.01), 7)).unwrap();
@@ -301,7 +301,7 @@ fn missing_samples_are_gaps_and_not_invented() {
 }
 
 #[test]
-fn a_rate_that_changes_is_told_with_its_time_and_no_sample_is_called_missing() {
+fn a_rate_that_changes_is_reported_with_its_time_and_no_sample_is_called_missing() {
     // Opens a record with `rows[0]` rows at the first rate, then `rows[1]` at the second.
     let open_two = |rows: [usize; 2], hz: [f64; 2], digits: usize| {
         let end = rows[0] as f64 / hz[0];

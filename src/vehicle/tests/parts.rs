@@ -382,7 +382,7 @@ fn what_cannot_be_answered_is_refused_with_a_remedy() {
 }
 
 #[test]
-fn hold_out_at_another_rate_is_judged_all_the_same() {
+fn hold_out_at_another_rate_is_tested() {
     let fitted = quarter(20_000, 9, TRUCK);
     let other = quarter_at(400.0, 9_600, 10, TRUCK);
     let id = identify(&task("front2", &[], (1.0, 15.0)), &fitted, Some(&other)).unwrap();

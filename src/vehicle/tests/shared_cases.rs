@@ -96,7 +96,7 @@ fn the_right_nonlinear_term_brings_stiffness_and_wheel_force_back() {
 }
 
 #[test]
-fn without_a_wheel_force_ratios_are_told_and_the_lost_factor_is_named() {
+fn without_a_wheel_force_ratios_are_determined_and_the_lost_factor_is_reported() {
     let Some((mut data, _, truth)) = case("dev-d1") else {
         return;
     };

@@ -327,8 +327,7 @@ mod tests {
     use crate::units::UnitSystem;
 
     #[test]
-    fn the_remedy_of_a_small_budget_asks_for_what_is_not_done_yet_and_a_finer_tolerance_is_believed()
-     {
+    fn the_remedy_of_a_small_budget_asks_for_a_new_step_and_accepts_a_finer_tolerance() {
         // Metres: budgets of 0.4 and 3 mm.
         let unit = UnitSystem::MKgS.unit(Quantity::Length);
         let found = |tolerance: f64| {

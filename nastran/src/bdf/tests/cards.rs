@@ -2,7 +2,7 @@ use super::read_clean_deck;
 use crate::cards::*;
 
 #[test]
-fn pbeam_fills_blank_stations_as_the_guide_says() {
+fn pbeam_fills_blank_stations_as_the_guide_states() {
     // Blank values of end B are the values of end A, and blank values of stations between are interpolated.
     let deck = read_clean_deck(
         "PBEAM,1,1,2.,4.,6.,,8.\n,.1,.2,.3,.4,.5,.6,.7,.8\n,NO,.5,,,,,,\n,YESA,1.,4.,,,,,\n,.9,.8\n",

@@ -83,7 +83,7 @@ fn data_may_go_on_behind_a_trailing_comma() {
 }
 
 #[test]
-fn a_blank_field_is_told_from_zero() {
+fn a_blank_field_is_distinguished_from_zero() {
     let deck = read_clean_deck(
         "GRID    1               1.      2.      3.\nGRID    2       0       1.      2.      3.      0       0\n",
     );
@@ -172,7 +172,7 @@ fn text_behind_enddata_is_not_read() {
 }
 
 #[test]
-fn superelement_bulk_data_is_kept_and_noted() {
+fn superelement_bulk_data_is_kept_and_reported() {
     let deck = bulk("SOL 101\nCEND\nBEGIN BULK\nGRID,1\nBEGIN SUPER=2\nGRID,2\nENDDATA\n");
     assert_eq!(deck.cards.grids.len(), 1);
     assert!(

@@ -8,7 +8,7 @@ fn parse_real(text: &str) -> Option<f64> {
 }
 
 #[test]
-fn reals_may_lack_the_exponent_letter_or_digits_beside_the_point() {
+fn reals_may_lack_the_exponent_letter_or_digits_next_to_the_point() {
     let cases = [
         ("1.5-3", 1.5e-3),
         ("-1.42569-13", -1.42569e-13),

@@ -152,7 +152,7 @@ fn intervals_follow_a_record_that_rests_and_then_shakes() {
 
 /// Tests a mode outside the model at three times the band. Its dynamic response is an eighth of its share at the end of the band.
 #[test]
-fn what_modes_that_are_not_told_answer_is_in_the_intervals() {
+fn intervals_include_the_response_of_modes_outside_the_model() {
     let real = Structure {
         hz: [8.0, 13.0, 31.0, 60.0],
         ..STRUCTURE

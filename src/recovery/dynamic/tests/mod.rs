@@ -319,7 +319,7 @@ fn intervals_hold_what_frequencies_damping_and_noise_make() {
 }
 
 #[test]
-fn noise_alone_keeps_the_variance_that_is_told() {
+fn noise_alone_has_the_stated_variance() {
     let mut random = ChaCha8Rng::seed_from_u64(6);
     let mut normal = || draw_normal(&mut random);
     let (s, dynamics) = STRUCTURE.build_model(20.0, [0.0, 0.0]);
@@ -347,7 +347,7 @@ fn noise_alone_keeps_the_variance_that_is_told() {
 }
 
 #[test]
-fn what_cannot_be_is_said() {
+fn impossible_bands_are_faults() {
     let record = vec![vec![0.0; 1000]];
     let (s, dynamics) = oscillator(0.02, 60.0);
     let slow = readings_at_rest(&s, &dynamics, 0.0, &record, 150.0).unwrap_err();

@@ -293,7 +293,7 @@ fn a_known_sine_is_known_cycles_levels_and_damage() {
 }
 
 #[test]
-fn below_a_knee_a_cycle_does_what_the_flatter_line_says() {
+fn below_a_knee_a_cycle_does_what_the_flatter_line_states() {
     let law = Law {
         slope: 5.0,
         knee: Some(Knee {

@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_with_fewer_digits_than_all_of_a_printed_table_is_cut_beyond_doubt() {
+    fn a_number_with_fewer_digits_than_all_of_a_printed_table_is_cut_with_certainty() {
         let row = |i: usize| format!("R{i},{}", ["1.20"; 7].join(",")) + "\n";
         let rows: String = (0..9).map(row).collect();
         let text = format!("run,A,B,C,D,E,F,G\n{rows}");
@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_without_the_point_or_the_exponent_of_its_column_is_cut_beyond_doubt() {
+    fn a_number_without_the_point_or_the_exponent_of_its_column_is_cut_with_certainty() {
         let table = |column: [&str; 6], last: &str| {
             let rows = column.map(|v| format!("R,{v}")).join("\n");
             format!("run,A\n{rows}\nR,{last}")
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_of_any_length_can_not_be_told_from_cut_ones() {
+    fn numbers_of_any_length_can_not_be_distinguished_from_cut_ones() {
         let text = table(&["0,1.5,130", "1,1.6,128.45", "2,1.7,131.9"]);
         assert!(unsure_end(&text.as_bytes()[..text.len() - 1]).is_some());
         let semicolons = "run;A;B\nR1;1,5;2,25;\nR2;1,5;2,35;\nR3;1,5;2,45;";
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn text_of_two_bytes_a_character_is_judged_alike() {
+    fn text_of_two_bytes_a_character_gives_the_same_result() {
         let text = table(&["0.00,1.5,130.2", "0.01,1.6,128.4", "0.02,1.7,131."]);
         let mut bytes = vec![0xff, 0xfe];
         text.trim_end()

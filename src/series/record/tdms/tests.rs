@@ -229,7 +229,7 @@ fn the_unit_of_the_axis_of_a_waveform_counts() {
 }
 
 #[test]
-fn a_waveform_over_frequency_is_refused_and_left_out_beside_others() {
+fn a_waveform_over_frequency_is_refused_and_left_out_next_to_others() {
     let spectrum = |name, unit| {
         let axis = vec![
             ("wf_xname", P::Text(name)),
