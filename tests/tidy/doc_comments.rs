@@ -1,6 +1,6 @@
 //! Doc comments: first words that refer to the preceding text, and words with a plain replacement.
 
-use super::english::{REPLACED, contains_word};
+use super::english::{LONGEST, REPLACED, contains_word, length, sentences};
 use super::{root, rust_files};
 
 /// First words of a comment that is not understandable alone.
@@ -72,6 +72,57 @@ fn doc_comments_stand_alone_and_use_the_words_of_the_field() {
         }
     }
     assert!(read > 10_000, "only {read} lines of doc comments were read");
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+/// Returns the paragraphs and list items of the doc comments of a file, each with its first line. Examples and headings are left out.
+fn paragraphs(text: &str) -> Vec<(usize, String)> {
+    let (mut out, mut is_example, mut is_open) = (Vec::new(), false, false);
+    for (n, line) in text.lines().enumerate() {
+        let line = line.trim_start();
+        let words = ["/// ", "//! "].iter().find_map(|k| line.strip_prefix(k));
+        let is_fence = line.starts_with("///") && line.contains("```");
+        // An example ends with the comment at the latest.
+        is_example = (is_example != is_fence) && line.starts_with("//");
+        let Some(words) = words.filter(|w| !is_example && !is_fence && !w.starts_with('#')) else {
+            is_open = false;
+            continue;
+        };
+        if !is_open || words.trim_start().starts_with("- ") {
+            out.push((n + 1, String::new()));
+        }
+        is_open = true;
+        if let Some((_, paragraph)) = out.last_mut() {
+            *paragraph += words;
+            paragraph.push(' ');
+        }
+    }
+    out
+}
+
+#[test]
+fn sentences_of_doc_comments_are_short() {
+    let text = "/// A `b` c\n/// d. E\n///\n/// # Errors\n/// - F\n/// - G\n/// ```\n/// x\n/// ```\nfn f() {}\n";
+    let found: Vec<(usize, String)> = [(1, "A `b` c d. E "), (5, "- F "), (6, "- G ")]
+        .map(|(n, p)| (n, p.to_owned()))
+        .into();
+    assert_eq!(paragraphs(text), found);
+    let mut files = Vec::new();
+    for folder in ["src", "nastran/src", "python/src"] {
+        rust_files(&root().join(folder), &mut files);
+    }
+    let mut wrong = String::new();
+    for path in files {
+        let text = std::fs::read_to_string(&path).unwrap();
+        for (line, paragraph) in paragraphs(&text) {
+            for sentence in sentences(&paragraph) {
+                let words = length(&sentence);
+                if words > LONGEST {
+                    wrong += &format!("{}:{line}: {words} words: {sentence}\n", path.display());
+                }
+            }
+        }
+    }
     assert!(wrong.is_empty(), "{wrong}");
 }
 

@@ -45,18 +45,26 @@ const PAGES: [&str; 38] = [
 ];
 
 /// Words and phrases that have a plain replacement.
-pub(super) const REPLACED: [&str; 25] = [
+pub(super) const REPLACED: [&str; 36] = [
     "aliases",
+    "all else",
     "anew",
+    "backwards",
+    "believe",
+    "believes",
     "beside",
     "by itself",
     "by themselves",
+    "doubts",
     "drawings",
     "is none",
     "judged",
+    "known runs",
+    "living",
     "none that",
     "of its own",
     "put right",
+    "rested",
     "said",
     "say",
     "says",
@@ -69,6 +77,9 @@ pub(super) const REPLACED: [&str; 25] = [
     "tell",
     "tells",
     "told",
+    "turned round",
+    "under way",
+    "untold",
     "upheaval",
     "upheavals",
 ];

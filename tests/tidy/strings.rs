@@ -4,7 +4,7 @@ use super::english::{LONGEST, REPLACED, contains_word, length, sentences};
 use super::{is_test, root, rust_files};
 
 /// Least number of words of a literal that counts as a text, and not as a name, a key or a pattern.
-const TEXT: usize = 4;
+const TEXT: usize = 3;
 
 /// Returns the string literals of a source text with their lines. Comments and characters are skipped.
 fn literals(source: &str) -> Vec<(usize, String)> {

@@ -165,7 +165,7 @@ fn strain_that_known_loads_do_not_explain_at_all_is_an_error() {
 }
 
 #[test]
-fn gauges_wired_backwards_are_named_and_no_others() {
+fn gauges_with_reversed_sign_are_named_and_no_others() {
     for wrong in [vec![2], vec![0], vec![7], vec![0, 3], vec![2, 5, 6]] {
         let mut task = task(1, 7);
         for run in &mut task.runs {

@@ -125,7 +125,7 @@ fn a_missing_payload_is_an_error_and_not_an_answer() {
 }
 
 #[test]
-fn a_gauge_wired_backwards_and_a_dead_one_are_named_and_no_other() {
+fn a_gauge_with_reversed_sign_and_a_dead_one_are_named_and_no_other() {
     let Some(mut frame) = frame(9) else { return };
     frame
         .readings

@@ -1,4 +1,4 @@
-//! A tally under way: a load's samples as they come, counted as they are and with noise added.
+//! A tally in progress: a load's samples as they come, counted as they are and with noise added.
 
 use super::count::{Listener, Point, Rainflow, Reversal};
 use super::counts::Counts;

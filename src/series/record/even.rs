@@ -30,8 +30,7 @@ impl Record {
     /// declared unit applies if the file states no unit of time.
     ///
     /// # Errors
-    /// No samples, no rate, a rate other than the declared one, times that are missing or do not ascend, a hole longer than the
-    /// record.
+    /// No samples, no rate or a rate other than the declared one. Times that are missing or do not ascend, or a hole longer than the record.
     pub fn new(
         reader: Box<dyn RecordReader>,
         declared_hz: Option<f64>,
