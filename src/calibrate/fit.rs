@@ -287,7 +287,7 @@ fn statements(
     out
 }
 
-/// Scatter over the strain above which S explains nothing of the runs, because zeros would leave smaller residuals.
+/// Ratio of scatter to strain above which S does not explain the runs: S = 0 would leave smaller residuals.
 const NO_CALIBRATION: f64 = 1.0;
 
 /// Returns whether some runs contain a loading twice.

@@ -16,8 +16,8 @@ pub(super) struct ByGauge {
 }
 
 /// Returns a run's readings by gauge. `spread` is the part of the covariance of `e` from the error of the loads, which is common to the gauges. If
-/// only the sum of a lorry's loads is known, one gauge alone determines its row hardly at all. Together with the other gauges, which determine the
-/// distribution of the load, it determines the row nearly as well as known loads:
+/// only the sum of a lorry's loads is known, the readings of one gauge alone hardly determine its row. The other gauges determine how the load is
+/// distributed. With them, the row is determined nearly as well as by known loads:
 ///
 /// `y_g + sum_h P_gh (y_h - s_h phi) / P_gg` over the other gauges, with variance `1 / P_gg`. `P` is the inverse of the matrix with `spread` off the
 /// diagonal and the variances of `e` on it.

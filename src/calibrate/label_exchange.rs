@@ -1,4 +1,4 @@
-//! Two runs whose labels were exchanged: the fit goes between both, so that each hides the other and all the scatter seems to be chance.
+//! Exchanged labels of two runs. The fit is a compromise between both runs, so each run hides the fault of the other, and the scatter seems random.
 
 use super::held_out::{REFUSE, SUSPECT, chance, recover_left_out};
 use super::start::is_known;

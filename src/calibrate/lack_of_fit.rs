@@ -26,7 +26,7 @@ struct FitRules {
     apart: f64,
     /// Terms found at most: a structure that needs more is not described by second order.
     most: usize,
-    /// Least number of loadings beyond the coefficients of a gauge that a test needs. Student's t with one degree of freedom decides nothing.
+    /// Least number of loadings beyond the coefficients of a gauge that a test needs. Student's t with one degree of freedom gives no decision.
     fewest: usize,
 }
 

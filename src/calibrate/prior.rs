@@ -1,4 +1,4 @@
-//! Prior of the rows of S: the model with its relative error, or next to nothing.
+//! Prior of the rows of S: the model with its relative error, or a prior with almost no information.
 
 use super::types::{ModelError, ModelPrior};
 

@@ -4,7 +4,7 @@ use super::held_out::suspects;
 use super::types::{LeftOut, Task};
 use crate::finding::{Finding, Severity};
 
-/// Share of a run's loads from which one load counts as the whole of it.
+/// Share of a run's loads above which one load counts as the only load of the run.
 const WHOLE: f64 = 0.8;
 
 /// Returns the findings on refused runs (errors of the table, most likely) and on runs far off that were kept.

@@ -128,7 +128,7 @@ struct Sample {
     covariance: Vec<f64>,
     /// Degrees of freedom behind it.
     dof: f64,
-    /// Share of it that repeats have in common.
+    /// Share of the scatter that is common to repeats.
     common: f64,
     /// Mean of the variance from other known sources.
     explained: f64,

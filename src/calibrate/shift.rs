@@ -217,8 +217,8 @@ fn find_exchanged_pairs(rows: &[Row]) -> Vec<(usize, usize)> {
     out.into_iter().map(|(_, a, b)| (a, b)).collect()
 }
 
-/// Returns the cause of the change of a row that is far off. `off_drawing`: the cause from the readings if the model contains the changes by an angle
-/// or a place. `Angle` and `Place` come from `off_drawing` only.
+/// Returns the cause of the change of a row that differs strongly from the model. `off_drawing`: the cause from the readings if the model contains
+/// the changes by an angle or a place. `Angle` and `Place` come from `off_drawing` only.
 fn cause(row: &Row, off_drawing: Option<ShiftWord>) -> ShiftWord {
     if let Some(word @ (ShiftWord::Angle | ShiftWord::Place)) = off_drawing {
         return word;

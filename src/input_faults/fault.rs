@@ -266,7 +266,7 @@ pub struct DetectedFault {
     pub moves: Option<f64>,
     /// Whether the fault is found only after correction of the other faults.
     pub together: bool,
-    /// Faults that explain the readings as well.
+    /// Faults that explain the readings equally well.
     pub alternatives: Vec<InputFault>,
 }
 
@@ -340,8 +340,8 @@ impl DetectedFault {
     }
 }
 
-/// Returns the findings on recorded loads that findings on gauges do not explain. Empty if all gauges are installed otherwise than stated: records
-/// with the opposite sign look the same.
+/// Returns the findings on recorded loads that findings on gauges do not explain. The list is empty if all gauges are installed otherwise than
+/// stated, because recorded loads with the opposite sign give the same residual.
 pub fn not_explained_by(of_gauges: &[Finding], of_records: Vec<Finding>) -> Vec<Finding> {
     let installed = ["gauge-other-side", "gauge-angle-in-radians"];
     let all = |f: &Finding| f.subject == "all" && installed.contains(&f.code);

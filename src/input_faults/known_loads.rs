@@ -57,7 +57,7 @@ impl Misfit for KnownLoads {
 }
 
 impl KnownLoads {
-    /// Returns the share of the readings, root mean squares, that the loads leave.
+    /// Returns the share of the readings that the loads do not explain, as a ratio of root mean squares.
     pub fn unexplained_share(&self) -> f64 {
         let fit = self.fit(&self.inputs);
         let pairs = self.inputs.strain.iter().zip(&fit.predicted);

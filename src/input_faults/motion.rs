@@ -20,11 +20,11 @@ pub use scale::{MotionScale, finding_of_scale};
 struct MotionRules {
     /// Relative distance between the mean of an accelerometer and gravity up to which it shows gravity: offsets of sensors are up to a tenth.
     gravity: f64,
-    /// Unexplained share of the motion up to which the inputs are not in question: models of real vehicles leave up to a tenth.
+    /// Unexplained share of the motion up to which the inputs are not tested. Models of real vehicles leave up to a tenth unexplained.
     unexplained: f64,
-    /// Share of the unexplained squared motion that a correction leaves at most, as for effects of `reconcile` that change everything.
+    /// Largest share of the unexplained squared motion that may remain after a correction. Dominant effects of `reconcile` have the same limit.
     left: f64,
-    /// Ratio of unexplained shares up to which two corrections fit equally well: floors of noise differ by as much.
+    /// Ratio of unexplained shares up to which two corrections fit equally well. Noise floors differ by this ratio.
     alike: f64,
     /// Largest ratio of a channel's rms to the median of the other channels of its kind at which a unit is possible. Hubs move ten times as much as
     /// the body.

@@ -1,4 +1,4 @@
-//! Recorded loads of static runs compared with the strain that the model makes of them.
+//! Test of the recorded loads of static runs: the model predicts the strain of these loads, and the readings are compared with it.
 
 use crate::estimate::weighted_median;
 use crate::finding::{Finding, Severity, list_few};
@@ -7,11 +7,11 @@ use crate::linalg::spd;
 use crate::units::{Quantity, number};
 use rayon::prelude::*;
 
-/// Ratio of measured strain to the strain that the model makes of the loads, from which a unit is wrong. Units of force differ by 4.448 (pounds read
-/// as newtons), 9.81 (kilograms) and 1000, and a model may take a tenth off the first. A smaller ratio may come from a badly scaled model (a wall of
-/// half the thickness or less), which runs correct. A model with a larger stated error has a larger ratio, four of its sd.
+/// Ratio of measured to predicted strain above which a unit is wrong. Units of force differ by 4.448 (pounds read as newtons), 9.81 (kilograms) and
+/// 1000. An error of the model may reduce the first factor by a tenth. A smaller ratio may come from a badly scaled model (a wall of half the
+/// thickness or less), which runs correct. For a model with a larger stated error the ratio is larger, four standard deviations of this error.
 pub const UNIT: f64 = 4.0;
-/// Ratio under which a sign is wrong: -1 with a third of it lost to errors, other loads and other gauges.
+/// Ratio below which a sign is wrong. The ideal ratio is -1; errors, other loads and other gauges may reduce its size to a third.
 const SIGN: f64 = -1.0 / 3.0;
 /// Standard deviations from which a gauge's readings determine the factor of a load.
 const DETERMINED: f64 = 5.0;
@@ -19,8 +19,8 @@ const DETERMINED: f64 = 5.0;
 const ANSWERS: f64 = 0.1;
 /// Largest share of the sum of squares between readings and model that a fault of the records leaves after its correction.
 const UNDONE: f64 = 0.25;
-/// Largest such share that exchanged records leave. An effect that the model lacks may look like exchanged wheels: without a payload in the model,
-/// two exchanges left 5 %.
+/// Largest share of this sum of squares that may remain after an exchange of records is corrected. An effect that the model lacks may look like
+/// exchanged wheels: without a payload in the model, two exchanges left 5 %.
 const EXCHANGED: f64 = 0.02;
 /// Share of the largest eigenvalue of the loads' squares from which the runs separate the loads.
 const SEPARATED: f64 = 1e-6;
@@ -70,7 +70,8 @@ pub struct RecordedRuns<'a> {
 /// A fault of recorded loads or of all readings.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecordFault {
-    /// Loads whose records have the other sign, with the factor that the readings show; all of them: the readings may have it as well.
+    /// Loads whose records have the opposite sign, with the factor from the readings. If these are all loads, the readings may have the opposite sign
+    /// instead.
     Sign(Vec<(usize, f64)>),
     /// Loads whose records are in another unit, with the factor that the readings show.
     Unit(Vec<(usize, f64)>),

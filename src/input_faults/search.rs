@@ -61,15 +61,16 @@ pub struct Rules {
     /// residuals of the other gauges exceed their errors. All runs may have the same error, so that they count as one. `None`: [`Self::remains`]
     /// decides.
     pub sigmas: Option<f64>,
-    /// Sigmas above which a gauge is reported whatever its limit from the scatter is. A few repeats determine their own scatter to a factor of two at
-    /// best. Healthy gauges near a wheel reach five sigmas in calibrations with two runs for each lane, on two measured bridges.
+    /// Sigmas above which a gauge is reported, regardless of its limit from the scatter. A few repeats determine their own scatter to a factor of two
+    /// at best. Healthy gauges near a wheel reach five sigmas in calibrations with two runs for each lane, on two measured bridges.
     pub named: f64,
-    /// Share of the reduction by leaving a gauge out that a cause may leave.
+    /// Largest share of the reduction that a cause may fail to reach. The reduction is the fall of the residual sum of squares if the gauge is left
+    /// out.
     pub cause_leaves: f64,
     /// Difference of the sums of squares of two explanations, divided by the reduced sum of squares, from which the readings distinguish the
     /// explanations: three sigmas.
     pub apart: f64,
-    /// Share of the expected strain under which a gauge reads nothing.
+    /// Share of the expected strain below which a gauge has no signal.
     pub nothing: f64,
     /// Largest reading of a dead gauge, and smallest prediction from the other gauges, in noise sd.
     pub dead: [f64; 2],
@@ -184,7 +185,7 @@ pub fn search_faults(
     found
 }
 
-/// Share of the reduced sum of squares that each of several faults which hide each other leaves at most.
+/// Largest share of the reduced sum of squares that may remain after each of several faults that hide each other.
 const PROGRESS: f64 = 0.8;
 
 struct Search<'a> {
@@ -336,7 +337,7 @@ impl Search<'_> {
         out
     }
 
-    /// Returns the faults of all gauges that explain the readings as well as a single one.
+    /// Returns the faults common to all gauges that explain the readings as well as a fault of a single gauge does.
     fn of_all(
         &self,
         inputs: &Inputs,

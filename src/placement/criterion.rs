@@ -32,7 +32,7 @@ use crate::linalg::spd;
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Criterion {
-    /// The determinant for all columns.
+    /// Determinant of the information about all loads.
     #[default]
     D,
     /// The determinant for the wanted columns; that many leading columns are nuisance columns.

@@ -5,9 +5,9 @@ use crate::sensitivity::Sensitivity;
 
 /// Stated errors.
 ///
-/// The model error has two parts, because models err both ways. Each influence coefficient has a separate error (mesh, gradient at the gauge),
-/// `sd = model_rel |S_gl f_l|`, which the residual shows. Each load's column has a common error (stiffness, thickness), `sd = model_rel |f_l|` on the
-/// load itself, which no residual can show. Both errors are the same in every run.
+/// The model error has two parts. Each influence coefficient has a separate error (mesh, gradient at the gauge), `sd = model_rel |S_gl f_l|`, which
+/// the residual shows. Each load's column has a common error (stiffness, thickness), `sd = model_rel |f_l|` on the load itself, which no residual can
+/// show. Both errors are the same in every run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorModel {
     /// Noise of one reading, strain, 1 sd.

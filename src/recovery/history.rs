@@ -96,7 +96,7 @@ impl Filter {
         self.lay_out();
     }
 
-    /// The numbers in the order in which samples meet them. Sums of loads strain nothing beyond their loads.
+    /// Arranges the gain by load and S by gauge, in the order in which a sample uses them. Rows of S have zeros for sums of loads.
     fn lay_out(&mut self) {
         let (n, k) = (self.s.gauges.len(), self.whole.n_loads());
         let own = self.s.loads.len();
@@ -205,7 +205,7 @@ impl Filter {
         Some(gain)
     }
 
-    /// Adds a sample in which some gauge gave nothing.
+    /// Adds a sample in which at least one gauge has no reading.
     fn sum_up(&self, gain: &Gain, strain: &[f64], loads: &[f64], sums: &mut Sums) {
         for (l, v) in loads.iter().enumerate().filter(|(l, _)| gain.is_seen(*l)) {
             sums.min[l] = sums.min[l].min(*v);

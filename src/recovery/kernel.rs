@@ -4,8 +4,8 @@ use super::reading_plausibility::LARGEST_STRAIN;
 use super::sums::Sums;
 use pulp::Simd;
 
-/// Samples processed together. Their readings are contiguous by gauge, so that a coefficient is loaded once for all of them.
-/// A multiple of [`UNROLL`] vectors for every width of vector, eight numbers included.
+/// Samples processed together. Their readings are contiguous by gauge, so that a coefficient is loaded once for all of them. It is a multiple of
+/// [`UNROLL`] vectors for every vector width up to eight numbers.
 const LANES: usize = 32;
 /// Vectors in registers for each of two rows.
 const UNROLL: usize = 4;

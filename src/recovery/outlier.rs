@@ -26,7 +26,7 @@ const REST: f64 = 0.05;
 const TRIED: usize = 3;
 /// Loads and the size of a gauge's error depend on each other; the second round moves t by a tenth or less.
 const ROUNDS: usize = 2;
-/// |t| under which no gauge is tried: the loads' own error hides a part of an error, not most of it.
+/// Smallest |t| of a gauge that is tested. The fitted loads hide a part of the error of a gauge, but not most of it.
 const WORTH_TRYING: f64 = 2.0;
 /// Least share of its strain that a gauge reads, if its gain corrects its reading.
 const LEAST_GAIN: f64 = 0.5;

@@ -62,7 +62,7 @@ impl CalibratedLoad<'_> {
         ([low, high], high.max(-low))
     }
 
-    /// Size over the largest of the calibration, whichever the direction.
+    /// Size divided by the largest size of the calibration, regardless of the sign.
     fn ratio(&self, value: f64) -> f64 {
         value.abs() / self.span_with_zero().1
     }

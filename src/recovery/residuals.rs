@@ -83,7 +83,7 @@ pub(super) struct Projection {
 /// Loads that a projection removes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RemovedLoads {
-    /// All loads, whatever their stated size.
+    /// All loads, regardless of their stated size.
     All,
     /// Loads without a stated size; loads with one count as scatter of that size.
     Unstated,
@@ -299,7 +299,7 @@ impl Projection {
         })
     }
 
-    /// Returns the error of the `i`-th gauge of the pattern that these residuals indicate. `None` if nothing checks this gauge.
+    /// Returns the error of the `i`-th gauge of the pattern that these residuals indicate. `None` if no other gauge tests this gauge.
     pub fn test(
         &self,
         together: &WhitenedResiduals,
@@ -360,7 +360,7 @@ impl Projection {
         model / (model + noise)
     }
 
-    /// The turned runs that hold errors of the model.
+    /// Rotated runs that contain errors of the model.
     fn model_error_blocks(
         &self,
         pattern: &Pattern,

@@ -23,7 +23,7 @@ pub(super) const SIGNIFICANT: f64 = 1e-3;
 pub(super) const CERTAIN_CHANCE: f64 = 1e-6;
 /// Residual over readings (root mean squares): a right model with the wrong mesh is below this limit, a missing load is above.
 const EXPLAINED_LIMIT: f64 = 0.05;
-/// `sqrt(chi2 / dof)` below which a misfit is small relative to stated errors, whatever its share.
+/// `sqrt(chi2 / dof)` below which a misfit is small relative to stated errors, regardless of its share of the strain.
 const BIRGE_LIMIT: f64 = 3.0;
 /// Sets of runs with one set of missing gauges that are tested together; further sets contain a few runs each.
 const PATTERNS: usize = 4;

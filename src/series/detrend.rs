@@ -30,7 +30,8 @@ pub fn finite_mean(x: &[f64]) -> f64 {
     read().sum::<f64>() / read().count().max(1) as f64
 }
 
-/// Returns offset and slope per sample of the least-squares line through the finite samples of x over 0, 1, 2 .. The slope is 0 with fewer than two.
+/// Returns offset and slope per sample of the least-squares line through the finite samples of x over 0, 1, 2 .. The slope is 0 with fewer than two
+/// finite samples.
 pub fn line(x: &[f64]) -> (f64, f64) {
     let read = || x.iter().enumerate().filter(|(_, v)| v.is_finite());
     let n = read().count() as f64;

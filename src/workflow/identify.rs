@@ -101,7 +101,7 @@ pub struct WheelForceRecord {
 pub struct WheelLoad {
     /// The record.
     pub run: String,
-    /// The load.
+    /// Name of the load.
     pub name: String,
     /// Mean; `None` if no masses determine it.
     pub value: Option<f64>,

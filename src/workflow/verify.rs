@@ -182,7 +182,7 @@ pub fn main_input(folder: &Path, made: &ResultProvenance) -> Result<PathBuf, Fau
     })
 }
 
-/// Compares a folder with a recomputation of it in another.
+/// Compares a result folder with the folder of its recomputation.
 fn compare(folder: &Path, again: &Path) -> Result<Recomputation, Faults> {
     let (old, new) = (read_made(folder)?, read_made(again)?);
     let mut out = Recomputation::default();

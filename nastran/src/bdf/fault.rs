@@ -23,7 +23,7 @@ pub struct Fault {
 pub struct FieldName {
     /// Number in the quick reference guides: 2 to 9 on the first line, 12 to 19 on the second ..
     pub number: u32,
-    /// Name in the guides.
+    /// Name of the field in the guides of Nastran.
     pub name: &'static str,
 }
 

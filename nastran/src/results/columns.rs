@@ -1,6 +1,6 @@
 //! Column names of [`Rows`](super::Rows), one list for each kind of row.
 
-/// Displacements, forces, moments at grids; bushes.
+/// Columns of displacements, forces and moments at grids, and of bushes.
 pub const NODAL: &[&str] = &["t1", "t2", "t3", "r1", "r2", "r3"];
 /// Shell strain, one row for each fibre; `gxy` is engineering shear.
 pub const SHELL_STRAIN: &[&str] = &["fiber", "exx", "eyy", "gxy", "angle", "emax", "emin", "vm"];

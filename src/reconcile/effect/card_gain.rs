@@ -13,7 +13,7 @@ impl CardGain {
     /// Returns one effect for every range of two or more channels in file order, up to half of all channels. A wrong gain of more channels is
     /// equivalent to a wrong gain of the other channels, or of all channels.
     pub fn list_effects(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
-        /// Amplifier cards hold at most this many channels.
+        /// Largest number of channels of an amplifier card.
         const MOST: usize = 16;
         let n = frame.n_gauges();
         let place = |names: &[String]| match names {

@@ -1,4 +1,4 @@
-//! `dead_channel`: a channel that reads nothing but noise.
+//! `dead_channel`: a channel that reads only noise.
 
 use super::channel_fault::{ChannelFault, FaultScope, OnGauges, on_every_gauge};
 use super::{Correction, Extension, FaultKind};

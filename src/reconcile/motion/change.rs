@@ -165,7 +165,7 @@ impl Change {
     pub fn neighbours(&self, step: f64, gravity: f64) -> Vec<Self> {
         /// Either side of the present constant.
         const SIDES: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
-        /// Times of a dense look, to either side.
+        /// Number of closely spaced times that are tested on either side.
         const DENSE: i32 = 18;
         /// Constants of terms need no finer step.
         const FINEST: f64 = 0.005;

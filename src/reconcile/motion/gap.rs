@@ -48,7 +48,7 @@ pub struct RecordGap {
 }
 
 impl RecordGap {
-    /// Returns the fall of the squared gap from `without` an effect to this one.
+    /// Returns the reduction of the squared gap, from the gap `without` an effect to this gap.
     ///
     /// White noise of gap g leaves `s^2 = g^2 / (2 N)` in each part, real or imaginary, of N frequencies.
     /// A fall d has the standard error `2 s sqrt(d)`. If an effect removes only noise, d is about 2 s^2. With the effective number n of frequencies

@@ -1,4 +1,5 @@
-//! Gap of an equation over time and over the amplitude of the measured quantity. It shows effects that come and go, or that grow with amplitude.
+//! Gap of an equation over time and over the amplitude of the measured quantity. It shows effects that act only in a part of the record, or that grow
+//! with amplitude.
 
 use super::design::Bins;
 use crate::estimate::rms;

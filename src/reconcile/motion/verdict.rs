@@ -40,8 +40,8 @@ impl Gaps {
         }
     }
 
-    /// Returns whether a complete model may leave these gaps. Either the reduced chi-square is within its limit, or both the gap on the fitted record
-    /// and the validation gap (`proof`) are within theirs. In either case a known validation gap is within `rules.limits` times its limit. `excess`
+    /// Returns whether a complete model may leave these gaps. The reduced chi-square is within its limit, or both the gap on the fitted record and
+    /// the validation gap (`proof`) are within their limits. In addition, a known validation gap is within `rules.limits` times its limit. `excess`
     /// is the squared size of the part that identified effects removed, relative to the squared size of the measurement.
     fn at_floor(&self, rules: &MotionRules, excess: f64) -> bool {
         let within = |g: &RecordGap, limits: f64| {

@@ -119,8 +119,8 @@ fn split_reading(
     out
 }
 
-/// Returns the strain at `gauge` by run from the amplitudes of all members except `but`, as the readings of all gauges show them. They show less of
-/// it if the zero of the gauge moves by run, since the amplitude of that zero is unknown as well.
+/// Returns the strain at `gauge` by run from the amplitudes of all members except `but`, as the readings of all gauges show them. If the zero of the
+/// gauge moves by run, its amplitude is a further unknown, and the readings determine this strain less well.
 fn of_amplitudes(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -198,7 +198,7 @@ impl ReadingSplit {
     }
 }
 
-/// Returns the probability (F test) that scatter alone makes `r` follow the first `more` columns as well as it does beyond the first `few`.
+/// Returns the probability (F test) that scatter alone causes the better fit of `r` with the first `more` columns instead of the first `few`.
 fn chance(r: &[f64], column: impl Fn(usize, usize) -> f64, few: usize, more: usize) -> f64 {
     if r.len() < more + 2 {
         return 1.0;

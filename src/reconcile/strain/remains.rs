@@ -150,7 +150,7 @@ fn correlation(points: &[(f64, f64)]) -> Option<f64> {
 mod tests {
     use super::none_alone;
 
-    /// Tests that the text never reports nothing above the floor if a gap is present, for any reason against the set.
+    /// Tests that the text does not claim "nothing above the floor" if a gap is present, for any reason against the set.
     #[test]
     fn nothing_above_the_floor_is_reported_only_without_a_gap() {
         let reasons = ["three neighbours".to_owned()];

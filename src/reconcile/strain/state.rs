@@ -73,7 +73,7 @@ impl StrainState {
 /// Part of a reading effect that applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// All of it, offsets and limits included: for predictions.
+    /// Complete strain, with offsets and limits, for predictions.
     Whole,
     /// The linear part: for columns of unknown amplitude and for noise.
     Linear,

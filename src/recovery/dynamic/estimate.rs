@@ -1,4 +1,4 @@
-//! Frequencies and damping of the modes, estimated from the record that they are removed from.
+//! Estimate of frequencies and damping of the modes, from the same record from which the vibration is removed.
 //!
 //! More gauges than loads leave a residual `r(w) = B (1 - H G) eps`. A mode whose frequency or damping differs from the model adds to it, to first
 //! order, `B (1 - H G) psi_j da_j c_j' f` with `f = G eps`. `da_j` is the derivative of the response by the logarithm of the frequency or of the

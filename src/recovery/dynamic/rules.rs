@@ -10,7 +10,8 @@ pub struct EstimateRules {
     pub longest_step: [f64; 2],
     /// Damping from which an estimate without a stated value starts; the start with the smallest residual is taken. From steel frames to dampers.
     pub starts: [f64; 4],
-    /// One standard deviation of the logarithm of a damping without a stated value: a factor of 4.5 either way, which joins the starts.
+    /// One standard deviation of the logarithm of a damping without a stated value: a factor of 4.5 up or down. This range connects the starting
+    /// values.
     pub open_sd: f64,
     /// Least standard deviation of the strain of a mode at a gauge, as a share of this strain. It is the error of a mesh that was not fitted to
     /// measured shapes.

@@ -36,7 +36,7 @@ struct Rules {
     runs_per_dimension: f64,
     /// Effective runs for each gauge from which noise by gauge is estimated: from there on intervals of 95 % contain 94 % in simulation.
     runs_per_gauge: f64,
-    /// Noise of a gauge over the stated noise beyond which it is a fault of the gauge.
+    /// Ratio of the noise of a gauge to the stated noise. A larger ratio is a fault of the gauge.
     most_noise: f64,
     /// Standard deviation, beforehand, of the logarithm of a gauge's noise about the mean of all: gauges of one logger differ by less.
     ln_sd_between: f64,
@@ -179,13 +179,13 @@ impl Fits {
         chi_square_tail(gained, (more.parameters - less.parameters) as f64)
     }
 
-    /// Whether the parameters that `more` has beyond `less` explain nothing.
+    /// Returns whether the additional parameters of `more` do not improve the fit significantly.
     fn is_enough(&self, less: &Fit, more: &Fit) -> bool {
         self.chance_of_gain(less, more) > SIGNIFICANT
     }
 }
 
-/// Residuals before what has other causes than noise is taken out.
+/// Residuals before the parts with other causes than noise are removed.
 struct Parts {
     /// Gauges of S that read.
     used: Vec<usize>,

@@ -218,7 +218,7 @@ fn split_at_bracket(body: &str, open: char, close: char) -> Option<(&str, &str)>
 /// Relation of two texts for units.
 #[derive(PartialEq)]
 enum Likeness {
-    /// Both texts are one unit, such as `m/m` and `strain`.
+    /// Both texts name the same unit, such as `m/m` and `strain`.
     Same,
     /// Both units measure one quantity in different sizes, such as `MN` and `mN`.
     Size,

@@ -15,7 +15,7 @@ pub(super) const GAP: f64 = 1.5;
 /// Number of gaps whose place is stored. Further gaps are only counted.
 pub(super) const LISTED: usize = 1000;
 
-/// Steps whose mean is the rate of the logger there: twenty, so that their mean is known well where times are rounded.
+/// Number of steps whose mean gives the local rate of the logger. With twenty steps, rounded times hardly change the mean.
 const WINDOW: usize = 20;
 /// Share of their mean by which steps of one rate differ: none is twice as long, as it is where a sample is lost.
 const SAME_STEP_REL: f64 = 0.25;

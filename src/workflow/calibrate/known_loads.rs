@@ -16,7 +16,8 @@ use crate::sensitivity::Load;
 use crate::series::record::Column;
 use crate::units::{Quantity, Unit, factor, number};
 
-/// Prior sd of a load that a run leaves unknown, in units of the largest known load of its kind: nothing is known of it.
+/// Prior sd of a load that a run leaves unknown, in units of the largest known load of its kind. It is large, so the prior contains almost no
+/// information.
 const UNKNOWN: f64 = 10.0;
 
 /// Run with known loads.
@@ -454,7 +455,7 @@ fn loads_of(
     Ok(Some(KnownLoads { mean, covariance }))
 }
 
-/// Share of a sum by which its loads may miss it: numbers of two or three digits are rounded by as much.
+/// Share of a sum by which the sum of its loads may differ from it. Rounding to two or three digits causes such differences.
 const ROUNDED: f64 = 0.01;
 /// Standard deviations from which a sum contradicts its loads: once in two million sums that are right.
 const CONTRADICTS: f64 = 5.0;

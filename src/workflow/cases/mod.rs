@@ -293,8 +293,8 @@ fn edits_of(
     Ok((edits, rows))
 }
 
-/// Returns the cards of inertia relief. Springs to ground may resist some rigid motions, and PARAM,INREL,-2 would take all six as free:
-/// SUPORT then names dofs that hold the other motions.
+/// Returns the cards of inertia relief. PARAM,INREL,-2 treats all six rigid motions as free. If springs to ground resist some rigid motions, SUPORT
+/// names dofs that hold the other motions.
 fn relief_cards(model: &Model, support: Support) -> String {
     match (support.relief, support.by_springs) {
         (Relief::None, _) => String::new(),

@@ -1,4 +1,4 @@
-//! Grids at which loads are likely to enter a structure, if nothing but its deck is known.
+//! Grids at which loads are likely to enter a structure, if only its deck is known.
 
 use super::plain_name::plain_name;
 use crate::model::{GridIx, Model, RigidKind, Vec3};
@@ -117,7 +117,7 @@ fn axle_ends(m: &Model) -> BTreeSet<GridIx> {
         .collect()
 }
 
-/// Ends of bushes and springs that carry nothing else than the spring, or are connected to ground.
+/// Returns the ends of bushes and springs to which only the spring is connected, or that are connected to ground.
 fn spring_ends(m: &Model) -> BTreeSet<GridIx> {
     let bushes = m.bushes.iter().map(|b| [Some(b.grids.0), b.grids.1]);
     let springs = m.springs.iter().map(|s| s.ends.map(|e| e.map(|e| e.0)));

@@ -90,7 +90,7 @@ pub(super) fn proposals(
     at_points(deck, system)
 }
 
-/// Subcases of the deck that the results hold with strain.
+/// Returns the subcases of the deck that have strain in the results.
 fn of_results(
     deck: &DeckModel,
     strained: &[StrainResultFile],

@@ -65,7 +65,7 @@ fn refusal_finding(task: &Task, run: &str, refusal: &Refusal) -> Finding {
     Finding::new(Severity::Error, code, run, words(task, refusal), remedy)
 }
 
-/// Wheels that structure and payload together leave without load.
+/// Reports wheels that carry no load under structure and payload together.
 fn lift_off(work: &mut Work, task: &Task, parts: &Parts, run: &PayloadRun, r: &WeighedRun) {
     // Wheel forces from structure and payload together.
     let total: Vec<f64> = match (&parts.model.floor, run.reactions.is_empty()) {

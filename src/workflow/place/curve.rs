@@ -85,7 +85,7 @@ pub(super) fn curve(
     (points, left_out)
 }
 
-/// Returns the finding on gauge counts that the curve leaves out.
+/// Returns the finding on gauge counts that are not in the curve.
 pub(super) fn incomplete_curve_finding(left_out: &[usize]) -> Option<Finding> {
     let counts: Vec<String> = left_out.iter().map(usize::to_string).collect();
     (!left_out.is_empty()).then(|| {

@@ -133,7 +133,7 @@ fn lay_out_gauges(
     describe_layout(work, &task, &spec, &kinds, chosen)
 }
 
-/// Returns a layout with everything that is stated of it; `kinds` are the candidates that it was chosen from, empty for a stated layout.
+/// Returns a layout with all its reported numbers; `kinds` are the candidates that it was chosen from, empty for a stated layout.
 fn describe_layout(
     work: &mut Work,
     task: &task::Task,

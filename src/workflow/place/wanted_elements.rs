@@ -1,4 +1,4 @@
-//! Elements that the job wants a gauge on.
+//! Elements on which the job requests a gauge.
 
 use super::pool::Kind;
 use super::task::Task;

@@ -26,7 +26,7 @@ const PRIOR: f64 = 70.0;
 const BUDGET: usize = 1_000_000;
 /// Regions of a look.
 const LOOKS: usize = 32;
-/// Gauges whose readings a look counts, those that disagree first: each is a further right-hand side.
+/// Number of gauges that a search includes, the gauges that disagree first. Each gauge is a further right-hand side.
 const COUNTED: usize = 64;
 /// Regions that are moved, widened and narrowed, by shares of their radius.
 const REFINED: usize = 2;

@@ -178,7 +178,7 @@ impl<'a> Tables<'a> {
         Ok(payload)
     }
 
-    /// In-plane strain under each gauge; empty without a table of it.
+    /// Returns the in-plane strain under each gauge; empty if the job names no table of it.
     fn tensors(
         &self,
         inputs: &mut Inputs,

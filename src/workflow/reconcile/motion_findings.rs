@@ -7,7 +7,7 @@ use crate::reconcile::motion::MotionOutcome;
 use crate::reconcile::motion::gap::Proof;
 use crate::units::number;
 
-/// Share of the measured quantity that noise and tolerances leave, from which nothing is compared at all.
+/// Ratio of noise and tolerances to the measured quantity above which model and record are not compared.
 const DROWNED: f64 = 1.0;
 
 /// Adds the findings on the verdict.

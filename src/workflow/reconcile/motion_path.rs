@@ -305,7 +305,7 @@ fn identify_vehicle(records: &VehicleRecords, outcome: &MotionOutcome) -> Option
     (!is_dead).then(found).flatten()
 }
 
-/// Misfit of each measured wheel force, without and with the effects in, as `identify` leaves it on held-out data.
+/// Returns the misfit of each measured wheel force on held-out data, without and with the effects, as `identify` computes it.
 fn wheel_forces(
     records: &VehicleRecords,
     frame: &MotionFrame,

@@ -29,7 +29,7 @@ pub(super) fn factor(job: &Job, of: StiffnessOf, place: &str, size: f64) -> Opti
     }
 }
 
-/// Bushes whose stiffness is tried: those that the job names, or all of a deck that has few.
+/// Returns the bushes whose stiffness is tested: the bushes that the job names, or all bushes of a deck with few bushes.
 fn joints(job: &Job, model: &Model) -> Vec<u32> {
     let named = job.reconcile.as_ref().and_then(|r| r.joints.as_ref());
     let chosen: Vec<u32> = match named {

@@ -19,7 +19,7 @@ pub(super) struct ActiveGaugeRecord {
     pub zero: Vec<f64>,
 }
 
-/// Leaves out the gauges of a record that have no column, are ignored, or give nothing.
+/// Leaves out the gauges of a record that have no column, are ignored, or have no signal.
 ///
 /// # Errors
 /// A record that can't be read, or without a single reading.

@@ -298,7 +298,7 @@ struct RecordPassResults {
     sums: Sums,
     spans: Spans,
     compared: ValidationSums,
-    /// Samples in which a gauge gives nothing, with the estimate from the other gauges, if loads are compared.
+    /// Samples without a reading of some gauge, with the estimate from the other gauges. The list is used if loads are compared.
     gaps: Vec<Gap>,
 }
 

@@ -1,4 +1,4 @@
-//! Tests of a record on samples spread over it, before all of it is read.
+//! Tests of a record on samples spread over it, before the whole record is read.
 
 use super::answer::Content;
 use super::block::block;

@@ -1,4 +1,4 @@
-//! Who takes the loads of a record: they come in blocks, in order of time, and none is kept here.
+//! Receivers of the loads of a record. Loads arrive in blocks, in order of time, and are not stored here.
 
 use crate::host::fault::Fault;
 use crate::job::LoadFile;
@@ -110,7 +110,7 @@ impl RecordHead {
         stretch.map(|s| &*s.1)
     }
 
-    /// Returns whether an output needs all of the history a second time.
+    /// Returns whether an output reads the whole history a second time.
     pub fn is_read_again(&self) -> bool {
         !self.files.is_empty() || self.is_compared
     }

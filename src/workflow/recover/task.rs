@@ -21,7 +21,7 @@ pub(super) struct Task<'a> {
     pub zero: Vec<f64>,
     /// Rows of S from which loads are estimated.
     pub estimating: Vec<usize>,
-    /// Rows of S of the gauges that the estimate is compared with.
+    /// Rows of S of the validation gauges. The estimate is compared with their readings.
     pub validation: Vec<usize>,
     /// Noise variance of a reading minus zero, in units of the variance of a single reading.
     pub noise_factor: f64,

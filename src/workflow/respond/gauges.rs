@@ -16,8 +16,8 @@ use serde::Serialize;
 /// Limit of residual over measured rms of a gauge above which its prediction is poor.
 const POOR: f64 = 0.1;
 /// Limit of residual over measured rms of a gauge above which the loads explain almost nothing of its reading. A model is wrong by some tens of per
-/// cent at its worst gauges. Wrong loads leave more than half at most gauges. Examples are loads of another run, in pounds for newtons (a residual of
-/// .78 or 3.4), or in another power of ten.
+/// cent at its worst gauges. With wrong loads, more than half of the reading remains unexplained at most gauges. Examples are loads of another run,
+/// in pounds for newtons (a residual of .78 or 3.4), or in another power of ten.
 const MISSED: f64 = 0.5;
 
 /// One gauge over all states, microstrain.

@@ -171,7 +171,7 @@ fn finish(
     Ok(states)
 }
 
-/// Returns the warning of columns of a table of loads that nothing reads. Sums of loads, which `recover` writes too, are known.
+/// Returns the warning on columns of a table of loads that no command reads. Sums of loads, which `recover` also writes, are not reported.
 fn unread_loads((t, columns): (&Table, &[Column]), job: &Job, names: &[String]) -> Option<Finding> {
     let key = key_of(t).0;
     let sums = job.combinations.iter().map(|c| &c.name);

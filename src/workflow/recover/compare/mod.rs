@@ -136,7 +136,7 @@ impl Differences {
         self.points.extend_from_slice(&other.points);
     }
 
-    /// The comparison of a load; `None` where nothing is compared.
+    /// Returns the comparison of a load; `None` if the load is not compared.
     fn into_comparison(self, load: &str, unit: &str) -> Option<LoadComparison> {
         let n = self.n as f64;
         (self.n > 0).then(|| LoadComparison {
