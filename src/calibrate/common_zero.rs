@@ -94,7 +94,7 @@ pub(super) struct CentredPosterior {
 }
 
 impl CentredPosterior {
-    /// `c = -(sum_g Cov S_g)^-1 sum_g Cov(S_g, z_g)`, zero if loads are not determined.
+    /// Computes `c = -(sum_g Cov S_g)^-1 sum_g Cov(S_g, z_g)`, zero if loads are not determined.
     pub fn from_posterior(posterior: &Posterior) -> Self {
         let (n, all) = (posterior.n, posterior.k);
         let k = all - 1;

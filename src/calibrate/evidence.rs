@@ -88,7 +88,7 @@ impl<'a> RowEvidence<'a> {
         })
     }
 
-    /// `L(0)`.
+    /// Returns `L(0)`.
     pub fn log(&self) -> f64 {
         self.log
     }

@@ -149,7 +149,7 @@ pub(super) fn recover_left_out(
     })
 }
 
-/// A run recovered by S, its readings minus the common zero.
+/// Recovers the loads of a run by S, from its readings minus the common zero.
 fn recover_run(task: &Task, run: &KnownRun, s: &Sensitivity, zero: &[f64]) -> RunEstimate {
     let readings = Readings {
         run: run.run.clone(),
@@ -211,7 +211,7 @@ fn others_left(
 /// correlated. No finding reports this: the left-out run appears slightly closer to the other runs, and applied intervals do not change.
 const AFFORDABLE: f64 = 1e9;
 
-/// The posterior of the runs other than `out` with this scatter.
+/// Returns the posterior from the runs other than `out`, with this scatter.
 fn solve_without_runs(
     state: &State,
     prior: &[RowPrior],
@@ -264,7 +264,7 @@ fn others_span(state: &State, out: &[usize]) -> bool {
     rank(out) == rank(&[])
 }
 
-/// `x' C^-1 x`, with scales of the entries evened out first.
+/// Returns `x' C^-1 x`. The entries are first scaled to similar sizes.
 fn mahalanobis(covariance: &[f64], x: &[f64]) -> Option<f64> {
     let k = x.len();
     let sd: Vec<f64> = (0..k).map(|i| covariance[i * k + i].sqrt()).collect();
@@ -351,7 +351,7 @@ pub(super) fn suspects(left_out: &[LeftOut]) -> Vec<usize> {
         .collect()
 }
 
-/// Mean of squared distances over the loads behind them, and the chance of one at least as large.
+/// Returns the sum of the squared distances divided by the number of loads, and the probability of a sum at least as large.
 fn score(distances: impl Iterator<Item = (f64, usize)>) -> (f64, f64) {
     let (sum, loads) = distances.fold((0.0, 0), |a, d| (a.0 + d.0, a.1 + d.1));
     let chance = if loads > 0 {
@@ -362,7 +362,7 @@ fn score(distances: impl Iterator<Item = (f64, usize)>) -> (f64, f64) {
     (sum / loads.max(1) as f64, chance)
 }
 
-/// Squared radius of the 95 % region of `loads` loads.
+/// Returns the squared radius of the 95 % region of `loads` loads.
 fn region(loads: usize, dof: f64) -> f64 {
     let k = loads.max(1) as f64;
     if dof.is_finite() {

@@ -203,7 +203,7 @@ fn test(loadings: &[Loading], added: &[Candidate], candidates: &[Candidate]) -> 
     best.into_values().map(corrected).collect()
 }
 
-/// Orthonormal basis of the weighted columns of the loads and of the terms `added`.
+/// Returns an orthonormal basis of the weighted columns of the loads and of the terms `added`.
 fn basis(read: &[&Loading], root: &[f64], added: &[Candidate]) -> Vec<Vec<f64>> {
     let k = read.first().map_or(0, |l| l.phi.len());
     let column = |c: usize| -> Vec<f64> {
@@ -227,7 +227,7 @@ fn basis(read: &[&Loading], root: &[f64], added: &[Candidate]) -> Vec<Vec<f64>> 
     out
 }
 
-/// Strain by loading and gauge that the fit with the terms `added` makes more than that without.
+/// Returns, by loading and gauge, the strain of the fit with the terms `added` minus the strain of the fit without them.
 fn changes(loadings: &[Loading], added: &[Candidate]) -> Vec<Vec<f64>> {
     let n = loadings.first().map_or(0, |l| l.strain.len());
     let mut out = vec![vec![0.0; n]; loadings.len()];
@@ -275,7 +275,7 @@ fn covariance(loadings: &[Loading], changes: &[Vec<f64>], added: &[Candidate]) -
     out
 }
 
-/// Strain without load in the fit with the terms `added`.
+/// Returns the strain without load in the fit with the terms `added`.
 fn zero_by_gauge(loadings: &[Loading], added: &[Candidate]) -> Vec<f64> {
     let n = loadings.first().map_or(0, |l| l.strain.len());
     let others: Vec<Candidate> = (added.iter())
@@ -388,7 +388,8 @@ fn finding(
     )
 }
 
-/// The load that changes of the strain move most, over its largest value in the runs, as recovered loads are estimated.
+/// Returns the load that the changes of the strain shift most, relative to its largest value in the runs. The shift is estimated like a recovered
+/// load.
 fn largest_effect(
     task: &Task,
     state: &State,

@@ -67,7 +67,7 @@ pub(super) fn overfit_scatter(
     })
 }
 
-/// Effective number of factors of the ridge, `p`.
+/// Returns the effective number of factors of the ridge, `p`.
 fn effective_factor_count(sample: &[f64], basis: &[Vec<f64>], w: f64) -> f64 {
     let n = basis.first().map_or(0, Vec::len);
     let outside = |x: &mut [f64]| {

@@ -133,12 +133,12 @@ impl Equation {
 }
 
 impl Posterior {
-    /// S, `n x k`, for loads of unit size.
+    /// Returns S, `n x k`, for loads of unit size.
     pub fn matrix(&self) -> Matrix {
         Matrix::from_row_slice(self.n, self.k, &self.mean)
     }
 
-    /// `S phi` by gauge.
+    /// Returns `S phi` by gauge.
     pub fn predict(&self, phi: &[f64]) -> Vec<f64> {
         self.mean
             .chunks_exact(self.k.max(1))
@@ -146,7 +146,7 @@ impl Posterior {
             .collect()
     }
 
-    /// `V A'` for the equations `S phi` of some gauges: `(n k) x gauges`, by columns.
+    /// Returns `V A'` for the equations `S phi` of some gauges: `(n k) x gauges`, by columns.
     fn columns(&self, gauges: &[usize], phi: &[f64]) -> Vec<Vec<f64>> {
         let (k, order) = (self.k, self.n * self.k);
         let column = |g: &usize| -> Vec<f64> {
@@ -231,7 +231,7 @@ fn add_outer_within(a: &mut [f64], x: &[f64]) {
     }
 }
 
-/// `A V A'` from the columns of `V A'`.
+/// Returns `A V A'` from the columns of `V A'`.
 fn project(columns: &[Vec<f64>], gauges: &[usize], phi: &[f64], k: usize) -> Vec<f64> {
     let entry = |h: usize, column: &[f64]| -> f64 {
         let row = column.get(h * k..(h + 1) * k).unwrap_or(&[]);

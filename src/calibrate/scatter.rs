@@ -257,7 +257,7 @@ impl Squares {
     }
 }
 
-/// The sample with patterns that loads make and all others apart, `n x n`.
+/// Returns the sample covariance in which patterns that loads can cause are separate from all other patterns, `n x n`.
 fn target(sample: &[f64], columns: &Matrix, dof: f64) -> Vec<f64> {
     let n = columns.nrows();
     let all: f64 = (0..n).map(|g| sample[g * n + g]).sum();
@@ -320,7 +320,7 @@ pub(super) fn dof_of_shrunk(dof: f64, w: f64, n: f64) -> f64 {
     dof / (own + (1.0 - own) / n)
 }
 
-/// Weight of the identity in the shrunk covariance.
+/// Returns the weight of the identity in the shrunk covariance.
 fn shrinkage(sample: &[f64], n: usize, dof: f64) -> f64 {
     let square: f64 = sample.iter().map(|v| v * v).sum();
     let trace: f64 = (0..n).map(|g| sample[g * n + g]).sum();

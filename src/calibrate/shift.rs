@@ -43,7 +43,7 @@ impl Row {
         }
     }
 
-    /// Calibrated row along the model's.
+    /// Returns the least squares factor between the model's row and the calibrated row; 1 if the model's row is zero.
     fn scale(&self) -> f64 {
         let own = spd::dot(&self.model, &self.model);
         if own > 0.0 {

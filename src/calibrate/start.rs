@@ -52,7 +52,7 @@ pub(super) fn from_known(
     solve(prior, &equations)
 }
 
-/// A run as an equation of loads `phi` whose readings have noise alone.
+/// Returns a run as an equation of the loads `phi`. Its readings have noise, but no scatter.
 fn with_noise(task: &Task, run: &KnownRun, phi: Vec<f64>) -> Equation {
     let gauges: Vec<usize> = (0..task.gauges.len())
         .filter(|&g| run.strain.get(g).is_some_and(|v| v.is_finite()))
@@ -133,7 +133,7 @@ pub(super) fn from_parts(
 /// Cosine from which two directions have something in common.
 const OVERLAP: f64 = 1e-3;
 
-/// Orthonormal directions of the span of `free` at a right angle to the orthonormal `taken`.
+/// Returns orthonormal directions of the span of `free` that are orthogonal to the orthonormal `taken`.
 fn orthonormal_complement(free: &[Vec<f64>], taken: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut all = taken.to_vec();
     for f in free {

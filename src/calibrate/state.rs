@@ -129,7 +129,7 @@ impl State {
         state
     }
 
-    /// S with its uncertainty, in job units of load.
+    /// Returns S with its uncertainty, in job units of load.
     pub fn sensitivity(&self, task: &Task, factor: f64) -> Sensitivity {
         let of = (&self.scales[..], &self.posterior, &self.scatter);
         let mut s = sensitivity_of(task, of, factor, &self.lack);
@@ -289,7 +289,7 @@ struct RunEquation {
     spread: Vec<f64>,
 }
 
-/// A run as an equation, with `times` the scatter.
+/// Returns a run as an equation, with `times` the scatter.
 fn equation(
     task: &Task,
     (run, free): (&KnownRun, FreeDirections),
@@ -353,7 +353,7 @@ pub(super) fn run_residuals(
     }
 }
 
-/// `sum_r trace(R_r^-1 A_r V A_r')` a gauge.
+/// Returns `sum_r trace(R_r^-1 A_r V A_r') / m_r`, with `m_r` the number of gauges in run `r`.
 fn fitted_parameters_per_gauge(posterior: &Posterior, equations: &[Equation]) -> f64 {
     let one = |e: &Equation| -> Option<f64> {
         let inverse =

@@ -21,7 +21,7 @@ pub(super) fn held_out(task: &Task, loadings: &[Loading]) -> Option<HeldOutError
     })
 }
 
-/// Root mean square over loadings and loads of the error of a left-out loading over the largest value of the load.
+/// Returns the error of left-out loadings, divided by the largest value of the load: the root mean square over loadings and loads.
 fn left_out_error(loadings: &[&Loading], k: usize, with_zero: bool) -> Option<f64> {
     let n = loadings.first()?.strain.len();
     let size = |l: usize| loadings.iter().fold(0.0_f64, |a, x| a.max(x.phi[l].abs()));

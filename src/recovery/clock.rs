@@ -133,7 +133,7 @@ pub fn check(step_s: f64, readings: &[f64], n: usize) -> Option<Finding> {
     })
 }
 
-/// Mean square of the steps divided by the variance, and the variance. `None` if the values are constant.
+/// Returns the mean square of the steps divided by the variance, and the variance. `None` if the values are constant.
 fn steps_over_variance<'a>(values: impl Iterator<Item = &'a f64>) -> Option<(f64, f64)> {
     let v: Vec<f64> = values.copied().filter(|v| v.is_finite()).collect();
     let mean = v.iter().sum::<f64>() / v.len().max(1) as f64;
@@ -150,7 +150,7 @@ fn steps_over_variance<'a>(values: impl Iterator<Item = &'a f64>) -> Option<(f64
 mod tests {
     use super::*;
 
-    /// A sine of `period` samples.
+    /// Returns a sine of `period` samples.
     fn wave(period: f64) -> Vec<f64> {
         (0..600)
             .map(|i| (std::f64::consts::TAU * i as f64 / period).sin())

@@ -151,7 +151,7 @@ pub fn is_shown_dead(
     }
 }
 
-/// Whether any gauge of `used` changes by more than noise.
+/// Returns whether any gauge of `used` changes by more than noise.
 fn any_changes(used: &[usize], rows: &[&Vec<f64>], noise: f64) -> bool {
     let of = |h: &usize| variance(rows.iter().map(|row| row[*h]));
     used.iter().any(|h| of(h) > CHANGES * CHANGES * noise)
@@ -248,7 +248,7 @@ impl<'a> GaugePrediction<'a> {
     }
 }
 
-/// About their mean.
+/// Returns the variance of values about their mean.
 fn variance(values: impl Iterator<Item = f64> + Clone) -> f64 {
     let n = values.clone().count().max(1) as f64;
     let mean = values.clone().sum::<f64>() / n;

@@ -298,13 +298,13 @@ impl Gain {
         self.stated_part(l, f) + self.calibrated_part(l, f)
     }
 
-    /// Variance of load `l` at loads `f` that the stated error of a model makes.
+    /// Returns the variance of load `l` at loads `f` from the stated error of a model.
     fn stated_part(&self, l: usize, f: &[f64]) -> f64 {
         let row = self.model_variance.row(l);
         row.iter().zip(f).map(|(b, v)| b * v * v).sum()
     }
 
-    /// Variance of load `l` at loads `f` that the uncertainty of a calibrated S and the scatter of repeats make.
+    /// Returns the variance of load `l` at loads `f` from the uncertainty of a calibrated S and the scatter of repeats.
     fn calibrated_part(&self, l: usize, f: &[f64]) -> f64 {
         let forms = self.calibrated.as_ref().map(|c| &c.1);
         forms.map_or(0.0, |forms| forms.variance(l, self.of_s(f)))
@@ -341,7 +341,7 @@ impl Gain {
         list.filter_map(|s| self.shift(f, s)).collect()
     }
 
-    /// Returns the change of every load by the error of one gauge, at loads `f`; `None` if the gauge does not read.
+    /// Returns the change of every load that the error of one gauge causes, at the loads `f`; `None` if the gauge does not read.
     pub fn shift(&self, f: &[f64], shift: &Shift) -> Option<Vec<f64>> {
         let i = self.used.binary_search(&shift.gauge).ok()?;
         let strain = match shift.kind {

@@ -195,7 +195,7 @@ fn squares<S: Simd>(all: &mut Sums, s: &[f64], simd: S, y: &[f64], f: &[f64]) {
     }
 }
 
-/// `f = G y` of a block: `gain` is `k x n` by rows, `y` has `n` and `f` gets `k` rows of lanes.
+/// Computes `f = G y` of a block: `gain` is `k x n` by rows, `y` has `n` and `f` gets `k` rows of lanes.
 #[inline(always)]
 fn product<S: Simd>(simd: S, gain: &[f64], y: &[f64], f: &mut [f64]) {
     let (n, k) = (y.len() / LANES, f.len() / LANES);
@@ -223,7 +223,7 @@ fn product<S: Simd>(simd: S, gain: &[f64], y: &[f64], f: &mut [f64]) {
     }
 }
 
-/// Whether every number is finite: zero times any other number is not zero.
+/// Returns whether every number is finite. Zero times a number that is not finite is not zero.
 #[inline(always)]
 fn all_finite<S: Simd>(simd: S, f: &[f64]) -> bool {
     let zero = simd.splat_f64s(0.0);

@@ -233,7 +233,8 @@ impl Suspect {
         })
     }
 
-    /// Chance of an error as large by a gauge that is right; where the residuals without it are larger than stated, by their own scale.
+    /// Returns the probability that a gauge without fault shows an error of this size. If the residuals without the gauge are larger than stated,
+    /// their scale is used.
     fn chance(&self) -> f64 {
         let t = self.test.t.abs();
         let tail = match self.excess_of_rest() {
@@ -300,7 +301,7 @@ fn put_right(pattern_test: &PatternTest, first: &GaugeTest) -> Option<Suspect> {
     Some(suspect)
 }
 
-/// The largest shift of a wanted load over the half width of its interval as stated errors make it, and that load.
+/// Returns the largest shift of a wanted load, divided by the half width of its interval from the stated errors, and that load.
 fn worst_shift<'a>(
     s: &'a Sensitivity,
     (solved, beyond): (&RunEstimates, &[AddedCovariance]),

@@ -56,7 +56,7 @@ pub struct RunLoad<'a> {
 }
 
 impl CalibratedLoad<'_> {
-    /// Range with the state without load in it, and the largest size in it.
+    /// Returns the range, extended to include zero, and the largest size in it.
     fn span_with_zero(&self) -> ([f64; 2], f64) {
         let [low, high] = [self.range[0].min(0.0), self.range[1].max(0.0)];
         ([low, high], high.max(-low))
@@ -67,7 +67,7 @@ impl CalibratedLoad<'_> {
         value.abs() / self.span_with_zero().1
     }
 
-    /// Whether a load is beyond the range by more than its noise, `factor` half widths.
+    /// Returns whether a load exceeds the range by more than its noise, `factor` half widths.
     fn is_beyond(&self, reached: &RunLoad, factor: f64, rules: &RangeRules) -> bool {
         let ([low, high], largest) = self.span_with_zero();
         let beyond = (reached.value - high).max(low - reached.value);

@@ -71,13 +71,13 @@ pub fn check_signal(readings: &[Readings], errors: ErrorModel) -> Vec<Finding> {
     too_quiet(readings, errors, 0.0).into_iter().collect()
 }
 
-/// Half of all readings are smaller, signs dropped; 0 without readings.
+/// Returns the median of the absolute readings; 0 without readings.
 fn median_size(readings: &[Readings]) -> f64 {
     let all = readings.iter().flat_map(|r| &r.strain);
     median(all.map(|v| v.abs()).filter(|v| v.is_finite()).collect()).unwrap_or(0.0)
 }
 
-/// The finding on readings beyond what gauges follow, half of which are below `median_size`; `None` without gauges.
+/// Returns the finding on readings beyond the range of gauges. `median_size` is the median of their sizes. `None` without gauges.
 fn beyond_gauges(gauges: &[&str], largest: f64, median_size: f64) -> Option<Finding> {
     let (severity, what, limit) = if largest > METAL_ENDS || median_size > MOST_BELOW {
         let what = "are beyond the elastic strain of a metal, for which S is valid: the unit of the readings is not microstrain, or the channel is overloaded";

@@ -170,7 +170,7 @@ impl Projection {
         Some(self)
     }
 
-    /// `T C T'` of a covariance of the readings, by rows.
+    /// Returns `T C T'` of a covariance of the readings, by rows.
     fn of_readings(&self, pattern: &Pattern, of_readings: &Matrix) -> Vec<f64> {
         let n = pattern.used.len();
         let used = Matrix::from_fn(n, n, |a, b| of_readings[(pattern.used[a], pattern.used[b])]);
@@ -196,7 +196,7 @@ impl Projection {
             .collect()
     }
 
-    /// `T M(f, g) T'`, by rows.
+    /// Returns `T M(f, g) T'`, by rows.
     fn model_error_covariance(&self, f: &[f64], g: &[f64]) -> Vec<f64> {
         let errors = &self.errors;
         let m = self.m();
@@ -347,7 +347,7 @@ impl Projection {
         })
     }
 
-    /// Share of the model's error in the variance of the residuals.
+    /// Returns the share of the model's error in the variance of the residuals.
     fn share_of_model(&self, loads: &[Vec<f64>]) -> f64 {
         if self.errors.model_rel <= 0.0 {
             return 0.0;
@@ -360,7 +360,7 @@ impl Projection {
         model / (model + noise)
     }
 
-    /// Rotated runs that contain errors of the model.
+    /// Returns the rotated runs that contain errors of the model.
     fn model_error_blocks(
         &self,
         pattern: &Pattern,

@@ -101,7 +101,7 @@ pub(super) fn solve_beyond(
     }
 }
 
-/// The estimate of each pattern for weights at `typical` loads, and the loads of every run.
+/// Returns the estimate of each pattern, with weights at the `typical` loads, and the loads of every run.
 fn at_typical(
     s: &Sensitivity,
     readings: &[Readings],
@@ -151,7 +151,7 @@ pub(super) fn root_mean_squares(
         .collect()
 }
 
-/// One run without its residual's judgement.
+/// Returns the estimate of one run without a test of its residual.
 fn estimate_of(
     s: &Sensitivity,
     r: &Readings,

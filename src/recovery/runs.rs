@@ -199,7 +199,7 @@ fn merge_gauge_findings(mut tested: Vec<Finding>, mut named: Vec<Finding>) -> Ve
     named
 }
 
-/// Root mean square of all residuals over the degrees of freedom, of each gauge's, and mean leverages.
+/// Returns the root mean square of all residuals over the degrees of freedom, the root mean square by gauge, and the mean leverages.
 fn residual_sizes(n: usize, runs: &[RunEstimate]) -> (f64, Vec<f64>, Vec<f64>) {
     let (mut sum, mut dof) = (0.0, 0);
     let mut by_gauge = vec![(0.0, 0usize); n];

@@ -26,7 +26,7 @@ pub fn is_unlike(run: &RunEstimate, known: &Uncertainty) -> bool {
     chance_estimated(run.chi2, run.dof, known.dof) < SIGNIFICANT
 }
 
-/// Root of chi-square over its degrees of freedom (R. T. Birge, Phys. Rev. 40 (1932) 207).
+/// Returns the root of chi-square over its degrees of freedom (R. T. Birge, Phys. Rev. 40 (1932) 207).
 fn birge(run: &RunEstimate) -> f64 {
     (run.chi2 / run.dof.max(1) as f64).sqrt()
 }
@@ -121,7 +121,7 @@ pub fn estimate_loosely(
     together
 }
 
-/// With the least excess that explains the residual of a run.
+/// Returns the estimate with the least additional error that explains the residual of a run.
 fn estimate_with_least_excess(with: &dyn Fn(f64) -> (RunEstimate, f64)) -> (RunEstimate, f64) {
     let is = |more: f64| {
         let run = with(more).0;
@@ -141,7 +141,7 @@ fn estimate_with_least_excess(with: &dyn Fn(f64) -> (RunEstimate, f64)) -> (RunE
     with(high)
 }
 
-/// The three gauges with the largest residual over its sd, with reading minus prediction.
+/// Returns the three gauges with the largest residual over its sd, with reading minus prediction.
 fn list_worst_gauges(gauges: &[String], run: &RunEstimate) -> String {
     let mut order: Vec<(f64, usize)> = (0..gauges.len())
         .filter(|&g| run.residual[g].is_finite() && run.sd[g] > 0.0)

@@ -293,7 +293,7 @@ impl Sizes {
     }
 }
 
-/// Residual over readings, root mean squares, the residual over its degrees of freedom.
+/// Returns the ratio of residual to readings, as root mean squares. The residual is relative to its degrees of freedom.
 fn share(pairs: &[(&Readings, &RunEstimate)]) -> f64 {
     let (mut r2, mut y2, mut n, mut free) = (0.0, 0.0, 0usize, 0usize);
     for (y, r) in pairs {
@@ -394,7 +394,7 @@ fn missing_load_remedy(patterns: usize) -> String {
     }
 }
 
-/// Number of patterns above noise among the residuals of the runs: singular values above the largest one of pure noise.
+/// Returns the number of patterns above noise among the residuals of the runs: singular values above the largest one of pure noise.
 fn patterns(n: usize, runs: &[RunEstimate]) -> usize {
     let m = runs.len();
     let std = |g: usize, r: &RunEstimate| {

@@ -360,7 +360,7 @@ fn other_sequence(read: &DeckModel) -> Option<Finding> {
     ))
 }
 
-/// Whether a request for strain names a method for corners; Nastran's default is the centre. A deck that asks for no strain at all gets
+/// Returns whether a request for strain names a method for corners; Nastran's default is the centre. A deck that asks for no strain at all gets
 /// both.
 fn asks_for_corners(r: &Request) -> bool {
     ["CORNER", "BILIN", "CUBIC", "SGAGE"]
@@ -368,7 +368,7 @@ fn asks_for_corners(r: &Request) -> bool {
         .any(|o| r.has(o))
 }
 
-/// Result files have no element type for the centre of CQUAD8 and CTRIA6 alone.
+/// Returns `Compute` if the model has CQUAD8 or CTRIA6, because result files have no element type for their centre alone.
 fn corners_always_written(model: &Model) -> Corners {
     let curved = |s: &Shell| matches!(s.shape, ShellShape::Quad8 | ShellShape::Tria6);
     if model.shells.iter().any(curved) {

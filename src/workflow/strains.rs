@@ -171,7 +171,7 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
     Ok(work.finish(StatedUnits::default(), answer))
 }
 
-/// Name and bytes of every result file; the deck itself where it is an OP2 and no other file is given.
+/// Returns name and bytes of every result file. This is the deck itself if it is an OP2 and no other file is given.
 fn result_bytes(
     results: &[PathBuf],
     deck: &str,

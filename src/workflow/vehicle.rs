@@ -211,7 +211,7 @@ pub(super) fn check_samples(
     Faults::check(faults)
 }
 
-/// Known faults of channels.
+/// Returns known faults of channels.
 fn corrections_of(section: &VehicleJob) -> Vec<Adjustment> {
     let one = |(channel, c): (&String, &ChannelCorrection)| Adjustment {
         gain: c.gain,
@@ -225,7 +225,7 @@ fn corrections_of(section: &VehicleJob) -> Vec<Adjustment> {
     section.corrections.iter().map(one).collect()
 }
 
-/// `[vehicle]` of a job.
+/// Returns `[vehicle]` of a job.
 ///
 /// # Errors
 /// A fault if the job has no `[vehicle]`.

@@ -280,7 +280,7 @@ impl Recomputation {
         }
     }
 
-    /// A text is compared line by line, anything else as a whole.
+    /// Compares the bytes of two files. A text is compared line by line, any other file as a whole.
     fn bytes(&mut self, name: &str, was: &[u8], now: &[u8]) {
         if was == now {
             return self.same.push(name.to_owned());

@@ -88,8 +88,8 @@ fn reach(
     (after, noise_factor(frame, candidates, scored))
 }
 
-/// Returns whether a set with the residual `after` and `noise` times the stated noise is at the floor. If it is only so without one reading, the
-/// second value is a message on that reading.
+/// Returns whether a set with the residual `after` and `noise` times the stated noise is at the floor. If the set is at the floor only without one
+/// reading, the second value is a message on that reading.
 fn reaches_floor(
     frame: &StrainFrame,
     candidates: &[Candidate],

@@ -51,7 +51,7 @@ impl Kernel {
         }
     }
 
-    /// The samples `wanted`, from those up to the reach round them.
+    /// Computes the samples `wanted`. It uses the samples up to the reach on either side.
     fn block(&self, from: &[&[f64]], span: &Range<usize>, wanted: Range<usize>) -> Block {
         let begin = wanted.start - self.reach;
         // No wanted sample depends on readings beyond the end of the stretch, so the last reading is repeated.
@@ -106,7 +106,7 @@ impl Kernel {
         (0..self.at_rest.nrows()).map(of_load).collect()
     }
 
-    /// `T eps = B eps - B Psi a C G eps` by gauge.
+    /// Computes `T eps = B eps - B Psi a C G eps` by gauge.
     fn remove_dynamic_strain(&self, spectra: &[Spectrum], loads: &[Spectrum]) -> Vec<Spectrum> {
         let of_gauge = |(g, own): (usize, &Spectrum)| -> Spectrum {
             let bins = self.bins.iter().enumerate();

@@ -56,7 +56,7 @@ pub(super) struct Bin {
 }
 
 impl Bin {
-    /// `T x` of strain `x`, columns by columns.
+    /// Computes `T x` of strain `x`, column by column.
     fn remove_dynamic_strain(&self, x: &ComplexMatrix) -> ComplexMatrix {
         x * Complex::new(self.band, 0.0) - &self.added * (&self.gain * x)
     }
@@ -213,7 +213,7 @@ fn find_uncertain_modes(
     (0..plant.n_modes()).filter(errs).collect()
 }
 
-/// Real numbers that a frequency takes.
+/// Returns the number of real values that one frequency needs.
 fn numbers_of(plant: &Plant<'_>) -> usize {
     let (n, k, m) = (plant.n_gauges(), plant.n_loads(), plant.n_modes());
     2 * (3 * n * k + n * m + 2 * m)
@@ -260,7 +260,7 @@ fn of_loads(at_rest: &Matrix, bins: &[Bin]) -> Vec<ComplexMatrix> {
         .collect()
 }
 
-/// The samples to either side beyond which no load has more than [`BEYOND`] of its weights.
+/// Returns the number of samples on either side beyond which no load has more than [`BEYOND`] of its weights.
 fn reach_of(loads: &[ComplexMatrix], length: usize, (k, n): (usize, usize)) -> usize {
     let plan = inverse(length);
     let of_load = |l: usize| {

@@ -127,7 +127,8 @@ impl Form {
         out
     }
 
-    /// Returns Rao's score statistic of equal and independent noise against this form. It is about the gain of a fit in twice the log likelihood.
+    /// Returns Rao's score statistic of equal and independent noise against this form. It is approximately twice the increase of the log likelihood
+    /// by a fit.
     pub fn score_statistic(self, r: &Sample) -> Option<f64> {
         let (score, information) = self.score(r, &Parameters::with_equal_noise(r), 0.0)?;
         let step = solve(&information, &score)?;

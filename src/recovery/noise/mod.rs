@@ -160,7 +160,7 @@ impl Fits {
         (self.factor * (self.largest - fit.log_likelihood)).max(0.0)
     }
 
-    /// Chance of residuals that contradict the fit as much; 0 where it has as many parameters as they have numbers.
+    /// Returns the probability of residuals that contradict the fit at least as much; 0 if the fit has as many parameters as there are residuals.
     fn chance(&self, fit: &Fit) -> f64 {
         match (self.m * (self.m + 1) / 2).saturating_sub(fit.parameters) {
             0 => 0.0,
@@ -168,12 +168,12 @@ impl Fits {
         }
     }
 
-    /// Whether the residuals do not contradict the fit.
+    /// Returns whether the residuals do not contradict the fit.
     fn explains(&self, fit: &Fit) -> bool {
         self.chance(fit) > SIGNIFICANT
     }
 
-    /// Chance that the parameters which `more` has beyond `less` explain as much.
+    /// Returns the probability that the additional parameters of `more` explain as much by chance.
     fn chance_of_gain(&self, less: &Fit, more: &Fit) -> f64 {
         let gained = (self.deviance(less) - self.deviance(more)).max(0.0);
         chi_square_tail(gained, (more.parameters - less.parameters) as f64)
@@ -255,7 +255,7 @@ impl Parts {
 }
 
 impl Residuals {
-    /// `None` where there are too few for a test.
+    /// Creates the sample; `None` if there are too few residuals for a test.
     fn from_parts(parts: Parts) -> Option<Self> {
         let (m, n) = parts.t.shape();
         let runs = parts.z.nrows();
@@ -296,7 +296,7 @@ impl Residuals {
         })
     }
 
-    /// `None` where the residuals do not contradict the stated noise, or where intervals change little by it.
+    /// Returns the noise of the residuals. `None` if the residuals do not contradict the stated noise, or if intervals change little by it.
     fn noise(&self, s: &Sensitivity, errors: ErrorModel) -> Option<ShownNoise> {
         let sample = &self.sample;
         let (m, n) = sample.t.shape();
@@ -373,7 +373,7 @@ impl Residuals {
         })
     }
 
-    /// Whether intervals of a wanted load by the stated noise are too narrow or too wide for noise of this covariance.
+    /// Returns whether the stated noise gives too narrow or too wide intervals of a wanted load, if the noise has this covariance.
     fn matters(&self, s: &Sensitivity, noise: &GaugeNoise, errors: ErrorModel) -> Option<bool> {
         let own = s.of_gauges(&self.used);
         let with_noise = Sensitivity {

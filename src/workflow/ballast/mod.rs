@@ -218,7 +218,7 @@ fn size(
     Ok(fit)
 }
 
-/// Name, reactions and their sd in job units of the run asked for, in the order of the wheels.
+/// Returns the name of the requested run, its reactions and their standard deviations, in job units and in the order of the wheels.
 fn read_measured_reactions(
     work: &mut Work,
     task: &Task,

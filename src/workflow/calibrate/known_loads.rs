@@ -278,7 +278,7 @@ fn named_twice(table: &Table, key: usize) -> FaultList {
         .collect()
 }
 
-/// The column that a key of `[calibration]` names.
+/// Returns the column that a key of `[calibration]` names.
 fn column(
     job: &Job,
     table: &Table,
@@ -368,7 +368,7 @@ fn cell(table: &Table, row: usize, s: &RunQuantity) -> Result<Option<(f64, f64)>
     Ok(Some((value * s.unit, sd.unwrap_or(s.noise))))
 }
 
-/// The largest known value of any quantity; every fault of its cells on the way.
+/// Returns the largest known value of all quantities, once for each load, and adds the faults of the cells. It is 1 if no value is known.
 fn largest_known(
     table: &Table,
     stated: &[RunQuantity],

@@ -83,7 +83,7 @@ const UNEVEN: f64 = 300.0;
 /// Ratio of strain to noise below which the strain does not show a load.
 const CLEAR: f64 = 6.0;
 
-/// The largest known size of a load; 0 of one that no run has.
+/// Returns the largest known size of a load; 0 if no run states it.
 fn largest_known_load(task: &Task, l: usize) -> f64 {
     let known = task.runs.iter().map(|r| r.loads.mean[l].abs());
     known.fold(0.0, f64::max)
@@ -315,7 +315,7 @@ fn ranges<'a>(
         .collect()
 }
 
-/// Recovered less known loads over the runs, by load.
+/// Returns recovered minus known loads over the runs, by load.
 fn residuals(task: &Task, found: &Calibration, listed: &ListedLoads) -> Vec<LoadResidual> {
     let fitted = found.recover_used_runs(task.noise, &task.runs);
     let rms = |v: &[f64]| (v.iter().map(|x| x * x).sum::<f64>() / v.len().max(1) as f64).sqrt();

@@ -68,7 +68,7 @@ pub(crate) fn relocate_deck(
     out
 }
 
-/// INCLUDE statements of a file.
+/// Returns the INCLUDE statements of a file.
 fn includes(bytes: &[u8]) -> Vec<Statement> {
     let mut out = Vec::new();
     let mut at = 0;
@@ -126,12 +126,12 @@ fn line_end(bytes: &[u8], from: usize) -> usize {
         .map_or(bytes.len(), |n| from + n + 1)
 }
 
-/// A name that means the same file from any folder: absolute, or with a symbol.
+/// Returns whether a name means the same file from any folder: it is absolute, or contains a symbol.
 fn is_fixed(name: &str) -> bool {
     name.starts_with(['/', '\\', '$', '%']) || name.contains(':')
 }
 
-/// Possible paths of a name.
+/// Returns the possible paths of a name.
 fn names(name: &str, first: &str, includer: &str) -> Vec<PathBuf> {
     let symbol = name
         .split_once(':')
@@ -156,7 +156,7 @@ fn is_same_path(a: &Path, b: &Path) -> bool {
     normalize_path(a) == normalize_path(b)
 }
 
-/// Without `.` and `folder/..`.
+/// Returns a path without `.` and `folder/..`.
 fn normalize_path(p: &Path) -> PathBuf {
     let mut out = PathBuf::new();
     for c in p.components() {
@@ -195,7 +195,7 @@ pub(crate) fn from_folder(folder: &Path, file: &Path) -> String {
     text.replace('\\', "/")
 }
 
-/// The statement, in as many lines as it takes.
+/// Returns the statement, on as many lines as it needs.
 fn statement(name: &str) -> String {
     let mut text = String::from("INCLUDE '");
     let mut used = text.len();

@@ -224,7 +224,7 @@ pub fn load_ids(deck: &Deck) -> Vec<u32> {
     ids
 }
 
-/// Load sets by dynamic cards, and tables: they share their numbers with what `recover` writes for a history.
+/// Cards of dynamic load sets and of tables. `recover` writes such cards for a history, so their ids must not be used twice.
 const DYNAMIC: [&str; 14] = [
     "ACSRCE", "DAREA", "DLOAD", "LSEQ", "RLOAD1", "RLOAD2", "TABLED1", "TABLED2", "TABLED3",
     "TABLED4", "TABLED5", "TLOAD1", "TLOAD2", "RANDPS",
@@ -422,7 +422,7 @@ fn cards_of(model: &Model, l: &JobLoad, sid: u32) -> String {
     }
 }
 
-/// A load's name as a case control label: one line, 60 characters.
+/// Returns a load's name as a case control label: one line of at most 60 characters.
 fn label(name: &str) -> String {
     name.chars()
         .filter(|c| !c.is_control() && *c != '$')

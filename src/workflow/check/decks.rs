@@ -145,7 +145,7 @@ fn without_influence(
     counted
 }
 
-/// The units that the materials of a deck suggest.
+/// Returns the units that the materials of a deck suggest.
 fn suggest_units(model: &Model) -> Option<ShownUnits> {
     let (moduli, densities) = moduli_and_densities(model);
     let system = likely_system(model.params.unitsys.as_deref(), &moduli, &densities)?;

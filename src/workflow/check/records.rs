@@ -58,7 +58,7 @@ impl ChannelEntry {
         }
     }
 
-    /// Name and unit, for people.
+    /// Returns name and unit as text.
     fn text(&self) -> String {
         match self.unit.as_str() {
             "" => self.name.clone(),
@@ -80,7 +80,7 @@ impl OtherEntry {
         }
     }
 
-    /// For people: its name, its unit, how many samples at which rate.
+    /// Returns the channel as text: name, unit, number of samples and rate.
     fn text(&self) -> String {
         let rate = self
             .sample_rate_hz

@@ -209,7 +209,7 @@ fn named_zones(model: &Model) -> BTreeMap<String, BTreeSet<u32>> {
     zones
 }
 
-/// Path of the proposed job.
+/// Returns the path of the proposed job.
 ///
 /// # Errors
 /// A fault if this file already exists.

@@ -138,7 +138,7 @@ fn shell_and_solid_grids(m: &Model) -> BTreeSet<GridIx> {
     shells.chain(solids).copied().collect()
 }
 
-/// Shell grids far from those that are held, and from each other: each the farthest from all before it.
+/// Returns shell grids far from held grids and from each other. Each grid is the farthest from all previous ones.
 fn far_grids(m: &Model, held: &BTreeSet<GridIx>) -> Vec<GridIx> {
     let place = |g: GridIx| m.grids.get(g.us()).map(|g| g.x);
     let grids: BTreeSet<GridIx> = m

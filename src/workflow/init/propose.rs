@@ -206,7 +206,7 @@ fn of_subcases(
     (loads, left_out)
 }
 
-/// Load sets of a deck without subcases that select them.
+/// Returns the load sets of a deck without subcases that select them.
 fn of_load_sets(
     model: &Model,
     system: Option<UnitSystem>,
@@ -284,7 +284,7 @@ fn propose_size(system: Option<UnitSystem>, quantity: Quantity, applied: f64) ->
     }
 }
 
-/// The quantity of a component by its name.
+/// Returns the quantity of a component by its name.
 fn quantity_of(component: &str) -> Option<Quantity> {
     let found = Component::ALL.into_iter().find(|c| c.name() == component);
     found.map(Component::quantity)
@@ -349,7 +349,7 @@ fn times_of_set(model: &Model, sid: u32, system: Option<UnitSystem>) -> f64 {
     }
 }
 
-/// A load set that is one force or moment along an axis: what, a name, its size.
+/// Returns kind, name and size of a load set that is one force or moment along an axis.
 fn find_single_load(model: &Model, sid: u32) -> Option<(String, String, f64)> {
     let set = model.load_sets.iter().find(|s| s.sid == sid)?;
     let [(factor, load)] = set.loads.as_slice() else {

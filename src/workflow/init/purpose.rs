@@ -120,7 +120,7 @@ impl Purpose {
         ("calibrate", Self::Calibrate),
     ];
 
-    /// The command.
+    /// Returns the name of the command.
     fn command(self) -> &'static str {
         let found = Self::ALL.into_iter().find(|p| p.1 == self);
         found.map_or("check", |p| p.0)

@@ -91,7 +91,7 @@ fn answer(trial: &JobPlan) -> Verdict {
     }
 }
 
-/// The proposals in turn, each with less spacing; then those that the files do not state with fewer loads.
+/// Returns the proposals in turn, each with less spacing. Proposals of loads that the files do not state then follow with fewer loads.
 fn trials<'a>(
     plan: &'a JobPlan<'a>,
     proposals: &'a [Proposal],
@@ -125,7 +125,7 @@ fn trials<'a>(
     whole.chain(fewer)
 }
 
-/// Whether `place` answers; else why not.
+/// Returns whether `place` finds a layout, else the reason.
 fn try_place(cx: &Context, trial: &JobPlan) -> Result<(), String> {
     let path = trial.folder.join(JOB);
     // Four angles a place show whether the gauges separate the loads. `place` proves the layout with more angles.

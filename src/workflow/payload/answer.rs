@@ -147,7 +147,7 @@ pub struct SingleGauge {
     pub reason: String,
 }
 
-/// A value where it is not refused.
+/// Returns a value if it is not refused.
 fn accepted_value(r: &WeighedRun, v: f64) -> Option<f64> {
     if r.refused.is_some() {
         None

@@ -51,7 +51,7 @@ pub(super) fn findings(task: &Task, parts: &Parts, weighing: &Weighing) -> Vec<F
     out
 }
 
-/// A load that is the payload's, job units: `parts` of the weight `W`, of `W dx` and of `W dy`.
+/// Returns a load of the payload, job units: `parts` of the weight `W`, of `W dx` and of `W dy`.
 fn of_run<'a>(task: &Task, run: &'a WeighedRun, parts: [f64; 3]) -> RunLoad<'a> {
     let half_weight = 0.5 * (run.interval[1] - run.interval[0]) / task.force;
     let weight = run.force / task.force;

@@ -80,7 +80,7 @@ pub(super) fn model_of(
     }
 }
 
-/// The grid of the payload, which the deck must have.
+/// Returns the grid of the payload, which the deck must have.
 fn payload_grid(task: &Task, model: &Model) -> Result<(GridIx, u32), Faults> {
     let fault = |wrong: String| {
         Faults::from(Fault::with_line(
@@ -145,7 +145,7 @@ impl Place {
     }
 }
 
-/// The job's own loads at the payload's grid, by part.
+/// Returns the job's own loads at the payload's grid, by part.
 fn own_columns(job: &Job, model: &Model, place: Place) -> [Option<usize>; 3] {
     let [a, b, c] = place.axes();
     [a, 3 + b, 3 + c].map(|component| {
@@ -175,13 +175,13 @@ fn payload_strain(
     out
 }
 
-/// Strain per report force, and per report force and length of shift.
+/// Returns the strain per report force, and per report force and length of shift.
 fn in_report_units(task: &Task, columns: &Matrix) -> Matrix {
     let per = report_units(task);
     Matrix::from_fn(columns.nrows(), 3, |g, k| columns[(g, k)] * per[k])
 }
 
-/// Job units of weight, and of weight times shift, in one of the report's.
+/// Returns the number of job units in one report unit, for weight and for weight times shift.
 fn report_units(task: &Task) -> [f64; 3] {
     let shift = 1.0 / (task.force * task.length);
     [1.0 / task.force, shift, shift]
@@ -356,7 +356,7 @@ fn build_model_on_wheels(
     })
 }
 
-/// From tables: S, and the payload's signature `b0, b_dx, b_dy` per mass.
+/// Reads the model from tables: S, and the payload's signature `b0, b_dx, b_dy` per mass.
 fn read_model_tables(work: &mut Work, task: &mut Task, use_strain: bool) -> Result<Parts, Faults> {
     let job = task.job;
     let Some(tables) = &job.sensitivity else {
@@ -444,14 +444,14 @@ fn calibrated_columns(task: &Task, s: &Sensitivity) -> Option<[Option<(usize, f6
     out[0].map(|_| out)
 }
 
-/// Their columns, strain per job unit.
+/// Returns the columns of the payload's loads, strain per job unit.
 fn columns_of(s: &Sensitivity, loads: [Option<(usize, f64)>; 3]) -> Matrix {
     Matrix::from_fn(s.gauges.len(), 3, |g, k| {
         loads[k].map_or(0.0, |(l, sign)| sign * s.values[(g, l)])
     })
 }
 
-/// Strain per report force, and per report force and length of shift, of the table of the payload's signature.
+/// Returns the payload's signature from its table: strain per report force, and per report force and length of shift.
 fn signature(
     work: &mut Work,
     task: &Task,

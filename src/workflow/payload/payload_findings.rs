@@ -42,7 +42,7 @@ pub(super) fn words(task: &Task, refusal: &Refusal) -> String {
     }
 }
 
-/// A refusal as a finding.
+/// Returns the finding on a refused payload.
 fn refusal_finding(task: &Task, run: &str, refusal: &Refusal) -> Finding {
     let (code, remedy) = match refusal {
         Refusal::Negative { .. } => (

@@ -352,7 +352,7 @@ fn strain(
     Ok(runs)
 }
 
-/// A row a run, and whether the reading of an unloaded run of the table is subtracted from it.
+/// Returns one row for each run, and whether the reading of an unloaded run of the table is subtracted from it.
 fn of_runs(
     work: &mut Work,
     task: &Task,
@@ -412,7 +412,7 @@ fn means(file: &StrainFile, model: &PayloadModel, noise: &[f64]) -> Vec<Net> {
     model.gauges.iter().zip(noise).map(of).collect()
 }
 
-/// Noise of a reading of each gauge of the model, strain.
+/// Returns the noise of a reading of each gauge of the model, strain.
 fn noise_of_gauges(measured: &Measured, model: &PayloadModel) -> Vec<f64> {
     let noise = measured.noise_microstrain * MICROSTRAIN;
     match &model.noise {
@@ -449,7 +449,7 @@ fn by_gauge(table: &StrainTable, model: &PayloadModel) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The gauges too weak for the job in every run.
+/// Returns the gauges too weak for the job in every run.
 fn report_weak_gauges(
     work: &mut Work,
     task: &Task,

@@ -451,7 +451,7 @@ impl Mirror {
         self.mate.get(site).copied().flatten()
     }
 
-    /// The angle on the partner's element of the mirrored direction.
+    /// Returns the angle of the mirrored direction on the partner's element.
     fn angle(&self, task: &Task, site: usize, other: usize, angle: f64) -> f64 {
         let Some(here) = probe(task, site, angle) else {
             return angle;
@@ -469,7 +469,7 @@ impl Mirror {
     }
 }
 
-/// A single grid at a site.
+/// Returns a gauge with a single grid at a site.
 fn probe(task: &Task, site: usize, angle: f64) -> Option<Gauge> {
     let (shell, surface) = *task.sites.get(site)?;
     let spec = GaugeSpec {

@@ -94,7 +94,7 @@ fn task_of<'a>(
     Ok(task)
 }
 
-/// The layout on the model.
+/// Returns the layout on the model.
 fn lay_out_gauges(
     work: &mut Work,
     job: &Job,

@@ -223,7 +223,7 @@ fn check_ids(job: &Job, model: &Model) -> Result<(), Faults> {
     Faults::check(faults)
 }
 
-/// The deck's SETs that the job names.
+/// Returns the deck's SETs that the job names.
 fn sets_of<'a>(job: &Job, fields: &'a Fields) -> Result<Vec<&'a nastran::bdf::Set>, Faults> {
     let Some(wanted) = &job.candidates.sets else {
         return Ok(Vec::new());

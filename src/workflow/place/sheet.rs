@@ -106,7 +106,8 @@ fn steepness(
     out
 }
 
-/// The nearest of the job's reference points, else of the grids at which loads act, and the way from there.
+/// Returns the nearest reference point of the job, and the vector from this point. Without reference points, it is the nearest grid at which a load
+/// acts.
 fn reference_of(task: &Task, g: &Gauge) -> Option<(String, [f64; 3])> {
     let model = task.fields.model();
     let loads = task.job.loads.iter().filter_map(|l| match l.acts {

@@ -136,7 +136,7 @@ fn or_none(list: impl Iterator<Item = String>) -> String {
     }
 }
 
-/// A key of a channel's corrections before and after.
+/// Returns the change of a key of a channel's corrections: value before and after.
 fn correction_change(
     frame: &MotionFrame,
     outcome: &MotionOutcome,

@@ -208,7 +208,7 @@ fn with_s(by_solver: &[f64], s: &FrameColumns, n_columns: usize) -> Vec<f64> {
     base
 }
 
-/// In-plane strain `exx, eyy, gxy` under each gauge, from what it reads at 0, 45 and 90 degrees.
+/// Returns the in-plane strain `exx, eyy, gxy` under each gauge, from its readings at 0, 45 and 90 degrees.
 fn plane_strain([at_0, at_45, at_90]: [&[f64]; 3], n_columns: usize) -> Vec<PlaneStrainRow> {
     let one = |i: usize| [at_0[i], at_90[i], 2.0 * at_45[i] - at_0[i] - at_90[i]];
     let rows = (0..at_0.len()).step_by(n_columns.max(1));
@@ -244,7 +244,7 @@ pub(super) fn per_job_unit(job: &Job) -> Vec<TableColumn> {
     wanted.map(column).collect()
 }
 
-/// Apparent strain of a channel's wiring, microstrain a degree.
+/// Returns the apparent strain of a channel's wiring, microstrain per degree.
 fn apparent_strain(job: &Job, channel: &str) -> f64 {
     let bridge = job
         .gauges

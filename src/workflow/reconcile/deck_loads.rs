@@ -294,7 +294,7 @@ fn job_loads(job: &Job, model: &Model) -> Result<JobLoads, Faults> {
     Ok(out)
 }
 
-/// A load times `factor`; sets stay as they are.
+/// Returns a load times `factor`. Load sets are not changed.
 fn scale_load(load: &UnitLoad, factor: f64) -> UnitLoad {
     match load {
         UnitLoad::AtGrid {

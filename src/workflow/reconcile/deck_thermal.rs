@@ -121,7 +121,7 @@ fn uniform_temperature(sid: u32, degrees: f64) -> TemperatureSet {
     }
 }
 
-/// The deck's set moved and scaled so that its coldest place has 0 and its warmest 1 degree.
+/// Shifts and scales the temperature set of the deck. Its coldest place then has 0 degrees, its warmest 1 degree.
 fn scale_temperature_set(
     job: &Job,
     reconcile: &Reconcile,
@@ -185,7 +185,7 @@ fn scale_temperature_set(
     })
 }
 
-/// Lowest and highest temperature that an element has in a set.
+/// Returns the lowest and highest temperature that an element has in a set.
 fn extremes(model: &Model, set: &TemperatureSet) -> [f64; 2] {
     let at = set.by_grid(model.grids.len());
     let of = |id: u32, grids: &[GridIx]| -> Vec<f64> {

@@ -49,7 +49,7 @@ pub fn sensitivity_columns(job: &Job, frame: &StrainFrame, s: &ExtendedS) -> Vec
     wanted.chain(known).chain(left_out).collect()
 }
 
-/// Force or moment by the component that a load that was left out gets in the job.
+/// Returns the quantity (force or moment) of the component that the job gives to a load that was left out.
 fn quantity_left_out(load: &str) -> Quantity {
     let word = component_word(load);
     let component = Component::ALL.into_iter().find(|c| c.name() == word);

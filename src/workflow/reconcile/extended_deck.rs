@@ -199,7 +199,7 @@ impl DeckFrame {
     }
 }
 
-/// A comment line before an edited card.
+/// Returns a comment line before an edited card.
 fn comment_line(words: &str) -> String {
     format!("$ reconcile: {words}\n")
 }

@@ -130,7 +130,7 @@ impl<'a> Ground<'a> {
         out
     }
 
-    /// At most `n` regions of this radius round the gauges that disagree.
+    /// Returns at most `n` regions of this radius around the gauges that disagree.
     fn regions_of(&self, radius: f64, n: usize) -> Vec<Region> {
         let close = |i: &usize| {
             let m = self.middles.get(*i);

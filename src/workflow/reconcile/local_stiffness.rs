@@ -208,7 +208,7 @@ fn best_first(mut all: Vec<TrialRegion>) -> Vec<TrialRegion> {
     all
 }
 
-/// The first `n` at places of their own.
+/// Returns the first `n` regions at distinct places.
 fn keep_distinct_places(all: Vec<TrialRegion>, n: usize) -> Vec<TrialRegion> {
     let mut out: Vec<TrialRegion> = Vec::new();
     for t in all {
@@ -245,7 +245,7 @@ impl Residual {
         Self { entries, nominal }
     }
 
-    /// Share of the squared residual that one amplitude of a change of the influence matrix takes.
+    /// Returns the share of the squared residual that a change of the influence matrix explains with one amplitude.
     fn takes(&self, frame: &StrainFrame, change: &[f64]) -> f64 {
         let mut moved = self.nominal.clone();
         moved

@@ -121,7 +121,7 @@ impl<'a> Tables<'a> {
         SignatureTable::read(inputs, self.job, file, self.channels)
     }
 
-    /// Factor of a load's column.
+    /// Returns the factor of a load's column.
     fn scale(&self, name: &str) -> f64 {
         match quantity_of_load(self.job, name) {
             Quantity::Moment => self.per_knm,
@@ -129,7 +129,7 @@ impl<'a> Tables<'a> {
         }
     }
 
-    /// Column and factor of each load.
+    /// Returns the column and factor of each load.
     fn loads(&self) -> Vec<(String, f64)> {
         self.columns
             .iter()
@@ -162,7 +162,7 @@ impl<'a> Tables<'a> {
         payload_scale(self.per_kg, self.per_m)
     }
 
-    /// Payload columns; zeros where the table has none.
+    /// Returns the payload columns; zeros if the table has none.
     fn payload(&self, inputs: &mut Inputs) -> Result<Vec<Vec<f64>>, Faults> {
         let mut payload = vec![vec![0.0; self.channels.len()]; N_PAYLOAD_COLUMNS];
         if let Some(file) = &self.signatures.payload {
@@ -223,7 +223,7 @@ impl<'a> Tables<'a> {
         Ok(planes.into_iter().enumerate().map(wired).collect())
     }
 
-    /// Loads of the wheels that are not asked for, without those that the job has as nuisance loads.
+    /// Returns the loads of the wheels that the job does not ask for, except its nuisance loads.
     fn other_loads(&self, inputs: &mut Inputs) -> Result<Vec<(String, Vec<f64>)>, Faults> {
         let mut loads = Vec::new();
         if let Some(file) = &self.signatures.lateral_wheel_loads {
@@ -264,7 +264,7 @@ impl<'a> Tables<'a> {
         Ok(both)
     }
 
-    /// A mass at each place of the table.
+    /// Returns a mass at each place of the table.
     fn masses(&self, inputs: &mut Inputs) -> Result<Vec<MassSignature>, Faults> {
         let mut masses = Vec::new();
         if let Some(file) = &self.signatures.unaccounted_mass {
@@ -279,7 +279,7 @@ impl<'a> Tables<'a> {
         Ok(masses)
     }
 
-    /// Change of the influence matrix by a percent of each zone's stiffness.
+    /// Returns the change of the influence matrix by one percent of each zone's stiffness.
     fn stiffness(&self, inputs: &mut Inputs) -> Result<Vec<StiffnessSignature>, Faults> {
         let n_c = self.n_columns();
         let mut stiffness = Vec::new();

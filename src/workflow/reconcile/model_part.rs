@@ -34,7 +34,7 @@ pub(super) struct ModelPart {
     pub(super) payload_origin: [f64; 2],
 }
 
-/// Wiring of a bridge, as far as angles go.
+/// Returns the wiring of a bridge, as far as angles depend on it.
 pub(super) fn wiring(bridge: Bridge) -> Wiring {
     match bridge {
         Bridge::Quarter => Wiring::Quarter,

@@ -200,7 +200,7 @@ fn without_dead_hold_out(work: &mut Work, section: &VehicleJob, frame: &mut Moti
     ));
 }
 
-/// Whether the outcome identifies the wrong input as an effect of a channel, or has channels without a signal.
+/// Returns whether the outcome identifies the wrong input as an effect of a channel, or has channels without a signal.
 fn is_identified(wrong: &Finding, outcome: &MotionOutcome) -> bool {
     let of_channel = |e: &MotionEffect| match &e.change {
         Change::Flip { channel } => {
@@ -282,7 +282,7 @@ fn frame(section: &VehicleJob, records: &VehicleRecords, stop: Stop) -> MotionFr
     }
 }
 
-/// The analyst's vehicle as identified, with its motion over the fitted record.
+/// Returns the analyst's vehicle with its identified parameters, and its motion over the fitted record.
 fn compute_motion(
     records: &VehicleRecords,
     found: Identification,

@@ -95,7 +95,7 @@ impl DeckFrame {
         cards.map(|p| p.card.id).filter(|id| wanted(*id)).collect()
     }
 
-    /// The model with the thickness of these shell properties scaled.
+    /// Returns the model with a scaled thickness of these shell properties.
     fn with_properties(&self, ids: &[u32], factor: f64) -> Model {
         let mut deck = self.fields.deck.deck.clone();
         let cards = deck.cards.pshells.iter_mut();
@@ -114,7 +114,7 @@ impl DeckFrame {
     }
 }
 
-/// The model with shells' moduli times `factor`: properties and materials of their own behind all others.
+/// Returns the model with the moduli of these shells times `factor`. The shells get separate properties and materials with the highest ids.
 fn scale_shell_moduli(model: &Model, shells: &[usize], factor: f64) -> Model {
     let mut out = model.clone();
     let mut materials: BTreeMap<u32, MaterialIx> = BTreeMap::new();
@@ -174,7 +174,7 @@ fn scale_shell_moduli(model: &Model, shells: &[usize], factor: f64) -> Model {
     out
 }
 
-/// All moduli times a factor, Poisson's ratio as it is.
+/// Multiplies all moduli by a factor. Poisson's ratio does not change.
 fn scale(kind: &mut MaterialKind, factor: f64) {
     match kind {
         MaterialKind::Isotropic { e, g, .. } => {

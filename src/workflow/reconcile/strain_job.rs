@@ -84,7 +84,7 @@ pub(super) fn ground_found(effects: &[NamedEffect]) -> Option<f64> {
     effects.iter().find_map(of)
 }
 
-/// The id of a hypothesis of the user's own.
+/// Returns the id of a hypothesis that the user described.
 fn id_of_described(e: &NamedEffect) -> Option<&str> {
     match &e.extension {
         Extension::Described { id, .. } => Some(id),
@@ -116,7 +116,7 @@ fn drop_accepted(table: &mut Table, accepted: &[&str]) {
     }
 }
 
-/// S, the payload's signature and nuisance loads of a job in matrix form.
+/// Edits S, the payload's signature and nuisance loads of a job in matrix form.
 fn edit_sensitivity(table: &mut Table, job: &Job, frame: &StrainFrame, s: &ExtendedS) {
     set(table, "sensitivity", "file", SENSITIVITY);
     if let Some(Value::Table(section)) = table.get_mut("sensitivity") {

@@ -28,7 +28,7 @@ pub fn size_in_words(e: &EffectFound) -> String {
     }
 }
 
-/// Returns an effect as a clause of a sentence: what, where and how large, the half width of the 95 % interval with it.
+/// Returns an effect as a clause of a sentence: what, where and how large, with the half width of the 95 % interval.
 fn clause(e: &EffectFound) -> String {
     let (kind, place) = (
         e.id.split(':').next().unwrap_or(&e.id),
@@ -194,7 +194,7 @@ impl Reconciliation {
     }
 }
 
-/// The gap before and after, where one is known.
+/// Returns the gap before and after, if it is known.
 fn closed_gap_in_words(gap: &GapFound) -> String {
     match gap.before.is_finite() && gap.after.is_finite() {
         true => format!(
@@ -206,7 +206,7 @@ fn closed_gap_in_words(gap: &GapFound) -> String {
     }
 }
 
-/// The gap, where one is known, with the part that noise explains.
+/// Returns the gap, if it is known, with the part that noise explains.
 fn open(gap: &GapFound) -> String {
     let floor = gap.floor.filter(|f| f.is_finite());
     let floor = floor.map_or_else(String::new, |f| {

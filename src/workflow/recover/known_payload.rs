@@ -121,7 +121,7 @@ impl AtGrid {
     }
 }
 
-/// `None` where no weight acts there.
+/// Returns the load at a grid; `None` if no weight acts there.
 fn at_grid(task: &Task) -> Option<AtGrid> {
     let job = task.job;
     let model = task.prepared.fields.as_ref()?.model();

@@ -278,7 +278,7 @@ fn filter(
     Ok(filter)
 }
 
-/// The fault of an S that no estimate can be formed of.
+/// Returns the fault of an S that allows no estimate.
 fn sensitivity_fault(task: &Task) -> Fault {
     let file = match (&task.job.sensitivity, &task.job.model) {
         (Some(given), _) => &*given.file.given,

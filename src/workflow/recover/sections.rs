@@ -140,7 +140,7 @@ fn samples_between([from, to]: [f64; 2], clock: &Clock) -> Result<Range<usize>, 
     Ok(range)
 }
 
-/// The fault of a section that contains samples of an earlier one.
+/// Returns the fault of a section that contains samples of an earlier section.
 fn overlap(job: &Job, first: &Part, second: &Part, clock: &Clock) -> Option<Fault> {
     // Both lists ascend.
     let (mut ours, mut theirs) = (first.stretches.iter().peekable(), second.stretches.iter());

@@ -84,7 +84,7 @@ impl Spans {
         }
     }
 
-    /// Two neighbours become one.
+    /// Merges each pair of neighbours.
     fn halve(&mut self) {
         self.samples *= 2;
         self.list = self

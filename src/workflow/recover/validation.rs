@@ -104,12 +104,12 @@ impl<'a> PredictedGauge<'a> {
         &self.task.prepared.sensitivity.gauges[self.row]
     }
 
-    /// Strain at loads `f`; not a number where a load is unknown.
+    /// Returns the strain at loads `f`; not a number if a load is unknown.
     fn strain(&self, f: &[f64]) -> f64 {
         self.s.iter().zip(f).map(|(s, f)| s * f).sum()
     }
 
-    /// Expected variance of reading minus prediction, strain^2.
+    /// Returns the expected variance of reading minus prediction, strain^2.
     fn variance(&self, gain: &Gain, f: &[f64], noise_factor: f64) -> f64 {
         let own = self.uncertainty.as_ref();
         let of_row: f64 = own.map_or(0.0, |u| u.strain_covariance(1, f).iter().sum());

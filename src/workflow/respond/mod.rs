@@ -186,7 +186,7 @@ fn compute_response(work: &mut Work, job: &Job) -> Result<StressResponse, Faults
     })
 }
 
-/// The fault of a slope without a history.
+/// Returns the fault of a slope without a history.
 fn no_history(job: &Job) -> Fault {
     Fault::with_line(
         &*job.file,

@@ -324,7 +324,7 @@ impl Columns {
         Some(Fault::with_line(&*t.file, *line, field, wrong, remedy))
     }
 
-    /// The state of a row; `None` where it lacks a load.
+    /// Returns the state of a row; `None` if the row lacks a load.
     fn state(
         &self,
         t: &Table,

@@ -41,7 +41,7 @@ pub struct ChannelRange {
 }
 
 impl Column {
-    /// Range of the channel.
+    /// Returns the range of the channel.
     pub fn range(&self) -> ChannelRange {
         let values = self.values.iter().copied();
         ChannelRange {

@@ -167,7 +167,7 @@ fn placement_fault(job: &Job, study: &str, e: &PlaceError) -> Faults {
     Faults::from(Fault::with_line(&*job.file, line, field, wrong, remedy))
 }
 
-/// The D-optimal part of the job's own gauges.
+/// Returns the D-optimal subset of the job's own gauges.
 fn best_of_pool(
     job: &Job,
     prepared: &StudyInputs,
@@ -302,7 +302,7 @@ impl ModelCandidates {
         })
     }
 
-    /// Random places and angles among the candidates.
+    /// Draws random places and angles from the candidates.
     fn random_layout(
         &self,
         job: &Job,

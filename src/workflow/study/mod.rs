@@ -338,7 +338,7 @@ fn truth(
     )))
 }
 
-/// Root mean square error of a load over its true size.
+/// Returns the root mean square error of a load over its true size.
 fn relative_rms(row: &StudyRow, truth: &[TrueLoad], l: usize) -> f64 {
     row.bias[l].hypot(row.sigma[l]) / truth[l].size()
 }

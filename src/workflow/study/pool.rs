@@ -54,7 +54,7 @@ pub(super) struct StudyInputs {
     pub fields: Option<Fields>,
 }
 
-/// S of the job's gauges by the chain of all commands; the model alone where the job has neither gauges nor S.
+/// Returns S of the job's gauges, as all commands compute it. It returns the model alone if the job has neither gauges nor S.
 ///
 /// # Errors
 /// Faults of the deck, the results, the gauges.
@@ -183,7 +183,7 @@ fn row_of(gauge: &Gauge, cases: &[LoadCaseOf]) -> Option<Vec<f64>> {
         .collect()
 }
 
-/// Turned by 45 and 90 degrees, and moved to the neighbouring elements.
+/// Returns a gauge with its variants: turned by 45 and 90 degrees, and moved to the neighbouring elements.
 fn variants(
     fields: &Fields,
     job: &Job,

@@ -41,8 +41,8 @@ struct MeasurementEvidence {
 }
 
 impl MeasurementEvidence {
-    /// Returns the number of separated pairs, then the sum of their log evidence. No pair counts for more than certainty. Of several equally certain
-    /// measurements, the first one needs the least effort.
+    /// Returns the number of separated pairs, then the sum of their log evidence. The log evidence of a pair counts up to certainty only. Of several
+    /// equally certain measurements, the first one needs the least effort.
     fn rank(&self) -> (usize, f64) {
         let separated = self.worth.iter().filter(|w| **w > WORTH).count();
         (separated, self.worth.iter().map(|w| w.min(SURE)).sum())

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 /// Choices for spectra and levels, each with its reason.
 pub(super) struct CurveRules {
-    /// Segments that are averaged, where the record is long enough. The standard deviation of a density is then about 20 %.
+    /// Number of averaged segments, if the record is long enough. The standard deviation of a density is then about 20 %.
     averages: usize,
     /// Longest segment, samples. Longer ones resolve more lines than a page can show.
     longest: usize,

@@ -153,12 +153,12 @@ impl Differences {
         })
     }
 
-    /// Root mean square of the standard deviation of a difference.
+    /// Returns the root mean square of the standard deviation of a difference.
     fn sigma(&self) -> f64 {
         (self.variance / self.n.max(1) as f64).sqrt()
     }
 
-    /// The differences over their standard deviation; `each_independent`: no sample depends on the one before it.
+    /// Returns the differences divided by their standard deviation. `each_independent` states that no sample depends on the previous one.
     fn deviations(&self, each_independent: bool) -> Option<Deviations> {
         let filled = self.blocks.iter().filter(|b| b.1 > 0);
         let means: Vec<f64> = filled.clone().map(|b| b.0 / b.1 as f64).collect();
@@ -177,7 +177,7 @@ impl Differences {
 }
 
 impl LoadComparison {
-    /// The warning of a load whose differences exceed its intervals.
+    /// Returns the warning on a load whose differences exceed its intervals.
     fn outside_intervals_finding(&self, deviations: Option<Deviations>) -> Option<Finding> {
         let deviations = deviations.filter(Deviations::is_significant)?;
         let message = format!(

@@ -159,7 +159,7 @@ impl LoadRecordPair<'_> {
         }
     }
 
-    /// Recovered samples between the first and the last recorded one.
+    /// Returns the recovered samples between the first and the last recorded sample.
     fn common_samples(&self, head: &RecordHead) -> Range<usize> {
         let n = self.counting.samples.n_samples();
         let last = self.recorded.clock.samples.saturating_sub(1) as f64;
@@ -276,7 +276,7 @@ impl LoadRecordPair<'_> {
         out
     }
 
-    /// Recovered and recorded loads at the times of the recovered ones.
+    /// Returns recovered and recorded loads at the times of the recovered loads.
     fn sampled_loads(&self, range: &Range<usize>) -> Vec<SampledLoad> {
         let head = self.counting.head;
         let recovered = recovered_columns(self.counting, &self.columns);
@@ -303,7 +303,7 @@ impl LoadRecordPair<'_> {
         recovered.into_iter().enumerate().map(load).collect()
     }
 
-    /// Level crossings of both loads between the same times, each from its own samples.
+    /// Returns the level crossings of both loads between the same times, each from its own samples.
     fn levels(&self, range: &Range<usize>) -> Vec<LoadLevels> {
         let head = self.counting.head;
         let recovered = recovered_columns(self.counting, &self.columns);
@@ -334,7 +334,7 @@ impl LoadRecordPair<'_> {
             .collect()
     }
 
-    /// Recorded samples of a load between the first and the last time of a range.
+    /// Returns the recorded samples of a load between the first and the last time of a range.
     fn recorded_between(&self, i: usize, range: &Range<usize>) -> &[f32] {
         let head = self.counting.head;
         let time = |at: usize| head.first_s + at as f64 * head.step_s;
@@ -344,7 +344,7 @@ impl LoadRecordPair<'_> {
         self.recorded.samples[i].get(from..=to).unwrap_or_default()
     }
 
-    /// Damage of recovered over recorded load between the same times, each from its own samples.
+    /// Returns the damage of recovered over recorded load between the same times, each from its own samples.
     fn compare_damage(&self, i: usize, range: &Range<usize>, found: &mut super::LoadComparison) {
         let samples = self.recorded_between(i, range);
         let values = samples.iter().map(|v| f64::from(*v));
@@ -367,7 +367,8 @@ impl LoadRecordPair<'_> {
     }
 }
 
-/// The shift that the job states, or the one of recovered and recorded loads; `start_s`: first recorded sample without it.
+/// Returns the shift that the job states, or the shift that is estimated from recovered and recorded loads. `start_s` is the time of the first
+/// recorded sample without the shift.
 fn shift_of(
     job: &Job,
     compare: &Compare,
@@ -404,7 +405,7 @@ fn shift_of(
     Ok(out)
 }
 
-/// The recovered loads of these columns, report units, in memory.
+/// Reads the recovered loads of these columns into memory, report units.
 fn recovered_columns(counting: CycleCountInput, columns: &[usize]) -> Vec<Vec<f32>> {
     let n = counting.samples.n_samples();
     let mut out = vec![Vec::with_capacity(n); columns.len()];
@@ -464,7 +465,7 @@ fn shift_found(shift: &ComparisonShift) -> Option<Finding> {
     ))
 }
 
-/// The warning of a load recorded at so low a rate that values between samples are not known to the interval of the recovered load.
+/// Returns the warning on a load with a low recording rate: the values between samples are less certain than the recovered load.
 fn coarse_samples_finding(
     recorded: &LoadRecord,
     load: &str,

@@ -92,7 +92,7 @@ pub fn runs(
     Ok(out)
 }
 
-/// The file of recorded loads of a job and its rows; `None` where no load is recorded.
+/// Returns the file of recorded loads of a job and its rows; `None` if no load is recorded.
 fn rows<'a>(
     work: &mut Work,
     job: &'a Job,
