@@ -12,7 +12,7 @@ fn main() {
         collect(&root.join(folder), &mut files);
     }
     files.sort();
-    // Another version of a solver or of a transform rounds otherwise. A crate that is somebody's dependency has no file of its own.
+    // Another version of a solver or of a transform rounds otherwise. A crate that is a dependency of another crate has no lock file.
     let lock = root.join("Cargo.lock");
     if lock.is_file() {
         println!("cargo::rerun-if-changed=Cargo.lock");
@@ -32,7 +32,7 @@ fn main() {
         "cargo::rustc-env=STRAINBRIDGE_SOURCES={:016x}",
         hasher.finish()
     );
-    // Not in builds for tests: every commit would build the crate anew.
+    // Not in builds for tests: every commit would build the crate again.
     let commit = match std::env::var("PROFILE").as_deref() {
         Ok("release") => commit(&root.join(".git")).unwrap_or_default(),
         _ => String::new(),

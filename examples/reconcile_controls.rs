@@ -83,7 +83,7 @@ fn main() {
     } = tally;
     let [low, high] = wilson(wrong, judged);
     println!(
-        "{judged} controls judged ({from} to {to}): {wrong} false names, {:.2} % ({:.2} to {:.2} %); {unknown} unknown; {failed} more without a verdict",
+        "{judged} controls tested ({from} to {to}): {wrong} false names, {:.2} % ({:.2} to {:.2} %); {unknown} unknown; {failed} more without a verdict",
         percent(wrong, judged),
         100.0 * low,
         100.0 * high

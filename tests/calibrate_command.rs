@@ -604,7 +604,7 @@ fn gauges_are_found_where_they_were_glued_and_their_table_makes_the_true_s() {
         }
     }
     // Of 18 intervals, about one is outside two sigma. Three have a chance of one in a hundred.
-    assert!(off < 4 && told > 9, "{off} off, {told} told: {result}");
+    assert!(off < 4 && told > 9, "{off} off, {told} reported: {result}");
     // The written table replaces the gauges of the job.
     let (head, _) = strip_job(0.0)
         .split_once("[[gauge]]")

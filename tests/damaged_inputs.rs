@@ -319,7 +319,7 @@ fn on_every_set_the_quick_start_gives_an_answer_or_init_states_the_reason() {
         let done = strainbridge(&arguments);
         if !recommends_place(&done.stdout) {
             // A fault, or a job with the reason why no gauge can be placed.
-            assert!(!done.stderr.is_empty(), "{files:?}: nothing is said");
+            assert!(!done.stderr.is_empty(), "{files:?}: nothing is reported");
             told += 1;
             continue;
         }
@@ -331,7 +331,7 @@ fn on_every_set_the_quick_start_gives_an_answer_or_init_states_the_reason() {
         }
     }
     println!(
-        "{answered} of {} answered, {told} told why not, neither {neither:?}",
+        "{answered} of {} answered, {told} with a reason, neither {neither:?}",
         inputs.len()
     );
     // At least nine of ten must have one of both.

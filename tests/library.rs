@@ -487,7 +487,10 @@ fn loads_of_a_record_stay_in_memory_sample_by_sample() {
         widths.push(high - low);
     }
     assert_eq!(widths.len(), 500);
-    assert!(widths[110] > 1.01 * widths[99], "a gauge less tells less");
+    assert!(
+        widths[110] > 1.01 * widths[99],
+        "with a gauge less the interval is wider"
+    );
     // The samples do not depend on the requested part.
     let (mut all, mut parts) = (Vec::new(), Vec::new());
     history.read(0, 500, &[0, 1, 2], &mut all);
@@ -691,7 +694,7 @@ fn wanted_elements_and_picked_lists_are_kept() {
         "{faults}"
     );
     let Err(faults) = plan("none.toml") else {
-        panic!("element 99 is none of the deck");
+        panic!("element 99 is not in the deck");
     };
     assert!(faults.to_string().contains("element 99 is not a candidate"));
 }

@@ -1,6 +1,6 @@
 //! Lists what an OP2 holds and decodes every block: `cargo run -p nastran --example list_op2 -- model.op2`.
 //!
-//! A solver writes one block of rows for each table, subcase, step and element type, behind a record that says which. Reading the
+//! A solver writes one block of rows for each table, subcase, step and element type, behind a record that identifies the block. Reading the
 //! file finds the blocks; a block's rows are decoded only when asked for, so that a file of many gigabytes costs no more memory
 //! than its largest block.
 #![allow(clippy::print_stdout, reason = "an example shows what it finds")]

@@ -6,7 +6,7 @@
 //! The tests need Python with these packages: the interpreter in STRAINBRIDGE_PYTHON, or `python3`. Without them,
 //! `support` counts and prints a skip, or fails if STRAINBRIDGE_TESTS=required is set.
 
-#![allow(clippy::print_stderr, reason = "says why it is skipped")]
+#![allow(clippy::print_stderr, reason = "states why it is skipped")]
 
 mod coarse;
 mod exchange;

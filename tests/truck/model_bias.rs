@@ -95,7 +95,7 @@ fn table_6_9_shells_against_bars_are_no_fault_of_a_gauge() {
     let outcome = examine(&frame(), &[]);
     let named: Vec<&String> = outcome.effects.iter().map(|e| &e.id).collect();
     println!(
-        "6.9: reconcile says {} {named:?}, {}; {}; chi2 {:?}",
+        "6.9: reconcile reports {} {named:?}, {}; {}; chi2 {:?}",
         outcome.verdict.word(),
         outcome.sits,
         outcome.remains,

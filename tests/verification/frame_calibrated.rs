@@ -194,12 +194,15 @@ fn known_loads_and_the_coarse_model_calibrate_together_better_than_either_and_in
         let held = trials.iter().map(|t| t.held).sum::<usize>() as f64;
         let held = held / (trials.len() * LOADS) as f64;
         eprintln!(
-            "frame, {m} known runs: error {both:.0} N, stated {sigma:.0}; model alone {alone:.0}, runs alone {runs:.0}; {:.1} % held",
+            "frame, {m} calibration runs: error {both:.0} N, stated {sigma:.0}; model alone {alone:.0}, runs alone {runs:.0}; {:.1} % held",
             100.0 * held
         );
         // If the runs alone do not determine S, `runs` is NaN and `min` ignores it.
         assert!(both <= 1.02 * alone.min(runs), "{m}: {both} {alone} {runs}");
-        assert!(both < before, "{m} runs tell no more than fewer: {both}");
+        assert!(
+            both < before,
+            "{m} runs give no smaller error than fewer runs: {both}"
+        );
         before = both;
         // The requirement is 95 +- 2 % with 2000 trials, which give 93.6, 94.4 and 94.8 %. With 400 trials the standard
         // error is half a per cent.

@@ -90,7 +90,7 @@ fn words(offset: [f64; 3], gain: f64) -> Vec<ShiftWord> {
             let c = calibrate(&task(wrong, offset, gain, i as u64)).unwrap();
             for (g, s) in c.shifts.iter().enumerate().filter(|(g, _)| *g != wrong) {
                 let named = matches!(s.word, ShiftWord::Angle | ShiftWord::Place);
-                assert!(!named, "G{g} beside G{wrong}: {s:?}");
+                assert!(!named, "G{g} next to G{wrong}: {s:?}");
             }
             c.shifts[wrong].word
         })

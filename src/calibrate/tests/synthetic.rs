@@ -140,7 +140,7 @@ fn model_and_runs_together_beat_either_and_their_intervals_hold() {
             both < 1.02 * better,
             "{m} runs: model {model}, runs {runs}, both {both}"
         );
-        assert!(both < before, "more runs tell more");
+        assert!(both < before, "more runs give smaller errors");
         before = both;
         // The protocol allows two per cent for 2,000 trials. For 60 trials chance sets the limit. The errors of the six loads of a trial are
         // correlated. The limit is therefore three standard deviations of a binomial of 95 % with a third as many.

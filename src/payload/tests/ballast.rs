@@ -63,7 +63,7 @@ fn two_masses_match_every_reaction_and_only_total_and_centre_count_as_fixed() {
     assert!((across - (-0.175)).abs() < 1e-2, "{across}");
     assert_eq!(
         fit.fixed, 3,
-        "a rigid frame tells three things of any number of masses"
+        "a rigid frame determines three numbers of any number of masses"
     );
     for (b, (w, at)) in fit.masses.iter().zip(truth) {
         assert!(b.weight_range[0] <= w && w <= b.weight_range[1], "{b:?}");
