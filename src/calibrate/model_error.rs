@@ -25,7 +25,7 @@ fn factor(step: i32) -> f64 {
     2_f64.powf(f64::from(step) / 2.0)
 }
 
-/// Probability of each gauge's readings for each relative error of the model that is tried.
+/// Probability of each gauge's readings, for each tested relative error of the model.
 #[derive(Clone, Debug)]
 pub(super) struct ErrorEvidence {
     stated: ModelError,

@@ -9,8 +9,9 @@ const BEND: f64 = 0.21;
 /// Ends of the search for the sharpness of peaks, natural logs: beyond them [`rise`] is only a square, or only a straight line.
 const ENDS: [f64; 2] = [-4.0, 6.0];
 
-/// Returns the mean rise of the largest of samples by white noise `x`. The samples follow a parabola that falls by half of one within a sample.
-/// Below one the rise grows like `x^2`, as one or two samples compete; above, with many samples, like `x sqrt(log x)`.
+/// Returns the mean increase of the largest sample by white noise of size `x`. The samples follow a parabola that falls by one half within one
+/// sample. Below `x = 1` the increase grows like `x^2`, because one or two samples compete. Above, many samples compete, and it grows like `x
+/// sqrt(log x)`.
 fn rise(x: f64) -> f64 {
     x * (BEND * (1.0 + x * x / BEND).ln()).sqrt()
 }

@@ -152,7 +152,7 @@ impl Purpose {
     }
 }
 
-/// Returns the zones of the deck's named properties, a line each, or an example where the deck names none.
+/// Returns one line for each zone of the deck's named properties, or an example if the deck names no property.
 fn zones_text(zones: &BTreeMap<String, BTreeSet<u32>>) -> String {
     const HEAD: &str =
         "[reconcile.zones]                     # properties whose stiffness may be wrong together";

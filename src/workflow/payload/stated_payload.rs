@@ -12,7 +12,7 @@ use crate::payload::{PayloadRun, Place, WeighSpec, WeighedRun, Weighing, weigh};
 
 /// Number of standard deviations from which readings contradict a stated place, as for moments of wheel forces.
 pub(super) const REFUTED: f64 = 4.0;
-/// Relative difference between weighed and recorded mass from which one of them is wrong.
+/// Relative difference between weighed and recorded mass above which one of them is wrong.
 const OTHER_MASS: f64 = 0.1;
 
 /// Returns the finding on a stated place that the strain contradicts. The runs are weighed again with a free place. The finding is an error if the
