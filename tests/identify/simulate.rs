@@ -14,7 +14,7 @@ const KNOWN: &str = "known = { m_b = 3200.0, m_f = 1400.0, k_s = 4.8e5, c_s = 56
 const ON_TYRE: &str =
     "known = { m_b = 3200.0, m_f = 1400.0, k_s = 4.8e5, c_s = 5600.0, k_t = 2.0e6, c_t = 900.0 }\n";
 
-fn table(head: &str, rate_hz: f64, columns: &[Vec<f64>]) -> String {
+pub fn table(head: &str, rate_hz: f64, columns: &[Vec<f64>]) -> String {
     let mut text = format!("{head}\n");
     for i in 0..columns[0].len() {
         let _ = write!(text, "{:.6}", i as f64 / rate_hz);
@@ -26,7 +26,7 @@ fn table(head: &str, rate_hz: f64, columns: &[Vec<f64>]) -> String {
     text
 }
 
-fn run(job: &str, data: &str) -> Result<Outcome<SimulatedResponse>, Faults> {
+pub fn run(job: &str, data: &str) -> Result<Outcome<SimulatedResponse>, Faults> {
     let files = InMemory::default()
         .with_file("job.toml", job)
         .with_file("data.csv", data);
@@ -44,7 +44,7 @@ fn refused(job: &str, data: &str, expected: &[&str]) {
 }
 
 /// A standard normal number by the polar form of Box and Muller.
-fn normal(random: &mut ChaCha8Rng) -> f64 {
+pub fn normal(random: &mut ChaCha8Rng) -> f64 {
     let (u, v): (f64, f64) = (random.random(), random.random());
     (-2.0 * (1.0 - u).ln()).sqrt() * (2.0 * PI * v).cos()
 }
