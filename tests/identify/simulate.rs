@@ -282,6 +282,49 @@ fn an_offset_of_an_acceleration_drifts_and_is_reported() {
     assert!((mean - 4600.0 * 0.05).abs() < 20.0, "{mean}");
 }
 
+/// Gravity in the mean of an acceleration, and the weight of the stated masses in the means of wheel forces, show their sign and unit.
+#[test]
+fn a_sign_or_a_unit_that_the_means_refute_is_an_error() {
+    let rate = 500.0;
+    let wave = |level: f64, size: f64| -> Vec<f64> {
+        (0..8000)
+            .map(|i| level + size * (0.06 * f64::from(i)).sin())
+            .collect()
+    };
+    let (g, weight) = (9.80665, 4600.0 * 9.80665);
+    let cases = [
+        ("a_wheel", wave(g, 1.0), None),
+        ("a_wheel", wave(0.0, 1.0), None),
+        ("a_wheel", wave(-g, 1.0), Some("input-sign-reversed")),
+        ("a_wheel", wave(1.0, 0.1), Some("input-unit")),
+        ("f_wheel", wave(weight, 4000.0), None),
+        // A force without its static part and with an offset of a thousandth of the weight is no force in kN.
+        ("f_wheel", wave(0.001 * weight, 4000.0), None),
+        (
+            "f_wheel",
+            wave(-weight, 4000.0),
+            Some("input-sign-reversed"),
+        ),
+        ("f_wheel", wave(0.001 * weight, 4.0), Some("input-unit")),
+    ];
+    for (channel, samples, expected) in cases {
+        let data = table(&format!("time [s],{channel}"), rate, &[samples]);
+        let found = run(&format!("{VEHICLE}{KNOWN}"), &data).unwrap();
+        let errors: Vec<&str> = found
+            .findings
+            .iter()
+            .filter(|f| f.severity == strainbridge::Severity::Error)
+            .map(|f| f.code)
+            .collect();
+        assert_eq!(
+            errors,
+            Vec::from_iter(expected),
+            "{channel}: {:?}",
+            found.findings
+        );
+    }
+}
+
 /// Command line: files, JSON, exit codes, and the same job through `check`.
 #[test]
 fn the_command_writes_its_files_and_check_accepts_its_job() {
