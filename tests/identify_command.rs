@@ -6,6 +6,9 @@ mod support;
 #[path = "identify/simulate.rs"]
 mod simulate;
 
+#[path = "identify/thesis.rs"]
+mod thesis;
+
 #[path = "identify/formats.rs"]
 mod formats;
 

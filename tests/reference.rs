@@ -219,6 +219,23 @@ fn no_link_is_dead() {
     assert!(links > 20);
 }
 
+/// Pages name the tests that show a figure by their file.
+#[test]
+fn every_test_file_that_a_page_names_exists() {
+    let mut named = 0;
+    for (path, text) in pages() {
+        for word in text.split('`').skip(1).step_by(2) {
+            let is_file = word.ends_with(".rs") && !word.contains(['*', '{', ' ', '<']);
+            if is_file && (word.starts_with("src/") || word.starts_with("tests/")) {
+                named += 1;
+                assert!(root().join(word).is_file(), "{}: {word}", path.display());
+            }
+        }
+    }
+    // The table of the thesis has 41 rows.
+    assert!(named >= 41, "{named}");
+}
+
 #[test]
 fn every_command_that_a_page_shows_is_understood() {
     let mut commands = 0;

@@ -440,6 +440,10 @@ class RespondKeys(Section):
 
     elements: _Key[Any]
     """Elements to report, such as '1 THRU 500'; default: the hottest."""
+    fatigue_class: _Key[Any]
+    """Stress range that the detail endures for 2 million cycles, such as the FAT class of a weld. If it is stated, `fatigue.csv` contains the
+    share of the life that the record uses: the sum of n / N with N = 2e6 (class / range)^slope, without an endurance limit; needs `slope`
+    [report unit of stress]; default: no share of life."""
     hottest: _Key[Any]
     """Number of elements with the highest stress to report; default: 20."""
     loads: _Key[Any]

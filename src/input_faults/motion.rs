@@ -13,7 +13,7 @@ mod scale;
 #[cfg(test)]
 mod tests;
 
-pub use gravity::{channels_by_gravity, faults_by_gravity, findings_by_gravity};
+pub use gravity::{channels_by_gravity, faults_by_gravity, finding_by_weight, findings_by_gravity};
 pub use scale::{MotionScale, finding_of_scale};
 
 /// Thresholds of the search.

@@ -326,6 +326,7 @@ pub(super) struct RawRespond {
     pub mean_stress: S<String>,
     pub ultimate: S<f64>,
     pub mean_sensitivity: S<f64>,
+    pub fatigue_class: S<f64>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

@@ -31,6 +31,19 @@ pub struct StressLaw {
     pub mean_stress: MeanStress,
     /// Report units of stress in one unit of the rows.
     pub unit: f64,
+    /// Stress range that the detail endures for two million cycles, in the report unit of stress.
+    pub class: Option<f64>,
+}
+
+/// Cycles at the stress range of a fatigue class (A. Hobbacher, Recommendations for Fatigue Design of Welded Joints, IIW).
+const CLASS_CYCLES: f64 = 2e6;
+
+impl StressLaw {
+    /// Returns the share of the life that a pseudo-damage uses: `damage / (2e6 class^m)`, the sum of n / N over the cycles. `None` without a class.
+    pub fn life_share(&self, damage: f64) -> Option<f64> {
+        let class = self.class?;
+        Some(damage / (CLASS_CYCLES * class.powf(self.slope)))
+    }
 }
 
 /// Returns, by row, the pseudo-damage of the normal stress on the plane where it is largest.
@@ -128,6 +141,7 @@ mod tests {
                 slope: 4.0,
                 mean_stress: MeanStress::None,
                 unit: 1.0,
+                class: Some(12.0),
             };
             let [found] = fatigue(&[&row], &states, law)[..] else {
                 panic!("one row");
@@ -142,6 +156,9 @@ mod tests {
                 );
             }
             assert_eq!(found.angle_deg, angle);
+            // The range is that of the class: ten of two million cycles.
+            let share = law.life_share(found.value).unwrap();
+            assert!((share / 5e-6 - 1.0).abs() < 1e-9, "{share}");
         }
     }
 
@@ -179,6 +196,7 @@ mod tests {
                     slope: 5.0,
                     mean_stress,
                     unit: 1e-6,
+                    class: None,
                 };
                 let found = fatigue(&[&row], &states, law)[0];
                 let expected = 10.0 * f64::powi(range, 5);

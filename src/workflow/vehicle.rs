@@ -4,7 +4,7 @@ use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::words::format_number;
 use crate::host::work::Work;
-use crate::input_faults::{ChannelKind, channels_by_gravity, findings_by_gravity};
+use crate::input_faults::{ChannelKind, MotionChannel, channels_by_gravity, findings_by_gravity};
 use crate::job::suggest::find_closest_name;
 use crate::job::{ChannelCorrection, Job, NamedFile, Vehicle as VehicleJob};
 use crate::measured::faults::record_fault;
@@ -114,11 +114,7 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
             };
             check_samples(&named.given, record, |name| used(name) != Kind::Other)?;
             work.findings.extend(misspelt(&named.given, record, &model));
-            let unit_of = |kind| match kind {
-                ChannelKind::Acceleration => job.units.unit(Quantity::Acceleration).name.to_owned(),
-                ChannelKind::Force => job.units.unit(Quantity::Force).name.to_owned(),
-            };
-            let channels = motion_channels(&model, record, unit_of);
+            let channels = channels_in_job_units(job, &model, record);
             let wrong = channels_by_gravity(&channels, gravity);
             let mut findings = check_channels(record, gravity, used);
             // A mean that indicates another sign or unit is not an offset.
@@ -277,6 +273,21 @@ pub(super) fn preset_fault(job: &Job, section: &VehicleJob, e: &PresetError) -> 
     };
     let (wrong, remedy) = e.parts();
     Fault::with_line(&*job.file, section.line, key, wrong, remedy)
+}
+
+/// Returns the accelerations and wheel forces of a record that the model uses.
+pub(super) fn channels_in_job_units<'a>(
+    job: &Job,
+    model: &Vehicle,
+    record: &'a Channels,
+) -> Vec<MotionChannel<'a>> {
+    motion_channels(model, record, |kind| {
+        let quantity = match kind {
+            ChannelKind::Acceleration => Quantity::Acceleration,
+            ChannelKind::Force => Quantity::Force,
+        };
+        job.units.unit(quantity).name.to_owned()
+    })
 }
 
 /// Reads a record of any format that a record of strain may have, in the job's units.

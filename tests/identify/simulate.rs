@@ -14,7 +14,7 @@ const KNOWN: &str = "known = { m_b = 3200.0, m_f = 1400.0, k_s = 4.8e5, c_s = 56
 const ON_TYRE: &str =
     "known = { m_b = 3200.0, m_f = 1400.0, k_s = 4.8e5, c_s = 5600.0, k_t = 2.0e6, c_t = 900.0 }\n";
 
-fn table(head: &str, rate_hz: f64, columns: &[Vec<f64>]) -> String {
+pub fn table(head: &str, rate_hz: f64, columns: &[Vec<f64>]) -> String {
     let mut text = format!("{head}\n");
     for i in 0..columns[0].len() {
         let _ = write!(text, "{:.6}", i as f64 / rate_hz);
@@ -26,7 +26,7 @@ fn table(head: &str, rate_hz: f64, columns: &[Vec<f64>]) -> String {
     text
 }
 
-fn run(job: &str, data: &str) -> Result<Outcome<SimulatedResponse>, Faults> {
+pub fn run(job: &str, data: &str) -> Result<Outcome<SimulatedResponse>, Faults> {
     let files = InMemory::default()
         .with_file("job.toml", job)
         .with_file("data.csv", data);
@@ -44,7 +44,7 @@ fn refused(job: &str, data: &str, expected: &[&str]) {
 }
 
 /// A standard normal number by the polar form of Box and Muller.
-fn normal(random: &mut ChaCha8Rng) -> f64 {
+pub fn normal(random: &mut ChaCha8Rng) -> f64 {
     let (u, v): (f64, f64) = (random.random(), random.random());
     (-2.0 * (1.0 - u).ln()).sqrt() * (2.0 * PI * v).cos()
 }
@@ -280,6 +280,49 @@ fn an_offset_of_an_acceleration_drifts_and_is_reported() {
     let tail = &found.channel("f_wheel").unwrap()[20_000..];
     let mean = tail.iter().sum::<f64>() / tail.len() as f64;
     assert!((mean - 4600.0 * 0.05).abs() < 20.0, "{mean}");
+}
+
+/// Gravity in the mean of an acceleration, and the weight of the stated masses in the means of wheel forces, show their sign and unit.
+#[test]
+fn a_sign_or_a_unit_that_the_means_refute_is_an_error() {
+    let rate = 500.0;
+    let wave = |level: f64, size: f64| -> Vec<f64> {
+        (0..8000)
+            .map(|i| level + size * (0.06 * f64::from(i)).sin())
+            .collect()
+    };
+    let (g, weight) = (9.80665, 4600.0 * 9.80665);
+    let cases = [
+        ("a_wheel", wave(g, 1.0), None),
+        ("a_wheel", wave(0.0, 1.0), None),
+        ("a_wheel", wave(-g, 1.0), Some("input-sign-reversed")),
+        ("a_wheel", wave(1.0, 0.1), Some("input-unit")),
+        ("f_wheel", wave(weight, 4000.0), None),
+        // A force without its static part and with an offset of a thousandth of the weight is no force in kN.
+        ("f_wheel", wave(0.001 * weight, 4000.0), None),
+        (
+            "f_wheel",
+            wave(-weight, 4000.0),
+            Some("input-sign-reversed"),
+        ),
+        ("f_wheel", wave(0.001 * weight, 4.0), Some("input-unit")),
+    ];
+    for (channel, samples, expected) in cases {
+        let data = table(&format!("time [s],{channel}"), rate, &[samples]);
+        let found = run(&format!("{VEHICLE}{KNOWN}"), &data).unwrap();
+        let errors: Vec<&str> = found
+            .findings
+            .iter()
+            .filter(|f| f.severity == strainbridge::Severity::Error)
+            .map(|f| f.code)
+            .collect();
+        assert_eq!(
+            errors,
+            Vec::from_iter(expected),
+            "{channel}: {:?}",
+            found.findings
+        );
+    }
 }
 
 /// Command line: files, JSON, exit codes, and the same job through `check`.

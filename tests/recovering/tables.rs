@@ -433,29 +433,45 @@ fn loads_in_another_unit_than_the_report_give_the_same_stress() {
 /// cycles.
 #[test]
 fn fatigue_scales_with_the_power_of_the_loads_and_needs_a_history() {
-    let answer = |key: &str, factor: f64| {
+    let answer = |key: &str, factor: f64, more: &str| {
         let mut table = format!("{key},P,P.low,P.high\n");
         for (i, v) in [1.0, -12.5, 40.0, 25.0, 30.0, 0.0].iter().enumerate() {
             let v = v * factor;
             let _ = writeln!(table, "{i},{v},{},{}", v - 0.5, v + 0.5);
         }
         let files = plate("name,element,surface,angle_deg\nA,7,bottom,45\n");
-        let job = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"P\"\ngrid = 2\ncomponent = \"FY\"\n\
-                   [respond]\nloads = \"loads.csv\"\nslope = 4.0\n";
+        let job = format!(
+            "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"P\"\ngrid = 2\ncomponent = \"FY\"\n\
+             [respond]\nloads = \"loads.csv\"\n{more}"
+        );
         let files = files
             .with_file("job.toml", job)
             .with_file("loads.csv", table);
-        let job = Job::read("job.toml", &files).unwrap();
+        let job = Job::read("job.toml", &files)?;
         respond(&job, &Context::new(&files)).map(|o| o.answer.fatigue)
     };
-    let [once, twice] = [1.0, 2.0].map(|factor| answer("time", factor).unwrap());
+    let slope = "slope = 4.0\n";
+    let [once, twice] = [1.0, 2.0].map(|factor| answer("time", factor, slope).unwrap());
     assert!(!once.is_empty() && once.len() == twice.len());
     for (a, b) in once.iter().zip(&twice) {
         assert!((b.damage / a.damage - 16.0).abs() < 1e-9, "{a:?} {b:?}");
         assert!(a.damage_low < a.damage && a.damage < a.damage_high, "{a:?}");
         assert_eq!(a.angle_deg, b.angle_deg);
     }
-    let printed = answer("run", 1.0).map(|_| ()).unwrap_err().to_string();
+    // The share of life is the sum of n / N with N = 2e6 (class / range)^4, and needs the slope.
+    assert!(once.iter().all(|f| f.life_share.is_none()));
+    let of_class = answer("time", 1.0, "slope = 4.0\nfatigue_class = 71.0\n").unwrap();
+    for (a, b) in once.iter().zip(&of_class) {
+        let share = a.damage_high / (2e6 * 71.0_f64.powi(4));
+        assert!((b.life_share_high.unwrap() / share - 1.0).abs() < 1e-12);
+    }
+    let printed = answer("time", 1.0, "fatigue_class = 71.0\n");
+    let printed = printed.map(|_| ()).unwrap_err().to_string();
+    assert!(printed.contains("respond.fatigue_class"), "{printed}");
+    let printed = answer("run", 1.0, slope)
+        .map(|_| ())
+        .unwrap_err()
+        .to_string();
     assert!(
         printed.contains("respond.slope") && printed.contains("form no cycles"),
         "{printed}"

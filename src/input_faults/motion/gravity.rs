@@ -54,27 +54,67 @@ pub fn channels_by_gravity<'a>(channels: &[MotionChannel<'a>], gravity: f64) -> 
 /// Returns the findings on [`faults_by_gravity`] in a record of `file`, errors.
 pub fn findings_by_gravity(channels: &[MotionChannel], gravity: f64, file: &str) -> Vec<Finding> {
     let faults = faults_by_gravity(channels, gravity);
+    let shown = format!(
+        "gravity, which is {} in the unit of the job",
+        number(gravity)
+    );
     let each = faults.iter().map(|fault| {
-        let own = fault.channels();
-        let means = own.iter().map(|c| {
-            let c = &channels[*c];
-            format!("{} {}", c.name, number(c.mean))
-        });
-        let first = own.first().map_or(f64::NAN, |c| channels[*c].mean);
-        let message = format!(
-            "{} in `{file}`: the mean shows gravity, which is {} in the unit of the job (means: {})",
-            fault.describe(channels),
-            number(gravity),
-            list_few(&means.collect::<Vec<_>>())
-        );
-        Finding::new(
-            Severity::Error,
-            fault.code(),
-            fault.subject(channels),
-            message,
-            fault.remedy(channels),
-        )
-        .with_numbers(first, gravity)
+        let first = fault
+            .channels()
+            .first()
+            .map_or(f64::NAN, |c| channels[*c].mean);
+        finding_of_means(channels, fault, &shown, file).with_numbers(first, gravity)
     });
     each.collect()
+}
+
+/// Returns an error if the means of the wheel forces add up to minus the weight of the stated masses, or to this weight in another unit.
+///
+/// Wheels that stay on the road have a mean force above the scatter of the force. Forces without a static part have small means of any size.
+pub fn finding_by_weight(channels: &[MotionChannel], weight: f64, file: &str) -> Option<Finding> {
+    let forces = of_kind(channels, ChannelKind::Force);
+    let first = &channels[*forces.first()?];
+    let total: f64 = forces.iter().map(|c| channels[*c].mean).sum();
+    let is_static = |c: &usize| channels[*c].scatter < channels[*c].mean.abs();
+    if shows(total, weight) || !forces.iter().all(is_static) {
+        return None;
+    }
+    let fault = match shows(-total, weight) {
+        true => MotionFault::Sign(forces),
+        false => {
+            let mut units = other_units(first).into_iter();
+            let (unit, factor) = units.find(|(_, f)| shows(total.abs() * f, weight))?;
+            MotionFault::Unit(forces, unit, factor)
+        }
+    };
+    let shown = format!(
+        "the weight of the stated masses, which is {}",
+        number(weight)
+    );
+    Some(finding_of_means(channels, &fault, &shown, file).with_numbers(total, weight))
+}
+
+/// Returns the error of a fault that the means of its channels show.
+fn finding_of_means(
+    channels: &[MotionChannel],
+    fault: &MotionFault,
+    shown: &str,
+    file: &str,
+) -> Finding {
+    let means = fault.channels().iter().map(|c| {
+        let c = &channels[*c];
+        format!("{} {}", c.name, number(c.mean))
+    });
+    let message = format!(
+        "{} in `{file}`: the mean shows {shown} (means: {})",
+        fault.describe(channels),
+        list_few(&means.collect::<Vec<_>>())
+    );
+    Finding::new(
+        Severity::Error,
+        fault.code(),
+        fault.subject(channels),
+        message,
+        fault.remedy(channels),
+    )
 }

@@ -315,6 +315,7 @@ pub(super) fn respond(c: &mut Collector, raw: Option<&SpannedValue<RawRespond>>)
         loads: None,
         slope: None,
         mean_stress: MeanStress::None,
+        fatigue_class: None,
         line: 0,
     };
     let Some(section) = raw else { return out };
@@ -326,6 +327,12 @@ pub(super) fn respond(c: &mut Collector, raw: Option<&SpannedValue<RawRespond>>)
     out.loads = c.named_file(&raw.loads, "respond.loads");
     out.slope = slope_of(c, &raw.slope, "respond.slope");
     out.mean_stress = mean_stress(c, section);
+    out.fatigue_class = c.positive_number(&raw.fatigue_class, "respond.fatigue_class");
+    if let (Some(at), None) = (&raw.fatigue_class, &raw.slope) {
+        let wrong = "a share of life needs the power of the stress range";
+        let remedy = "state `slope` in [respond], 3 for welds";
+        c.fault(at, "respond.fatigue_class", wrong, remedy);
+    }
     out.line = c.line(section);
     out
 }

@@ -17,6 +17,8 @@ pub struct Respond {
     pub slope: Option<f64>,
     /// Correction of the cycles for their mean stress, report unit of stress.
     pub mean_stress: MeanStress,
+    /// Stress range that the detail endures for two million cycles, in the report unit of stress.
+    pub fatigue_class: Option<f64>,
     /// Line of the job; 0 where the section is absent.
     pub line: u32,
 }

@@ -148,27 +148,34 @@ impl Report for Outcome<StressResponse> {
     }
 }
 
-const FATIGUE: [(&str, &str); 6] = [
+const FATIGUE: [(&str, &str); 9] = [
     ("element", ""),
     ("surface", ""),
     ("damage", "report stress to the power of the slope"),
     ("damage_low", "report stress to the power of the slope"),
     ("damage_high", "report stress to the power of the slope"),
     ("angle_deg", "degree"),
+    ("life_share", ""),
+    ("life_share_low", ""),
+    ("life_share_high", ""),
 ];
 
 fn fatigue_csv(w: &mut dyn std::io::Write, list: &[ElementFatigue]) -> std::io::Result<()> {
     writeln!(w, "{}", FATIGUE.map(|c| c.0).join(","))?;
+    let cell = |share: Option<f64>| share.map_or_else(String::new, |s| s.to_string());
     for f in list {
         writeln!(
             w,
-            "{},{},{},{},{},{}",
+            "{},{},{},{},{},{},{},{},{}",
             f.element,
             csv_cell(&f.surface),
             f.damage,
             f.damage_low,
             f.damage_high,
-            f.angle_deg
+            f.angle_deg,
+            cell(f.life_share),
+            cell(f.life_share_low),
+            cell(f.life_share_high)
         )?;
     }
     Ok(())
@@ -183,6 +190,12 @@ fn fatigue_section(list: &[ElementFatigue]) -> Section {
             number(f.damage),
             format!("{} to {}", number(f.damage_low), number(f.damage_high)),
             number(f.angle_deg),
+            f.life_share.map_or_else(String::new, number),
+            f.life_share_low
+                .zip(f.life_share_high)
+                .map_or_else(String::new, |(low, high)| {
+                    format!("{} to {}", number(low), number(high))
+                }),
         ]
     };
     let rows: Vec<Vec<String>> = list.iter().take(MOST_ROWS).map(row).collect();
@@ -192,10 +205,18 @@ fn fatigue_section(list: &[ElementFatigue]) -> Section {
         "damage",
         "95 % interval",
         "plane, deg",
+        "share of life",
+        "95 % interval",
     ];
+    // Without a fatigue class, the last two columns are empty.
+    let columns = match list.iter().any(|f| f.life_share.is_some()) {
+        true => head.len(),
+        false => head.len() - 2,
+    };
+    let rows: Vec<Vec<String>> = rows.iter().map(|r| r[..columns].to_vec()).collect();
     table_section(
         "Fatigue",
-        &head,
+        &head[..columns],
         &rows,
         "Pseudo-damage of the normal stress on the plane of largest damage; plane: its normal from the x axis of the element.",
     )

@@ -157,6 +157,7 @@ fn compute_response(work: &mut Work, job: &Job) -> Result<StressResponse, Faults
                 slope,
                 mean_stress: job.respond.mean_stress,
                 unit: u,
+                class: job.respond.fatigue_class,
             };
             work.findings.push(about_damage(&law));
             let places: Vec<&ResponseRow> = order.iter().filter_map(|i| rows.get(*i)).collect();
@@ -207,6 +208,9 @@ fn damage_of(places: &[&ResponseRow], states: &[LoadState], law: StressLaw) -> V
         damage_low: d.low,
         damage_high: d.high,
         angle_deg: d.angle_deg,
+        life_share: law.life_share(d.value),
+        life_share_low: law.life_share(d.low),
+        life_share_high: law.life_share(d.high),
     };
     places.iter().zip(found).map(one).collect()
 }
@@ -253,14 +257,19 @@ fn about_damage(law: &StressLaw) -> Finding {
         ),
     };
     let slope = law.slope;
+    let life = match law.class {
+        None => "It compares places and records and is not a life".to_owned(),
+        Some(class) => format!(
+            "`life_share` divides it by 2e6 times {class} to the power {slope}: 1 is the life of the detail"
+        ),
+    };
     Finding::new(
         Severity::Info,
         "pseudo-damage",
         "fatigue",
         format!(
             "rainflow counts by ASTM E1049-85 of the normal stress on the plane of largest damage. Pseudo-damage is the sum of cycles \
-             times {range} to the power {slope}, {mean} and without a fatigue limit. It compares places and records and is not \
-             a life. Its interval shifts all ranges together by their own 95 % interval, from the intervals of the loads"
+             times {range} to the power {slope}, {mean} and without a fatigue limit. {life}. Its interval shifts all ranges together by their own 95 % interval, from the intervals of the loads"
         ),
         "state the slope of the part's S-N curve: [respond] slope",
     )

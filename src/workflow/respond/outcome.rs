@@ -92,6 +92,12 @@ pub struct ElementFatigue {
     pub damage_high: f64,
     /// Direction normal to that plane, from the x axis of the element.
     pub angle_deg: f64,
+    /// Share of the life of the detail that the record uses; `None` without [respond] fatigue_class.
+    pub life_share: Option<f64>,
+    /// Lower end of its 95 % interval.
+    pub life_share_low: Option<f64>,
+    /// Upper end of this interval.
+    pub life_share_high: Option<f64>,
 }
 
 /// The largest stress of an element.

@@ -1,8 +1,9 @@
 //! Vehicle, parameters and inputs of a simulation, from a job.
 
-use super::rest::{level_roads, remove_static_accelerations, remove_static_forces};
+use super::rest::{GivenMeans, level_roads, remove_static_accelerations, remove_static_forces};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
+use crate::input_faults::findings_by_gravity;
 use crate::job::suggest::find_closest_name;
 use crate::job::{InputKind, Job, SimulationInput, Vehicle as VehicleJob};
 use crate::linalg::tall::left_inverse;
@@ -13,7 +14,7 @@ use crate::vehicle::response::{Inputs, PrescribedMotion};
 use crate::vehicle::term::{Term, UnitNames};
 use crate::vehicle::tyre::{Tyre, add_tyres};
 use crate::workflow::vehicle::{
-    check_samples, preset_fault, preset_request, read_record, section_of,
+    channels_in_job_units, check_samples, preset_fault, preset_request, read_record, section_of,
 };
 
 /// Vehicle with its parameters and inputs.
@@ -79,14 +80,22 @@ pub(super) fn read_simulation(work: &mut Work, job: &Job) -> Result<Simulation, 
     })?;
     let gravity = job.units.standard_gravity();
     let mut inputs = inputs_of(&model, &tyres, &record, &channels, fault)?;
-    let file = &section.data.given;
+    let mut driving = channels_in_job_units(job, &model, &record);
+    driving.retain(|c| channels.iter().any(|name| name == c.name));
+    let given = GivenMeans {
+        channels: driving,
+        gravity,
+        file: &section.data.given,
+    };
     let findings = &mut work.findings;
-    remove_static_forces(&model, &values, gravity, &mut inputs, file, findings);
-    remove_static_accelerations(&model, &channels, gravity, &record, &mut inputs, findings)
-        .map_err(|body| {
+    findings.extend(findings_by_gravity(&given.channels, gravity, given.file));
+    remove_static_forces(&model, &values, &given, &mut inputs, findings);
+    remove_static_accelerations(&model, &record, &given, &mut inputs, findings).map_err(
+        |body| {
             let wrong = format!("the accelerometers of `{body}` do not determine its motion");
             Faults::from(fault(wrong, "add an accelerometer, or another place"))
-        })?;
+        },
+    )?;
     level_roads(&mut inputs);
     Ok(Simulation {
         vehicle: model,

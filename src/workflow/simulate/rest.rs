@@ -1,6 +1,7 @@
 //! Position at rest: static parts of the inputs.
 
 use crate::finding::{Finding, Severity};
+use crate::input_faults::{MotionChannel, channels_by_gravity, finding_by_weight};
 use crate::linalg::tall::left_inverse;
 use crate::series::Channels;
 use crate::series::detrend::mean;
@@ -14,6 +15,14 @@ const STATIC_TOLERANCE: f64 = 0.15;
 
 /// Share of the weight below which a mean counts as zero.
 const ZERO_SHARE: f64 = 0.05;
+
+/// Channels that drive the vehicle, with their means.
+pub(super) struct GivenMeans<'a> {
+    pub channels: Vec<MotionChannel<'a>>,
+    pub gravity: f64,
+    /// File of the record.
+    pub file: &'a str,
+}
 
 /// The mean of an input against weight or gravity.
 enum Mean {
@@ -34,9 +43,8 @@ fn compare_mean(mean: f64, full: f64) -> Mean {
 pub(super) fn remove_static_forces(
     model: &Vehicle,
     values: &[f64],
-    gravity: f64,
+    given: &GivenMeans,
     inputs: &mut Inputs,
-    file: &str,
     findings: &mut Vec<Finding>,
 ) {
     for bodies in model.components() {
@@ -48,14 +56,20 @@ pub(super) fn remove_static_forces(
             .filter(|&w| bodies.contains(&model.wheels[w].at.body))
             .collect();
         let masses = model.masses(&bodies);
-        let weight = gravity * masses.iter().filter_map(|&i| values.get(i)).sum::<f64>();
+        let weight = given.gravity * masses.iter().filter_map(|&i| values.get(i)).sum::<f64>();
         let forces = wheels.iter().filter_map(|&w| inputs.forces[w].as_ref());
         let total: f64 = forces.map(|f| mean(f)).sum();
         let names: Vec<&str> = wheels
             .iter()
             .map(|&w| model.wheels[w].channel.as_str())
             .collect();
-        let subject = format!("{file}: {}", names.join(", "));
+        let own = |c: &&MotionChannel| names.contains(&c.name);
+        let own: Vec<MotionChannel> = given.channels.iter().filter(own).cloned().collect();
+        if let Some(wrong) = finding_by_weight(&own, weight, given.file) {
+            findings.push(wrong);
+            continue;
+        }
+        let subject = format!("{}: {}", given.file, names.join(", "));
         let share = percent(total / weight);
         let (severity, message, remedy) = match compare_mean(total, weight) {
             Mean::Zero => continue,
@@ -101,18 +115,20 @@ pub(super) fn remove_static_forces(
 /// The name of a body whose motion its accelerometers do not determine.
 pub(super) fn remove_static_accelerations(
     model: &Vehicle,
-    channels: &[String],
-    gravity: f64,
     record: &Channels,
+    given: &GivenMeans,
     inputs: &mut Inputs,
     findings: &mut Vec<Finding>,
 ) -> Result<(), String> {
+    let gravity = given.gravity;
+    let drives = |name: &str| given.channels.iter().any(|c| c.name == name);
+    let wrong = channels_by_gravity(&given.channels, gravity);
     for (b, body) in model.bodies.iter().enumerate() {
         if !matches!(inputs.motions[b], Some(PrescribedMotion::Accelerations(_))) {
             continue;
         }
         let own = model.sensors.iter().filter(|s| s.at.body == b);
-        let driving: Vec<_> = own.filter(|s| channels.contains(&s.channel)).collect();
+        let driving: Vec<_> = own.filter(|s| drives(&s.channel)).collect();
         let rows: Vec<Vec<f64>> = driving.iter().map(|s| model.functions(&s.at)).collect();
         let inverse = left_inverse(&rows).ok_or_else(|| body.name.clone())?;
         let mut readings = Vec::new();
@@ -121,6 +137,11 @@ pub(super) fn remove_static_accelerations(
             let level = mean(&x);
             let (severity, message, remedy) = match compare_mean(level, gravity) {
                 Mean::Zero => {
+                    readings.push(x);
+                    continue;
+                }
+                // An error states the sign or the unit.
+                Mean::Neither if wrong.contains(&sensor.channel.as_str()) => {
                     readings.push(x);
                     continue;
                 }
