@@ -68,7 +68,7 @@ pub fn findings_by_gravity(channels: &[MotionChannel], gravity: f64, file: &str)
     each.collect()
 }
 
-/// Returns an error if the means of the wheel forces add up to minus the weight of the stated masses, or to this weight in another unit.
+/// Returns an error if the sum of the mean wheel forces is minus the weight of the stated masses. The same applies to this weight in another unit.
 ///
 /// Wheels that stay on the road have a mean force above the scatter of the force. Forces without a static part have small means of any size.
 pub fn finding_by_weight(channels: &[MotionChannel], weight: f64, file: &str) -> Option<Finding> {
