@@ -30,7 +30,7 @@ fn summary(answer: &CalibratedSensitivity) -> Section {
     let c = &answer.calibration;
     let percent = |x: f64| format!("{:.2} %", 100.0 * x);
     let mut pairs = vec![
-        ("Runs that taught".to_owned(), c.runs.to_string()),
+        ("Calibration runs".to_owned(), c.runs.to_string()),
         ("Prior".to_owned(), c.prior.to_owned()),
         (
             "Scatter between repeats".to_owned(),

@@ -218,7 +218,7 @@ impl JobPlan<'_> {
              position_tolerance = {shift:?}             # check: how well a gauge is glued at its place, 1 sd\n\
              # curve = [{n}, {more}]                     # what each of these numbers of gauges gives\n\
              # reserve = 2                        # gauges kept for validation\n\
-             # loss = \"optimise\"                  # for what is left after the loss of any one gauge\n",
+             # loss = \"optimise\"                  # best layout after the worst loss of one gauge\n",
             self.spacing
         )
     }

@@ -132,7 +132,7 @@ pub(crate) fn is_asked(job: &Job) -> bool {
 /// Returns every fault of the job and its record.
 ///
 /// # Example
-/// A mass of 2 kg on a spring of 8000 N/m under a constant force of 16 N swings about its static displacement of 2 mm:
+/// A mass of 2 kg is on a spring of 8000 N/m. Under a constant force of 16 N it swings about the static displacement of 2 mm:
 /// ```
 /// use std::path::Path;
 /// use strainbridge::host::context::InMemory;
