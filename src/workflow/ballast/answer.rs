@@ -339,7 +339,7 @@ pub(super) fn report_mass_findings(
                 "ballast",
                 format!(
                     "the reactions determine {} of the {numbers} numbers: the total mass and its centre, not its distribution. With the \
-                     others adjusted, equally good are {}",
+                     other masses adjusted, these values fit equally well: {}",
                     fit.fixed,
                     ranges.join("; ")
                 ),
