@@ -126,7 +126,7 @@ impl Scatter {
 struct Sample {
     /// Covariance over gauges of the residuals of one run, `n x n`.
     covariance: Vec<f64>,
-    /// Degrees of freedom behind it.
+    /// Degrees of freedom of the scatter.
     dof: f64,
     /// Share of it that repeats have in common.
     common: f64,

@@ -175,7 +175,7 @@ pub enum Command {
     Man(ManArguments),
 }
 
-/// A job, records, which of them.
+/// A job, records, and the part of the records to process.
 #[derive(clap::Args, Debug)]
 pub struct FleetArguments {
     /// The job, with fleet file_name
@@ -355,7 +355,7 @@ pub struct SolveArguments {
 }
 
 impl SolveArguments {
-    /// Whether it is a job that is to be solved, not a deck.
+    /// Returns whether the file to solve is a job, not a deck.
     pub(super) fn is_job(&self) -> bool {
         let extension = self.job.job.extension();
         extension.is_some_and(|e| e.eq_ignore_ascii_case("toml"))

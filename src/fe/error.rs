@@ -59,7 +59,7 @@ pub enum FeError {
         grid: u32,
         /// 1 to 6.
         dof: u8,
-        /// The cards that claim it.
+        /// The cards that claim the grid or degree of freedom.
         claims: Vec<String>,
         /// Place of the second claim in the deck.
         at: Place,

@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 
 /// Random starts: gauges believed at first, all others doubted.
 const STARTS: usize = 24;
-/// Steps of a start, and of the best of them.
+/// Steps of each start, and steps of the best start.
 const STEPS: [usize; 2] = [8, 60];
 /// Weight of a doubted gauge at a start.
 const DOUBTED: f64 = 1e-6;

@@ -52,7 +52,7 @@ pub fn recover_samples_with_alternatives(
     recovery
 }
 
-/// Whether all gauges together determine the wanted loads.
+/// Returns whether all gauges together determine the wanted loads.
 fn determine_wanted_loads(s: &Sensitivity, errors: ErrorModel, recovery: &Recovery) -> bool {
     let all: Vec<usize> = (0..s.gauges.len()).collect();
     let wanted = (0..s.loads.len()).filter(|&l| s.loads[l].wanted);

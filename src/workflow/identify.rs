@@ -103,7 +103,7 @@ pub struct WheelLoad {
     pub run: String,
     /// The load.
     pub name: String,
-    /// Mean; `None` if no masses determine it.
+    /// Mean; `None` if no masses determine the mean.
     pub value: Option<f64>,
     /// Standard deviation of the wheel load.
     pub sigma: Option<f64>,

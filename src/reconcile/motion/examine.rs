@@ -147,7 +147,7 @@ fn search_effect_sets(
 /// Reversed signs of channels can be distinguished. They act differently on the balance of weight, the means of the accelerometers, and the signs of
 /// masses and springs.
 fn find_dominant_faults(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<ScoredSet<MotionFit>> {
-    /// Fall of the squared residual that settles it.
+    /// Factor on the squared residual from which a fault is dominant.
     const FALL: f64 = 10.0;
     if fitted_gap(scorer.frame, null).is_none_or(|g| g.gap < scorer.frame.rules.lost) {
         return vec![];

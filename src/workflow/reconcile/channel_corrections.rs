@@ -142,7 +142,7 @@ pub(super) fn angle_corrections(effects: &[NamedEffect], has_deck: bool) -> Vec<
     lists.flatten().filter_map(one).collect()
 }
 
-/// Whether the job corrects a channel already.
+/// Returns whether the job corrects a channel already.
 fn is_corrected(job: &Job, frame: &StrainFrame, gauge: usize) -> bool {
     let is_of = |c: &StrainCorrection, name: &str| {
         c.gauge == name || c.exchanged_with.as_deref() == Some(name)

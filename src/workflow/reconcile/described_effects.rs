@@ -34,7 +34,7 @@ pub(super) fn effects(job: &Job) -> &[DescribedEffect] {
 /// Returns the signatures of the hypotheses with a table. An `edit` requires a deck.
 ///
 /// # Errors
-/// Tables that can't be read, an edit where there is no deck.
+/// Tables that can't be read, or an edit without a deck.
 pub(super) fn from_tables(
     inputs: &mut Inputs,
     job: &Job,

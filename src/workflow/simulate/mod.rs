@@ -116,7 +116,7 @@ pub(crate) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
     read_simulation(work, job).map(|_| ())
 }
 
-/// Whether a job asks for a simulation: it names the input, or knows every parameter of the model.
+/// Returns whether a job asks for a simulation: it names the input, or knows every parameter of the model.
 pub(crate) fn is_asked(job: &Job) -> bool {
     let Some(section) = &job.vehicle else {
         return false;
