@@ -29,7 +29,7 @@ pub struct Arguments {
     pub command: Command,
 }
 
-/// Version, commit where the build knows it, and features.
+/// Version, commit if the build has one, and features.
 fn version() -> &'static str {
     static TEXT: LazyLock<String> = LazyLock::new(|| {
         let all = [
@@ -321,7 +321,7 @@ pub struct JobArguments {
     pub common: CommonArguments,
 }
 
-/// A job whose gauges are planned live.
+/// A job for the live page.
 #[cfg(feature = "open")]
 #[derive(clap::Args, Debug)]
 pub struct OpenArguments {
@@ -452,7 +452,7 @@ fn purpose(text: &str) -> Result<Purpose, String> {
 /// A command on a deck and its results.
 #[derive(clap::Args, Debug)]
 pub struct DeckArguments {
-    /// The deck, or an OP2 that holds the mesh
+    /// The deck, or an OP2 that contains the mesh
     #[arg(value_name = "DECK")]
     pub deck: PathBuf,
     /// Result files

@@ -41,7 +41,7 @@ pub struct PayloadRun {
     pub shift: [f64; 2],
 }
 
-/// Whether the place is asked for.
+/// Whether the place is requested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// [`PayloadRun::shift`].

@@ -1,4 +1,4 @@
-//! Readings that can't be strain in the unit they are taken for.
+//! Readings that cannot be strain in their assumed unit.
 
 use super::errors::ErrorModel;
 use super::types::Readings;

@@ -4,7 +4,7 @@ use crate::finding::{Finding, Severity};
 use crate::model::{Load, Model};
 use nastran::results::{Analysis, Quantity, ResultsFile, Rows};
 
-/// Supports of the run that produced the results, as the caller knows them.
+/// Supports of the run that produced the results, as the caller states them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Supports {
     /// Free if PARAM,INREL requests inertia relief.
