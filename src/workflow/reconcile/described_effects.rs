@@ -62,7 +62,7 @@ pub(super) fn from_tables(
 ///
 /// # Errors
 /// Tables that can't be read, gauges that a table lacks.
-pub(super) fn look(
+pub(super) fn check_inputs(
     inputs: &mut Inputs,
     job: &Job,
     channels: &[String],

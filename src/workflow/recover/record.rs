@@ -208,7 +208,7 @@ fn about_files(
 ///
 /// # Errors
 /// A record that can't be read.
-pub(super) fn look(
+pub(super) fn sample_readings(
     work: &mut Work,
     task: &Task,
     record: &Record,

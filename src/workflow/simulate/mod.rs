@@ -112,7 +112,7 @@ impl Answer for SimulatedResponse {
 ///
 /// # Errors
 /// Every fault of the job and its record.
-pub(crate) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
+pub(crate) fn check_inputs(work: &mut Work, job: &Job) -> Result<(), Faults> {
     read_simulation(work, job).map(|_| ())
 }
 
