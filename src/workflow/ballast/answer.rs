@@ -175,7 +175,7 @@ pub(super) fn report_ballast(
     }
 }
 
-/// Statics alone: the reactions' resultant minus the model's own.
+/// Returns the missing mass from statics alone: resultant of the measured reactions minus resultant of the model's reactions.
 fn missing_mass_resultant(task: &Task, sized: &BallastSizing) -> TotalMass {
     let (job, g) = (task.job, task.gravity);
     let (l, m) = (length(job), mass(job));

@@ -1,4 +1,4 @@
-//! Signatures of the user's own hypotheses: from a table, or from the edited deck solved again.
+//! Signatures of effects that the user describes: from a table, or from a solution of the edited deck.
 
 use super::deck_frame::DeckFrame;
 use super::signature_table::{SignatureTable, TableColumn};
