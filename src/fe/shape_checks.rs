@@ -79,7 +79,7 @@ fn mean_normal(x: &[Vec3; 4]) -> Vec3 {
     (x[2] - x[0]).cross(&(x[3] - x[1]))
 }
 
-/// Whether the corner between its two sides turns back somewhere, seen along the mean normal.
+/// Returns whether the corner between its two sides turns back somewhere, seen along the mean normal.
 fn is_re_entrant(x: &[Vec3; 4]) -> bool {
     let normal = mean_normal(x);
     (0..4).any(|i| {

@@ -265,7 +265,7 @@ fn value(active: &Active, prior: &[f64], rows: &[usize]) -> Option<f64> {
     active.criterion.evaluate_at(&m, active.k).map(|p| p.value)
 }
 
-/// Gauges from which a perturbation moves more of them.
+/// Number of gauges from which a perturbation moves more gauges.
 const MANY: usize = 20;
-/// Mean loss of the criterion after a perturbation that is put up with.
+/// Largest accepted mean loss of the criterion after a perturbation.
 const LENIENT: f64 = 0.05;

@@ -72,8 +72,8 @@ pub fn check_gaps(subject: &str, s: &Sensitivity, missing: &MissingReadings) -> 
                 "samples-with-gaps",
                 subject,
                 format!(
-                    "in {} of {} samples some gauge has no reading. Loads of these samples are computed from the other gauges, with wider \
-                     intervals. In at least {blank} of them some load is blank",
+                    "in {} of {} samples at least one gauge has no reading. Loads of these samples are computed from the other gauges, with wider \
+                     intervals. At least {blank} of these samples have a blank load",
                     missing.gaps,
                     missing.samples()
                 ),

@@ -130,8 +130,8 @@ pub fn read_fields(work: &mut Work, job: &Job, at: WantedAt) -> Result<Fields, F
     read_fields_with_additional_loads(work, job, at, None)
 }
 
-/// Reads the model like [`read_fields`], and solves for the `additional` loads with the same matrix factor. Elastic modes are then left out,
-/// since no caller needs them.
+/// Reads the model like [`read_fields`], and solves for the loads `additional` with the same matrix factor. Elastic modes are then omitted, since no
+/// caller needs them.
 ///
 /// # Errors
 /// Every error of [`read_fields`] and of `additional`.

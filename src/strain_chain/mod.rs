@@ -85,7 +85,7 @@ pub fn prepare(work: &mut Work, job: &Job) -> Result<JobSensitivity, Faults> {
     prepare_with_additional_loads(work, job, None)
 }
 
-/// Returns S like [`prepare`], and solves the model for the `additional` loads if the built-in solver computes S ([`Fields::additional`]).
+/// Returns S like [`prepare`], and solves the model for the loads `additional` if the built-in solver computes S ([`Fields::additional`]).
 ///
 /// # Errors
 /// Every error of [`prepare`] and of `additional`.

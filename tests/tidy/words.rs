@@ -1,5 +1,6 @@
 //! Words that STYLE.md excludes from names.
 
+use super::english::REPLACED;
 use super::{is_test, sources};
 
 /// First words of names that do not state an action, unlike `from_`, `to_`, `read_`, `write_`, `solve_`, `check_`,
@@ -177,91 +178,58 @@ fn names_state_action_and_content() {
     assert!(wrong.is_empty(), "STYLE.md, Words:\n{wrong}");
 }
 
-/// Private words. They are no part of the name of a function, type, constant or public field.
-const PRIVATE: [&str; 30] = [
-    "aliases",
-    "anew",
-    "backwards",
-    "beside",
-    "besides",
-    "doubt",
-    "doubts",
-    "drawings",
-    "judge",
-    "judged",
-    "judges",
-    "living",
-    "rested",
-    "said",
-    "say",
-    "says",
-    "speak",
-    "speaking",
-    "speaks",
-    "stranger",
-    "strangers",
-    "taught",
-    "teach",
-    "teaches",
-    "tell",
-    "tells",
-    "told",
-    "untold",
-    "upheaval",
-    "upheavals",
-];
-/// Names with a private word that files of results or rules of `reconcile` fix.
-const FIXED: [&str; 5] = ["doubt", "drawings", "judged_by", "said_by", "told"];
+/// Fields of JSON files and a name of a rule. Programs of users rely on them.
+const IN_FILES: [&str; 4] = ["drawings", "judged_by", "said_by", "told"];
 
-/// Returns the words of a name in snake case or camel case, in lower case.
-fn split_name(name: &str) -> Vec<String> {
+/// Returns the name of the public item or field in a line.
+fn read_public_name(line: &str) -> Option<&str> {
+    let line = line.trim_start();
+    let rest = ["pub ", "pub(crate) ", "pub(super) "]
+        .iter()
+        .find_map(|p| line.strip_prefix(p))?;
+    let name = match read_definition(line) {
+        Some((_, name)) => name,
+        None => rest.split([':', '(', '<', ' ']).next()?,
+    };
+    Some(name)
+}
+
+/// Returns the words of a name in small letters: `judged_by` and `JudgedBy` have the words `judged`, `by`.
+fn words_of(name: &str) -> Vec<String> {
     let mut out = vec![String::new()];
     for c in name.chars() {
-        if c == '_'
-            || c.is_uppercase() && out.last().is_some_and(|w| w.ends_with(char::is_lowercase))
-        {
+        if c == '_' || c.is_uppercase() {
             out.push(String::new());
         }
-        if let Some(word) = out.last_mut().filter(|_| c != '_') {
-            word.extend(c.to_lowercase());
+        if c != '_' {
+            let last = out.last_mut().expect("starts with one");
+            last.extend(c.to_lowercase());
         }
     }
     out
 }
 
-/// Returns the name of a public field in a line.
-fn read_field(line: &str) -> Option<&str> {
-    let line = line.trim_start();
-    let starts = ["pub ", "pub(super) ", "pub(crate) "];
-    let rest = starts.iter().find_map(|s| line.strip_prefix(s))?;
-    let (name, _) = rest.split_once(':')?;
-    Some(name).filter(|n| n.chars().all(|c| c.is_alphanumeric() || c == '_'))
-}
-
 #[test]
-fn names_contain_no_private_words() {
-    assert_eq!(split_name("DateBeside"), ["date", "beside"]);
-    assert_eq!(split_name("is_told"), ["is", "told"]);
-    assert_eq!(read_field("    pub told: bool,"), Some("told"));
-    assert_eq!(read_field("    pub use a::b;"), None);
-    let mut wrong = String::new();
-    for (path, lines) in sources().into_iter().filter(|s| !is_test(&s.0)) {
-        let code = lines.iter().take_while(|l| !l.starts_with("mod tests {"));
-        for (n, line) in code.enumerate() {
-            let defined = read_definition(line).map(|d| d.1);
-            let constant = line
-                .trim_start()
-                .trim_start_matches("pub ")
-                .strip_prefix("const ");
-            let constant = constant.and_then(|c| Some(c.split_once(':')?.0));
-            for name in defined.into_iter().chain(constant).chain(read_field(line)) {
-                let words = split_name(name);
-                let found = words.iter().find(|w| PRIVATE.contains(&w.as_str()));
-                if let Some(word) = found.filter(|_| !FIXED.contains(&name)) {
-                    wrong += &format!("{path}:{}: \"{word}\": {name}\n", n + 1);
-                }
+fn public_names_use_the_words_of_the_field() {
+    assert_eq!(read_public_name("    pub told: f64,"), Some("told"));
+    assert_eq!(read_public_name("pub fn is_told(x: f64)"), Some("is_told"));
+    assert_eq!(read_public_name("fn is_told(x: f64)"), None);
+    assert!(words_of("ToldBy").contains(&"told".to_owned()));
+    let (mut wrong, mut read) = (String::new(), 0);
+    for (path, lines) in sources() {
+        if is_test(&path) {
+            continue;
+        }
+        for (n, line) in lines.iter().enumerate() {
+            let name = read_public_name(line).filter(|n| !IN_FILES.contains(n));
+            let Some(name) = name else { continue };
+            read += 1;
+            let words = words_of(name);
+            for word in REPLACED.iter().filter(|r| words.iter().any(|w| w == *r)) {
+                wrong += &format!("{path}:{}: \"{word}\" in `{name}`\n", n + 1);
             }
         }
     }
+    assert!(read > 5_000, "only {read} public names were read");
     assert!(wrong.is_empty(), "ENGLISH.md, Words:\n{wrong}");
 }

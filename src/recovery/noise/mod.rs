@@ -179,7 +179,7 @@ impl Fits {
         chi_square_tail(gained, (more.parameters - less.parameters) as f64)
     }
 
-    /// Returns whether the additional parameters of `more` do not improve the fit significantly.
+    /// Returns whether the parameters that `more` has beyond `less` explain nothing.
     fn is_enough(&self, less: &Fit, more: &Fit) -> bool {
         self.chance_of_gain(less, more) > SIGNIFICANT
     }
@@ -373,7 +373,7 @@ impl Residuals {
         })
     }
 
-    /// Returns whether the stated noise gives too narrow or too wide intervals of a wanted load, if the noise has this covariance.
+    /// Returns whether intervals of a wanted load by the stated noise are too narrow or too wide for noise of this covariance.
     fn matters(&self, s: &Sensitivity, noise: &GaugeNoise, errors: ErrorModel) -> Option<bool> {
         let own = s.of_gauges(&self.used);
         let with_noise = Sensitivity {

@@ -184,7 +184,7 @@ fn lack_of_fit(answer: &CalibratedSensitivity) -> Section {
         &["terms", "chance without this term"],
         &rows,
         &format!(
-            "The clearest term over all gauges; its probability is corrected for their number. A term counts below 0.001.{held_out}"
+            "The clearest term over all gauges; its probability is corrected for their number. A term counts if this probability is below 0.001.{held_out}"
         ),
     )
 }

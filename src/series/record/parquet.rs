@@ -65,7 +65,7 @@ struct Unit {
 
 impl Parquet {
     /// Opens the table in a file. A column of time (`time`, `t`, `timestamp`) gives the times. Without it, the first column of timestamps or
-    /// durations gives the times, such as the index that pandas writes. Only columns of numbers are read. A null is NaN.
+    /// durations gives them, such as the index that pandas writes. Only columns of numbers are read. A null is NaN.
     ///
     /// # Errors
     /// A file that is cut off or damaged.

@@ -9,7 +9,7 @@ use crate::vehicle::term::Term;
 
 /// Computes the response of a vehicle from rest. `values` contains all parameters in the order of [`Vehicle::parameters`].
 ///
-/// Equations: `M q'' + sum over links of w F = sum over wheels of phi P`, with F the sum of a link's terms (thesis 4.1, 5.1 to 5.5).
+/// Equations (thesis 4.1, 5.1 to 5.5): `M q'' + sum over links of w F = sum over wheels of phi P`, with F the sum of a link's terms.
 ///
 /// # Errors
 /// [`ResponseError`] if an inertia is not positive, a term cannot be simulated, the sampling is too coarse, or the motion diverges.

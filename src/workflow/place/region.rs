@@ -28,7 +28,7 @@ pub(super) struct StrictRule {
 }
 
 impl StrictRule {
-    /// Returns whether the rule excludes more places than the spacing does.
+    /// Returns whether the rule excludes more places than the spacing.
     pub(super) fn takes_most(&self) -> bool {
         2 * self.left < self.of
     }

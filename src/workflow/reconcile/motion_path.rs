@@ -305,7 +305,7 @@ fn identify_vehicle(records: &VehicleRecords, outcome: &MotionOutcome) -> Option
     (!is_dead).then(found).flatten()
 }
 
-/// Returns the misfit of each measured wheel force on held-out data, without and with the effects, as `identify` computes it.
+/// Returns the misfit of each measured wheel force on held-out data after `identify`, without and with the effects.
 fn wheel_forces(
     records: &VehicleRecords,
     frame: &MotionFrame,

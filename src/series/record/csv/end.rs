@@ -54,7 +54,7 @@ pub fn is_cut(bytes: &[u8]) -> bool {
         && (has_fewer_digits(own, rows, delimiter) || lacks_a_part(own, rows, delimiter))
 }
 
-/// Whether every column of `rows` has its number of characters after the point, and the last number `own` has fewer.
+/// Returns whether every column of `rows` has its number of characters after the point, and the last number `own` has fewer.
 fn has_fewer_digits(own: &[u8], rows: &[Vec<u8>], delimiter: u8) -> bool {
     /// Least count of numbers. One of ten ends in a zero, which a person leaves out: so many have equal digits by chance once in seventy.
     const NUMBERS: usize = 40;
