@@ -49,7 +49,6 @@ const PAGES: [&str; 40] = [
 /// Words and phrases that have a plain replacement.
 pub(super) const REPLACED: [&str; 40] = [
     "aliases",
-    "all else",
     "anew",
     "backwards",
     "beside",

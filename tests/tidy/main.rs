@@ -235,7 +235,7 @@ fn no_test_is_ignored() {
 }
 
 #[test]
-fn main_is_a_summary_and_every_model_states_its_purpose() {
+fn main_is_a_summary_and_every_model_says_what_it_proves() {
     let main = std::fs::read_to_string(root().join("src/main.rs")).unwrap();
     assert!(main.lines().count() < 60);
     for entry in std::fs::read_dir(root().join("models"))

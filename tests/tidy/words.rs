@@ -151,7 +151,7 @@ fn functions_are_no_bare_participles_and_prepositions() {
 }
 
 #[test]
-fn names_state_action_and_content() {
+fn names_say_what_is_done_and_held() {
     assert_eq!(
         read_definition("    pub(super) fn get_rows<'a>(x: &'a [f64])"),
         Some(("fn", "get_rows"))

@@ -70,8 +70,8 @@ impl Kernel {
         let step = self.length / short;
         // The range contains at least one sample, which may be before the first wanted sample.
         let first_valid = self.reach / step;
-        let told = first_valid..kept.end.div_ceil(step);
-        let thin = |bins: &[Complex<f64>]| back(bins, short)[told.clone()].to_vec();
+        let computed = first_valid..kept.end.div_ceil(step);
+        let thin = |bins: &[Complex<f64>]| back(bins, short)[computed.clone()].to_vec();
         let quarters = |bins: &Spectrum| {
             let turned: Spectrum = bins.iter().map(|v| Complex::new(v.im, -v.re)).collect();
             [thin(bins), thin(&turned)]

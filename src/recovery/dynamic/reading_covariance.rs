@@ -73,7 +73,7 @@ impl ReadingCovariance {
         let size = triangle(self.n);
         for i in 0..n_told {
             let at = (block.first_valid + i * block.step) / self.window;
-            let Some(told) = self.told.get_mut(at) else {
+            let Some(count) = self.sample_counts.get_mut(at) else {
                 continue;
             };
             *count += 1.0;
