@@ -26,7 +26,7 @@ impl Model {
 
     /// Returns the rigid-body mass matrix (6 x 6: translations, then rotations) about the basic location `about`, WTMASS applied.
     ///
-    /// Elements have the mass of the solver's mass matrix, which is not assembled. OGPWG of a solver is this without WTMASS.
+    /// Elements have the mass of the solver's mass matrix, which is not assembled. The table OGPWG of a solver contains this matrix without WTMASS.
     pub fn rigid_body_mass(&self, about: Vec3) -> Matrix6<f64> {
         let arm = |g: &GridIx| self.grids[g.us()].x - about;
         let lumped = |grids: &[GridIx], shares: &[f64]| {

@@ -50,7 +50,7 @@ pub struct GaugeMeshError {
     /// Gauge or channel.
     pub name: String,
     /// RMS mesh error divided by the RMS reading, both over the loads at their expected size. The mesh error is the reading on the deck's mesh minus
-    /// the limit. It is positive if the mesh reads too much.
+    /// the reading on an infinitely fine mesh. It is positive if the deck's mesh gives a too large reading.
     pub mesh_error_rel: f64,
     /// Mesh error by load.
     pub by_load: Vec<LoadMeshError>,
@@ -61,13 +61,13 @@ pub struct GaugeMeshError {
 pub struct LoadMeshError {
     /// Load.
     pub name: String,
-    /// Reading on the deck's mesh minus the limit, over the limit; `None` if the load does not strain the gauge.
+    /// Mesh error of the reading, divided by the reading on an infinitely fine mesh. `None` if the load does not strain the gauge.
     pub mesh_error_rel: Option<f64>,
 }
 
 /// Error of the mesh in the strain of the unit loads.
 pub struct MeshError {
-    /// Strain on the deck's mesh minus the limit, for each load.
+    /// Strain on the deck's mesh minus the strain on an infinitely fine mesh, for each load.
     pub cases: Vec<CaseResult>,
     /// Share of the mesh error that may remain after the correction, 1 sd. It applies to each entry of S and to the pattern of each load.
     pub left: f64,

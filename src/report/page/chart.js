@@ -310,7 +310,7 @@ function chart(figure, data) {
       if (Math.abs(x(event) - from) > 12) { zoom = ends; draw(); } else said.textContent = wordsAt(s, x(event), y(event));
     });
     if (zooms) root.addEventListener("dblclick", () => { zoom = null; draw(); });
-    if (!said.textContent) said.textContent = zooms ? "Drag across to look closer, double click for all of it." : "Point at it to read its values.";
+    if (!said.textContent) said.textContent = zooms ? "Drag across to zoom, double click to show the whole figure." : "Point at the figure to read its values.";
   }
 
   function wordsAt(s, x, y) {

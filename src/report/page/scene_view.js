@@ -43,7 +43,7 @@ async function scene(figure, data) {
   words.className = "words";
   box.append(canvas, words);
   const paint = painter(canvas);
-  if (!paint) { said.textContent = "This browser draws no WebGL: the model is not shown."; return; }
+  if (!paint) { said.textContent = "This browser does not support WebGL: the model is not shown."; return; }
   const { gl } = paint, mesh = meshOf(data), camera = cameraOf(size);
   const local = (p) => V.sub(p, mesh.middle), world = (p) => V.along(p, mesh.middle, 1);
   const marks = data.marks.map((m) => Object.assign({}, m, { at: local(m.at) }));
