@@ -7,7 +7,7 @@ use crate::units::number;
 
 /// Half width of the interval over the largest load of the kind (or `expected`) from which a load counts as unknown.
 const WIDE: f64 = 0.5;
-/// Planned standard deviation over the expected load from which noise or loads are stated in another unit.
+/// Ratio of the planned standard deviation to the expected load above which noise or loads are probably in another unit.
 const HOPELESS: f64 = 10.0;
 /// Ratio to `expected` (1 sd) above which a size or a unit is wrong.
 const FAR_BEYOND: f64 = 10.0;

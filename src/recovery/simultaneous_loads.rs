@@ -44,7 +44,8 @@ struct SingleLoad {
     apart: Vec<f64>,
 }
 
-/// Returns each single load, the nearest first: with `M = S' S / n` load `l` is `(M f)_l / M_ll`, its part `(M f)_l^2 / M_ll`.
+/// Returns each single load, the nearest first. With `M = S' S / n`, load `l` is `(M f)_l / M_ll`. Its part of the squared strain is `(M f)_l^2 /
+/// M_ll`.
 fn each_alone(f: &[f64], known: &Uncertainty) -> Vec<SingleLoad> {
     let k = f.len();
     let mut strain = vec![0.0; k];
