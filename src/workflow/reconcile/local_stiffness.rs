@@ -42,7 +42,7 @@ const GAUGES: usize = 8;
 struct TrialRegion {
     region: Region,
     change: Vec<f64>,
-    /// Share of the squared residual that one amplitude takes.
+    /// Share of the squared residual that one amplitude explains.
     takes: f64,
 }
 
