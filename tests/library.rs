@@ -651,6 +651,82 @@ fn a_record_kept_in_memory_and_one_written_as_it_comes_give_the_same_files() {
     assert_eq!(result(&kept), result(&streamed));
 }
 
+/// Rows of `turning_points.csv` are the samples of `loads.csv` in which the difference of some load changes its sign.
+#[test]
+fn turning_points_of_a_record_keep_the_phase_of_its_loads() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("library_turning_points");
+    let _ = std::fs::remove_dir_all(&folder);
+    let with = |key: &str, share: &str| {
+        let files = measured_job(key, 3000, 0..0);
+        let path = std::path::Path::new("job.toml");
+        let text = strainbridge::host::context::Files::load(&files, path).unwrap();
+        let text = String::from_utf8(text.to_vec()).unwrap();
+        files.with_file(
+            "job.toml",
+            format!("{text}[recover]\nturning_points = {share}\n"),
+        )
+    };
+    let table = |share: &str, name: &str| -> Vec<Vec<f64>> {
+        let files = with("time", share);
+        let job = Job::read("job.toml", &files).unwrap();
+        let out = folder.join(share);
+        if !out.exists() {
+            save(&recover(&job, &Context::new(&files)).unwrap(), &out).unwrap();
+        }
+        let text = std::fs::read_to_string(out.join(name)).unwrap();
+        let row = |l: &str| l.split(',').map(|v| v.parse().unwrap()).collect();
+        text.lines().skip(1).map(row).collect()
+    };
+    // Columns of loads.csv are time, then value, low and high of each load.
+    let loads: Vec<Vec<f64>> = table("0.0", "loads.csv")
+        .iter()
+        .map(|r| {
+            [
+                &r[..1],
+                &r[1..].iter().step_by(3).copied().collect::<Vec<f64>>(),
+            ]
+            .concat()
+        })
+        .collect();
+    let turns = |i: usize| {
+        let step = |a: usize, b: usize, l: usize| loads[b][l] - loads[a][l];
+        (1..loads[0].len()).any(|l| step(i - 1, i, l) * step(i, i + 1, l) < 0.0)
+    };
+    let last = loads.len() - 1;
+    let expected: Vec<usize> = (0..=last)
+        .filter(|i| [0, last].contains(i) || turns(*i))
+        .collect();
+    let found = table("0.0", "turning_points.csv");
+    assert_eq!(found.len(), expected.len());
+    for (row, at) in found.iter().zip(&expected) {
+        for (v, e) in row.iter().zip(&loads[*at]) {
+            // loads.bin has single precision.
+            assert!(
+                (v - e).abs() <= 1e-6 * e.abs().max(1e-3),
+                "{at}: {row:?} {:?}",
+                loads[*at]
+            );
+        }
+    }
+    // A gate leaves out no extreme of a load.
+    let few = table("0.2", "turning_points.csv");
+    assert!(few.len() <= found.len(), "{} {}", few.len(), found.len());
+    for l in 1..loads[0].len() {
+        let most = |list: &[Vec<f64>]| list.iter().map(|r| r[l]).fold(f64::MIN, f64::max);
+        assert!((most(&few) - most(&loads)).abs() <= 1e-6 * most(&loads).abs());
+    }
+    // Runs have no turning points.
+    let files = with("run", "0.0");
+    let job = Job::read("job.toml", &files).unwrap();
+    let said = recover(&job, &Context::new(&files))
+        .map(|_| ())
+        .unwrap_err();
+    assert!(
+        said.to_string().contains("recover.turning_points"),
+        "{said}"
+    );
+}
+
 #[test]
 fn wanted_elements_and_picked_lists_are_kept() {
     let picked =

@@ -286,6 +286,7 @@ pub(super) struct RawRecover {
     pub files: S<Vec<SpannedValue<String>>>,
     pub slope: S<f64>,
     pub csv_every: S<u32>,
+    pub turning_points: S<f64>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

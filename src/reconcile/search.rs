@@ -147,7 +147,7 @@ fn extend<S: Scorer>(
 ) -> Vec<ScoredSet<S::Fit>> {
     /// Largest number of candidates tried with one kin number, such as candidates at the same gauge.
     const PER_KIN: usize = 3;
-    /// Approximate gain of log evidence of a candidate that is worth an exact computation. No smaller gain became decisive in tests.
+    /// Approximate gain below which a gain has never become decisive. Fewer candidates are then tried.
     const HOPELESS: f64 = -3.0;
     let mut out = Vec::new();
     if scorer.is_stopped() {

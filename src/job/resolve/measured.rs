@@ -408,5 +408,11 @@ pub(super) fn recover(c: &mut Collector, raw: Option<&SpannedValue<RawRecover>>)
             .and_then(|r| c.count(&r.csv_every, "recover.csv_every"))
             .unwrap_or(1)
             .max(1),
+        turning_points: raw.and_then(|r| {
+            let (key, expected) = ("recover.turning_points", "a share from 0 to below 1");
+            c.number(&r.turning_points, key, expected, |x| {
+                (0.0..1.0).contains(&x)
+            })
+        }),
     }
 }

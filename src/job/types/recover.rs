@@ -37,4 +37,6 @@ pub struct Recover {
     pub slope: f64,
     /// `loads.csv` has a row for every n-th sample, with this n. The default is 1.
     pub csv_every: usize,
+    /// Share of the range of a load below which `turning_points.csv` leaves out its reversals. `None` means no such file.
+    pub turning_points: Option<f64>,
 }

@@ -62,7 +62,7 @@ pub(crate) use vertical_loads::VerticalLoads;
 use answer::AdditionalResults;
 
 use crate::host::context::Context;
-use crate::host::fault::Faults;
+use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Outcome, StatedUnits};
 use crate::host::work::Work;
 use crate::job::{Job, Measured};
@@ -175,6 +175,14 @@ fn recover_measured_loads(
             let of_files = section_files::count_files(work, &task)?;
             additional.sections.extend(of_files);
             (States::Record(Box::new(record)), additional)
+        }
+        MeasuredStrain::Runs(_) if job.recover.turning_points.is_some() => {
+            return Err(Faults::from(Fault::new(
+                &*job.file,
+                "recover.turning_points",
+                "the readings are runs, which are not consecutive in time and have no turning points",
+                "name a record in [measured] strain, or delete turning_points",
+            )));
         }
         MeasuredStrain::Runs(table) => {
             let unused = job

@@ -72,8 +72,8 @@ pub(super) fn record(
     let clock = record.clock().clone();
     let recorded = compare::record_of_job(work, task, &names)?;
     let parts = sections::parts(task.job, &record, &clock)?;
-    let rested = remove_vibration(work, task, &record, &sensitivity)?;
-    let (tested, errors, at_rest, motion, blank) = match rested {
+    let quasi_static = remove_vibration(work, task, &record, &sensitivity)?;
+    let (tested, errors, at_rest, motion, blank) = match quasi_static {
         Some((quasi_static, r)) => {
             let noise_factor = r.noise_factor(task.noise_factor);
             let readings = spread((noise_factor, r.apart), &quasi_static, &zero)?;
@@ -97,10 +97,8 @@ pub(super) fn record(
     let first_mode = motion.as_ref().and_then(|m| m.modes_hz.first().copied());
     // The measured record still has content outside of the band.
     let content = content(work, task, (&record, first_mode), &filter, &names)?;
-    if at_rest.is_some() {
-        let dropped = channels.take();
-        work.findings.extend(dropped.map(|c| c.not_compared()));
-    }
+    let dropped = at_rest.as_ref().and_then(|_| channels.take());
+    work.findings.extend(dropped.map(|c| c.not_compared()));
     let record = at_rest.unwrap_or(record);
     let (first_s, step_s) = record.first_and_step();
     let head = Arc::new(RecordHead {
@@ -112,6 +110,7 @@ pub(super) fn record(
         first_s,
         step_s,
         stride: task.job.recover.csv_every,
+        turning_points: task.job.recover.turning_points,
         files: files::select_load_files(task.job, record.clock().samples)?,
         is_compared: recorded.is_some() || !parts.is_empty(),
     });

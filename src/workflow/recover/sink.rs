@@ -92,6 +92,8 @@ pub struct RecordHead {
     pub stride: usize,
     /// Files to make from the history.
     pub files: Vec<LoadFile>,
+    /// Share of the range of a load below which `turning_points.csv` leaves out its reversals; no such file if `None`.
+    pub turning_points: Option<f64>,
     /// Whether loads are compared with recorded loads or counted by section.
     pub is_compared: bool,
     /// Stretches of samples in which some gauges are dead, and the estimate from the remaining gauges.
@@ -112,7 +114,7 @@ impl RecordHead {
 
     /// Returns whether an output reads the whole history a second time.
     pub fn is_read_again(&self) -> bool {
-        !self.files.is_empty() || self.is_compared
+        !self.files.is_empty() || self.turning_points.is_some() || self.is_compared
     }
 
     /// Returns value, low and high end of the 95 % interval of each load of a sample, report units. Returns `None` for a load that the active gauges

@@ -153,12 +153,7 @@ fn compute_response(work: &mut Work, job: &Job) -> Result<StressResponse, Faults
     let hottest = spots.iter().take(job.respond.hottest);
     let fatigue = match job.respond.slope {
         Some(slope) => {
-            let law = StressLaw {
-                slope,
-                mean_stress: job.respond.mean_stress,
-                unit: u,
-                class: job.respond.fatigue_class,
-            };
+            let law = law_of(job, slope, u);
             work.findings.push(about_damage(&law));
             let places: Vec<&ResponseRow> = order.iter().filter_map(|i| rows.get(*i)).collect();
             let found = work.stage("fatigue", |_| damage_of(&places, &states, law));
@@ -185,6 +180,16 @@ fn compute_response(work: &mut Work, job: &Job) -> Result<StressResponse, Faults
         prepared,
         job: job.clone(),
     })
+}
+
+/// Returns the damage law of the job; `unit` is the number of report units of stress in one job unit.
+fn law_of(job: &Job, slope: f64, unit: f64) -> StressLaw {
+    StressLaw {
+        slope,
+        mean_stress: job.respond.mean_stress,
+        unit,
+        class: job.respond.fatigue_class,
+    }
 }
 
 /// Returns the fault of a slope without a history.

@@ -15,6 +15,7 @@ mod record;
 mod rpc;
 mod runs;
 mod tables;
+mod turning_points;
 mod vtu;
 
 pub use folder::RecordFolder;

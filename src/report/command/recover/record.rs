@@ -2,7 +2,7 @@
 
 use super::columns::{by_gauge, columns_with_units};
 use super::tables::{BIN, CSV, LoadTables, LoadsFile};
-use super::{nastran, rpc};
+use super::{nastran, rpc, turning_points};
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
@@ -76,6 +76,9 @@ fn write_derived_files(
             #[cfg(not(feature = "parquet"))]
             LoadFile::Parquet => {}
         }
+    }
+    if let Some(share) = record.head.turning_points {
+        turning_points::write(out, record, &loads, share)?;
     }
     Ok(())
 }
