@@ -37,7 +37,7 @@ pub fn check_shapes(model: &Model) -> Vec<Finding> {
             inverted,
             "inverted-solid",
             "are numbered as their mirror image (turned inside out); they are solved with the order corrected",
-            "renumber their grids so that the first face turns towards the others",
+            "renumber their grids so that the normal of the first face points to the other grids",
             None,
         ),
         (

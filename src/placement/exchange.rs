@@ -166,7 +166,7 @@ fn choose_compatible_rows(
 /// Attempts to fit gauges in where the best-priced rows leave no room.
 const REPAIRS: usize = 200;
 
-/// Any `s` compatible rows, those that exclude the fewest others first; ties and one row in eight by lot.
+/// Draws `s` compatible rows. Rows that exclude the fewest other rows come first. Ties and one row in eight are chosen at random.
 fn draw_loosest_rows(
     n: usize,
     s: usize,

@@ -9,7 +9,7 @@ const TELLING: usize = 8;
 /// of line although other lines have one.
 ///
 /// A last field with as many characters after the point as the fields before it is complete. Other code refuses a line with fewer fields than the
-/// line before. If the file has only two lines, the first may be the header, so that they show nothing.
+/// line before. If the file has only two lines, the first may be the header. The two lines then give no information.
 pub fn unsure_end(bytes: &[u8]) -> Option<usize> {
     let (start, lines) = last_lines(bytes);
     let (last, before) = lines.split_first()?;
