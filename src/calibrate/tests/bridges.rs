@@ -237,7 +237,7 @@ fn runs_that_scatter_more_than_calibration_runs_are_weighed_in_their_lane() {
         return;
     };
     eprintln!(
-        "{} of {} held, wrong lanes {:?}, unsaid {:?}, {} alarms",
+        "{} of {} held, wrong lanes {:?}, unreported {:?}, {} alarms",
         w.held,
         w.errors.len(),
         w.wrong_lanes,
