@@ -351,7 +351,7 @@ pub(super) fn suspects(left_out: &[LeftOut]) -> Vec<usize> {
         .collect()
 }
 
-/// Mean of squared distances over the loads behind them, and the chance of one at least as large.
+/// Mean of squared distances divided by their number of loads, and the probability of a mean at least as large.
 fn score(distances: impl Iterator<Item = (f64, usize)>) -> (f64, f64) {
     let (sum, loads) = distances.fold((0.0, 0), |a, d| (a.0 + d.0, a.1 + d.1));
     let chance = if loads > 0 {

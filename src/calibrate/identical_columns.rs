@@ -4,7 +4,7 @@ use super::types::Task;
 use crate::finding::{Finding, Severity, list_few};
 use crate::input_faults::identical_columns::{identical_pairs, identical_readings};
 
-/// Different values of two equal columns of loads at least: a truck that is there, and one that is not.
+/// Least number of different values in two equal columns of loads. Two are enough: the truck is present or absent.
 const DIFFERENT_LOADS: usize = 2;
 
 /// Returns findings on gauges with identical readings in all runs, and on loads with identical values in all runs.

@@ -65,8 +65,8 @@ fn faults_of_gauges(task: &Task, used: &[usize]) -> Vec<DetectedFault> {
     search_faults(&misfit, &mut Vec::new, &Rules::STATED)
 }
 
-/// Returns the dead, reversed and exchanged gauges that known loads show and the calibration did not find, or whose fault it took for faults of other
-/// gauges or of runs. `is_any_run_refused`: whether runs contradict the others. The list is empty if the known loads are wrong.
+/// Returns the dead, reversed and exchanged gauges that known loads show and the calibration did not find. The calibration may instead have reported
+/// faults of other gauges or of runs. `is_any_run_refused`: whether runs contradict the others. The list is empty if the known loads are wrong.
 pub(super) fn hidden_gauge_faults(
     task: &Task,
     shifts: &[GaugeShift],

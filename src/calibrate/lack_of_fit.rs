@@ -378,7 +378,7 @@ fn finding(
                      `{load}` by up to {percent} % of its range. Intervals include it",
                     names.join(", ")
                 ),
-                "calibrate over the range of loads that is used alone, or look for contact, slip or a channel that is not linear".to_owned(),
+                "calibrate only over the range of loads that you use, or look for contact, slip or a channel that is not linear".to_owned(),
             )
         }
     };

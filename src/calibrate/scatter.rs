@@ -126,7 +126,7 @@ impl Scatter {
 struct Sample {
     /// Covariance over gauges of the residuals of one run, `n x n`.
     covariance: Vec<f64>,
-    /// Degrees of freedom behind it.
+    /// Degrees of freedom of the scatter.
     dof: f64,
     /// Share of it that repeats have in common.
     common: f64,
@@ -334,8 +334,8 @@ fn shrinkage(sample: &[f64], n: usize, dof: f64) -> f64 {
     }
 }
 
-/// Some of the identity always stays: with fewer runs than gauges the sample has directions without any scatter at all, which is not
-/// believed.
+/// Smallest weight of the identity in the covariance. With fewer runs than gauges, some directions of the sample have no scatter at all. Real
+/// directions have some.
 const SHRINK_LEAST: f64 = 0.02;
 
 /// Returns whether the residuals exceed the noise.

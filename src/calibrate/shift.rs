@@ -271,9 +271,9 @@ pub(super) fn findings(task: &Task, shifts: &[GaugeShift]) -> Vec<Finding> {
                 ShiftWord::Sign => ("input-sign-reversed", Severity::Warning, "its sign is reversed, as with exchanged wires".to_owned()),
                 ShiftWord::Gain => ("gauge-shifted", Severity::Warning, format!("the deviation fits a gain of {:.3}", s.scale)),
                 ShiftWord::Angle => ("gauge-shifted", Severity::Warning, "the deviation fits a wrong angle".to_owned()),
-                ShiftWord::Exchanged { .. } => ("inputs-exchanged", Severity::Warning, "each one fits the model of the other: channels or names are exchanged".to_owned()),
-                ShiftWord::Undetermined => ("gauge-shifted", Severity::Warning, "the deviation fits neither a gain, nor an angle, nor another position clearly".to_owned()),
-                ShiftWord::Place | ShiftWord::None => ("gauge-shifted", Severity::Warning, "the deviation fits another position than the position of the model".to_owned()),
+                ShiftWord::Exchanged { .. } => ("inputs-exchanged", Severity::Warning, "the readings of each gauge fit the strain that the model predicts for the other: channels or names are exchanged".to_owned()),
+                ShiftWord::Undetermined => ("gauge-shifted", Severity::Warning, "the deviation does not clearly fit a gain, an angle or another position".to_owned()),
+                ShiftWord::Place | ShiftWord::None => ("gauge-shifted", Severity::Warning, "the deviation fits a position other than the position in the model".to_owned()),
             };
             let message = if task.model.is_some() {
                 format!("gauge `{name}` deviates by {:.1} sigma from the model (stated: {stated:.0} %): {looks}", s.shift)

@@ -74,7 +74,7 @@ pub struct OffDrawing {
 pub enum MoveKind {
     /// Along its axis.
     Along,
-    /// Across it.
+    /// Across the axis of the gauge.
     Across,
     /// Turned, right-handed about the element's normal, radians.
     Turned,

@@ -29,7 +29,7 @@ pub struct Arguments {
     pub command: Command,
 }
 
-/// Version, commit where the build knows it, and features.
+/// Version, commit if the build has one, and features.
 fn version() -> &'static str {
     static TEXT: LazyLock<String> = LazyLock::new(|| {
         let all = [
@@ -175,7 +175,7 @@ pub enum Command {
     Man(ManArguments),
 }
 
-/// A job, records, which of them.
+/// A job, records, and the part of the records to process.
 #[derive(clap::Args, Debug)]
 pub struct FleetArguments {
     /// The job, with fleet file_name
@@ -321,7 +321,7 @@ pub struct JobArguments {
     pub common: CommonArguments,
 }
 
-/// A job whose gauges are planned live.
+/// A job for the live page.
 #[cfg(feature = "open")]
 #[derive(clap::Args, Debug)]
 pub struct OpenArguments {
@@ -355,7 +355,7 @@ pub struct SolveArguments {
 }
 
 impl SolveArguments {
-    /// Whether it is a job that is to be solved, not a deck.
+    /// Returns whether the file to solve is a job, not a deck.
     pub(super) fn is_job(&self) -> bool {
         let extension = self.job.job.extension();
         extension.is_some_and(|e| e.eq_ignore_ascii_case("toml"))
@@ -452,7 +452,7 @@ fn purpose(text: &str) -> Result<Purpose, String> {
 /// A command on a deck and its results.
 #[derive(clap::Args, Debug)]
 pub struct DeckArguments {
-    /// The deck, or an OP2 that holds the mesh
+    /// The deck, or an OP2 that contains the mesh
     #[arg(value_name = "DECK")]
     pub deck: PathBuf,
     /// Result files

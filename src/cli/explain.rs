@@ -1,8 +1,8 @@
 //! `explain`: the meaning of findings.
 
 use super::arguments::ExplainArguments;
+use super::reporter::{Reporter, print};
 use super::run::refuse;
-use super::voice::{Voice, print};
 use crate::finding::explain::Code;
 use crate::host::output::Output;
 use crate::report::console::wrap_lines;
@@ -21,8 +21,8 @@ pub(super) fn explain(a: &ExplainArguments) -> ExitCode {
         (Some(code), json) => match workflow::explain::explain(code) {
             Ok(entry) if json => print_json(entry),
             Ok(entry) => {
-                let voice = Voice::from_arguments(&a.common);
-                voice.print_lines(&entry_lines(entry, voice.width()))
+                let reporter = Reporter::from_arguments(&a.common);
+                reporter.print_lines(&entry_lines(entry, reporter.width()))
             }
             Err(faults) => refuse(&faults, &a.common),
         },

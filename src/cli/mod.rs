@@ -8,20 +8,20 @@ mod manual;
 #[cfg(feature = "open")]
 mod open;
 mod progress;
+mod reporter;
 mod run;
 mod upkeep;
-mod voice;
 
 pub use arguments::*;
 
 use crate::host::fault::Fault;
 use crate::{job, workflow};
 use clap::CommandFactory;
+use reporter::print;
 use run::Run;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use voice::print;
 
 /// The paths of a list in a file, or on standard input.
 fn read_file_list(list: &Path) -> Result<Vec<PathBuf>, Fault> {

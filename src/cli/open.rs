@@ -2,8 +2,8 @@
 
 use super::OpenArguments;
 use super::progress::Terminal;
+use super::reporter::Reporter;
 use super::run::{Run, refuse, thread_pool};
-use super::voice::Voice;
 use crate::host::context::{Progress, SilentProgress};
 use crate::host::fault::Faults;
 use crate::host::store::Folder;
@@ -21,16 +21,17 @@ pub(super) fn open(a: &OpenArguments) -> ExitCode {
     let mut out = std::io::stdout();
     // Whoever started the program may have closed its output; the browser still gets the address.
     let _ = writeln!(out, "{address}").and_then(|()| out.flush());
-    let voice = Voice::from_arguments(&a.common);
+    let reporter = Reporter::from_arguments(&a.common);
     let for_browser = || {
         server
             .address_for_browser()
             .is_ok_and(|once| open_browser(&once))
     };
     if !a.no_browser && !for_browser() {
-        voice.note("no browser could be started: open the address above");
+        reporter.note("no browser could be started: open the address above");
     }
-    voice.note("Ctrl-C ends the program; it also ends ten minutes after the last page was closed");
+    reporter
+        .note("Ctrl-C ends the program; it also ends ten minutes after the last page was closed");
     server.run(session);
     ExitCode::SUCCESS
 }
@@ -43,7 +44,7 @@ fn begin(a: &OpenArguments) -> Result<(Server, Session), Faults> {
         out: Run::from_arguments(&a.common, &a.job).folder(&a.job),
     };
     let terminal = Terminal::default();
-    let progress: &dyn Progress = match Voice::from_arguments(&a.common).is_quiet() {
+    let progress: &dyn Progress = match Reporter::from_arguments(&a.common).is_quiet() {
         true => &SilentProgress,
         false => &terminal,
     };

@@ -1,7 +1,7 @@
 //! One run of a command: context, threads, printed texts, exit code.
 
 use super::progress::Terminal;
-use super::voice::Voice;
+use super::reporter::Reporter;
 use super::{CommonArguments, InitArguments};
 use crate::finding::Severity;
 use crate::host::context::{Context, Disk};
@@ -186,7 +186,7 @@ impl Run {
         let terminal = Terminal::default();
         let pool = thread_pool(&self.common)?;
         let mut cx = Context::new(&Disk);
-        if !Voice::from_arguments(&self.common).is_quiet() {
+        if !Reporter::from_arguments(&self.common).is_quiet() {
             cx = cx.progress(&terminal);
         }
         if let Some(folder) = &self.store {
@@ -232,12 +232,12 @@ impl Run {
             notes: &notes,
             paths: &paths,
         };
-        let voice = Voice::from_arguments(&self.common);
-        let is_printed = voice.outcome(&console, &texts, &json);
-        voice.seconds(&outcome.seconds);
+        let reporter = Reporter::from_arguments(&self.common);
+        let is_printed = reporter.outcome(&console, &texts, &json);
+        reporter.seconds(&outcome.seconds);
         if !faults.is_empty() {
-            voice.fault_lines(faults);
-            voice.note(&summary);
+            reporter.fault_lines(faults);
+            reporter.note(&summary);
             return ExitCode::from(2);
         }
         match outcome.findings.worst_severity() {
@@ -291,8 +291,8 @@ fn default_folder(main_input: &Path) -> PathBuf {
 
 /// Prints faults and the note that nothing was written; returns exit code 2.
 pub(super) fn refuse(faults: &Faults, common: &CommonArguments) -> ExitCode {
-    let voice = Voice::from_arguments(common);
-    voice.faults(faults);
-    voice.note("nothing was written");
+    let reporter = Reporter::from_arguments(common);
+    reporter.faults(faults);
+    reporter.note("nothing was written");
     ExitCode::from(2)
 }

@@ -1,8 +1,8 @@
 //! `verify` and `clean`: work on existing results and stored solutions.
 
 use super::arguments::{CleanArguments, VerifyArguments};
+use super::reporter::print;
 use super::run::{Run, refuse};
-use super::voice::print;
 use crate::host::fault::{Fault, Faults};
 use crate::host::store::Folder;
 use crate::host::words::count_of;

@@ -67,7 +67,7 @@ impl Deviations {
 mod tests {
     use super::*;
 
-    /// Chi-square with 10 degrees of freedom exceeds 29.59, with one 10.83, with a chance of 0.001 (Abramowitz and Stegun, table 26.8).
+    /// Chi-square exceeds 29.59 with probability 0.001 for 10 degrees of freedom, and 10.83 for one (Abramowitz and Stegun, table 26.8).
     #[test]
     fn independent_and_common_errors_have_limits_of_their_own() {
         let exceed = |mean_square, effective, common| {

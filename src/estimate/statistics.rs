@@ -34,8 +34,8 @@ pub fn weighted_median(values: &mut [(f64, f64)]) -> Option<f64> {
     found.map(|v| v.0)
 }
 
-/// Correlations of rows, a sample each in order of time, with the rows `k` later, over all columns. `k` goes from 1 up to the first correlation
-/// that is no larger than `sigmas` standard deviations of white noise.
+/// Returns the correlations of rows with the rows `k` later, over all columns. Each row is a sample, in order of time. `k` goes from 1 up to the
+/// first correlation that is no larger than `sigmas` standard deviations of white noise.
 fn correlations(rows: &Matrix, sigmas: f64) -> impl Iterator<Item = f64> {
     let (n, m) = rows.shape();
     let white = rows.norm_squared();

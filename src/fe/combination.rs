@@ -130,7 +130,7 @@ fn sum_lists<'a, T: Clone + 'a>(
     Some(sum)
 }
 
-/// Whether two results are of the same elements, bars at the same stations.
+/// Returns whether two results are of the same elements, bars at the same stations.
 fn same_places(a: &CaseResult, b: &CaseResult) -> bool {
     let stations = |c: &CaseResult| -> Vec<f64> {
         let all = c.beams.stations.iter().flatten();

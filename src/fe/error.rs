@@ -59,7 +59,7 @@ pub enum FeError {
         grid: u32,
         /// 1 to 6.
         dof: u8,
-        /// The cards that claim it.
+        /// The cards that claim the grid or degree of freedom.
         claims: Vec<String>,
         /// Place of the second claim in the deck.
         at: Place,
@@ -117,7 +117,7 @@ pub enum FeError {
         /// Subcase id.
         subcase: u32,
     },
-    /// Inertia relief was asked for, but the structure is tied to ground.
+    /// Inertia relief was requested, but the structure is tied to ground.
     TiedToGround {
         /// Description of the tie to ground.
         what: String,
@@ -138,7 +138,7 @@ pub enum FeError {
         /// Place of the grid in the deck.
         at: Place,
     },
-    /// Modes were asked for, and the structure has no mass.
+    /// Modes were requested, and the structure has no mass.
     NoMassToVibrate,
     /// Numbers that are infinite, not numbers, or too large for the single precision of result files.
     Overflow {
@@ -154,7 +154,7 @@ pub enum FeError {
     },
     /// The model has nothing to solve.
     Empty,
-    /// Whoever asked wants no answer any more.
+    /// The caller cancelled the solution.
     Stopped,
 }
 

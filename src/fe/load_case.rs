@@ -64,9 +64,9 @@ pub(super) fn has_suport1(model: &Model, set: u32) -> bool {
     model.suports.iter().any(|s| s.0 == Some(set))
 }
 
-/// Returns what acts in a subcase of a deck: its LOAD and TEMPERATURE(LOAD).
+/// Returns the loads of a subcase of a deck: LOAD and TEMPERATURE(LOAD).
 ///
-/// TEMPERATURE without an option means both; it loads, and thermal strain counts from TREF.
+/// TEMPERATURE without an option means both options. It is then a load, and the thermal strain is relative to TREF.
 fn loads_of_subcase(s: &Subcase) -> Vec<UnitLoad> {
     let temperature = s.temperature_load.map(|set| UnitLoad::Temperature {
         set,

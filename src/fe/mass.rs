@@ -238,7 +238,7 @@ impl Mass {
         })
     }
 
-    /// Whether every mass is zero.
+    /// Returns whether every mass is zero.
     pub(crate) fn is_zero(&self) -> bool {
         let blocks = self.blocks.values().flat_map(|m| m.iter());
         let coupled = self.coupled.iter().flat_map(|m| &m.values);
@@ -248,7 +248,7 @@ impl Mass {
     }
 }
 
-/// Whether shells of this shape have a consistent mass whatever PARAM,COUPMASS states.
+/// Returns whether shells of this shape have a consistent mass whatever PARAM,COUPMASS states.
 pub(super) fn is_consistent(shape: ShellShape) -> bool {
     matches!(shape, ShellShape::Quad8 | ShellShape::Tria6)
 }

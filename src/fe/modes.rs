@@ -32,7 +32,7 @@ const CLOSE: f64 = 1e-4;
 pub struct Mode {
     /// Cycles per unit of time.
     pub frequency: f64,
-    /// u'Mu of the shape: 1 but for rounding.
+    /// u'Mu of the shape: 1 except for rounding.
     pub generalised_mass: f64,
     /// Share of the equation that is not satisfied: |K^-1 M u - u / omega^2| over |u / omega^2| in the norm of M.
     pub residual: f64,

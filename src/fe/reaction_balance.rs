@@ -110,7 +110,7 @@ fn is_reported_elsewhere(model: &Model) -> bool {
     model.joints.iter().any(gap_leaves_moment) || model.rigids.iter().any(held_off_axes)
 }
 
-/// Whether the forces of a spring between two points leave a force or moment: unlike directions, or not along the line between them.
+/// Returns whether the forces of a spring between two points leave a force or moment: unlike directions, or not along the line between them.
 fn pushes_ground(prepared: &PreparedModel<'_>, spring: &Spring) -> bool {
     let [Some((a, dof_a)), Some((b, dof_b))] = spring.ends else {
         return false;

@@ -37,7 +37,7 @@ pub fn check_shapes(model: &Model) -> Vec<Finding> {
             inverted,
             "inverted-solid",
             "are numbered as their mirror image (turned inside out); they are solved with the order corrected",
-            "renumber their grids so that the first face turns towards the others",
+            "renumber their grids so that the normal of the first face points to the other grids",
             None,
         ),
         (
@@ -78,7 +78,7 @@ fn mean_normal(x: &[Vec3; 4]) -> Vec3 {
     (x[2] - x[0]).cross(&(x[3] - x[1]))
 }
 
-/// Whether the corner between its two sides turns back somewhere, seen along the mean normal.
+/// Returns whether the corner between its two sides turns back somewhere, seen along the mean normal.
 fn is_re_entrant(x: &[Vec3; 4]) -> bool {
     let normal = mean_normal(x);
     (0..4).any(|i| {

@@ -137,8 +137,8 @@ fn normals_and_rigids(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
         refuse(
             format!("SNORM {id}"),
             n.at,
-            "the normal is farther from that of a shell at the grid than PARAM,SNORM allows",
-            "give a normal nearer to those of the shells, or raise PARAM,SNORM",
+            "the normal differs from the normal of a shell at the grid by more than PARAM,SNORM",
+            "state a normal closer to the normals of the shells, or increase PARAM,SNORM",
         );
     }
     let heated = |c: &LoadCase| {

@@ -39,8 +39,8 @@ impl BetweenSkins {
         }
     }
 
-    /// Returns whether the side of the point is ambiguous. This is so if the point is equally far from both skins, or if it is on different sides of
-    /// the flat shell and of the curved surface.
+    /// Returns whether the side of the point is ambiguous. This is so if the point is equally far from both skins. It is also so if
+    /// the point is on different sides of the flat shell and of the curved surface.
     pub fn is_undecided(&self) -> bool {
         let [bottom, top] = self.distance;
         (bottom - top).abs() < UNDECIDED * self.thickness || self.is_within_bulge()

@@ -6,7 +6,7 @@
 /// Bytes that an archive may unpack to.
 #[cfg(feature = "xlsx")]
 const MOST_UNPACKED: u64 = 1 << 30;
-/// Bytes of text that a sheet may come to.
+/// Largest number of bytes of the text of a sheet.
 #[cfg(feature = "xlsx")]
 const MOST_TEXT: usize = 256 << 20;
 
@@ -103,7 +103,7 @@ pub(crate) fn csv_of_sheet(_: &[u8]) -> Result<String, String> {
     Err("a spreadsheet, which this build cannot read (feature `xlsx`)".to_owned())
 }
 
-/// CSV text as its cells come.
+/// CSV text, written cell by cell.
 #[cfg(feature = "xlsx")]
 #[derive(Default)]
 struct Lines {

@@ -239,7 +239,7 @@ impl From<&Metadata> for Stamp {
     }
 }
 
-/// Returns whether the size or the time of the last write of a file differs between two looks.
+/// Returns whether the size or the time of the last write of a file differs between two checks.
 fn differs(before: &Metadata, after: &Metadata) -> bool {
     Stamp::from(before) != Stamp::from(after)
 }

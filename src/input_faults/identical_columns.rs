@@ -45,7 +45,7 @@ pub fn identical_readings(gauges: &[String], columns: &[Vec<f64>]) -> Option<Fin
             Severity::Warning,
             "columns-identical",
             list_few(&names),
-            "these gauges have the same readings in every row, to the last digit. Two gauges never agree so far. One column is a copy, and \
+            "these gauges have the same readings in every row, to the last digit. Two sound gauges never agree to this precision. One column is a copy, and \
              its reading counts twice",
             format!(
                 "check the channels in the logger\'s files. To exclude a copy: [[correction]] gauge = \"{}\", ignore = true",

@@ -11,11 +11,11 @@ use rayon::prelude::*;
 /// as newtons), 9.81 (kilograms) and 1000, and a model may take a tenth off the first. A smaller ratio may come from a badly scaled model (a wall of
 /// half the thickness or less), which runs correct. A model with a larger stated error has a larger ratio, four of its sd.
 pub const UNIT: f64 = 4.0;
-/// Ratio under which a sign is wrong: -1 with a third of it lost to errors, other loads and other gauges.
+/// Ratio below which a sign is wrong: -1, reduced by a third for errors, other loads and other gauges.
 const SIGN: f64 = -1.0 / 3.0;
 /// Standard deviations from which a gauge's readings determine the factor of a load.
 const DETERMINED: f64 = 5.0;
-/// Share of the largest response of any gauge to a load from which a gauge counts for it.
+/// Least response of a gauge to a load, as a share of the largest response of all gauges, to be used for this load.
 const ANSWERS: f64 = 0.1;
 /// Largest share of the sum of squares between readings and model that a fault of the records leaves after its correction.
 const UNDONE: f64 = 0.25;

@@ -190,7 +190,7 @@ impl GaugeColumns {
     }
 }
 
-/// Whether a column is one that `place` writes for information.
+/// Returns whether `place` writes this column for information only.
 fn is_informative(header: &str) -> bool {
     let is_range = header.starts_with("range_") && header.ends_with("_microstrain");
     header.is_empty() || is_range || INFORMATIVE.iter().any(|n| is_same_name(n, header))
@@ -309,7 +309,7 @@ fn stated_in(header: &str, measures: Measures) -> ColumnHeader<'_> {
 }
 
 impl ColumnHeader<'_> {
-    /// Whether this is an angle with its unit.
+    /// Returns whether the text is an angle with a unit.
     fn is_angle(&self) -> bool {
         let has_unit = !self.unit.is_empty() || degrees_in(self.bracket).is_some();
         is_same_name(self.name, "angle") && has_unit

@@ -172,7 +172,7 @@ impl Row<'_> {
         Some([x?, y?, z?])
     }
 
-    /// The direction, whole or not at all: a part of it would be taken for the element x axis.
+    /// The complete direction, or `None`. With a part of it, the gauge would follow the element x axis.
     fn direction(&mut self) -> Option<[f64; 3]> {
         let names = ["dir_x", "dir_y", "dir_z"];
         let before = self.faults.len();

@@ -157,7 +157,7 @@ fn remove_entry(table: &mut DeTable, span: &Range<usize>, key: &mut Vec<String>)
     true
 }
 
-/// Whether some entry below holds the span (the span of a dotted or array table need not cover its entries).
+/// Returns whether an entry below contains the span. The span of a dotted or array table need not cover its entries.
 fn has_covering_entry(value: &Spanned<DeValue>, span: &Range<usize>) -> bool {
     let covers = |r: &Range<usize>| r.start <= span.start && span.end <= r.end && r.end > r.start;
     match value.get_ref() {

@@ -1,4 +1,4 @@
-//! A job with other contents of the two files that hold a plan: picked lists, and the table of gauges.
+//! A job with other contents of the two files of a plan: picked lists, and the table of gauges.
 
 use super::candidate_lists::{lists, merge_candidates};
 use super::gauge_table::GaugeColumns;

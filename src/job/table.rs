@@ -162,7 +162,7 @@ fn with_point(field: &str, mark: DecimalMark) -> String {
     }
 }
 
-/// Whether a number has a mark between thousands and another before its fraction: `2.497,6` or `2,497.6`.
+/// Returns whether a number has a mark between thousands and another before its fraction: `2.497,6` or `2,497.6`.
 fn has_thousands(text: &str) -> bool {
     let has = |c: char| text.contains(c);
     let bare: String = text.chars().filter(|c| !matches!(c, '.' | ',')).collect();

@@ -99,8 +99,10 @@ impl Conditioner {
 /// itself. `[[correction]]` is applied first, and not again afterwards.
 ///
 /// # Errors
-/// A temperature channel that the record lacks or that is a gauge, a stretch of zero beyond the record or with too few readings, two zeros, a corner
-/// above half of the sample rate, or a record that is too long.
+/// - The record lacks the temperature channel, or this channel is a gauge.
+/// - A stretch of zero is beyond the record or has too few readings, or the job states two zeros.
+/// - A corner frequency is above half of the sample rate.
+/// - The record is too long.
 pub(crate) fn condition(job: &Job, record: Record, wanted: &[String]) -> Result<Record, Faults> {
     let Some(asked) = &job.conditioning else {
         return Ok(record);
@@ -278,8 +280,8 @@ fn run_steps(
     }
 }
 
-/// Returns the largest change of the least squares line at the sample farthest from `at`, where it is zero, if up to a fifth of the record is left
-/// out at either end. A line that loads tilt depends on where the record begins and ends.
+/// Returns the largest change of the least squares line if up to a fifth of the record is omitted at either end. The line is zero at `at`, and the
+/// change is that at the sample farthest from `at`. A line that loads tilt depends on where the record begins and ends.
 fn line_error(x: &[f64], at: f64) -> f64 {
     let n = x.len();
     let farthest = at.max(n as f64 - 1.0 - at);

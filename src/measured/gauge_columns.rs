@@ -1,4 +1,4 @@
-//! Which column of a strain file holds which gauge, and microstrain in one of its numbers: one judgement for tables and records.
+//! Assigns the columns of a strain file to gauges, with the factor from the unit of a column to microstrain. Tables and records use the same rules.
 
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::series::record::{Clash, Column, Header, name_and_unit};

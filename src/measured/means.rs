@@ -70,7 +70,7 @@ impl StrainFile {
     }
 }
 
-/// Whether the bytes are a record that is not to be read whole.
+/// Returns whether the bytes are a record that is not to be read whole.
 pub fn is_long_record(bytes: &FileBytes) -> bool {
     is_format(bytes) || bytes.len() > LARGE && is_record(bytes)
 }

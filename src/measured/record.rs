@@ -33,7 +33,7 @@ pub(crate) struct Record {
     micro: Vec<f64>,
     /// Columns that are read, and what puts their readings right.
     columns: Vec<(Option<usize>, Channel)>,
-    /// Readings that are taken for none: column that is read, and samples.
+    /// Readings that are treated as missing: column and samples.
     blank: Vec<(usize, Range<usize>)>,
     /// Changes of the readings by `[conditioning]`, which follows the corrections; `None` for a record without it.
     conditioning: Option<Vec<ConditioningStep>>,

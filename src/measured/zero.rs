@@ -146,7 +146,7 @@ pub(crate) fn subtract_and_test_zero(
     kept
 }
 
-/// Whether readings are strain according to the job: with a model or a given S. Readings for a calibration alone may be any signal.
+/// Returns whether readings are strain according to the job: with a model or a given S. Readings for a calibration alone may be any signal.
 pub(crate) fn reads_strain(job: &Job) -> bool {
     job.model.is_some() || job.sensitivity.is_some()
 }

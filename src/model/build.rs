@@ -126,7 +126,7 @@ impl Model {
     }
 }
 
-/// Whether case control asks for rigid elements that expand with temperature: RIGID = LAGRAN or LGELIM. The default is LINEAR.
+/// Returns whether case control asks for rigid elements that expand with temperature: RIGID = LAGRAN or LGELIM. The default is LINEAR.
 ///
 /// # Reference
 /// MSC Nastran Quick Reference Guide, case control command RIGID, and remarks on ALPHA of RBE2.

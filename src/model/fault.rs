@@ -224,7 +224,7 @@ impl fmt::Display for FaultKind {
                 )
             }
             SharedId { other, first } => {
-                write!(f, "the id is also that of {other} on line {}", first.line)
+                write!(f, "{other} on line {} has the same id", first.line)
             }
             NotPositive { what, value } => write!(f, "the {what} is {value}"),
             ZeroLength { length } => write!(f, "the length is {length:e}"),

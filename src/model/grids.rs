@@ -327,7 +327,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Whether the system is reached again from itself.
+/// Returns whether the system is reached again from itself.
 fn circle(
     start: u32,
     card_of: &HashMap<u32, &PlacedCard<cards::Coord>>,

@@ -198,7 +198,7 @@ impl Carriers {
         }
     }
 
-    /// Whether the deck has a property of that type and id.
+    /// Returns whether the deck has a property of that type and id.
     fn has_property(&self, word: &str, id: u32) -> bool {
         let ids = self.properties.get(word);
         ids.is_some_and(|ids| ids.contains(&id))
@@ -275,7 +275,7 @@ fn unsupported_subcase_nsm(set: Option<u32>, at: Place) -> UnsupportedCard {
     }
 }
 
-/// A set and those that NSMADD puts into it.
+/// Returns a set and the sets that NSMADD adds to it.
 fn parts(cards: &Cards, set: u32) -> BTreeSet<u32> {
     let mut all = BTreeSet::new();
     let mut open = vec![set];

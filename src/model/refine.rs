@@ -19,7 +19,7 @@ pub struct RefinedModel {
 }
 
 impl RefinedModel {
-    /// Whether every shell was divided.
+    /// Returns whether every shell was divided.
     pub fn is_whole(&self) -> bool {
         self.children.iter().all(|c| c[0] != c[1])
     }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Loads or sets in all sums of a deck. Above this limit a few cards would need more memory than a model of their size.
 pub(super) const MOST_TERMS: usize = 4_000_000;
 
-/// Sums of sets in an order in which each sum follows the sums that it names, and the circles of sums that have no such order.
+/// Order of sums of sets. Each sum follows the sums that it names. Circles of sums have no such order and are listed separately.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct SumOrder {
     /// Ids of the sums in this order.

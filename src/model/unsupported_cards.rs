@@ -148,7 +148,7 @@ fn superelements(deck: &Deck) -> impl Iterator<Item = UnsupportedCard> {
         })
 }
 
-/// Whether the deck has what a card acts with.
+/// Returns whether the deck has what a card acts with.
 fn is_present(deck: &Deck, what: &str) -> bool {
     if what == "connectors" {
         return !(deck.cards.welds.is_empty() && deck.cards.fasteners.is_empty());

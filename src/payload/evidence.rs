@@ -41,7 +41,7 @@ pub struct PayloadRun {
     pub shift: [f64; 2],
 }
 
-/// Whether the place is asked for.
+/// Whether the place is requested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// [`PayloadRun::shift`].
@@ -117,7 +117,8 @@ pub struct WeighedRun {
 }
 
 impl WeighedRun {
-    /// Returns the half axes (long, short) of the 95 % region of the place, and the angle of the long axis from the first plan axis, radians.
+    /// Returns the half axes (long, short) of the 95 % region of the place, and the angle of the long axis. The angle is from the first plan axis,
+    /// radians.
     pub fn ellipse(&self) -> ([f64; 2], f64) {
         /// 95 % point of chi-square with two degrees of freedom.
         const CHI2_95: f64 = 5.991;

@@ -11,11 +11,11 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Random starts: gauges believed at first, all others doubted.
+/// Number of random starts. Each start gives a few gauges full weight and all other gauges a small weight.
 const STARTS: usize = 24;
-/// Steps of a start, and of the best of them.
+/// Steps of each start, and steps of the best start.
 const STEPS: [usize; 2] = [8, 60];
-/// Weight of a doubted gauge at a start.
+/// Weight of the other gauges at a start.
 const DOUBTED: f64 = 1e-6;
 
 /// Result of all runs, with the state of the gauges.

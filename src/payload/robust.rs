@@ -66,7 +66,7 @@ pub(super) const PRIOR_AS_STATED: f64 = 0.6;
 /// Points of the one-dimensional posterior of a run, and the factor that they reach on either side of the mode.
 const N_GRID: usize = 801;
 const GRID_REACH: f64 = 20.0;
-/// Log of the density below which a point of that posterior counts for nothing: the grid is then computed again over the other points.
+/// Log of the density below which a point of that posterior is negligible: the grid is then computed again over the other points.
 const NOTHING: f64 = -30.0;
 /// Gauges whose own estimates are tried as a start of the search, the most probable first.
 const N_STARTS: usize = 5;

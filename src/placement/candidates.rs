@@ -212,7 +212,7 @@ impl Candidates {
             + self.scatter.extra.get(place).copied().unwrap_or(0.0)
     }
 
-    /// Whether the variance depends on the angle.
+    /// Returns whether the variance depends on the angle.
     pub fn has_slopes(&self) -> bool {
         !self.slopes.is_empty() || !self.scatter.forms.is_empty()
     }

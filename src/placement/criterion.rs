@@ -66,7 +66,7 @@ impl Criterion {
         }
     }
 
-    /// At least one column is asked for.
+    /// At least one column is requested.
     fn n_nuisance_columns(&self, k: usize, nuisance: usize) -> usize {
         nuisance.min(k.saturating_sub(1))
     }

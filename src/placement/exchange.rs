@@ -166,7 +166,7 @@ fn choose_compatible_rows(
 /// Attempts to fit gauges in where the best-priced rows leave no room.
 const REPAIRS: usize = 200;
 
-/// Any `s` compatible rows, those that exclude the fewest others first; ties and one row in eight by lot.
+/// Draws `s` compatible rows. Rows that exclude the fewest other rows come first. Ties and one row in eight are chosen at random.
 fn draw_loosest_rows(
     n: usize,
     s: usize,
@@ -265,7 +265,7 @@ fn value(active: &Active, prior: &[f64], rows: &[usize]) -> Option<f64> {
     active.criterion.evaluate_at(&m, active.k).map(|p| p.value)
 }
 
-/// Gauges from which a perturbation moves more of them.
+/// Number of gauges from which a perturbation moves more gauges.
 const MANY: usize = 20;
-/// Mean loss of the criterion after a perturbation that is put up with.
+/// Largest accepted mean loss of the criterion after a perturbation.
 const LENIENT: f64 = 0.05;

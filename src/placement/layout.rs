@@ -338,7 +338,7 @@ impl End {
     }
 }
 
-/// The layout held against the bound, and the proof where the bound leaves room and one is asked for.
+/// Compares the layout with the bound. If the bound is higher and a proof is requested, it also runs the proof.
 fn certify(c: &Candidates, spec: &Spec, bound: &mut LayoutBound, found: ScoredLayout) -> End {
     let mut end = End::without_proof(found);
     end.proved = end.found.1 >= bound.upper - branch_and_bound::SAME;

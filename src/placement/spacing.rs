@@ -1,4 +1,4 @@
-//! Minimum distance between gauges: which places exclude each other, and a bound that knows of it.
+//! Minimum distance between gauges: which places exclude each other, and a bound that accounts for this distance.
 
 use super::variance_scan::CandidateVariance;
 use std::collections::HashMap;

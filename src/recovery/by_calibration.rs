@@ -62,7 +62,7 @@ pub fn report_untested_intervals() -> Finding {
         Severity::Error,
         "coverage-not-tested",
         "calibration",
-        "S was calibrated with runs of which each one was needed to determine it. The scatter of the runs is unknown, and the intervals do \
+        "every calibration run was needed to determine S. The scatter of the runs is unknown, and the intervals do \
          not include it",
         "calibrate with further runs; repeats of one loading cost least",
     )

@@ -151,7 +151,7 @@ pub fn is_shown_dead(
     }
 }
 
-/// Whether any gauge of `used` changes by more than noise.
+/// Returns whether any gauge of `used` changes by more than noise.
 fn any_changes(used: &[usize], rows: &[&Vec<f64>], noise: f64) -> bool {
     let of = |h: &usize| variance(rows.iter().map(|row| row[*h]));
     used.iter().any(|h| of(h) > CHANGES * CHANGES * noise)

@@ -49,7 +49,7 @@ pub struct Gain {
     pub rank: usize,
     /// `n_used x n_loads`.
     s: Matrix,
-    /// `n_loads x n_loads`, from noise and nuisance loads, sums among them; infinite on the diagonal of a load that the readings don't see.
+    /// `n_loads x n_loads`, from noise and nuisance loads, sums among them; infinite on the diagonal for a load that the readings do not determine.
     base: Matrix,
     /// `n_loads x n_loads`: variance of load l for the square of load m, from errors of single coefficients and of whole columns.
     model_variance: Matrix,

@@ -223,7 +223,7 @@ fn product<S: Simd>(simd: S, gain: &[f64], y: &[f64], f: &mut [f64]) {
     }
 }
 
-/// Whether every number is finite: zero times any other number is not zero.
+/// Returns whether every number is finite: zero times any other number is not zero.
 #[inline(always)]
 fn all_finite<S: Simd>(simd: S, f: &[f64]) -> bool {
     let zero = simd.splat_f64s(0.0);

@@ -67,7 +67,7 @@ impl CalibratedLoad<'_> {
         value.abs() / self.span_with_zero().1
     }
 
-    /// Whether a load is beyond the range by more than its noise, `factor` half widths.
+    /// Returns whether a load is beyond the range by more than its noise, `factor` half widths.
     fn is_beyond(&self, reached: &RunLoad, factor: f64, rules: &RangeRules) -> bool {
         let ([low, high], largest) = self.span_with_zero();
         let beyond = (reached.value - high).max(low - reached.value);

@@ -1,4 +1,4 @@
-//! Readings that can't be strain in the unit they are taken for.
+//! Readings that cannot be strain in their assumed unit.
 
 use super::errors::ErrorModel;
 use super::types::Readings;
@@ -20,7 +20,7 @@ pub const GAUGES_END: f64 = 0.05;
 /// # Reference
 /// EN 10025-2 (2019), table 7; EN 755-2 (2016).
 const METAL_ENDS: f64 = 0.2;
-/// Strain that half of the readings exceed only if their unit is wrong. Metals yield at 0.1 to 0.5 %, and the linear S is not valid beyond yield.
+/// Limit of strain. If half of the readings exceed it, their unit is wrong. Metals yield at 0.1 to 0.5 %, and the linear S is not valid beyond yield.
 const MOST_BELOW: f64 = 0.01;
 /// Root mean square of all readings, in noise sd, below which they can't be from gauges with the stated noise. For `n` readings of noise alone it is
 /// 1 +- 0.7 / sqrt(n).

@@ -76,7 +76,7 @@ pub(super) struct Projection {
     sd: Vec<f64>,
     s: Matrix,
     errors: ErrorModel,
-    /// Share of independent runs in the runs; 1 but for samples of a record.
+    /// Share of independent runs in the runs; 1 except for samples of a record.
     share: f64,
 }
 

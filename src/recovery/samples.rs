@@ -52,7 +52,7 @@ pub fn recover_samples_with_alternatives(
     recovery
 }
 
-/// Whether all gauges together determine the wanted loads.
+/// Returns whether all gauges together determine the wanted loads.
 fn determine_wanted_loads(s: &Sensitivity, errors: ErrorModel, recovery: &Recovery) -> bool {
     let all: Vec<usize> = (0..s.gauges.len()).collect();
     let wanted = (0..s.loads.len()).filter(|&l| s.loads[l].wanted);
@@ -72,8 +72,8 @@ pub fn check_gaps(subject: &str, s: &Sensitivity, missing: &MissingReadings) -> 
                 "samples-with-gaps",
                 subject,
                 format!(
-                    "in {} of {} samples some gauge has no reading. Loads of these samples are computed from the other gauges, with wider \
-                     intervals. In at least {blank} of them some load is blank",
+                    "in {} of {} samples at least one gauge has no reading. Loads of these samples are computed from the other gauges, with wider \
+                     intervals. At least {blank} of these samples have a blank load",
                     missing.gaps,
                     missing.samples()
                 ),

@@ -90,7 +90,7 @@ pub(super) fn check(runs: &mut [RunEstimate], known: &Uncertainty) -> Vec<Findin
             CODE,
             "runs",
             format!(
-                "{} of {} runs have several loads at once, and each known run of the calibration has one load. The calibration did not \
+                "{} of {} runs have several loads at once, and each calibration run has one load. The calibration did not \
                  test the sum of the strains of several loads",
                 found.len(),
                 runs.len()

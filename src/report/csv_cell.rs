@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 /// Returns the text as a cell of a CSV table. Text with a comma, a quote or a line break is quoted (RFC 4180).
 ///
-/// Text that a spreadsheet would take for a formula gets an apostrophe in front.
+/// Text that a spreadsheet would read as a formula begins with an apostrophe.
 ///
 /// # Example
 /// ```

@@ -162,8 +162,8 @@ mod tests {
         }
     }
 
-    /// Ten cycles of stress between 0 and 12 MPa, mean 6: with M = 0.3 the reversed range is 2 (6 + 1.8), with Goodman and an ultimate strength of 24
-    /// it is 12 / (1 - 6 / 24), and by Smith, Watson and Topper 2 sqrt(12 * 6). A compressive mean of -6 gives 2 (6 - 1.8), 12 and 0.
+    /// Ten cycles of stress between 0 and 12 MPa, mean 6. With M = 0.3 the reversed range is `2 (6 + 1.8)`. With Goodman and an ultimate strength
+    /// of 24 it is `12 / (1 - 6 / 24)`, and by Smith, Watson and Topper `2 sqrt(12 * 6)`. A compressive mean of -6 gives 2 (6 - 1.8), 12 and 0.
     #[test]
     fn mean_stress_is_corrected_as_by_hand() {
         for (sign, by_rule) in [

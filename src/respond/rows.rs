@@ -82,11 +82,11 @@ pub fn response_rows(
 enum ExclusionReason {
     /// It is not of one isotropic material.
     Isotropy,
-    /// Some load's case has no strain of it.
+    /// A load case has no strain of the element.
     Strain,
 }
 
-/// Rows so far, and how many elements have none.
+/// Rows that are complete, and the number of elements without rows.
 #[derive(Default)]
 struct ResponseRows {
     rows: Vec<ResponseRow>,

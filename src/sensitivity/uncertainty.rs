@@ -227,7 +227,8 @@ impl Uncertainty {
         }
     }
 
-    /// Returns the uncertainty for some of the loads in other units: `loads` contains their numbers, and the old units in a new one.
+    /// Returns the uncertainty for some of the loads, in other units. `loads` contains the number of each load, and the size of its new unit in old
+    /// units.
     pub fn of_loads(&self, loads: &[(usize, f64)]) -> Self {
         if !self.center.is_empty() {
             let of_load = |(l, unit): &(usize, f64)| match *unit == 0.0 {

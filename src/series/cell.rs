@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-/// Marks a text that a spreadsheet would take for a formula: an apostrophe before it makes it text there.
+/// Apostrophe before a text that a spreadsheet would read as a formula. With it, the cell remains a text.
 const GUARD: char = '\'';
 
 /// Returns the text with a guard if a spreadsheet would read it as a formula. [`remove_guard`] removes the guard.

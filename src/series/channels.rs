@@ -61,7 +61,7 @@ impl Channels {
         self.n_samples() as f64 / self.rate_hz
     }
 
-    /// Whether a channel of this name is present.
+    /// Returns whether a channel of this name is present.
     pub fn has(&self, name: &str) -> bool {
         self.list.iter().any(|c| c.name == name)
     }

@@ -72,7 +72,7 @@ pub enum SeriesError {
         line: usize,
         /// Time at this line or sample.
         time_s: f64,
-        /// The time before it.
+        /// The preceding time.
         before_s: f64,
     },
     /// A time that is missing or not a number.
@@ -95,7 +95,7 @@ pub enum SeriesError {
     NotBuilt {
         /// Name of the kind of file.
         name: &'static str,
-        /// The feature that reads it.
+        /// The feature that reads the format.
         feature: &'static str,
     },
     /// Channels that were not sampled together.

@@ -42,7 +42,7 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// A history by hand, with the reversals -2, 1, -3, 5, -1, 3, -4, 4, -2 of the rainflow example of ASTM E1049 (figure 6), reference 0.
+    /// A history by hand with the reversals of the rainflow example of ASTM E1049 (figure 6): -2, 1, -3, 5, -1, 3, -4, 4, -2. The reference is 0.
     ///
     /// Rises through 0, 1, 2, 3, 4 go to 1, 5, 3 and 4; falls through -1, -2, -3 go to -3, -1, -4 and -2.
     #[test]

@@ -12,7 +12,7 @@ pub enum DecimalMark {
 }
 
 impl DecimalMark {
-    /// Whether a character is the mark between whole and fraction.
+    /// Returns whether a character is the mark between whole and fraction.
     #[inline(always)]
     fn is(self, b: u8) -> bool {
         (b == b'.' && self != Self::Comma) || (b == b',' && self != Self::Point)
@@ -110,7 +110,7 @@ const NOT_MEASURED: [&[u8]; 6] = [b"nan", b"na", b"n/a", b"#n/a", b"#nv", b"null
 /// Texts that the C library of Windows writes for NaN, without the zeros that fill the field.
 const NO_NUMBER: [&[u8]; 3] = [b"1.#qnan", b"1.#snan", b"1.#ind"];
 
-/// Whether a field is a text for a missing value: `NaN`, `-nan(ind)`, `#N/A`, `-1.#IND00`.
+/// Returns whether a field is a text for a missing value: `NaN`, `-nan(ind)`, `#N/A`, `-1.#IND00`.
 fn is_not_measured(field: &[u8]) -> bool {
     let is = |list: &[&[u8]], f: &[u8]| list.iter().any(|w| f.eq_ignore_ascii_case(w));
     let bare = field

@@ -47,7 +47,7 @@ pub struct Fields {
     /// job has no such state.
     reference: Option<CaseResult>,
     /// Solution of the additional loads; `None` if another program solved the loads of the job.
-    pub beside: Option<Solution>,
+    pub additional: Option<Solution>,
 }
 
 /// Function that returns the loads to solve on a model in addition to the loads of a job.
@@ -130,16 +130,16 @@ pub fn read_fields(work: &mut Work, job: &Job, at: WantedAt) -> Result<Fields, F
     read_fields_with_additional_loads(work, job, at, None)
 }
 
-/// Reads the model like [`read_fields`], and solves for the additional loads `beside` with the same matrix factor. Elastic modes are then left out,
-/// since no caller needs them.
+/// Reads the model like [`read_fields`], and solves for the loads `additional` with the same matrix factor. Elastic modes are then omitted, since no
+/// caller needs them.
 ///
 /// # Errors
-/// Every error of [`read_fields`] and of `beside`.
+/// Every error of [`read_fields`] and of `additional`.
 pub fn read_fields_with_additional_loads(
     work: &mut Work,
     job: &Job,
     at: WantedAt,
-    beside: Option<AdditionalUnitLoads<'_>>,
+    additional: Option<AdditionalUnitLoads<'_>>,
 ) -> Result<Fields, Faults> {
     let Some(files) = &job.model else {
         return Err(Faults::from(Fault::new(
@@ -159,7 +159,7 @@ pub fn read_fields_with_additional_loads(
     }
     let deck = work.stage("read model", |s| read_deck(s, job, files))?;
     match files.results.is_empty() {
-        true => solve_fields(work, job, deck, at, beside),
+        true => solve_fields(work, job, deck, at, additional),
         false => read_results(work, job, files, deck),
     }
 }
@@ -173,7 +173,7 @@ fn solve_fields(
     job: &Job,
     deck: DeckModel,
     at: WantedAt,
-    beside: Option<AdditionalUnitLoads<'_>>,
+    additional: Option<AdditionalUnitLoads<'_>>,
 ) -> Result<Fields, Faults> {
     let mut cases = cases_of_job(job, &deck)?;
     work.findings.extend(relief_of_job(job, &deck.model)?);
@@ -188,15 +188,15 @@ fn solve_fields(
         });
     }
     let of_reference = cases.len();
-    if let Some(beside) = beside {
+    if let Some(additional) = additional {
         let support = support_of_job(job, &deck.model)?;
-        let more = support.unit_cases(&deck.model, &beside(&deck.model)?);
+        let more = support.unit_cases(&deck.model, &additional(&deck.model)?);
         let first = number(&cases);
         let numbered = |(subcase, case)| LoadCase { subcase, ..case };
         cases.extend((first..).zip(more).map(numbered));
     }
     let options = SolveOptions {
-        modes: if beside.is_some() { 0 } else { MODES },
+        modes: if additional.is_some() { 0 } else { MODES },
         ..SolveOptions::default()
     };
     let (mut solved, report) = solve_kept(work, &deck, &cases, options)?;
@@ -213,7 +213,7 @@ fn solve_fields(
         }
     }
     work.findings.extend(solved.findings.iter().cloned());
-    let beside = beside.map(|_| Solution {
+    let additional = additional.map(|_| Solution {
         cases: solved.cases.split_off(of_reference),
         findings: Vec::new(),
         source: solved.source.clone(),
@@ -235,7 +235,7 @@ fn solve_fields(
         of_load,
         mesh_error,
         first_mode: report.modes.first().copied(),
-        beside,
+        additional,
     })
 }
 
@@ -310,7 +310,7 @@ fn read_results(
         of_load,
         mesh_error: None,
         first_mode: None,
-        beside: None,
+        additional: None,
     })
 }
 

@@ -16,7 +16,7 @@ struct Taker<'a> {
     key: &'static str,
     what: String,
     subcase: u32,
-    /// The file that the job names for it.
+    /// The file that the job names for the load.
     file: Option<&'a str>,
 }
 

@@ -69,7 +69,7 @@ pub struct LoadMeshError {
 pub struct MeshError {
     /// Strain on the deck's mesh minus the limit, for each load.
     pub cases: Vec<CaseResult>,
-    /// Share of the mesh error that may remain after the correction, 1 sd, separately for each entry of S and for the pattern of each load.
+    /// Share of the mesh error that may remain after the correction, 1 sd. It applies to each entry of S and to the pattern of each load.
     pub left: f64,
 }
 

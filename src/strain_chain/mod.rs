@@ -85,14 +85,14 @@ pub fn prepare(work: &mut Work, job: &Job) -> Result<JobSensitivity, Faults> {
     prepare_with_additional_loads(work, job, None)
 }
 
-/// Returns S like [`prepare`], and solves the model for the additional loads `beside` if the built-in solver computes S ([`Fields::beside`]).
+/// Returns S like [`prepare`], and solves the model for the loads `additional` if the built-in solver computes S ([`Fields::additional`]).
 ///
 /// # Errors
-/// Every error of [`prepare`] and of `beside`.
+/// Every error of [`prepare`] and of `additional`.
 pub fn prepare_with_additional_loads(
     work: &mut Work,
     job: &Job,
-    beside: Option<AdditionalUnitLoads<'_>>,
+    additional: Option<AdditionalUnitLoads<'_>>,
 ) -> Result<JobSensitivity, Faults> {
     work.findings.extend(report_corrections(job));
     let mut prepared = if job.sensitivity.is_some() {
@@ -101,7 +101,7 @@ pub fn prepare_with_additional_loads(
         let (fields, gauges) = match &job.model {
             Some(_) if has_covariance(job) => {
                 let fields =
-                    read_fields_with_additional_loads(work, job, WantedAt::Gauges, beside)?;
+                    read_fields_with_additional_loads(work, job, WantedAt::Gauges, additional)?;
                 let mut gauges = lay_gauges(work, job, &fields)?;
                 gauges.retain(|g| sensitivity.gauges.contains(&g.name));
                 (Some(fields), gauges)
@@ -118,7 +118,7 @@ pub fn prepare_with_additional_loads(
             mesh_error: Vec::new(),
         }
     } else {
-        let fields = read_fields_with_additional_loads(work, job, WantedAt::Gauges, beside)?;
+        let fields = read_fields_with_additional_loads(work, job, WantedAt::Gauges, additional)?;
         let gauges = lay_gauges(work, job, &fields)?;
         let mut sensitivity = from_cases(&gauges, &fields.load_cases(job))
             .map_err(|missing| without_strain(job, &missing))?;

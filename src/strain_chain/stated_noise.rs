@@ -28,7 +28,7 @@ pub fn stated_noise(job: &Job, gauges: &[String]) -> Result<Option<GaugeNoise>, 
                 &*job.file,
                 measured.line,
                 "measured.noise_microstrain",
-                format!("the noise of gauge `{g}` is not stated, and that of others is"),
+                format!("the noise of gauge `{g}` is not stated, but the noise of other gauges is"),
                 "state the noise of every gauge, or one number for all",
             )
         })

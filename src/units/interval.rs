@@ -1,4 +1,4 @@
-//! A number with its uncertainty, as a reader wants it.
+//! A number with its uncertainty, rounded for readers.
 
 use super::number::number;
 

@@ -132,7 +132,7 @@ pub fn channel_floors(
         .collect())
 }
 
-/// Noise divided by the reading of a channel, from which on the channel gives no information.
+/// Ratio of noise to reading from which a channel gives no information.
 const DROWNED: f64 = 1.0;
 
 /// Returns an error if a channel reads less than the stated noise explains. `share` is noise divided by the reading.

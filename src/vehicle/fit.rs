@@ -133,7 +133,7 @@ fn known_value(a: ParameterRange) -> f64 {
     }
 }
 
-/// Whether the equations with a weight determine every parameter that occurs at all.
+/// Returns whether the equations with a weight determine every parameter that occurs at all.
 fn suffices(triangles: &[Triangle], weights: &[f64], allowed: &[ParameterRange]) -> bool {
     let holds = |t: &Triangle, i: usize| {
         t.columns.contains(&i) && t.norm(&unit(allowed.len() + 1, i)) > 0.0

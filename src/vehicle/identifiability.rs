@@ -8,8 +8,8 @@ const KNOWN_SHARE: f64 = 0.5;
 /// .. or moves the equations by less than this share of their forces (a damper that is truly zero).
 const IMMATERIAL_SHARE: f64 = 0.05;
 
-/// Returns whether a parameter is known, from its value, its standard deviation and the effect of one sigma (as a share of the forces in its
-/// equations).
+/// Returns whether a parameter is known, from its value, its standard deviation and `effect_of_sigma`. This is the effect of one sigma, as a share of
+/// the forces in the equations of the parameter.
 pub fn is_known(value: f64, sigma: f64, effect_of_sigma: f64) -> bool {
     value.is_finite()
         && sigma.is_finite()

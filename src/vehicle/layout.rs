@@ -208,7 +208,7 @@ impl Vehicle {
         out
     }
 
-    /// Whether a mass or spring changes during a record.
+    /// Returns whether a mass or spring changes during a record.
     pub fn changes(&self) -> bool {
         let mut terms = self.links.iter().flat_map(|l| &l.terms);
         !self.steps.is_empty() || terms.any(Term::is_of_time)
@@ -226,7 +226,7 @@ impl Vehicle {
         }
     }
 
-    /// Whether a body is but a witness.
+    /// Returns whether a body is only a witness.
     pub fn is_witness(&self, body: usize) -> bool {
         let b = self.bodies.get(body);
         b.is_some_and(|b| b.shape == Shape::Witness)

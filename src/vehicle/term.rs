@@ -252,7 +252,7 @@ impl Term {
         }
     }
 
-    /// Whether a negative coefficient is physically impossible.
+    /// Returns whether a negative coefficient is physically impossible.
     pub fn is_positive(&self) -> bool {
         matches!(
             self,
@@ -260,12 +260,12 @@ impl Term {
         )
     }
 
-    /// Whether the term is proportional to the stretch, its rate or its acceleration.
+    /// Returns whether the term is proportional to the stretch, its rate or its acceleration.
     pub fn is_linear(&self) -> bool {
         matches!(self, Self::Stiffness | Self::Damping | Self::Inertance)
     }
 
-    /// Whether the term is a function of the stretch alone that is no straight line.
+    /// Returns whether the term is a nonlinear function of the stretch alone.
     pub fn bends_spring(&self) -> bool {
         match self {
             Self::Quadratic
@@ -313,7 +313,7 @@ impl Term {
         }
     }
 
-    /// Whether the term changes with time.
+    /// Returns whether the term changes with time.
     pub fn is_of_time(&self) -> bool {
         matches!(self, Self::StiffnessChange { .. })
     }

@@ -103,7 +103,7 @@ pub struct WheelLoad {
     pub run: String,
     /// The load.
     pub name: String,
-    /// Mean; `None` if no masses determine it.
+    /// Mean; `None` if no masses determine the mean.
     pub value: Option<f64>,
     /// Standard deviation of the wheel load.
     pub sigma: Option<f64>,
@@ -136,7 +136,7 @@ pub struct ChassisForceOf {
 ///
 /// # Errors
 /// Every fault of the job and its records.
-pub(crate) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
+pub(crate) fn check_inputs(work: &mut Work, job: &Job) -> Result<(), Faults> {
     let records = read_vehicle(work, job)?;
     let data_name = job.vehicle.as_ref().map_or("", |v| v.data.given.as_str());
     check_records(&records.task, &records.data, records.hold_out.as_ref())

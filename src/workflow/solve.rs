@@ -360,7 +360,7 @@ fn other_sequence(read: &DeckModel) -> Option<Finding> {
     ))
 }
 
-/// Whether a request for strain names a method for corners; Nastran's default is the centre. A deck that asks for no strain at all gets
+/// Returns whether a request for strain names a method for corners; Nastran's default is the centre. A deck that asks for no strain at all gets
 /// both.
 fn asks_for_corners(r: &Request) -> bool {
     ["CORNER", "BILIN", "CUBIC", "SGAGE"]

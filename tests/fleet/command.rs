@@ -491,7 +491,7 @@ fn a_gap_is_a_warning_and_loads_that_no_sample_tells_are_an_error() {
     );
     assert!(
         said.contains("In 50 of 1200 samples")
-            && said.contains("In at least 50 of them some load is blank"),
+            && said.contains("At least 50 of these samples have a blank load"),
         "{said}"
     );
     // Every gauge reads in some samples, but no two gauges read in the same one.

@@ -1,6 +1,6 @@
-//! Words with a plain replacement, in the texts that declare keys, columns, fields and findings.
+//! Length of sentences and words with a plain replacement, in the texts that declare keys, columns, fields and findings.
 
-use super::english::{REPLACED, contains_word};
+use super::english::{LONGEST, REPLACED, contains_word, length, sentences};
 use super::root;
 
 /// Declaration texts, with the columns that contain prose. For findings, these are the lines `cause:`, `limit:`,
@@ -15,7 +15,7 @@ const TEXTS: [(&str, std::ops::Range<usize>); 7] = [
     ("src/finding/codes/vehicle.txt", 0..0),
 ];
 
-/// Returns the prose of a line of a declaration text, without quoted names and values.
+/// Returns the prose of a line of a declaration text, with one word for each quoted name and value.
 fn prose(line: &str, columns: &std::ops::Range<usize>) -> String {
     let parts = ["cause", "limit", "remedy", "example"];
     let text = if columns.is_empty() {
@@ -28,10 +28,10 @@ fn prose(line: &str, columns: &std::ops::Range<usize>) -> String {
         String::new()
     } else {
         let cells: Vec<&str> = line.split(" | ").collect();
-        cells.get(columns.clone()).unwrap_or_default().join(" ; ")
+        cells.get(columns.clone()).unwrap_or_default().join("; ")
     };
     let unquoted = text.split('`').step_by(2);
-    unquoted.collect::<Vec<_>>().join("``")
+    unquoted.collect::<Vec<_>>().join("CODE")
 }
 
 /// Returns the words and phrases of [`REPLACED`] that a text contains as whole words.
@@ -41,7 +41,7 @@ fn replaced_words(text: &str) -> Vec<&'static str> {
 }
 
 #[test]
-fn declarations_of_keys_columns_fields_and_findings_use_plain_words() {
+fn declarations_of_keys_columns_fields_and_findings_are_plain() {
     let finding = "  cause: The rest tells it, `told`.";
     assert_eq!(replaced_words(&prose(finding, &(0..0))), ["tells"]);
     let column = "a | b.csv | told | - | what is said";
@@ -56,8 +56,14 @@ fn declarations_of_keys_columns_fields_and_findings_use_plain_words() {
             for word in replaced_words(&prose) {
                 wrong += &format!("{path}:{}: `{word}` in: {prose}\n", n + 1);
             }
+            for long in sentences(&prose).iter().filter(|s| length(s) > LONGEST) {
+                wrong += &format!("{path}:{}: {} words: {long}\n", n + 1, length(long));
+            }
         }
     }
     assert!(read > 1500, "only {read} lines of prose were read");
-    assert!(wrong.is_empty(), "words to replace:\n{wrong}");
+    assert!(
+        wrong.is_empty(),
+        "words to replace and long sentences:\n{wrong}"
+    );
 }

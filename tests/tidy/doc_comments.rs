@@ -1,6 +1,6 @@
-//! Doc comments: first words that refer to the preceding text, and words with a plain replacement.
+//! Doc comments: first words that refer to the preceding text, words with a plain replacement, and length of sentences.
 
-use super::english::{REPLACED, contains_word};
+use super::english::{LONGEST, REPLACED, contains_word, length, sentences};
 use super::{root, rust_files};
 
 /// First words of a comment that is not understandable alone.
@@ -72,6 +72,59 @@ fn doc_comments_stand_alone_and_use_the_words_of_the_field() {
         }
     }
     assert!(read > 10_000, "only {read} lines of doc comments were read");
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+/// Returns the first line and the text of each paragraph and list item of the doc comments of a file, without examples.
+fn doc_paragraphs(text: &str) -> Vec<(usize, String)> {
+    let (mut out, mut is_example, mut continues) = (Vec::new(), false, false);
+    for (n, line) in text.lines().enumerate() {
+        let doc = doc_text(line).map(|d| d.1);
+        let Some(words) = doc.filter(|d| !d.trim().is_empty()) else {
+            continues = false;
+            continue;
+        };
+        let is_fence = line.contains("```");
+        is_example ^= is_fence;
+        if is_example || is_fence {
+            continues = false;
+            continue;
+        }
+        let starts = ["-", "#", "|", "*"].iter();
+        if !continues || starts.clone().any(|s| words.trim_start().starts_with(s)) {
+            out.push((n + 1, String::new()));
+        }
+        let last: &mut (usize, String) = out.last_mut().expect("pushed at the first line");
+        last.1 += words.trim();
+        last.1.push(' ');
+        // A heading ends with its line.
+        continues = !words.trim_start().starts_with('#');
+    }
+    out
+}
+
+#[test]
+fn doc_comments_have_short_sentences() {
+    let text = "/// One `a\n/// b`. Two\n/// three.\n/// ```\n/// x\n/// ```\n/// - Four\nfn f() {}\n//! # Five\n//! six";
+    let found: Vec<usize> = doc_paragraphs(text).iter().map(|p| p.0).collect();
+    assert_eq!(found, [1, 7, 9, 10]);
+    let mut files = Vec::new();
+    for folder in ["src", "nastran/src", "python/src"] {
+        rust_files(&root().join(folder), &mut files);
+    }
+    files.sort();
+    let (mut wrong, mut read) = (String::new(), 0);
+    for path in files {
+        let text = std::fs::read_to_string(&path).unwrap();
+        for (line, paragraph) in doc_paragraphs(&text) {
+            read += 1;
+            for long in sentences(&paragraph).iter().filter(|s| length(s) > LONGEST) {
+                let words = length(long);
+                wrong += &format!("{}:{line}: {words} words: {long}\n", path.display());
+            }
+        }
+    }
+    assert!(read > 5_000, "only {read} paragraphs were read");
     assert!(wrong.is_empty(), "{wrong}");
 }
 

@@ -1,10 +1,10 @@
 //! Texts that the programs print: sentences of at most [`LONGEST`] words, and no word with a plain replacement.
 
-use super::english::{LONGEST, REPLACED, contains_word, length, sentences};
+use super::english::{LONGEST, length, replaced_words, sentences};
 use super::{is_test, root, rust_files};
 
 /// Least number of words of a literal that counts as a text, and not as a name, a key or a pattern.
-const TEXT: usize = 4;
+const TEXT: usize = 2;
 
 /// Returns the string literals of a source text with their lines. Comments and characters are skipped.
 fn literals(source: &str) -> Vec<(usize, String)> {
@@ -110,10 +110,9 @@ fn printed_texts_have_short_sentences_and_the_words_of_the_field() {
             read += 1;
             for sentence in sentences(&literal) {
                 let words = length(&sentence);
-                let replaced = REPLACED.iter().find(|r| contains_word(&sentence, r));
-                if words > LONGEST || replaced.is_some() {
-                    let found = replaced.unwrap_or(&"");
-                    wrong += &format!("{name}:{line}: {words} words, \"{found}\": {sentence}\n");
+                let found = replaced_words(&sentence);
+                if words > LONGEST || !found.is_empty() {
+                    wrong += &format!("{name}:{line}: {words} words, {found:?}: {sentence}\n");
                 }
             }
         }

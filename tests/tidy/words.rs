@@ -1,6 +1,7 @@
 //! Words that STYLE.md excludes from names.
 
-use super::sources;
+use super::english::REPLACED;
+use super::{is_test, sources};
 
 /// First words of names that do not state an action, unlike `from_`, `to_`, `read_`, `write_`, `solve_`, `check_`,
 /// `n_`.
@@ -175,4 +176,60 @@ fn names_say_what_is_done_and_held() {
     }
     assert!(read > 1000, "only {read} definitions were read");
     assert!(wrong.is_empty(), "STYLE.md, Words:\n{wrong}");
+}
+
+/// Fields of JSON files and a name of a rule. Programs of users rely on them.
+const IN_FILES: [&str; 4] = ["drawings", "judged_by", "said_by", "told"];
+
+/// Returns the name of the public item or field in a line.
+fn read_public_name(line: &str) -> Option<&str> {
+    let line = line.trim_start();
+    let rest = ["pub ", "pub(crate) ", "pub(super) "]
+        .iter()
+        .find_map(|p| line.strip_prefix(p))?;
+    let name = match read_definition(line) {
+        Some((_, name)) => name,
+        None => rest.split([':', '(', '<', ' ']).next()?,
+    };
+    Some(name)
+}
+
+/// Returns the words of a name in small letters: `judged_by` and `JudgedBy` have the words `judged`, `by`.
+fn words_of(name: &str) -> Vec<String> {
+    let mut out = vec![String::new()];
+    for c in name.chars() {
+        if c == '_' || c.is_uppercase() {
+            out.push(String::new());
+        }
+        if c != '_' {
+            let last = out.last_mut().expect("starts with one");
+            last.extend(c.to_lowercase());
+        }
+    }
+    out
+}
+
+#[test]
+fn public_names_use_the_words_of_the_field() {
+    assert_eq!(read_public_name("    pub told: f64,"), Some("told"));
+    assert_eq!(read_public_name("pub fn is_told(x: f64)"), Some("is_told"));
+    assert_eq!(read_public_name("fn is_told(x: f64)"), None);
+    assert!(words_of("ToldBy").contains(&"told".to_owned()));
+    let (mut wrong, mut read) = (String::new(), 0);
+    for (path, lines) in sources() {
+        if is_test(&path) {
+            continue;
+        }
+        for (n, line) in lines.iter().enumerate() {
+            let name = read_public_name(line).filter(|n| !IN_FILES.contains(n));
+            let Some(name) = name else { continue };
+            read += 1;
+            let words = words_of(name);
+            for word in REPLACED.iter().filter(|r| words.iter().any(|w| w == *r)) {
+                wrong += &format!("{path}:{}: \"{word}\" in `{name}`\n", n + 1);
+            }
+        }
+    }
+    assert!(read > 5_000, "only {read} public names were read");
+    assert!(wrong.is_empty(), "ENGLISH.md, Words:\n{wrong}");
 }

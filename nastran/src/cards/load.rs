@@ -179,7 +179,7 @@ pub struct ForceAlong {
     pub sid: u32,
     pub grid: u32,
     pub size: f64,
-    /// Two grids: from the first to the second; four: G1 to G2 crossed with G3 to G4 (0 where the card has two).
+    /// Two grids: from the first to the second; four: G1 to G2 crossed with G3 to G4 (0 if the card has two).
     pub points: [u32; 4],
     pub is_moment: bool,
 }

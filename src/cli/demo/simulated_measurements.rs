@@ -51,7 +51,7 @@ impl InstalledGauge {
     }
 }
 
-/// Simulated measurements, with the true loads that recovery does not see.
+/// Simulated measurements, with the true loads, which recovery does not use.
 pub(super) struct SimulatedMeasurements {
     pub strain_csv: String,
     pub runs_csv: String,

@@ -106,7 +106,7 @@ impl Reduction {
         self.rows.iter_mut().for_each(|r| r.constant = 0.0);
     }
 
-    /// Whether a force at this dof reaches a support.
+    /// Returns whether a force at this dof reaches a support.
     pub(crate) fn reaches_support(&self, dof: usize) -> bool {
         match self.state[dof] {
             State::Free => false,

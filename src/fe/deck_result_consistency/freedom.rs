@@ -4,7 +4,7 @@ use crate::finding::{Finding, Severity};
 use crate::model::{Load, Model};
 use nastran::results::{Analysis, Quantity, ResultsFile, Rows};
 
-/// Supports of the run that produced the results, as the caller knows them.
+/// Supports of the run that produced the results, as the caller states them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Supports {
     /// Free if PARAM,INREL requests inertia relief.
@@ -63,7 +63,7 @@ pub fn check_free(
         return Vec::new();
     }
     let message = format!(
-        "the structure should be free, but its supports carry load: {:.4e} at grid {} in subcase {}; strain near supports is not that of a free structure",
+        "the structure should be free, but its supports carry load: {:.4e} at grid {} in subcase {}; a free structure has other strain near the supports",
         reaction.0, reaction.1, reaction.2
     );
     let remedy = "run with inertia relief (SUPORT and PARAM,INREL,-1, or INREL,-2) and without other constraints";

@@ -1,4 +1,4 @@
-//! Output that was not asked for, and output in another frame.
+//! Output that the deck does not request, and output in another frame.
 
 use crate::finding::{Finding, Severity};
 use crate::model::Model;

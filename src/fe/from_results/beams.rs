@@ -116,7 +116,7 @@ impl<'m> BeamCollector<'m> {
     }
 }
 
-/// Whether strain along a bar without loads between its ends is no straight line: its section changes.
+/// Returns whether strain along a bar without loads between its ends is not a straight line, because its section changes.
 fn is_tapered(model: &Model, beam: BeamIx) -> bool {
     let beam = model.beams.get(beam.us());
     let property = beam.and_then(|b| model.beam_properties.get(b.property.us()));

@@ -2,12 +2,12 @@
 
 use nastran::results::Block;
 
-/// Whether a block holds results of bars or beams.
+/// Returns whether a block holds results of bars or beams.
 pub(super) fn is_bar(block: &Block) -> bool {
     block.element.is_some_and(|e| matches!(e.0, 2 | 34 | 100))
 }
 
-/// Whether a block holds results of shells, bars or beams.
+/// Returns whether a block holds results of shells, bars or beams.
 pub(super) fn is_shell_or_bar(block: &Block) -> bool {
     is_bar(block)
         || block

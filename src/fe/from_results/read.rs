@@ -34,7 +34,7 @@ pub struct ReadOptions {
     pub displacements: Displacements,
     /// Subcases to read; `None` for all.
     pub subcases: Option<BTreeSet<u32>>,
-    /// Supports of the run that produced the results, as the caller knows them.
+    /// Supports of the run that produced the results, as the caller states them.
     pub supports: Supports,
 }
 

@@ -199,7 +199,7 @@ impl RepeatedSubcase {
             (true, 1) => ("the last one in the file is used", HOLD_ONCE),
             (true, _) => ("of each file the last one is used", HOLD_ONCE),
             (false, _) => (
-                "those of each file are kept, in file order",
+                "the results of each file are kept, in file order",
                 "name the file of each load in the job: result = \"..\"",
             ),
         };

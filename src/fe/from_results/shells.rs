@@ -40,7 +40,7 @@ impl<'m> ShellCollector<'m> {
         }
     }
 
-    /// Whether the rows are shell strain or stress at two fibres.
+    /// Returns whether the rows are shell strain or stress at two fibres.
     pub(super) fn takes(rows: &Rows) -> bool {
         rows.columns == columns::SHELL_STRAIN || rows.columns == columns::SHELL_STRESS
     }

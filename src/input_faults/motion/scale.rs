@@ -89,7 +89,7 @@ pub fn finding_of_scale(
                 false => Severity::Error,
             };
             let message = format!(
-                "the identified mass is {} kg per wheel, and that of a vehicle is {} to {} kg: {}",
+                "the identified mass is {} kg per wheel, and a vehicle has {} to {} kg per wheel: {}",
                 number(kg),
                 number(least),
                 number(most),

@@ -5,7 +5,7 @@ use super::super::raw_job::{RawCalibration, S};
 use super::super::spanned_value::SpannedValue;
 use super::super::types::{CalibrationKeys, Terms};
 
-/// Relative error of a model's S if the job states none: models are off by 1 to 10 %, nobody knows where.
+/// Relative error of a model's S if the job states none: models deviate by 1 to 10 %, at unknown places.
 const DEFAULT_MODEL_UNCERTAINTY_REL: f64 = 0.1;
 
 pub(super) fn calibration(

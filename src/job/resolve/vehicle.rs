@@ -309,7 +309,7 @@ pub(super) fn reconcile(
     })
 }
 
-/// A hypothesis of the user's own: by a table or by an edit of the deck.
+/// Resolves an effect that the user describes by a table or by an edit of the deck.
 fn resolve_effect(c: &mut Collector, entry: &SpannedValue<RawEffect>) -> Option<DescribedEffect> {
     let raw = entry.value();
     c.require(

@@ -198,7 +198,7 @@ impl MergedSupernodes {
         }
     }
 
-    /// Supernodes in postorder without rows, and the order of groups. Of children, those come first that need much memory and leave little.
+    /// Returns the supernodes in postorder without rows, and the order of groups. Children that need much memory and leave little come first.
     fn number_supernodes(mut self, order: &[u32]) -> (Supernodes, Vec<u32>) {
         let n = self.groups.len();
         let mut peak = vec![0_usize; n];

@@ -92,7 +92,7 @@ impl Builder<'_> {
                             "CID",
                             g.at,
                             "a gap between coincident grids without CID",
-                            "state CID: its x axis is that of the gap",
+                            "state CID: its x axis is the direction of the gap",
                         );
                         return None;
                     }

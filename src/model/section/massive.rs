@@ -60,8 +60,8 @@ pub(super) fn box1([w, h, top, bottom, right, left]: [f64; 6]) -> Option<Shape> 
     finish(a, a.centroid, j, k, corners([0.0, h], [0.0, w]))
 }
 
-/// Computes the section from the free width of the horizontal bar (both sides together), the thickness of the vertical bar, the height, and the
-/// thickness of the horizontal bar.
+/// Computes a cross of a horizontal bar and a vertical bar. `free` is the width that the horizontal bar projects on both sides together.
+/// `standing` is the thickness of the vertical bar, `h` the height, and `lying` the thickness of the horizontal bar.
 pub(super) fn cross(free: f64, standing: f64, h: f64, lying: f64) -> Option<Shape> {
     if !(h > lying) {
         return None;

@@ -159,8 +159,8 @@ pub(super) fn tee(w: f64, h: f64, flange: f64, web: f64) -> Option<Shape> {
     )
 }
 
-/// Computes a T with a vertical flange on the right and the web to the left, from height of the flange, length of the web, and thickness of flange
-/// and web.
+/// Computes a T with a vertical flange on the right and the web to the left. The arguments are the height of the flange, the length of the web, and
+/// the thickness of flange and web.
 pub(super) fn tee1(h: f64, reach: f64, flange: f64, web: f64) -> Option<Shape> {
     if !(h > web) {
         return None;
@@ -272,8 +272,8 @@ pub(super) fn h_section(inner: f64, flange: f64, h: f64, web: f64) -> Option<Sha
     .map(|s| s.with_warping(cw))
 }
 
-/// Computes a Z with the top flange to the left and the bottom flange to the right, from free width of a flange, thickness of the web, inner and
-/// outer height.
+/// Computes a Z with the top flange to the left and the bottom flange to the right. The arguments are the free width of a flange, the thickness of
+/// the web, and the inner and outer height.
 pub(super) fn z_section(free: f64, web: f64, inner: f64, h: f64) -> Option<Shape> {
     let t = (h - inner) / 2.0;
     if !(t > 0.0) {
@@ -315,7 +315,7 @@ pub(super) fn z_section(free: f64, web: f64, inner: f64, h: f64) -> Option<Shape
     .map(|s| s.with_warping(cw))
 }
 
-/// Computes a hat with the crown on top and brims at the bottom, from height, wall thickness, width of the crown, and width of a brim.
+/// Computes a hat with the crown on top and brims at the bottom. The arguments are the height, the wall thickness, and the widths of crown and brim.
 pub(super) fn hat(h: f64, t: f64, crown: f64, brim: f64) -> Option<Shape> {
     if !(h > 2.0 * t && crown > 2.0 * t) {
         return None;

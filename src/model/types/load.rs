@@ -88,7 +88,7 @@ pub enum Load {
     FacePressure {
         /// Corners.
         grids: [Option<GridIx>; 4],
-        /// Pressure at them.
+        /// Pressure at the corners.
         pressure: [f64; 4],
         /// Direction instead of the normal.
         direction: Option<Direction>,

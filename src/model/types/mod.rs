@@ -1,4 +1,4 @@
-//! The checked, immutable model. `GridId`-like numbers (`id`) are the file's; `..Ix` are indices into our arrays.
+//! The checked, immutable model. `id` is a number of the file; `..Ix` is an index into our arrays.
 
 mod constraint;
 mod index;

@@ -113,7 +113,7 @@ fn rank_bundles(
     keyed.into_iter().map(|x| x.1).collect()
 }
 
-/// Adds the bundle that gains most for its cost while one fits.
+/// Adds the bundle with the largest gain per cost, again and again, until no bundle fits.
 fn fill(
     bundles: &Bundles,
     spec: &BundleSpec,

@@ -1,4 +1,4 @@
-//! The relaxation: weights between 0 and 1 that spend the budget, and the bound that comes of their prices.
+//! The relaxation: weights between 0 and 1 that use the whole budget, and the bound that follows from the prices of the bundles.
 
 use super::set::{BundleSpec, Bundles};
 use crate::linalg::spd;

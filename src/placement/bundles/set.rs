@@ -110,7 +110,7 @@ pub struct BundleSpec {
 /// Excess over a budget that counts as rounding.
 pub(super) const CENT: f64 = 1e-9;
 
-/// Whether bundle `u` fits in addition to the chosen bundles, at a cost of `spent` so far.
+/// Returns whether bundle `u` fits in addition to the chosen bundles, at a cost of `spent` so far.
 pub(super) fn fits(
     bundles: &Bundles,
     spec: &BundleSpec,

@@ -4,7 +4,7 @@ use super::channel_fault::{ChannelFault, FaultScope, OnGauges, on_every_gauge};
 use super::{Correction, Extension, FaultKind};
 use crate::reconcile::strain::StrainFrame;
 
-/// Reading = 0.
+/// Dead channel: the reading is 0.
 #[derive(Clone, Debug)]
 pub struct DeadChannel;
 

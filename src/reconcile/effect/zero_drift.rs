@@ -21,7 +21,7 @@ pub enum ZeroDrift {
 const USUAL: f64 = 40.0;
 /// Usual scatter of a zero that wanders, microstrain.
 const USUAL_SCATTER: f64 = 10.0;
-/// A bridge that is further off can't be balanced.
+/// Largest plausible drift, microstrain. A bridge with a larger offset cannot be balanced.
 const PLAUSIBLE: f64 = 1000.0;
 
 impl ZeroDrift {

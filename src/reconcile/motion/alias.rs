@@ -20,7 +20,11 @@ use crate::reconcile::search::{ScoredSet, Scorer, settle};
 /// Constants of forms (such as the velocity below which friction fades) were estimated before the fault was added, or with another channel at fault.
 /// They then contain the error of that channel. The constants are therefore estimated again for each of these sets, so that no set leads only because
 /// of them.
-pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<ScoredSet<MotionFit>>, decisive: f64) {
+pub fn add_indistinguishable_causes(
+    scorer: &mut MotionScorer,
+    all: &mut Vec<ScoredSet<MotionFit>>,
+    decisive: f64,
+) {
     let Some(best) = settle(all, decisive) else {
         return;
     };

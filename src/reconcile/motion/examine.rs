@@ -1,6 +1,6 @@
 //! Complete dynamic workflow: find, name and test effects.
 
-use super::alias::with_aliases;
+use super::alias::add_indistinguishable_causes;
 use super::candidate::Candidate;
 use super::change::Change;
 use super::channel_check::{BrokenChannel, broken_channels};
@@ -93,7 +93,7 @@ fn search_effect_sets(
     };
     let mut all = Vec::new();
     let mut best = None;
-    let found = upheavals(scorer, &null);
+    let found = find_dominant_faults(scorer, &null);
     let whole = |s: &ScoredSet<MotionFit>| {
         s.set
             .iter()
@@ -120,7 +120,7 @@ fn search_effect_sets(
                 break;
             }
             let decisive = scorer.frame.rules.decisive;
-            with_aliases(scorer, &mut all, decisive);
+            add_indistinguishable_causes(scorer, &mut all, decisive);
             best = settle(&all, decisive);
             let Some(b) = &best else { break };
             let lower = of_fit(scorer.frame, &b.fit);
@@ -146,8 +146,8 @@ fn search_effect_sets(
 ///
 /// Reversed signs of channels can be distinguished. They act differently on the balance of weight, the means of the accelerometers, and the signs of
 /// masses and springs.
-fn upheavals(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<ScoredSet<MotionFit>> {
-    /// Fall of the squared residual that settles it.
+fn find_dominant_faults(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<ScoredSet<MotionFit>> {
+    /// Factor on the squared residual from which a fault is dominant.
     const FALL: f64 = 10.0;
     if fitted_gap(scorer.frame, null).is_none_or(|g| g.gap < scorer.frame.rules.lost) {
         return vec![];

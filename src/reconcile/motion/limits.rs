@@ -180,7 +180,7 @@ pub fn has_plausible_sizes(rules: &MotionRules, candidates: &[Candidate], fit: &
     })
 }
 
-/// Returns whether no mass and no spring of the analyst's model is negative. A reversed channel leads to negative ones.
+/// Returns whether no mass and no spring of the analyst's model is negative. A reversed channel gives negative masses or springs.
 fn is_upright(fit: &MotionFit) -> bool {
     let v = &fit.assembled.vehicle;
     let bodies: Vec<usize> = (0..v.bodies.len()).collect();

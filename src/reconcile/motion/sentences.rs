@@ -25,7 +25,7 @@ pub(super) fn remains(
         }
         Verdict::Unknown => "A gap remains that no effect of the library explains.",
         _ => {
-            "The residual exceeds sensor noise. The declared tolerances of a complete model cause as much in one of 100 cases."
+            "The residual exceeds sensor noise. The declared tolerances explain a residual of this size in one of 100 cases."
         }
     };
     let proof_words = match proof {

@@ -12,7 +12,7 @@ use rustfft::num_complex::Complex64;
 const MOST: usize = 8;
 /// Fall of the squared residual that a form must bring: a share of the present residual, and at least this much.
 const LEAST: f64 = 30.0;
-/// See `LEAST`.
+/// Least share; `LEAST` states the reason.
 const SHARE: f64 = 0.01;
 
 /// Returns the power of the residual after a joint fit of the forms that reduce it most, of any effect.

@@ -63,7 +63,7 @@ pub(super) fn patterns_read(
 
 /// Returns the covariance of the residual of `selection`, `n x n` by rows, microstrain^2.
 ///
-/// C = N + load_noise^2 S S' + model_rel^2 m m' + sum over `scatter` of b b' + V + U, with S, m and b as the gauges read them under `members`.
+/// `C = N + load_noise^2 S S' + model_rel^2 m m' + sum over scatter of b b' + V + U`, with S, m and b as the gauges read them under `members`.
 ///
 /// The terms are:
 /// - N is the noise by gauge, correlated if so stated.

@@ -130,7 +130,7 @@ fn patterns_of(unknown: &[SizedAmplitudes]) -> Vec<Pattern<'_>> {
         .collect()
 }
 
-/// Amplitudes that repeat in all runs, given the runs: their mean and covariance, and their gain of log likelihood.
+/// Posterior of amplitudes that repeat in all runs: mean, covariance and gain of log likelihood.
 struct RepeatedAmplitudes {
     /// Numbers of the patterns that repeat.
     which: Vec<usize>,

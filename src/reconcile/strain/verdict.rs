@@ -395,7 +395,7 @@ fn look_again(after: &Adequacy) -> String {
     };
     let run = names(&after.runs).into_iter().next();
     format!(
-        "shunt gauges {} before and after {}, made twice: readings that do not repeat are not an effect of the loads",
+        "shunt gauges {} before and after {}, and repeat this run: readings that do not repeat are not an effect of the loads",
         names(&after.gauges).join(", "),
         run.map_or("a run".into(), |r| format!("run {r}"))
     )

@@ -18,7 +18,7 @@ pub(super) struct Block {
     /// Samples between two samples with computed errors.
     pub step: usize,
     /// First sample with computed errors.
-    pub first_told: usize,
+    pub first_valid: usize,
     /// Both quarters of the time history of each error, by error and by gauge that reads, at these samples, strain. The mean of their squares is the
     /// size of the error.
     pub errors: Vec<Vec<[Vec<f64>; 2]>>,
@@ -69,8 +69,8 @@ impl Kernel {
         let short = (2 * self.bins.len()).next_power_of_two().min(self.length);
         let step = self.length / short;
         // The range contains at least one sample, which may be before the first wanted sample.
-        let first_told = self.reach / step;
-        let told = first_told..kept.end.div_ceil(step);
+        let first_valid = self.reach / step;
+        let told = first_valid..kept.end.div_ceil(step);
         let thin = |bins: &[Complex<f64>]| back(bins, short)[told.clone()].to_vec();
         let quarters = |bins: &Spectrum| {
             let turned: Spectrum = bins.iter().map(|v| Complex::new(v.im, -v.re)).collect();
@@ -83,7 +83,7 @@ impl Kernel {
             first: wanted.start,
             readings: at_rest.iter().map(whole).collect(),
             step,
-            first_told: begin + first_told * step,
+            first_valid: begin + first_valid * step,
             errors: errors
                 .iter()
                 .map(|by_gauge| by_gauge.iter().map(quarters).collect())

@@ -1,12 +1,12 @@
 //! Frequencies and damping of the modes, estimated from the record that they are removed from.
 //!
-//! More gauges than loads leave a residual `r(w) = B (1 - H G) eps`. A mode whose frequency or damping differs from the model adds, to first order,
-//! `B (1 - H G) psi_j da_j c_j' f` to it, with `f = G eps` and `da_j` the derivative of the response by the logarithm of the frequency or of the
-//! damping. Gauss and Newton's method finds the logarithms `x` that minimise the mean square of the residual over the record. The stated standard
-//! deviations are the prior of `x`.
+//! More gauges than loads leave a residual `r(w) = B (1 - H G) eps`. A mode whose frequency or damping differs from the model adds a term to it. To
+//! first order, this term is `B (1 - H G) psi_j da_j c_j' f`, with `f = G eps`. `da_j` is the derivative of the response by the logarithm of the
+//! frequency or of the damping. Gauss and Newton's method finds the logarithms `x` that minimise the mean square of the residual over the record.
+//! The stated standard deviations are the prior of `x`.
 //!
-//! Errors of the static S leave residuals in phase with the loads. They are projected out first: for every gauge, residual and derivatives are
-//! replaced by their parts that are orthogonal to all loads over the record (the theorem of Frisch and Waugh). The covariance of the gradient has
+//! Errors of the static S leave residuals in phase with the loads. They are projected out first (the theorem of Frisch and Waugh). For every gauge,
+//! this keeps the parts of the residual and of the derivatives that are orthogonal to all loads over the record. The covariance of the gradient has
 //! two parts. Its scatter over parts of the record states the noise, which neighbouring samples share (a sandwich estimate). Errors of the strain of
 //! a mode at a gauge, independent by mode and gauge, leave residuals in phase with the motion of the mode: `psi_gj a_j c_j' f` each.
 

@@ -225,7 +225,7 @@ fn too_large(plant: &Plant<'_>) -> Unfit {
     }
 }
 
-/// Whether the band alone, whatever the structure, reaches farther than a transform of `length` allows.
+/// Returns whether the band alone, whatever the structure, reaches farther than a transform of `length` allows.
 fn is_narrow(plant: &Plant<'_>, at_rest: &Matrix, length: usize, rate_hz: f64) -> bool {
     let n_bins = (BAND_END * plant.dynamics().up_to_hz / rate_hz * length as f64) as usize + 1;
     let of_bin = |b: usize| {

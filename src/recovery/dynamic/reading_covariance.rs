@@ -72,7 +72,7 @@ impl ReadingCovariance {
     pub(super) fn add(&mut self, used: &[usize], block: &Block, n_told: usize) {
         let size = triangle(self.n);
         for i in 0..n_told {
-            let at = (block.first_told + i * block.step) / self.window;
+            let at = (block.first_valid + i * block.step) / self.window;
             let Some(told) = self.told.get_mut(at) else {
                 continue;
             };

@@ -1,4 +1,4 @@
-//! Courses of the residual of a record, of its derivatives by the parameters of the modes, and of the motion of the modes.
+//! Time histories of the residual of a record, of its derivatives by the parameters of the modes, and of the motion of the modes.
 
 use super::block::{Spectrum, spectrum, time_history};
 use super::kernel::Kernel;

@@ -55,7 +55,7 @@ pub(super) struct Fit {
 struct Search {
     /// Steps at most; a search that needs more ends at its last step.
     steps: usize,
-    /// Gain of log likelihood below which the fit is found: far below a gain that a test can see.
+    /// Gain of log likelihood below which the fit stops. It is far below a gain that a test can detect.
     found: f64,
     /// Damping beyond which no step gains: the step is then smaller than rounding.
     most_damping: f64,

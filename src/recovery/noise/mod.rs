@@ -168,7 +168,7 @@ impl Fits {
         }
     }
 
-    /// Whether the residuals do not contradict the fit.
+    /// Returns whether the residuals do not contradict the fit.
     fn explains(&self, fit: &Fit) -> bool {
         self.chance(fit) > SIGNIFICANT
     }
@@ -179,7 +179,7 @@ impl Fits {
         chi_square_tail(gained, (more.parameters - less.parameters) as f64)
     }
 
-    /// Whether the parameters that `more` has beyond `less` explain nothing.
+    /// Returns whether the parameters that `more` has beyond `less` explain nothing.
     fn is_enough(&self, less: &Fit, more: &Fit) -> bool {
         self.chance_of_gain(less, more) > SIGNIFICANT
     }
@@ -373,7 +373,7 @@ impl Residuals {
         })
     }
 
-    /// Whether intervals of a wanted load by the stated noise are too narrow or too wide for noise of this covariance.
+    /// Returns whether intervals of a wanted load by the stated noise are too narrow or too wide for noise of this covariance.
     fn matters(&self, s: &Sensitivity, noise: &GaugeNoise, errors: ErrorModel) -> Option<bool> {
         let own = s.of_gauges(&self.used);
         let with_noise = Sensitivity {

@@ -184,7 +184,7 @@ fn page(found: &Outcome<BallastAnswer>) -> Page {
             &head.each_ref().map(String::as_str),
             &masses,
             &format!(
-                "Ranges: interval of one number when the others are adjusted. Height {} (no influence on a level floor).",
+                "Ranges: possible values of one number if the other numbers are adjusted. Height {} (no influence on a level floor).",
                 number(found.height)
             ),
         ),

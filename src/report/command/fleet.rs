@@ -101,7 +101,7 @@ impl Report for Outcome<Fleet> {
             vec![v.name.clone(), load, plus_minus(l.relative, half), min, max]
         };
         ConsoleTable::new(
-            "Damage an hour, mean of the fleet = 1 (± half width of the 95 % interval), and extremes",
+            "Damage per hour, mean of the fleet = 1 (± half width of the 95 % interval), and extremes",
             &["vehicle", "load", "damage", "smallest", "largest"],
             rows.iter().map(row).collect(),
         )

@@ -35,7 +35,7 @@ pub(super) fn damage_section(o: &Outcome<Fleet>) -> Option<Section> {
         &[],
         "damage an hour",
         Ends::Interval,
-        "Damage an hour of each vehicle with its 95 % interval, the largest first: smaller is better. Red: a finding names the vehicle or one of its records.",
+        "Damage per hour of each vehicle with its 95 % interval, the largest first: smaller is better. Red: a finding names the vehicle or one of its records.",
     );
     for (_, rows) in &mut choices {
         sort(rows);
@@ -95,7 +95,7 @@ fn mark_found_vehicles(rows: &[Row], found: &[&str]) -> Vec<Value> {
     traces
 }
 
-/// Whether a warning or an error names the vehicle or one of its records, or its damage is unreliable.
+/// Returns whether a warning or an error names the vehicle or one of its records, or its damage is unreliable.
 fn has_finding(v: &VehicleAnswer, o: &Outcome<Fleet>) -> bool {
     let names = |f: &Finding| {
         f.subject.split(", ").any(|s| {

@@ -12,7 +12,7 @@ use crate::workflow::init::{NotProposed, Proposal};
 /// Lines of a block: a notebook cuts longer ones.
 const LINES: usize = 30;
 
-/// Whether a line of a job asks its reader for something.
+/// Returns whether a line of a job asks its reader for something.
 fn is_open(line: &str) -> bool {
     line.contains("# check") || line.contains("# fill in")
 }

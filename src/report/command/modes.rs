@@ -184,7 +184,7 @@ fn page(modes: &Outcome<Modes>) -> Page {
     );
     let cases = modes.cases();
     let mut scene = scene_of_solution(&modes.model, &cases, &modes.solution.strain);
-    scene.caption = "Colour shows the strain of one mode's shape: a record that excites this mode reads more vibration on darker places, which is worse.".to_owned();
+    scene.caption = "Colour shows the strain of the shape of one mode: gauges on darker places read more vibration of this mode, which is worse.".to_owned();
     for (field, m) in scene.fields.iter_mut().zip(&modes.modes) {
         field.name = format!("mode {}, {} Hz", m.mode, number(m.hz));
     }

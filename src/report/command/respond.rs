@@ -260,7 +260,7 @@ fn sections(r: &StressResponse) -> Vec<Section> {
             "Largest von Mises stress",
             &header,
             &element_rows(&r.elements),
-            "From the loads by superposition; the interval is the interval of the loads.",
+            "Superposition of the loads; the interval contains only the uncertainty of the loads.",
         ),
         table_section(
             "Hot spots",

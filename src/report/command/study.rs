@@ -297,7 +297,7 @@ fn errors_by_layout(found: &LayoutStudy) -> Section {
     )
 }
 
-/// Returns the loads of a layout that the job wants.
+/// Returns the wanted loads of a layout.
 fn wanted_loads(row: &StudiedLayout) -> impl Iterator<Item = &StudiedLoad> {
     row.loads.iter().filter(|l| l.wanted)
 }

@@ -32,7 +32,7 @@ impl Report for Outcome<Recomputation> {
             "Files that are the same",
             &["file", "check"],
             &self.same.iter().map(|f| equal_file_row(f)).collect::<Vec<_>>(),
-            "An input has the digest that the folder states. A table or page has the bytes, and `result.json` the numbers, that its inputs give now.",
+            "An input is unchanged if it has the digest that the folder states. A table, page or `result.json` is unchanged if its inputs give the same content now.",
         ));
         let page = Page::new(
             "Verify",

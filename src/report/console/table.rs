@@ -85,7 +85,7 @@ impl Columns {
     }
 }
 
-/// Whether a cell is a number, a dash or nothing.
+/// Returns whether a cell is a number, a dash or nothing.
 fn is_number(text: &str) -> bool {
     let first = text.trim_start_matches(['±', '+', '-', ' ']).chars().next();
     first.is_none_or(|c| c.is_ascii_digit() || c == '∞')

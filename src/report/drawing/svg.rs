@@ -36,7 +36,7 @@ fn round_pen_width(mm: f64) -> f64 {
     (100.0 * mm).round() / 10.0
 }
 
-/// Whether two shapes are one path.
+/// Returns whether two shapes are one path.
 fn same_pen(a: &Shape, b: &Shape) -> bool {
     match (a, b) {
         (

@@ -5,7 +5,7 @@ const CHART: &str = "data-figure=\"chart\"";
 const SCENE: &str = "data-figure=\"scene\"";
 const POINTING: &str = "data-pointing";
 
-/// The scripts of a page in their order, each with the attribute of what it draws.
+/// The scripts of a page in their order, each with the attribute of the elements that it draws.
 const PARTS: [(&str, &str); 4] = [
     (CHART, include_str!("../page/chart.js")),
     (SCENE, include_str!("../page/scene.js")),

@@ -33,9 +33,9 @@ pub struct Page {
 pub enum Paper {
     /// Nothing.
     None,
-    /// All of it.
+    /// The complete report.
     Report,
-    /// All of it, with lines for name, date and signature.
+    /// The complete report, with lines for name, date and signature.
     Signed,
 }
 

@@ -58,7 +58,7 @@ impl Page {
     }
 }
 
-/// Whether figures and a table of the same numbers have room next to each other.
+/// Returns whether figures and a table of the same numbers have room next to each other.
 fn is_pair(blocks: &[Block]) -> bool {
     let figures = blocks.iter().any(|b| matches!(b, Block::Figure(_)));
     let tables = blocks.iter().filter(|b| matches!(b, Block::Table(_)));

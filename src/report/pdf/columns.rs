@@ -100,7 +100,7 @@ fn width(characters: usize, size: f64) -> f64 {
     characters as f64 * size * PER_CHARACTER + COLUMN_SPACE_MM
 }
 
-/// Whether a column contains numbers, which are right-aligned.
+/// Returns whether a column contains numbers, which are right-aligned.
 pub(super) fn is_numeric(table: &Table, column: usize) -> bool {
     let mut cells = table.rows.iter().filter_map(|row| row.get(column));
     let numeric = |cell: &String| {

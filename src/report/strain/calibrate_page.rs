@@ -30,7 +30,7 @@ fn summary(answer: &CalibratedSensitivity) -> Section {
     let c = &answer.calibration;
     let percent = |x: f64| format!("{:.2} %", 100.0 * x);
     let mut pairs = vec![
-        ("Runs that taught".to_owned(), c.runs.to_string()),
+        ("Calibration runs".to_owned(), c.runs.to_string()),
         ("Prior".to_owned(), c.prior.to_owned()),
         (
             "Scatter between repeats".to_owned(),
@@ -184,7 +184,7 @@ fn lack_of_fit(answer: &CalibratedSensitivity) -> Section {
         &["terms", "chance without this term"],
         &rows,
         &format!(
-            "The clearest term over all gauges; its probability is corrected for their number. A term counts below 0.001.{held_out}"
+            "The clearest term over all gauges; its probability is corrected for their number. A term counts if this probability is below 0.001.{held_out}"
         ),
     )
 }

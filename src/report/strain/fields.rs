@@ -1,4 +1,4 @@
-//! The page of `strains`: what was read, and where it is hot.
+//! The page of `strains`: the files that were read, and the elements with the largest strain.
 
 use crate::fe::Solution;
 use crate::fe::strain_rows::{Location, Point, StrainRow, largest_strain, largest_strain_rows};

@@ -226,14 +226,14 @@ fn scatter_section(strain: &RunStrain, outcome: &Outcome) -> Option<Section> {
     if !outcome.best_attempt.is_empty() {
         blocks.push(Block::Figure(agreement(&strain.after, kinds, runs)));
         blocks.push(Block::Note(
-            "The same with the effects included, except for the parts that differ from run to run."
+            "Strain of the model with the identified effects, except for the parts that differ from run to run."
                 .into(),
         ));
     }
     Some(Section::new("Scatter before and after", blocks))
 }
 
-/// Root mean square of measured less predicted strain of one kind of runs; `None` where there are none.
+/// Root mean square of measured less predicted strain of one kind of runs; `None` if there are no such runs.
 fn scatter_of(points: &[GaugePoints], kind: usize) -> Option<f64> {
     let all = points.iter().filter_map(|g| g.points.get(kind)).flatten();
     let square = |p: &(f64, f64)| (p.1 - p.0).powi(2);

@@ -2,15 +2,15 @@
 
 use super::tally::NOISE;
 
-/// Bend of [`rise`]: there the rise of an extreme changes from the square of the noise to the noise itself. With it [`rise`] is within a twelfth
-/// of the mean rise of the largest of samples on a parabola. It was compared with some million random cases, for a noise of an eighth to eight
-/// times the fall of the parabola within a sample.
+/// Bend of [`rise`]. At the bend, the rise of an extreme changes from the square of the noise to the noise itself. With this value, [`rise`] is
+/// within a twelfth of the mean rise of the largest of samples on a parabola. It was compared with some million random cases, for a noise of an
+/// eighth to eight times the fall of the parabola within a sample.
 const BEND: f64 = 0.21;
 /// Ends of the search for the sharpness of peaks, natural logs: beyond them [`rise`] is only a square, or only a straight line.
 const ENDS: [f64; 2] = [-4.0, 6.0];
 
 /// Returns the mean rise of the largest of samples by white noise `x`. The samples follow a parabola that falls by half of one within a sample.
-/// Below one the rise grows like `x^2`, as one or two samples compete; above, with many samples, like `x sqrt(log x)`.
+/// Below one the rise grows like `x^2`, because only one or two samples can be the largest; above, with many samples, like `x sqrt(log x)`.
 fn rise(x: f64) -> f64 {
     x * (BEND * (1.0 + x * x / BEND).ln()).sqrt()
 }

@@ -1,4 +1,4 @@
-//! A tally under way: a load's samples as they come, counted as they are and with noise added.
+//! Counter of a load's samples in their order. It counts them unchanged and with added noise.
 
 use super::count::{Listener, Point, Rainflow, Reversal};
 use super::counts::Counts;

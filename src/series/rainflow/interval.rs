@@ -88,9 +88,9 @@ impl DamageParts {
     /// Counts with more noise give the bias (`Bias`). Its error is at most the distance to the straight line through the first two counts, and at
     /// least `OFF` of the bias.
     ///
-    /// The subtracted bias was compared with counts without noise, on sines of 16 to 200 samples a period and on Gaussian loads, slopes 3 to 9. Both
-    /// agree within a fifth (a third at slope 3) up to a noise of 2 % of the range. At 5 %, noise makes up to four times the damage, and they agree
-    /// within two fifths.
+    /// The subtracted bias was compared with counts without noise for slopes 3 to 9. The loads were sines of 16 to 200 samples a period and Gaussian
+    /// loads. Both agree within a fifth (a third at slope 3) up to a noise of 2 % of the range.
+    /// At 5 %, noise makes up to four times the damage, and they agree within two fifths.
     pub fn from_tally(tally: &Tally, scale: &[f64], noise: f64) -> Self {
         let sums = tally.sums_with_residue();
         let [once, ..] = sums.damage;

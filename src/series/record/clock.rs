@@ -45,7 +45,7 @@ impl RateChange {
         format!("the sample rate changes at {at} s, from {from} Hz to {to} Hz")
     }
 
-    /// From a stretch of another rate than the usual one, in a record that begins at `start_s`.
+    /// Returns the change of rate at a stretch whose rate is unusual, in a record that begins at `start_s`.
     fn from_stretch(stretch: Stretch, start_s: f64, usual_s: f64) -> Self {
         let (usual, other) = (1.0 / usual_s, 1.0 / stretch.step_s);
         match stretch.from_s > start_s {

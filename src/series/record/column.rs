@@ -140,13 +140,13 @@ impl Column {
         self
     }
 
-    /// Whether this column contains the times. `first` states whether it is the first column of its file.
+    /// Returns whether this column contains the times. `first` states whether it is the first column of its file.
     pub fn is_time(&self, first: bool) -> bool {
         is_time(&self.name, first)
             || self.clash() == Some(Clash::Size) && is_time(&self.header.name, first)
     }
 
-    /// Whether this column contains the names of runs. Case does not matter.
+    /// Returns whether this column contains the names of runs. Case does not matter.
     pub fn is_run(&self) -> bool {
         self.name.eq_ignore_ascii_case("run")
     }
@@ -189,7 +189,7 @@ pub fn take_unit_below(column: &mut Column, below: &str) {
     below.clone_into(&mut column.unit);
 }
 
-/// Whether a field of a row of units states no unit: blank, `-`, or a title of such a row.
+/// Returns whether a field of a row of units states no unit: blank, `-`, or a title of such a row.
 pub(super) fn states_no_unit(field: &str) -> bool {
     let word = field.trim().trim_matches(['[', ']', '(', ')']);
     matches!(
@@ -284,7 +284,7 @@ pub(super) fn unit_of_time_name(name: &str) -> Option<&'static str> {
     ["ms", "us", "ns", "min"].into_iter().find(|u| *u == unit)
 }
 
-/// Whether a column of this name contains the times. `first` states whether it is the first column of its file.
+/// Returns whether a column of this name contains the times. `first` states whether it is the first column of its file.
 pub fn is_time(name: &str, first: bool) -> bool {
     let word = name.trim().to_lowercase();
     match word.as_str() {

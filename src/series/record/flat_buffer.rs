@@ -28,7 +28,7 @@ impl<'a> Buffer<'a> {
         usize::try_from(i64::from_le_bytes(*bytes)).ok()
     }
 
-    /// Returns the place that the offset at a place leads to.
+    /// Returns the place to which the offset at place `at` points.
     pub(super) fn follow(&self, at: usize) -> Option<usize> {
         at.checked_add(self.word(at)? as usize)
     }

@@ -64,8 +64,8 @@ struct Unit {
 }
 
 impl Parquet {
-    /// Opens the table in a file. A column of time (`time`, `t`, `timestamp`) gives the times, or else the first column of timestamps or durations,
-    /// such as the index that pandas writes. Only columns of numbers are read. A null is NaN.
+    /// Opens the table in a file. A column of time (`time`, `t`, `timestamp`) gives the times. Without it, the first column of timestamps or
+    /// durations gives them, such as the index that pandas writes. Only columns of numbers are read. A null is NaN.
     ///
     /// # Errors
     /// A file that is cut off or damaged.

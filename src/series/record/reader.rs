@@ -120,7 +120,7 @@ pub trait RecordReader: Send + Sync {
     fn stated_time_unit_s(&self) -> Option<f64> {
         None
     }
-    /// Whether the times are times of day, which restart at midnight.
+    /// Returns whether the times are times of day, which restart at midnight.
     fn are_times_of_day(&self) -> bool {
         false
     }

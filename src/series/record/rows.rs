@@ -110,7 +110,7 @@ impl SharedRows {
     }
 }
 
-/// A column that a thread decodes; where it does not come to its end, the rows have failed.
+/// A column that a thread decodes. If the thread does not finish, the rows have failed.
 struct Turn<'a> {
     rows: &'a Rows,
     column: usize,

@@ -19,7 +19,7 @@ pub(super) struct Sampling {
 }
 
 impl Sampling {
-    /// Whether the samples of both were taken together: no time differs by more than the share of a step that counts as even.
+    /// Returns whether the samples of both were taken together: no time differs by more than the share of a step that counts as even.
     fn is_same(&self, other: &Self) -> bool {
         let start = (self.start_s - other.start_s).abs();
         let drift = (self.step_s - other.step_s).abs() * self.samples as f64;

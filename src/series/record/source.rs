@@ -50,7 +50,7 @@ impl Source {
     }
 }
 
-/// Whether a file that begins with these bytes is read part by part.
+/// Returns whether a file that begins with these bytes is read part by part.
 pub fn is_read_in_parts(begin: &[u8]) -> bool {
     cfg!(feature = "parquet") && begin.starts_with(b"PAR1")
 }

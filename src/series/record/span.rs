@@ -84,7 +84,7 @@ impl Scale {
         }
     }
 
-    /// Whether a step is a gap.
+    /// Returns whether a step is a gap.
     pub(super) fn is_gap(&self, step: f64) -> bool {
         step > GAP * self.longest
     }

@@ -127,7 +127,7 @@ fn first_time(reader: &dyn RecordReader) -> Result<Option<f64>, SeriesError> {
     Ok(first)
 }
 
-/// Whether midnight is between two times of day that follow each other: the second is more than half a day before the first.
+/// Returns whether midnight is between two times of day that follow each other: the second is more than half a day before the first.
 fn passes_midnight(before: f64, next: f64) -> bool {
     before - next > 0.5 * DAY
 }

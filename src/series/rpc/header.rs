@@ -115,7 +115,7 @@ impl fmt::Display for RpcError {
 
 impl std::error::Error for RpcError {}
 
-/// Whether the bytes begin as an RPC III file.
+/// Returns whether the bytes begin as an RPC III file.
 pub fn is_rpc(bytes: &[u8]) -> bool {
     let value = bytes.get(KEY..RECORD).map(text).unwrap_or_default();
     let key = bytes.get(..KEY).map(text).unwrap_or_default();

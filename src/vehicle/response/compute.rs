@@ -9,13 +9,13 @@ use crate::vehicle::term::Term;
 
 /// Computes the response of a vehicle from rest. `values` contains all parameters in the order of [`Vehicle::parameters`].
 ///
-/// Equations: M q'' + sum over links of w F = sum over wheels of phi P, with F the sum of a link's terms (thesis 4.1, 5.1 to 5.5).
+/// Equations (thesis 4.1, 5.1 to 5.5): `M q'' + sum over links of w F = sum over wheels of phi P`, with F the sum of a link's terms.
 ///
 /// # Errors
 /// [`ResponseError`] if an inertia is not positive, a term cannot be simulated, the sampling is too coarse, or the motion diverges.
 ///
 /// # Example
-/// A mass of 2 kg on a spring of 800 N/m without damper, under a constant force of 4 N, swings between 0 and twice the static displacement:
+/// A mass of 2 kg is on a spring of 800 N/m without damper. Under a constant force of 4 N it swings between 0 and twice the static displacement:
 /// ```
 /// use strainbridge::vehicle::preset::{PresetRequest, vehicle};
 /// use strainbridge::vehicle::response::{Inputs, ResponseRules, compute_response};
@@ -80,7 +80,7 @@ pub fn compute_response(
     }
 }
 
-/// Returns the load of each wheel on a tyre at rest, from the weight of the bodies and the stiffness of all springs, upwards on the wheel.
+/// Returns the load of each wheel on a tyre at rest, upwards on the wheel. It follows from the weight of the bodies and the stiffness of all springs.
 ///
 /// The result is `None` for a wheel without a tyre, for a vehicle with nonlinear springs, and if springs do not carry every body.
 ///

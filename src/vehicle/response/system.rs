@@ -167,7 +167,7 @@ impl System {
         self.samples[0].len() + self.counts[1] + 2 * self.counts[2]
     }
 
-    /// Whether every term is proportional to stretch or rate.
+    /// Returns whether every term is proportional to stretch or rate.
     pub fn is_linear(&self) -> bool {
         self.terms.iter().flatten().all(|(t, _)| t.is_linear())
     }

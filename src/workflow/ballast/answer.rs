@@ -175,7 +175,7 @@ pub(super) fn report_ballast(
     }
 }
 
-/// Statics alone: the reactions' resultant minus the model's own.
+/// Returns the missing mass from statics alone: resultant of the measured reactions minus resultant of the model's reactions.
 fn missing_mass_resultant(task: &Task, sized: &BallastSizing) -> TotalMass {
     let (job, g) = (task.job, task.gravity);
     let (l, m) = (length(job), mass(job));
@@ -339,7 +339,7 @@ pub(super) fn report_mass_findings(
                 "ballast",
                 format!(
                     "the reactions determine {} of the {numbers} numbers: the total mass and its centre, not its distribution. With the \
-                     others adjusted, equally good are {}",
+                     other masses adjusted, these values fit equally well: {}",
                     fit.fixed,
                     ranges.join("; ")
                 ),

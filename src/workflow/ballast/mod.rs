@@ -218,7 +218,7 @@ fn size(
     Ok(fit)
 }
 
-/// Name, reactions and their sd in job units of the run asked for, in the order of the wheels.
+/// Name of the requested run, and its reactions and their sd in job units, in the order of the wheels.
 fn read_measured_reactions(
     work: &mut Work,
     task: &Task,

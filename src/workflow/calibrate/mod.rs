@@ -205,7 +205,7 @@ fn common_zero(job: &Job, has_prior: bool) -> Result<CommonZero, Faults> {
 ///
 /// # Errors
 /// Every fault of these files.
-pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
+pub(super) fn check_inputs(work: &mut Work, job: &Job) -> Result<(), Faults> {
     let (Some(measured), Some(runs)) = (&job.measured, &job.runs) else {
         return Ok(());
     };

@@ -21,9 +21,9 @@ const STATES: [(&str, Quantity); 2] = [
 pub(super) struct Payloads {
     /// Weight (N) and line of the file, for each row of the table.
     weights: Vec<(f64, u32)>,
-    /// The column that states them.
+    /// Column of the runs file that states the payloads.
     column: &'static str,
-    /// Whether the job has loads that are the payload's.
+    /// Whether the job has loads of the payload.
     taught: bool,
     /// Loads that are made of the weight and its place.
     made: Vec<WeightLoad>,

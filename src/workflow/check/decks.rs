@@ -62,7 +62,7 @@ struct ShownUnits {
     is_stated: bool,
 }
 
-pub(super) fn look(
+pub(super) fn check_deck(
     work: &mut Work,
     base: &Path,
     given: &str,

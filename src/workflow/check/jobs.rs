@@ -19,15 +19,16 @@ use crate::workflow::{calibrate, identify, reconcile, recover, respond, simulate
 use std::collections::HashSet;
 use std::path::Path;
 
-/// Looks into a file: of a folder, as named.
-type Look = fn(&mut Work, &Path, &str, &mut CheckedFiles);
+/// Function that checks a file of a folder, by its stated name.
+type CheckFile = fn(&mut Work, &Path, &str, &mut CheckedFiles);
 
-pub(super) fn look(
+/// Checks a job, and with `check_file` every file that the job names.
+pub(super) fn check_job(
     work: &mut Work,
     base: &Path,
     given: &str,
     found: &mut CheckedFiles,
-    into: Look,
+    check_file: CheckFile,
 ) {
     let job = match job::read_job(&mut work.inputs, &base.join(given)) {
         Ok(job) => job,
@@ -37,7 +38,7 @@ pub(super) fn look(
     found.candidates = Some(job.candidates.clone());
     let (decks, of_others) = (found.decks.len(), found.faults.len());
     let results = found.results.len();
-    files(work, &job, found, into);
+    files(work, &job, found, check_file);
     let of_job = found.results.iter_mut().skip(results);
     of_job.for_each(|r| r.is_of_job = true);
     let its_decks = found.decks.iter_mut().skip(decks);
@@ -79,14 +80,14 @@ pub(super) fn look(
         collect_faults(runs_file::read_runs(&mut work.inputs, &job, r), &mut faults);
     }
     if simulate::is_asked(&job) {
-        collect_faults(simulate::look(work, &job), &mut faults);
+        collect_faults(simulate::check_inputs(work, &job), &mut faults);
     } else if job.vehicle.is_some() {
-        collect_faults(identify::look(work, &job), &mut faults);
+        collect_faults(identify::check_inputs(work, &job), &mut faults);
     }
-    collect_faults(respond::look(work, &job), &mut faults);
+    collect_faults(respond::check_inputs(work, &job), &mut faults);
     if let Some(job) = collect_faults(job.without_validation_gauges(), &mut faults) {
-        collect_faults(reconcile::look(work, &job), &mut faults);
-        collect_faults(calibrate::look(work, &job), &mut faults);
+        collect_faults(reconcile::check_inputs(work, &job), &mut faults);
+        collect_faults(calibrate::check_inputs(work, &job), &mut faults);
     }
     if faults.len() == of_others {
         let deck = found.decks.get(decks).and_then(|d| d.model());
@@ -149,7 +150,7 @@ fn check_measured_strain(
     // If the gauge names can't be read, a fault is already reported.
     let mut faults = match gauges.is_empty() {
         true => FaultList::new(),
-        false => recover::look(work, job, m, s),
+        false => recover::check_inputs(work, job, m, s),
     };
     if let HoldOut::File(named) = &m.hold_out {
         collect_faults(read_zeroed(work, job, m, named), &mut faults);
@@ -173,20 +174,20 @@ fn signatures(
         let is_measured = |g: &&String| file.as_ref().is_none_or(|f| f.contains(g));
         let names: Vec<String> = gauges.iter().filter(is_measured).cloned().collect();
         collect_faults(
-            reconcile::look_at_signatures(work, job, given, &names),
+            reconcile::check_signature_inputs(work, job, given, &names),
             &mut faults,
         );
     }
     faults
 }
 
-/// Opens every file that the job names; decks and results are looked into.
-fn files(work: &mut Work, job: &Job, found: &mut CheckedFiles, into: Look) {
+/// Opens every file that the job names, and checks decks and results.
+fn files(work: &mut Work, job: &Job, found: &mut CheckedFiles, check_file: CheckFile) {
     if let Some(m) = &job.model {
         let before = found.decks.len();
         for named in std::iter::once(&m.deck).chain(&m.results) {
             match work.inputs.read_named(job, named) {
-                Ok(_) => into(work, &job.folder, &named.given, found),
+                Ok(_) => check_file(work, &job.folder, &named.given, found),
                 Err(f) => found.faults.push(f),
             }
         }

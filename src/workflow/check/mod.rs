@@ -48,7 +48,7 @@ pub fn check(files: &[PathBuf], cx: &Context) -> Result<Outcome<CheckedFiles>, F
     let mut found = CheckedFiles::default();
     for file in files {
         let given = file.display().to_string();
-        work.stage("read", |w| look(w, Path::new(""), &given, &mut found));
+        work.stage("read", |w| check_file(w, Path::new(""), &given, &mut found));
     }
     work.stage("compare", |w| {
         deck_result_comparison::compare(w, &mut found)
@@ -61,25 +61,25 @@ pub fn check(files: &[PathBuf], cx: &Context) -> Result<Outcome<CheckedFiles>, F
     Ok(work.finish(units, found))
 }
 
-/// Looks into one file.
-fn look(work: &mut Work, base: &Path, given: &str, found: &mut CheckedFiles) {
+/// Checks one file.
+fn check_file(work: &mut Work, base: &Path, given: &str, found: &mut CheckedFiles) {
     let bytes = match work.inputs.read(base, given) {
         Ok(b) => b,
         Err(f) => return found.faults.push(f),
     };
     match kind_of(given, &bytes) {
-        Kind::Job => jobs::look(work, base, given, found, look),
+        Kind::Job => jobs::check_job(work, base, given, found, check_file),
         Kind::Deck => {
-            let (entry, faults) = decks::look(work, base, given, &bytes);
+            let (entry, faults) = decks::check_deck(work, base, given, &bytes);
             found.faults.extend(faults);
             found.decks.push(entry);
         }
         Kind::Results => {
-            let (entry, faults) = results::look(work, given, bytes);
+            let (entry, faults) = results::check_results(work, given, bytes);
             found.faults.extend(faults);
             found.results.extend(entry);
         }
-        Kind::Table => match records::look(work, base, given) {
+        Kind::Table => match records::check_record(work, base, given) {
             Ok(entry) => found.records.push(entry),
             Err(faults) => found.faults.extend(faults),
         },

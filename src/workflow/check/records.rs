@@ -148,7 +148,11 @@ impl RecordEntry {
 ///
 /// # Errors
 /// Faults of the file.
-pub(super) fn look(work: &mut Work, base: &Path, given: &str) -> Result<RecordEntry, Faults> {
+pub(super) fn check_record(
+    work: &mut Work,
+    base: &Path,
+    given: &str,
+) -> Result<RecordEntry, Faults> {
     let bytes = work.inputs.read(base, given)?;
     let format = format_of(&bytes).map_or(text_format(given), |f| f.name());
     let bytes = as_table(given, bytes)?;

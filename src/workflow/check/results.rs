@@ -95,7 +95,7 @@ impl ResultEntry {
     }
 }
 
-pub(super) fn look(
+pub(super) fn check_results(
     work: &mut Work,
     given: &str,
     bytes: FileBytes,

@@ -259,7 +259,7 @@ fn obstacle(deck: &DeckModel, given: &str, units_open: bool) -> Option<Finding> 
     None
 }
 
-/// Result files with their static subcases that hold strain of shells.
+/// Returns the result files, each with the static subcases that contain strain of shells.
 fn read_strained(
     results: &[PathBuf],
     deck: &DeckModel,

@@ -86,12 +86,12 @@ impl JobPlan<'_> {
         let results = match (self.from, results.is_empty()) {
             (StrainFrom::Results, _) => format!("results = [{}]", results.join(", ")),
             (StrainFrom::Solver, false) => format!(
-                "# results = [{}]        # left out: {}; the built-in solver computes the strain",
+                "# results = [{}]        # not used: {}; the built-in solver computes the strain",
                 results.join(", "),
                 self.without_results
             ),
             (StrainFrom::Solver, true) => {
-                "# results = [\"unit_loads.op2\"]        # of the deck that `strainbridge cases job.toml` writes; left out: the built-in solver computes them".to_owned()
+                "# results = [\"unit_loads.op2\"]        # of the deck that `strainbridge cases job.toml` writes; without this line the built-in solver computes them".to_owned()
             }
         };
         format!(
@@ -218,7 +218,7 @@ impl JobPlan<'_> {
              position_tolerance = {shift:?}             # check: how well a gauge is glued at its place, 1 sd\n\
              # curve = [{n}, {more}]                     # what each of these numbers of gauges gives\n\
              # reserve = 2                        # gauges kept for validation\n\
-             # loss = \"optimise\"                  # for what is left after the loss of any one gauge\n",
+             # loss = \"optimise\"                  # best layout after the worst loss of one gauge\n",
             self.spacing
         )
     }

@@ -125,7 +125,7 @@ fn trials<'a>(
     whole.chain(fewer)
 }
 
-/// Whether `place` answers; else why not.
+/// Returns an error with the reason if `place` gives no layout.
 fn try_place(cx: &Context, trial: &JobPlan) -> Result<(), String> {
     let path = trial.folder.join(JOB);
     // Four angles a place show whether the gauges separate the loads. `place` proves the layout with more angles.

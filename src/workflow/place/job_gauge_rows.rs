@@ -142,7 +142,7 @@ impl Task<'_> {
     }
 }
 
-/// Whether a gauge on the model is a reading of this gauge of the job.
+/// Returns whether a gauge on the model gives a reading of this gauge of the job.
 fn is_of(gauge: &Gauge, stated: &JobGauge) -> bool {
     gauge.name == stated.name || gauge.name.starts_with(&format!("{}.", stated.name))
 }

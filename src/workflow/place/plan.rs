@@ -14,8 +14,8 @@ use crate::strain_chain::{Fields, WantedAt, read_fields};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Plan of gauges for a job. It keeps the model, the strain of the loads and S of the candidates, so that a layout after a change of candidates,
-/// number of gauges or gauges that stay costs only the search.
+/// Plan of gauges for a job. It keeps the model, the strain of the loads and S of the candidates. If candidates, the number of gauges or the gauges
+/// to keep change, only the search runs again.
 ///
 /// # Example
 /// ```

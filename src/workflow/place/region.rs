@@ -28,7 +28,7 @@ pub(super) struct StrictRule {
 }
 
 impl StrictRule {
-    /// Whether the rule, not the spacing, is what most places are lost to.
+    /// Returns whether the rule excludes more places than the spacing.
     pub(super) fn takes_most(&self) -> bool {
         2 * self.left < self.of
     }

@@ -1,4 +1,4 @@
-//! A layout that is stated gauge by gauge, described like a chosen one.
+//! Evaluation of a layout whose gauges the job states.
 
 use super::chosen_layout::ChosenLayout;
 use super::outcome::CertifiedLayout;

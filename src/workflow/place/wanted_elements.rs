@@ -1,4 +1,4 @@
-//! Elements that the job wants a gauge on.
+//! Elements that must receive a gauge.
 
 use super::pool::Kind;
 use super::task::Task;
@@ -7,7 +7,7 @@ use crate::placement::candidates::Choice;
 use crate::placement::required_places::with_one_in_each;
 use crate::placement::{Layout, Spec};
 
-/// Returns the gauges of a layout with one gauge on every wanted element; `None` if the job wants no elements.
+/// Returns the gauges of a layout with one gauge on every wanted element; `None` if the job has no such elements.
 ///
 /// # Errors Elements that are not candidates, more wanted elements than gauges, no place at the stated spacing.
 pub(super) fn on_wanted(

@@ -31,7 +31,7 @@ impl Undo {
     }
 }
 
-/// Name of a place, and the change that the written deck causes in the strain from the weight of a mass there, microstrain per kg by gauge.
+/// Name of a place, and a change in the strain from the weight of a mass there, microstrain per kg by gauge. The written deck causes this change.
 pub(super) type Weight = (String, Vec<f64>);
 
 /// Returns the corrections of the named effects; `deck` is present for a job with a deck. Returns `None` if entries of a job can't express them. This
@@ -142,7 +142,7 @@ pub(super) fn angle_corrections(effects: &[NamedEffect], has_deck: bool) -> Vec<
     lists.flatten().filter_map(one).collect()
 }
 
-/// Whether the job corrects a channel already.
+/// Returns whether the job corrects a channel already.
 fn is_corrected(job: &Job, frame: &StrainFrame, gauge: usize) -> bool {
     let is_of = |c: &StrainCorrection, name: &str| {
         c.gauge == name || c.exchanged_with.as_deref() == Some(name)

@@ -103,7 +103,7 @@ pub(super) fn read(
         None => laid,
     };
     let [mut table, at_45, at_90] = seen.map(|g| influence(job, model, g, &solution, n_c));
-    let own = match fields.beside.take() {
+    let own = match fields.additional.take() {
         Some(solved) => solved,
         None => work.stage("solve signatures", |w| {
             unit_loads_kept(w, (&fields.deck, &heat), (model, support), &asked.columns)

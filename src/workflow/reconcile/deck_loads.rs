@@ -26,7 +26,7 @@ pub(super) struct SignatureLoads {
     pub(super) loads: Vec<UnitLoad>,
     /// Loads that are columns of S. They are the first of `loads`.
     pub(super) columns: Vec<UnitLoad>,
-    /// Name and grid of each load that is asked for.
+    /// Name and grid of each wanted load.
     wheels: Vec<(String, GridIx)>,
     /// Names of the side loads.
     besides: Vec<String>,

@@ -1,4 +1,4 @@
-//! Signatures of the user's own hypotheses: from a table, or from the edited deck solved again.
+//! Signatures of effects that the user describes: from a table, or from a solution of the edited deck.
 
 use super::deck_frame::DeckFrame;
 use super::signature_table::{SignatureTable, TableColumn};
@@ -34,7 +34,7 @@ pub(super) fn effects(job: &Job) -> &[DescribedEffect] {
 /// Returns the signatures of the hypotheses with a table. An `edit` requires a deck.
 ///
 /// # Errors
-/// Tables that can't be read, an edit where there is no deck.
+/// Tables that can't be read, or an edit without a deck.
 pub(super) fn from_tables(
     inputs: &mut Inputs,
     job: &Job,
@@ -62,7 +62,7 @@ pub(super) fn from_tables(
 ///
 /// # Errors
 /// Tables that can't be read, gauges that a table lacks.
-pub(super) fn look(
+pub(super) fn check_inputs(
     inputs: &mut Inputs,
     job: &Job,
     channels: &[String],

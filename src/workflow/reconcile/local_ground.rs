@@ -89,7 +89,7 @@ impl<'a> Ground<'a> {
         })
     }
 
-    /// Shells by their distance from the nearest gauges that disagree, so thinned that two lie `apart` at least.
+    /// Returns shells, ordered by their distance from the nearest gauge that disagrees. Any two of these shells are at least `apart` from each other.
     fn thin_shells(&self, mut shells: Vec<usize>, apart: f64, n: usize) -> Vec<usize> {
         let key = |s: &usize| -> f64 {
             let Some(m) = self.middles.get(*s) else {

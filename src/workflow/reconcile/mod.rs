@@ -91,9 +91,9 @@ pub fn reconcile(job: &Job, cx: &Context) -> Result<Outcome<Reconciliation>, Fau
 ///
 /// # Errors
 /// Faults of the job and of the files it names.
-pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
+pub(super) fn check_inputs(work: &mut Work, job: &Job) -> Result<(), Faults> {
     match job.reconcile.as_ref().map(|r| r.path) {
-        Some(ReconcilePath::Static) => strain_path::look(job, work),
+        Some(ReconcilePath::Static) => strain_path::check_inputs(job, work),
         Some(ReconcilePath::Dynamic) | None => Ok(()),
     }
 }
@@ -102,7 +102,7 @@ pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
 ///
 /// # Errors
 /// Tables that can't be read, gauges that a table lacks.
-pub(super) fn look_at_signatures(
+pub(super) fn check_signature_inputs(
     work: &mut Work,
     job: &Job,
     given: &GivenSensitivity,

@@ -104,12 +104,12 @@ impl EffectPlaceInputs<'_> {
             }],
             Extension::LoadScale { load, factor } => vec![change_at(
                 format!("{RUNS}: column {load}"),
-                "as noted",
+                "as recorded",
                 format!("divided by {}", number(*factor)),
             )],
             Extension::RunExchange { runs } => vec![change_at(
                 format!("{RUNS}: rows {}", runs.join(" and ")),
-                "as noted",
+                "as recorded",
                 "loads and payload exchanged".into(),
             )],
             Extension::RunRecord { run, noted, .. } => self.record(run, *noted),
@@ -308,7 +308,7 @@ impl EffectPlaceInputs<'_> {
         };
         change_at(
             format!("{file}: place of the payload"),
-            "as noted",
+            "as recorded",
             format!("moved by {} m and {} m to the left", number(dx), number(dy)),
         )
     }

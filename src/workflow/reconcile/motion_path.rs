@@ -200,7 +200,7 @@ fn without_dead_hold_out(work: &mut Work, section: &VehicleJob, frame: &mut Moti
     ));
 }
 
-/// Whether the outcome identifies the wrong input as an effect of a channel, or has channels without a signal.
+/// Returns whether the outcome identifies the wrong input as an effect of a channel, or has channels without a signal.
 fn is_identified(wrong: &Finding, outcome: &MotionOutcome) -> bool {
     let of_channel = |e: &MotionEffect| match &e.change {
         Change::Flip { channel } => {
@@ -305,7 +305,7 @@ fn identify_vehicle(records: &VehicleRecords, outcome: &MotionOutcome) -> Option
     (!is_dead).then(found).flatten()
 }
 
-/// Misfit of each measured wheel force, without and with the effects in, as `identify` leaves it on held-out data.
+/// Returns the misfit of each measured wheel force on held-out data after `identify`, without and with the effects.
 fn wheel_forces(
     records: &VehicleRecords,
     frame: &MotionFrame,

@@ -140,7 +140,7 @@ fn payload_of(row: &RunRow, gravity: f64, origin: [f64; 2]) -> [f64; 3] {
     ]
 }
 
-/// Whether a load of the job is a moment.
+/// Returns whether a load of the job is a moment.
 fn is_moment(job: &Job, name: &str) -> bool {
     job.quantity_of_load(name) == Some(Quantity::Moment)
 }

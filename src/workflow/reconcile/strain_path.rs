@@ -151,7 +151,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciliation, Fault
 ///
 /// # Errors
 /// Faults of the job and of the files it names.
-pub(super) fn look(job: &Job, work: &mut Work) -> Result<(), Faults> {
+pub(super) fn check_inputs(job: &Job, work: &mut Work) -> Result<(), Faults> {
     let observations = observations(job, work)?;
     let channels = observations.channels.clone();
     match (&job.sensitivity, &job.model) {
@@ -161,7 +161,7 @@ pub(super) fn look(job: &Job, work: &mut Work) -> Result<(), Faults> {
         }
         (None, Some(_)) => {
             let columns = deck_frame::per_job_unit(job);
-            described_effects::look(&mut work.inputs, job, &channels, &columns)
+            described_effects::check_inputs(&mut work.inputs, job, &channels, &columns)
         }
         (None, None) => Ok(()),
     }

@@ -67,7 +67,7 @@ impl VibrationModel {
     /// Returns the modes at the gauges and loads of `s`; `None` for a job without `[dynamic]`.
     ///
     /// # Errors
-    /// A job without a model that could vibrate, too many modes below the band, or a load or gauge that is not part of the model.
+    /// A job whose model has no modes, too many modes below the band, or a load or gauge that is not part of the model.
     pub fn of_job(
         work: &mut Work,
         job: &Job,
@@ -121,8 +121,9 @@ impl VibrationModel {
     /// an error if the work is stopped.
     ///
     /// # Errors
-    /// A band that does not fit the sampling rate, gauges that don't determine the loads in the band, or a record that is too short or does not
-    /// determine the damping.
+    /// - The band does not fit the sampling rate.
+    /// - The gauges do not determine the loads in the band.
+    /// - The record is too short or does not determine the damping.
     pub fn remove(
         &self,
         s: &Sensitivity,

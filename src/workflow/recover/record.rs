@@ -163,7 +163,7 @@ pub(super) fn record(
     Ok((answer(sensitivity, head, sums, spans, extras), beside))
 }
 
-/// Returns the findings on loads beyond the range of a calibrated S, and on vertical loads that all pull, by the smallest and the largest load.
+/// Returns the findings on loads beyond the range of a calibrated S and on vertical loads that all pull. It tests the smallest and largest loads.
 fn check_range_and_sign(
     task: &Task,
     sensitivity: &Sensitivity,
@@ -207,7 +207,7 @@ fn about_files(
 ///
 /// # Errors
 /// A record that can't be read.
-pub(super) fn look(
+pub(super) fn sample_readings(
     work: &mut Work,
     task: &Task,
     record: &Record,

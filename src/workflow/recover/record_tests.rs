@@ -19,7 +19,7 @@ use rayon::prelude::*;
 const TESTED_SAMPLES: usize = 200;
 /// Largest number of samples at which a record that is read in one piece is tested in full.
 const FULLY_TESTED_SAMPLES: usize = 2000;
-/// Samples from which typical loads are taken for the weights of a stated model error.
+/// Number of samples that give typical loads for the weights of a stated model error.
 const TYPICAL: usize = 20_000;
 /// Pieces whose content is looked at.
 const LOOKED_AT: usize = 8;

@@ -111,7 +111,7 @@ fn blanks(table: &StrainTable, names: &[String], gauges: &[(usize, &str)]) -> Ve
                 Severity::Warning,
                 "readings-repeated",
                 list_few(&repeated),
-                "the readings of these runs agree at all gauges to the last digit. Two measurements never agree so far. One run is a copy",
+                "the readings of these runs agree at all gauges to the last digit. Two measurements never agree to this precision. One run is a copy",
                 "check the runs in the files of the logger",
             )
             .with_numbers(repeated.len() as f64, 0.0),

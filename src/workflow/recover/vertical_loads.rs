@@ -8,7 +8,7 @@ use crate::units::number;
 /// Vertical loads that must all be negative: fewer may pull by chance or by their function.
 const LEAST_LOADS: usize = 3;
 
-/// Wanted forces FZ in basic axes of a job, by number and name, but for a payload, which pushes down. If S is given and a load has only a name, a
+/// Wanted forces FZ in basic axes of a job, by number and name, except a payload, which pushes down. If S is given and a load has only a name, a
 /// name that ends with `FZ` after a separator counts.
 #[derive(Clone, Debug)]
 pub(crate) struct VerticalLoads(Vec<(usize, String)>);

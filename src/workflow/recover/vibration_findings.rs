@@ -54,7 +54,7 @@ pub(super) fn contradiction(
         }
         None if found.unexplained > RULES.unexplained && found.over_noise > RULES.over_noise => {
             format!(
-                "no frequency and damping of the modes explains {:.0} % of the mean square of the vibration in the residual, limit {:.0} %",
+                "with the best frequencies and damping of the modes, {:.0} % of the mean square of the vibration remains unexplained in the residual, limit {:.0} %",
                 100.0 * found.unexplained,
                 100.0 * RULES.unexplained
             )

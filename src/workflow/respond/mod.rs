@@ -58,7 +58,7 @@ pub fn respond(job: &Job, cx: &Context) -> Result<Outcome<StressResponse>, Fault
 ///
 /// # Errors
 /// A table that can't be read, or that lacks a load.
-pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
+pub(super) fn check_inputs(work: &mut Work, job: &Job) -> Result<(), Faults> {
     let loads = job.respond.loads.as_ref();
     loads.map_or(Ok(()), |named| {
         states::from_table(work, job, named).map(|_| ())

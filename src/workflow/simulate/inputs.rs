@@ -37,7 +37,7 @@ struct Models {
     tyres: Vec<Tyre>,
 }
 
-/// Whether the section states every parameter of its model.
+/// Returns whether the section states every parameter of its model.
 pub(super) fn knows_all(section: &VehicleJob) -> bool {
     let model = vehicle(&preset_request(section));
     model.is_ok_and(|m| {

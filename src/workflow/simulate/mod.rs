@@ -112,11 +112,11 @@ impl Answer for SimulatedResponse {
 ///
 /// # Errors
 /// Every fault of the job and its record.
-pub(crate) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
+pub(crate) fn check_inputs(work: &mut Work, job: &Job) -> Result<(), Faults> {
     read_simulation(work, job).map(|_| ())
 }
 
-/// Whether a job asks for a simulation: it names the input, or knows every parameter of the model.
+/// Returns whether a job asks for a simulation: it names the input, or knows every parameter of the model.
 pub(crate) fn is_asked(job: &Job) -> bool {
     let Some(section) = &job.vehicle else {
         return false;
@@ -132,7 +132,7 @@ pub(crate) fn is_asked(job: &Job) -> bool {
 /// Returns every fault of the job and its record.
 ///
 /// # Example
-/// A mass of 2 kg on a spring of 8000 N/m under a constant force of 16 N swings about its static displacement of 2 mm:
+/// A mass of 2 kg is on a spring of 8000 N/m. Under a constant force of 16 N it swings about the static displacement of 2 mm:
 /// ```
 /// use std::path::Path;
 /// use strainbridge::host::context::InMemory;

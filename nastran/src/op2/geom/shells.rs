@@ -80,7 +80,7 @@ fn head(f: &mut Fields<'_>, shape: ShellShape) -> Option<Shell> {
     })
 }
 
-/// Returns the angle in degrees. The value is an angle or 512 (MCID + 1), which no angle reaches.
+/// Returns the angle in degrees. The value is an angle, or 512 (MCID + 1), which exceeds every angle.
 fn theta(f: &mut Fields<'_>) -> Option<MaterialAngle> {
     let theta = f.usual_real()?;
     Some(if theta > 511.0 {

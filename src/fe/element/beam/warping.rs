@@ -87,7 +87,7 @@ fn interpolate_twist(gj: f64, ecw: f64, length: f64, xi: f64) -> SMatrix<f64, 2,
     rows
 }
 
-/// Returns the torques and bimoments at both ends equivalent to a torque per length of mean c with the slope 2 d from end to end.
+/// Returns the torques and bimoments at both ends equivalent to a torque per length. Its mean is c, and it changes by 2 d from end to end.
 ///
 /// The torques are (c / 2 -+ d (1/6 + 2 gamma)) L, the bimoments (+-c beta - d gamma) L^2.
 ///

@@ -68,7 +68,7 @@ fn build_input_and_law(model: &Model, solid: &Solid) -> Result<(SolidInput, Soli
     Ok((input, law))
 }
 
-/// Whether solid `i` is numbered as its mirror image, inside out.
+/// Returns whether solid `i` is numbered as its mirror image, inside out.
 pub(crate) fn is_inverted(model: &Model, i: usize) -> bool {
     input(model, &model.solids[i]).is_ok_and(|input| input.hand() < 0.0)
 }

@@ -77,8 +77,8 @@ pub(super) fn turn_over(frame: &MotionFrame, fit: &MotionFit) -> Rows {
     }
 }
 
-/// Returns the delay of each accelerometer at a stroke at the beginning and at a stroke at the end of a record as long as the present record. The
-/// times of the strokes are unknown.
+/// Returns the delay of each accelerometer at two strokes, one at the beginning and one at the end of a record. The record is as long as the present
+/// one. The times of the strokes are unknown.
 pub(super) fn stroke_delay_rows(frame: &MotionFrame, fit: &MotionFit) -> Rows {
     let own = accelerometers(frame, fit);
     let adjust = Adjustment::without_slips(&adjustments(frame, &fit.parts));

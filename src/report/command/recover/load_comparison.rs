@@ -193,8 +193,8 @@ fn comparison_section(comparison: &Comparison) -> Section {
     ));
     blocks.push(Block::Figure(cross_plot(&plots)));
     blocks.push(Block::Note(
-        "Bias and rms: mean and root mean square of recovered minus recorded load. Damage ratio: pseudo-damage of the recovered over that \
-         of the recorded load between the same times. The plot shows some of the points."
+        "Bias and rms: mean and root mean square of recovered minus recorded load. Damage ratio: pseudo-damage of the recovered load \
+         divided by the pseudo-damage of the recorded load, between the same times. The plot shows some of the points."
             .to_owned(),
     ));
     Section::new("Recovered against recorded loads", blocks)

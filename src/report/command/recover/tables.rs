@@ -160,7 +160,7 @@ impl Tables {
     }
 }
 
-/// Whether all samples are written as numbers.
+/// Returns whether all samples are written as numbers.
 fn has_numbers(head: &RecordHead) -> bool {
     head.stride > 1 || head.is_read_again()
 }

@@ -32,7 +32,7 @@ fn without_offset(time: &str) -> Option<(&str, f64)> {
     Some((before.trim_end(), if sign == "-" { -size } else { size }))
 }
 
-/// Whether a field is a date whose day and month could be exchanged, such as `3/1/2026 10:00:00 AM`.
+/// Returns whether a field is a date whose day and month could be exchanged, such as `3/1/2026 10:00:00 AM`.
 pub fn is_ambiguous(field: &[u8]) -> bool {
     let text = std::str::from_utf8(field).unwrap_or_default().trim();
     let date = text.split([' ', 'T']).next().unwrap_or_default();

@@ -9,7 +9,7 @@ const TELLING: usize = 8;
 /// of line although other lines have one.
 ///
 /// A last field with as many characters after the point as the fields before it is complete. Other code refuses a line with fewer fields than the
-/// line before. If the file has only two lines, the first may be the header, so that they show nothing.
+/// line before. If the file has only two lines, the first may be the header. The two lines then give no information.
 pub fn unsure_end(bytes: &[u8]) -> Option<usize> {
     let (start, lines) = last_lines(bytes);
     let (last, before) = lines.split_first()?;
@@ -54,7 +54,7 @@ pub fn is_cut(bytes: &[u8]) -> bool {
         && (has_fewer_digits(own, rows, delimiter) || lacks_a_part(own, rows, delimiter))
 }
 
-/// Whether every column of `rows` has its number of characters after the point, and the last number `own` has fewer.
+/// Returns whether every column of `rows` has its number of characters after the point, and the last number `own` has fewer.
 fn has_fewer_digits(own: &[u8], rows: &[Vec<u8>], delimiter: u8) -> bool {
     /// Least count of numbers. One of ten ends in a zero, which a person leaves out: so many have equal digits by chance once in seventy.
     const NUMBERS: usize = 40;

@@ -313,12 +313,12 @@ fn split(line: &[u8], delimiter: u8) -> Vec<&[u8]> {
     }
 }
 
-/// Whether a field holds a number or a date.
+/// Returns whether a field holds a number or a date.
 fn holds_value(field: &[u8], mark: DecimalMark) -> bool {
     number(field, mark).is_some_and(f64::is_finite) || is_moment(field)
 }
 
-/// Whether a field holds a date and time, or a time of day.
+/// Returns whether a field holds a date and time, or a time of day.
 fn is_moment(field: &[u8]) -> bool {
     date::seconds(field).is_some() || date::of_day(field).is_some()
 }

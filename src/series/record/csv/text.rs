@@ -140,7 +140,7 @@ impl Encoding {
     }
 }
 
-/// Whether the lines of a file end with a carriage return alone, as old Macintosh programs write them.
+/// Returns whether the lines of a file end with a carriage return alone, as old Macintosh programs write them.
 pub fn has_bare_returns(bytes: &[u8]) -> bool {
     /// Bytes looked at: the first lines of any table.
     const BEGINNING: usize = 1 << 20;
@@ -154,7 +154,7 @@ pub fn has_bare_returns(bytes: &[u8]) -> bool {
     !of(b'\n') && of(b'\r')
 }
 
-/// Whether a line holds nothing or a comment.
+/// Returns whether a line holds nothing or a comment.
 pub fn is_empty_line(line: &[u8]) -> bool {
     let line = line.trim_ascii();
     line.is_empty() || line.first() == Some(&b'#')

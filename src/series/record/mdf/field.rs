@@ -98,7 +98,7 @@ impl Field {
         })
     }
 
-    /// Whether the field is within records of so many bytes.
+    /// Returns whether the field is within records of so many bytes.
     pub(super) fn fits(&self, data: usize, invalidation: usize) -> bool {
         let within = self.kind == Kind::Index || self.at + self.bytes <= data;
         within && self.invalid.is_none_or(|(byte, _)| byte < invalidation)

@@ -51,7 +51,7 @@ pub(super) fn samplings(all: &[Channel], file: &[u8]) -> Vec<Sampling> {
     all.iter().map(sampling).collect()
 }
 
-/// Whether a channel contains times, by its kind or its name.
+/// Returns whether a channel contains times, by its kind or its name.
 fn is_named_time(c: &Channel, all: &[Channel]) -> bool {
     let first = all.iter().find(|o| o.group == c.group);
     let is_first = first.is_some_and(|f| f.name == c.name);
@@ -80,7 +80,7 @@ pub(super) fn axis(c: &Channel) -> String {
     format!("`{name} [{}]`", axis_unit(c))
 }
 
-/// Whether the axis of a channel is time. Its unit must be a unit of time. Without a unit, its name must be a name of time, or empty.
+/// Returns whether the axis of a channel is time. Its unit must be a unit of time. Without a unit, its name must be a name of time, or empty.
 pub(super) fn is_over_time(c: &Channel) -> bool {
     if step(c).is_none() || !axis_unit(c).is_empty() {
         return seconds_in(axis_unit(c)).is_some();

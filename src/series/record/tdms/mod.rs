@@ -23,7 +23,7 @@ use stamp::Stamp;
 /// Samples a piece.
 const PIECE: usize = 65_536;
 
-/// Whether the bytes begin as TDMS.
+/// Returns whether the bytes begin as TDMS.
 pub(super) fn is_tdms(bytes: &[u8]) -> bool {
     bytes.starts_with(b"TDSm")
 }
@@ -325,7 +325,7 @@ impl Channel {
         unit.unwrap_or_default()
     }
 
-    /// Whether both hold the same values, as stored.
+    /// Returns whether both hold the same values, as stored.
     fn is_equal(&self, other: &Self, file: &[u8]) -> bool {
         let (mut a, mut b) = ([f64::NAN; BLOCK], [f64::NAN; BLOCK]);
         (0..self.samples).step_by(BLOCK).all(|from| {

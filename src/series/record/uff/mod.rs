@@ -15,7 +15,7 @@ use fault::read_error;
 /// Samples a piece.
 const PIECE: usize = 65_536;
 
-/// Whether the bytes begin as a universal file: a line with -1 alone, then the number of a data set.
+/// Returns whether the bytes begin as a universal file: a line with -1 alone, then the number of a data set.
 pub(super) fn is_uff(bytes: &[u8]) -> bool {
     let mut lines = bytes
         .get(..200.min(bytes.len()))

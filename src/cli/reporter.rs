@@ -25,14 +25,14 @@ enum Level {
 
 /// Settings of the text that a command prints.
 #[derive(Clone, Copy)]
-pub(super) struct Voice {
+pub(super) struct Reporter {
     level: Level,
     colour: bool,
     json: bool,
     room: Room,
 }
 
-impl Voice {
+impl Reporter {
     /// Returns the settings of printed text that the arguments request. Text has colours if stderr is a terminal and `NO_COLOR` is not set.
     pub fn from_arguments(common: &CommonArguments) -> Self {
         let level = match (common.quiet, common.verbose) {

@@ -14,7 +14,7 @@ use crate::strain_chain::JobSensitivity;
 
 /// Reads the measured strain of a job, its zero and its known payload, as `recover` does. Tests readings and times, and returns every fault.
 /// `sensitivity` is the job's given S. If S needs a solution, it contains only the names of the gauges.
-pub(crate) fn look(
+pub(crate) fn check_inputs(
     work: &mut Work,
     job: &Job,
     measured: &Measured,
@@ -72,7 +72,7 @@ fn readings(work: &mut Work, task: &Task, known: KnownSensitivity) -> Result<(),
         list_load_columns(task.job, s)?;
     }
     let (s, readings) = match open_strain(work, task.job, task.measured)? {
-        MeasuredStrain::Record(record) => record::look(work, task, &record)?,
+        MeasuredStrain::Record(record) => record::sample_readings(work, task, &record)?,
         MeasuredStrain::Runs(table) => (s.clone(), runs::read(work, task, &table)?.0),
     };
     let found = match reads_strain(task.job) {
