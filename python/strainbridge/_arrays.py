@@ -105,6 +105,8 @@ class RecoveredRows:
         labels = list(names) if names is not None else [f"f{i}" for i in range(n)]
         if len(labels) != n:
             raise ValueError(f"{len(labels)} names are given and there are {n} loads")
+        if len(set(labels)) != n:
+            raise ValueError("two loads have the same name; give each a name of its own")
         ends = [(end, np.atleast_2d(rows)) for end, rows in (("", self.loads), (".low", self.low), (".high", self.high))]
         return Table.from_columns({f"{name}{end}": values[:, i] for i, name in enumerate(labels) for end, values in ends})
 

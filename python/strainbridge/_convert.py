@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+from decimal import Decimal
 from numbers import Real
 from typing import Any
 
@@ -10,6 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+
+#: Largest whole number that the engine takes.
+_LARGEST = 2**63 - 1
+#: Largest number of threads. Starting millions would take hours.
+_MOST_THREADS = 1024
 
 
 def floats(name: str, value: Any) -> Floats:
@@ -37,7 +43,7 @@ def _of_objects(name: str, array: NDArray[Any]) -> NDArray[np.float64]:
     for at, value in np.ndenumerate(array):
         if value is None or type(value).__name__ in ("NAType", "NaTType"):
             continue
-        if not isinstance(value, (Real, np.number)):
+        if not isinstance(value, (Real, Decimal, np.number)):
             raise TypeError(f"{name} contains {value!r} at {at}; numbers are needed")
         out[at] = float(value)
     return out
@@ -48,7 +54,7 @@ def count(name: str, value: Any) -> int:
 
     Raises:
         TypeError: a text or a number with a fraction.
-        ValueError: 0 or less.
+        ValueError: 0 or less, or a number that the engine does not take.
     """
     try:
         number = operator.index(_no_truth(value))
@@ -56,6 +62,8 @@ def count(name: str, value: Any) -> int:
         raise TypeError(f"{name} is {value!r}; a whole number is needed") from None
     if number < 1:
         raise ValueError(f"{name} is {number}; 1 or more is needed")
+    if number > _LARGEST:
+        raise ValueError(f"{name} is {number}; at most {_LARGEST} is possible")
     return number
 
 
@@ -86,7 +94,7 @@ def threads(value: Any) -> int | None:
 
     Raises:
         TypeError: the value is not a whole number.
-        ValueError: the value is 0 or below -1.
+        ValueError: the value is 0 or below -1, or above 1024.
     """
     if value is None:
         return None
@@ -98,4 +106,6 @@ def threads(value: Any) -> int | None:
         return None
     if number < 1:
         raise ValueError(f"threads is {number}; give 1 or more, or -1 for all cores")
+    if number > _MOST_THREADS:
+        raise ValueError(f"threads is {number}; give {_MOST_THREADS} or fewer, or -1 for all cores")
     return number

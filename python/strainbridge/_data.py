@@ -30,7 +30,12 @@ def csv_bytes(table: Any) -> bytes:
 
     Raises:
         TypeError: a column contains lists, or no installed package reads the table.
+        ValueError: two columns have the same name, or the index has the name of a column.
     """
+    names = _names(table)
+    twice = sorted({n for n in names if names.count(n) > 1})
+    if twice:
+        raise ValueError(f"the table has more than one column {', '.join(twice)}; give each column, and the index, a name of its own")
     columns = dict(_columns(table))
     text = io.StringIO()
     out = csv.writer(text, lineterminator="\n")
@@ -40,12 +45,26 @@ def csv_bytes(table: Any) -> bytes:
     return text.getvalue().encode()
 
 
+def _index_name(index: Any) -> str | None:
+    """Returns the name of the column that the index of a DataFrame becomes, or None if it is a plain count."""
+    kind = index.dtype.kind if hasattr(index.dtype, "kind") else "O"
+    if index.name is None and kind in "iu":
+        return None
+    return str(index.name or ("time" if kind in "fMm" else "run"))
+
+
+def _names(table: Any) -> list[str]:
+    if _is_pandas(table):
+        index = _index_name(table.index)
+        return [*([] if index is None else [index]), *map(str, table.columns)]
+    return list(_arrow(table).column_names)
+
+
 def _columns(table: Any) -> Iterator[tuple[str, list[Any]]]:
     if _is_pandas(table):
-        index = table.index
-        kind = index.dtype.kind if hasattr(index.dtype, "kind") else "O"
-        if index.name is not None or kind not in "iu":
-            yield str(index.name or ("time" if kind in "fMm" else "run")), _values(index)
+        index = _index_name(table.index)
+        if index is not None:
+            yield index, _values(table.index)
         for name in table.columns:
             yield str(name), _values(table[name])
         return

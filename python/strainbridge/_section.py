@@ -64,15 +64,7 @@ class Section:
         Raises:
             AttributeError: no section of this kind has the key.
         """
-        keys = keys_of(self._schema)
-        if keys is None:
-            return {}
-        if name not in keys:
-            close = get_close_matches(name, keys, n=1)
-            hint = f"; did you mean `{close[0]}`?" if close else f", but {', '.join(keys)}"
-            raise AttributeError(f"`{self._where}` has no key `{name}`{hint}")
-        found: Mapping[str, Any] = keys[name]
-        return found
+        return known(self._schema, self._where, name)
 
     # A type checker uses only the keys of `_keys.py`, and reports others.
     if not TYPE_CHECKING:
@@ -139,6 +131,23 @@ class Section:
         return repr(self._table)
 
 
+def known(schema: Mapping[str, Any], where: str, name: str) -> Mapping[str, Any]:
+    """Returns the schema of a key of a section, or an empty one if the section has keys of any name.
+
+    Raises:
+        AttributeError: no section of this kind has the key.
+    """
+    keys = keys_of(schema)
+    if keys is None:
+        return {}
+    if name not in keys:
+        close = get_close_matches(name, keys, n=1)
+        hint = f"; did you mean `{close[0]}`?" if close else f", but {', '.join(keys)}"
+        raise AttributeError(f"`{where}` has no key `{name}`{hint}")
+    found: Mapping[str, Any] = keys[name]
+    return found
+
+
 class Items(MutableSequence[Any], Generic[T_co]):
     """List of a job, changed in place: ``job.load.append({...})``."""
 
@@ -157,8 +166,22 @@ class Items(MutableSequence[Any], Generic[T_co]):
         return self._job._view(self._list[at], self._where, self._schema)
 
     def __setitem__(self, at: Any, value: Any) -> None:
-        self._list[at] = plain(value)
+        self._list[at] = [self._entry(v) for v in value] if isinstance(at, slice) else self._entry(value)
         self._job._change()
+
+    def _entry(self, value: Any) -> Any:
+        """Returns a value for the list.
+
+        Raises:
+            TypeError: the list holds sections, and the value is not one.
+            AttributeError: no section of this kind has a key of the value.
+        """
+        if keys_of(self._schema) is not None:
+            if not isinstance(value, (Mapping, Section)):
+                raise TypeError(f"`{self._where}` holds sections: give a dictionary, not {value!r}")
+            for name in value.keys():
+                known(self._schema, self._where, name)
+        return plain(value)
 
     def __delitem__(self, at: Any) -> None:
         del self._list[at]
@@ -169,7 +192,7 @@ class Items(MutableSequence[Any], Generic[T_co]):
 
     def insert(self, index: int, value: Any) -> None:
         """Inserts a value before the one at `index`."""
-        self._list.insert(index, plain(value))
+        self._list.insert(index, self._entry(value))
         self._job._change()
 
     def __len__(self) -> int:

@@ -178,6 +178,8 @@ def run(
     """
     job = str(job) if isinstance(job, os.PathLike) else job
     out = str(out)
+    if shard is not None and not isinstance(shard, str):
+        raise TypeError(f"shard is {shard!r}; give a text such as '3/64'")
     given = [files] if isinstance(files, (str, os.PathLike)) else files
     listed = sorted({f for g in given for f in _matching(str(g))})
     digests = dict(digests or {})

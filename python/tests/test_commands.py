@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 
 import strainbridge as sb
@@ -91,6 +92,39 @@ def test_a_fleet_is_that_of_the_command(matrix_folder, command, monkeypatch):
 
     spread = sb.fleet.run(sb.Job.read("job.toml"), files, out="spread", client=Client())
     assert spread.vehicles == out.vehicles
+
+
+def test_a_quarter_truck_moves_as_its_equation_of_motion(tmp_path):
+    # A sine of force on the wheel of two masses at rest. The stretch r of the spring obeys mu r'' + c r' + k r = -mu F / m_f.
+    m_b, m_f, k, c = 3200.0, 1400.0, 4.8e5, 5600.0
+    rate, w, size = 2000.0, 2.0 * np.pi * 3.0, 5000.0
+    t = np.arange(8001) / rate
+    force = size * np.sin(w * t)
+    mu = m_b * m_f / (m_b + m_f)
+    decay = c / (2.0 * mu)
+    turn = np.sqrt(k / mu - decay**2)
+    forced = -size / m_f / (k / mu - w**2 + 2j * decay * w)
+    start, speed = forced.imag, (1j * w * forced).imag
+    # The free motion that cancels place and speed of the forced motion at the start.
+    root = complex(-decay, turn)
+    free = complex(-start, -(-speed + decay * -start) / turn)
+    r = (forced * np.exp(1j * w * t)).imag + (free * np.exp(root * t)).real
+    rate_of_r = (1j * w * forced * np.exp(1j * w * t)).imag + (root * free * np.exp(root * t)).real
+    spring = k * r + c * rate_of_r
+    rows = "\n".join(f"{a:.6f},{b:.12e}" for a, b in zip(t, force))
+    (tmp_path / "force.csv").write_text(f"time [s],f_wheel [N]\n{rows}\n")
+    vehicle = {"model": "front2", "terms": ["k_s", "c_s"], "data": "force.csv", "input": "wheel_force"}
+    vehicle["known"] = {"m_b": m_b, "m_f": m_f, "k_s": k, "c_s": c}
+    out = sb.simulate(sb.Job.from_dict({"units": "m-kg-s", "vehicle": vehicle}, folder=tmp_path))
+    assert out.samples == len(t) and out.is_reliable
+    assert out.fastest_mode_hz == pytest.approx(np.sqrt(k / mu) / (2.0 * np.pi), rel=1e-9)
+    saved = out.save(tmp_path / "out") / "response.csv"
+    names = saved.read_text().partition("\n")[0].split(",")
+    columns = dict(zip(names, np.loadtxt(saved, delimiter=",", skiprows=1).T))
+    for name, expected in (("a_body", -spring / m_b), ("a_wheel", (force + spring) / m_f)):
+        found = next(v for n, v in columns.items() if n.split(" ")[0] == name)
+        # Lines between samples of the sine are (w dt)^2 / 8 = 1.1e-5 of its size too low.
+        np.testing.assert_allclose(found, expected, atol=5e-5 * np.abs(expected).max())
 
 
 def test_every_command_is_a_function():

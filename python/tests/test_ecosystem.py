@@ -3,7 +3,11 @@
 import copy
 import pickle
 import warnings
+from array import array
+from collections import deque
 from concurrent.futures import ProcessPoolExecutor
+from decimal import Decimal
+from fractions import Fraction
 from multiprocessing import get_context
 
 import numpy as np
@@ -45,6 +49,14 @@ def kinds(a):
         "masked, nothing masked": np.ma.array(a),
         "memoryview": memoryview(np.ascontiguousarray(a)),
         "through __array__": Wrapped(a),
+        "whole numbers, big-endian": a.astype(">i4"),
+        "matrix": a.view(np.matrix),
+        "unaligned": unaligned(a),
+        "arrays of the standard library": [array("d", row) for row in a],
+        "deque of rows": deque(a),
+        "decimal numbers": [[Decimal(int(v)) for v in row] for row in a],
+        "fractions": [[Fraction(int(v), 1) for v in row] for row in a],
+        "scalars of numpy": [[np.float64(v) for v in row] for row in a],
     }
     pandas = pytest.importorskip("pandas")
     frame = pandas.DataFrame(a)
@@ -55,12 +67,30 @@ def kinds(a):
     out["pandas nullable whole"] = frame.astype("Int64")
     out["pandas with index"] = frame.set_index(pandas.Index([f"R{i}" for i in range(len(a))], name="run"))
     out["pandas mixed types"] = frame.astype({0: "int64"})
+    out["pandas of objects"] = frame.astype(object)
+    out["pandas of Arrow"] = frame.astype("double[pyarrow]")
     polars = pytest.importorskip("polars")
     out["polars"] = polars.DataFrame(a)
     out["polars to_numpy"] = polars.DataFrame(a).to_numpy()
+    out["polars float32"] = polars.DataFrame(a.astype(np.float32))
+    out["polars whole numbers"] = polars.DataFrame(a.astype(np.int64))
     pyarrow = pytest.importorskip("pyarrow")
+    out["pyarrow table"] = pyarrow.table({str(i): c for i, c in enumerate(a.T)})
+    out["dask"] = pytest.importorskip("dask.array").from_array(a, chunks=(5, 2))
     out["pyarrow columns"] = np.column_stack([pyarrow.array(c) for c in a.T])
     return out
+
+
+def unaligned(a):
+    """Returns the numbers at addresses that are no multiple of eight."""
+    room = np.zeros(len(a), dtype=[("flag", "i1"), ("numbers", "f8", (a.shape[1],))])
+    room["numbers"] = a
+    assert not room["numbers"].flags.aligned
+    return room["numbers"]
+
+
+def test_the_table_of_kinds_is_long():
+    assert len(kinds(S)) >= 40
 
 
 class Wrapped:
@@ -112,6 +142,8 @@ def test_masked_and_missing_readings_are_missing():
         (lambda: sb.recover_rows(S * 1j, STRAIN), TypeError, "S has the type complex128"),
         (lambda: sb.recover_rows([[object()]], STRAIN), TypeError, "S contains"),
         (lambda: sb.place_rows(S, 5, threads=0), ValueError, "threads is 0"),
+        (lambda: sb.place_rows(S, 5, threads=10**9), ValueError, "threads is 1000000000"),
+        (lambda: sb.place_rows(S, 10**30), ValueError, "at most"),
         (lambda: sb.place_rows(S, 5, threads=1.5), TypeError, "threads is 1.5"),
         (lambda: sb.check(), sb.Faults, "no file"),
         (lambda: sb.fleet.run("job.toml", "none.csv"), sb.Faults, "none.csv"),
@@ -274,6 +306,28 @@ def test_sections_are_typed(strip_folder):
     job.combination.append({"name": "sum", "terms": {"middle": 1.0, "end": 1.0}})
     assert job.combination[0].terms.middle == 1.0
     job.check()
+
+
+def test_unknown_names_and_names_given_twice_are_refused(matrix_folder):
+    pandas, pyarrow = needed("pandas"), needed("pyarrow")
+    job = sb.Job.read("job.toml")
+    with pytest.raises(AttributeError, match="did you mean `name`"):
+        job.load.append({"nam": "C.FZ"})
+    with pytest.raises(TypeError, match="dictionary"):
+        job.load.append("C.FZ")
+    assert len(job.load) == 2
+    frame = pandas.read_csv("strain.csv")
+    twice = pandas.concat([frame, frame[["G1"]]], axis=1)
+    # The index has the name of a column: one of the two would be lost.
+    hidden = frame.set_index("run", drop=False)
+    arrow = pyarrow.Table.from_arrays([pyarrow.array([1.0]), pyarrow.array([2.0])], names=["G1", "G1"])
+    for table, name in ((twice, "G1"), (hidden, "run"), (arrow, "G1")):
+        with pytest.raises(ValueError, match=f"more than one column {name}"):
+            job.measured.strain = table
+    with pytest.raises(ValueError, match="same name"):
+        sb.recover_rows(S, STRAIN).to_arrow(["a", "b", "a"])
+    with pytest.raises(TypeError, match="3/64"):
+        sb.fleet.run(job, "T1_1.csv", shard=3)
 
 
 def test_files_in_memory_are_named_relative_to_the_folder(tmp_path, monkeypatch):

@@ -21,7 +21,7 @@ def test_the_page_of_names_is_made_from_the_docstrings():
 
 
 def test_notebooks_are_kept_without_their_outputs():
-    assert len(NOTEBOOKS) == 3
+    assert len(NOTEBOOKS) == 5
     for path in NOTEBOOKS:
         cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
         assert all(c["outputs"] == [] and c["execution_count"] is None for c in cells if c["cell_type"] == "code"), path
