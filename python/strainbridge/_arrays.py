@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _strainbridge as _engine
-from ._convert import count, floats, number
+from ._convert import check_order, count, floats, number
 from ._convert import threads as _threads
 from ._outcome import Finding, UnreliableWarning, warn_if_unreliable
 from ._table import Table
@@ -254,7 +254,9 @@ def recover_rows(S: ArrayLike, strain: ArrayLike, noise: float | ArrayLike = 1.0
     Raises:
         Faults: the loads cannot be separated, or shapes do not match.
         TypeError: an argument has another type.
+        ValueError: S and strain are tables with the same gauges in another order.
     """
+    check_order(S, strain)
     s, readings = floats("S", S), floats("strain", strain)
     rows = readings.reshape(1, -1) if readings.ndim == 1 else readings
     sd = floats("noise", noise) if np.ndim(noise) else np.float64(number("noise", noise))

@@ -49,6 +49,28 @@ def _of_objects(name: str, array: NDArray[Any]) -> NDArray[np.float64]:
     return out
 
 
+def check_order(S: Any, strain: Any) -> None:
+    """Compares the row names of a DataFrame S with the column names of a table of strain. Tables without such names pass.
+
+    Raises:
+        ValueError: both name the same gauges, in another order. Rows and columns are paired by their order.
+    """
+    gauges = _texts(getattr(S, "index", None)) if hasattr(S, "columns") else []
+    columns = _texts(getattr(strain, "columns", None) if not hasattr(strain, "column_names") else strain.column_names)
+    if set(gauges) & set(columns) and gauges != columns:
+        first = next((pair for pair in zip(gauges, columns) if pair[0] != pair[1]), (gauges[-1], columns[-1]))
+        raise ValueError(f"the gauges of S and strain differ in order or name, first {first[0]} and {first[1]}; pass strain[list(S.index)]")
+
+
+def _texts(labels: Any) -> list[str]:
+    """Returns labels if all of them are texts, otherwise an empty list."""
+    try:
+        listed = list(labels)
+    except TypeError:
+        return []
+    return listed if all(isinstance(name, str) for name in listed) else []
+
+
 def count(name: str, value: Any) -> int:
     """Returns a whole number of 1 or more.
 

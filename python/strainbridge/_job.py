@@ -6,7 +6,7 @@ import json
 import os
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Mapping
+from typing import TYPE_CHECKING, Any, Iterator, Mapping
 
 from . import _strainbridge as _engine
 from ._data import csv_bytes, is_table
@@ -83,6 +83,8 @@ class Job(Keys):
         Raises:
             Faults: every fault. Lines refer to ``job.text``.
         """
+        if not isinstance(job, Mapping):
+            raise TypeError(f"job is {job!r}; a dictionary is needed")
         held = dict(files or {})
         held.update({in_folder(folder, os.fspath(name)): content for name, content in (files or {}).items()})
         return cls(in_folder(folder, _NAME), text_of(_without_objects(job, folder, held)), held)
@@ -173,6 +175,28 @@ class Job(Keys):
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *_schema()]
+
+    def __getitem__(self, name: str) -> Any:
+        """Returns a key or section, as the attribute of this name."""
+        try:
+            return getattr(self, name) if name in _schema() else self._keys()[name]
+        except AttributeError:
+            raise KeyError(name) from None
+
+    def __iter__(self) -> Iterator[str]:
+        return (name for name, value in self._keys().items() if value != [])
+
+    def __contains__(self, name: object) -> bool:
+        return name in list(self)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether both jobs have the same keys, folder and files in memory. Files on the disk are not compared."""
+        if not isinstance(other, Job):
+            return NotImplemented
+        folder, others = (os.path.abspath(os.path.dirname(j._path)) for j in (self, other))
+        return folder == others and self._files == other._files and self.to_dict() == other.to_dict()
+
+    __hash__ = None  # type: ignore[assignment]
 
     def __getstate__(self) -> dict[str, Any]:
         return {"_path": self._path, "_text": self._text, "_files": self._files}

@@ -88,7 +88,7 @@ def mark(out: str | Path) -> Iterator[str]:
 
 def part(
     job: AnyJob,
-    files: Sequence[str],
+    files: str | Sequence[str],
     out: str,
     threads: int | None = None,
     mark: str | None = None,
@@ -101,13 +101,14 @@ def part(
         job: a job with ``[fleet]``, or its path.
         files: paths as this process finds them, or URLs of an object store.
         out: folder of the results, common to all tasks.
-        threads: number of threads; None: all cores.
+        threads: number of threads; None or -1: all cores.
         mark: name of the file that :func:`mark` has written into `out`.
 
     Raises:
         Faults: the input is faulty, or this process does not find a file or a folder. With the command instead of the engine: FleetError.
     """
-    files = [str(f) for f in files]
+    files = [str(files)] if isinstance(files, (str, os.PathLike)) else [str(f) for f in files]
+    threads = _threads(threads)
     if not files:
         return []
     here = f"worker {socket.gethostname()}, working folder {os.getcwd()}"
@@ -180,6 +181,9 @@ def run(
     out = str(out)
     if shard is not None and not isinstance(shard, str):
         raise TypeError(f"shard is {shard!r}; give a text such as '3/64'")
+    if client is not None and not (hasattr(client, "map") and hasattr(client, "gather")):
+        raise TypeError(f"client is {client!r}; give a `dask.distributed.Client`")
+    _check_digests(digests)
     given = [files] if isinstance(files, (str, os.PathLike)) else files
     listed = sorted({f for g in given for f in _matching(str(g))})
     digests = dict(digests or {})
@@ -208,6 +212,20 @@ def run(
     failed = [f["path"] for f in done if f["status"] == "failed" and _is_object(f["path"])]
     with _copies(failed, out):
         return _saved(task, to)
+
+
+def _check_digests(digests: Any) -> None:
+    """Checks the type of digests.
+
+    Raises:
+        TypeError: they are no dictionary.
+        ValueError: a digest is not a SHA-256.
+    """
+    if digests is not None and not isinstance(digests, Mapping):
+        raise TypeError(f"digests is {digests!r}; give a dictionary of SHA-256 by path")
+    for file, digest in (digests or {}).items():
+        if not isinstance(digest, str) or len(digest) != 64 or set(digest.lower()) - set("0123456789abcdef"):
+            raise ValueError(f"the digest of {file} is {digest!r}; give its SHA-256, 64 hexadecimal digits")
 
 
 def _matching(file: str) -> list[str]:

@@ -339,3 +339,41 @@ def test_files_in_memory_are_named_relative_to_the_folder(tmp_path, monkeypatch)
 def test_the_package_states_its_version():
     assert sb.__version__.count(".") == 2 or sb.__version__ == "unknown"
     assert set(dir(sb.fleet)) == set(sb.fleet.__all__)
+
+
+def test_tables_with_the_gauges_in_another_order_are_refused():
+    pandas = needed("pandas")
+    gauges = [f"G{i}" for i in range(len(S))]
+    table = pandas.DataFrame(S, index=gauges)
+    strain = pandas.DataFrame(STRAIN, columns=gauges)
+    np.testing.assert_array_equal(sb.recover_rows(table, strain).loads, sb.recover_rows(S, STRAIN).loads)
+    turned = strain[gauges[::-1]]
+    for other in (turned, needed("polars").DataFrame(turned.to_dict("list")), needed("pyarrow").table(turned.to_dict("list"))):
+        with pytest.raises(ValueError, match="differ in order"):
+            sb.recover_rows(table, other)
+
+
+def test_jobs_are_compared_and_read_by_key(matrix_folder):
+    job, same = sb.Job.read(matrix_folder / "job.toml"), sb.Job.read(matrix_folder / "job.toml")
+    assert job == same
+    assert job["measured"] == job.measured and "measured" in job and "payload" not in job
+    same.measured.noise_microstrain = 7.0
+    assert job != same
+    with pytest.raises(KeyError):
+        job["mesured"]
+    with pytest.raises(TypeError, match="a dictionary is needed"):
+        sb.Job.from_dict([1])
+
+
+@pytest.mark.parametrize(
+    ("wrong", "error", "said"),
+    [
+        ({"digests": {"a.csv": "xyz"}}, ValueError, "SHA-256"),
+        ({"digests": {"a.csv": 7}}, ValueError, "SHA-256"),
+        ({"digests": ["0" * 64]}, TypeError, "dictionary"),
+        ({"client": "tcp://scheduler:8786"}, TypeError, "dask.distributed.Client"),
+    ],
+)
+def test_wrong_arguments_of_a_fleet_are_refused(wrong, error, said):
+    with pytest.raises(error, match=said):
+        sb.fleet.run("job.toml", ["a.csv"], **wrong)
