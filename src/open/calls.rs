@@ -28,6 +28,9 @@ pub(super) fn is_call(target: &str) -> bool {
 struct Moved {
     picks: String,
     gauges: String,
+    /// Table that was sent when the layout was chosen.
+    #[serde(default)]
+    placed: Option<String>,
     moved: Vec<MovedGauge>,
 }
 
@@ -53,7 +56,11 @@ pub(super) fn answer(session: &Session, method: &str, target: &str, body: &[u8])
                 picks: m.picks,
                 gauges,
             };
-            layout_value(&session.move_gauges(&texts, &m.moved)?, began, false)
+            layout_value(
+                &session.move_gauges(&texts, m.placed, &m.moved)?,
+                began,
+                false,
+            )
         }),
         "/save" => with_body(body, |texts: PlanTexts| {
             let saved = session.save(&texts)?;

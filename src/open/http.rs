@@ -216,6 +216,22 @@ pub fn read_body(
     Ok(body)
 }
 
+/// Writes all bytes before the deadline; `false` if that fails. A limit for each write alone would let a client take a byte at a time for hours.
+fn write_until(stream: &mut TcpStream, mut bytes: &[u8], deadline: Instant) -> bool {
+    while !bytes.is_empty() {
+        let left = deadline.saturating_duration_since(Instant::now());
+        if left.is_zero() || stream.set_write_timeout(Some(left)).is_err() {
+            return false;
+        }
+        match stream.write(bytes) {
+            Ok(n) if n > 0 => bytes = bytes.get(n..).unwrap_or_default(),
+            Err(e) if e.kind() == ErrorKind::Interrupted => {}
+            _ => return false,
+        }
+    }
+    true
+}
+
 /// Writes a response and closes the connection. A client that takes no bytes is cut.
 pub fn respond(mut stream: TcpStream, response: &Response, time: Duration) {
     /// Bytes that a refused client may still send before the connection is cut. Without reading them, the client would not see the response.
@@ -234,11 +250,9 @@ pub fn respond(mut stream: TcpStream, response: &Response, time: Duration) {
         own => own,
     };
     head.push_str(&format!("Content-Security-Policy: {policy}\r\n\r\n"));
-    let _ = stream.set_write_timeout(Some(time));
-    let sent = stream.write_all(head.as_bytes());
-    if sent
-        .and_then(|()| stream.write_all(&response.body))
-        .is_err()
+    let end = Instant::now() + time;
+    if !write_until(&mut stream, head.as_bytes(), end)
+        || !write_until(&mut stream, &response.body, end)
     {
         return;
     }

@@ -2,9 +2,12 @@
 const live = (name) => document.querySelector(`[data-live=${name}]`);
 let token = location.hash.slice(1);
 // About the job; the plan; plans before it; whether marks changed since the layout.
-let job = null, plan = { lists: "", count: 0, keep: [], gauges: "", answer: null };
+// `placed` is what the layout was chosen for: lists and table. The lists of the plan are newer while marks wait for "place again".
+let job = null, plan = { lists: "", count: 0, keep: [], gauges: "", answer: null, placed: null };
 const past = [];
 let saved = { picks: "", gauges: "" }, working = 0, last = 0, shownLists = "";
+// Why the picture is not the plan that "save" would write; empty if it is.
+let waiting = "";
 
 class Refused extends Error {}
 
@@ -65,18 +68,24 @@ async function busy(work) {
   enable();
   const slow = setTimeout(() => setStale("Working: the picture shows the plan before. `cancel` stops the work."), 1000);
   showFaults([]);
-  try { return await work(); } catch (e) { if (!(e instanceof Refused)) throw e; return null; } finally {
+  try { return await work(); } catch (e) {
+    if (!(e instanceof Refused)) throw e;
+    // The plan before is still the plan, unless marks wait.
+    live("page").classList.toggle("stale", Boolean(waiting));
+    say(waiting || "The work ended without a result. The picture shows the plan as it was.");
+    return null;
+  } finally {
     clearTimeout(slow);
     working--;
     enable();
   }
 }
 function enable() {
-  const ready = Boolean(plan.answer) && !working, now = job ? texts() : saved;
+  const ready = Boolean(plan.answer) && !working && !waiting, now = job ? texts() : saved;
   // A report depends on the table of gauges only where gauges of it stay.
   const isOld = now.picks !== saved.picks || (plan.keep.length > 0 && now.gauges !== saved.gauges);
   for (const name of ["count", "place"]) live(name).disabled = !job || working > 0;
-  live("rest").disabled = !ready;
+  live("rest").disabled = !plan.answer || working > 0;
   live("undo").disabled = working > 0 || !past.length;
   live("cancel").disabled = !working;
   live("save").disabled = !ready || (now.picks === saved.picks && now.gauges === saved.gauges);
@@ -101,6 +110,7 @@ async function show(answer) {
     figure.addEventListener("moving", moved);
   });
   shownLists = listsNow();
+  waiting = "";
   plan.answer = answer;
   plan.gauges = answer.gauges;
   live("command").textContent = job.command;
@@ -137,10 +147,11 @@ const tickedGauges = () => [...live("kept").querySelectorAll("input:checked")].m
 
 // Chooses gauges; `keep` are those that stay.
 async function place(keep) {
-  const before = { ...plan }, next = { ...plan, keep, lists: plan.lists, count: +live("count").value };
+  const before = { ...plan, lists: plan.placed ? plan.placed.lists : plan.lists }, next = { ...plan, keep, count: +live("count").value };
   if (next.count <= keep.length) return say("All gauges of this number stay: tick fewer gauges, or raise the number.");
   await busy(async () => {
-    const answer = await call("/place", { picks: picksOf(next), gauges: keep.length ? plan.gauges : null });
+    const table = keep.length ? plan.gauges : null, answer = await call("/place", { picks: picksOf(next), gauges: table });
+    next.placed = { lists: next.lists, table };
     if (before.answer) past.push(before);
     plan = next;
     await show(answer);
@@ -154,11 +165,14 @@ function planned() {
   if (lists !== shownLists) {
     plan.lists = lists;
     shownLists = lists;
-    setStale("The marks changed: press `place again`.");
+    waiting = "The marks changed: press `place again`.";
+    setStale(waiting);
     enable();
   }
   moved();
 }
+const REFUSED_MOVE = "This place of the gauge was refused: move it elsewhere, or undo.";
+const free = () => { if (waiting === REFUSED_MOVE) { waiting = ""; showFaults([]); } };
 let moving = false, again = false, movedBefore = false;
 async function moved() {
   if (moving) { again = true; return; }
@@ -167,8 +181,9 @@ async function moved() {
   movedBefore = at.length > 0;
   moving = true;
   try {
-    if (!at.length) { plan.gauges = plan.answer.gauges; showLoads(plan.answer.loads); say(plan.answer.summary); } else {
-      const answer = await call("/move", { picks: picksOf(plan), gauges: plan.answer.gauges, moved: at });
+    if (!at.length) { free(); plan.gauges = plan.answer.gauges; showLoads(plan.answer.loads); say(plan.answer.summary); } else {
+      const of = { ...plan, lists: plan.placed.lists }, answer = await call("/move", { picks: picksOf(of), gauges: plan.answer.gauges, placed: plan.placed.table, moved: at });
+      free();
       plan.gauges = answer.gauges;
       live("command").textContent = `${job.command}    # "installed" in result.json: the gauges of ${job.gauges.name}`;
       showLoads(answer.loads);
@@ -176,7 +191,12 @@ async function moved() {
       say(answer.summary);
       for (const box of live("kept").querySelectorAll("input")) if (at.some((m) => m.name === box.dataset.keep)) box.checked = true;
     }
-  } catch (e) { if (!(e instanceof Refused)) throw e; } finally {
+  } catch (e) {
+    if (!(e instanceof Refused)) throw e;
+    // The picture shows a place for which there is no answer: it must not be saved as if it had one.
+    waiting = waiting || REFUSED_MOVE;
+    say(waiting);
+  } finally {
     moving = false;
     enable();
     if (again) { again = false; moved(); }
@@ -204,7 +224,7 @@ async function save() {
 async function report() {
   await busy(async () => {
     const answer = await call("/report", {});
-    live("page").classList.remove("stale");
+    live("page").classList.toggle("stale", Boolean(waiting));
     say(`Written: ${answer.report}. ${answer.summary}`);
   });
 }
@@ -217,6 +237,7 @@ async function read(target, body) {
     const unsaved = plan.answer && picksOf(plan) !== saved.picks;
     job = await call(target, body);
     changes([]);
+    if (plan.answer) waiting = "The job was read again: press `place again`.";
     document.title = `${job.title} · strainbridge`;
     live("command").textContent = job.command;
     // Changes that were not saved stay.
@@ -231,6 +252,9 @@ async function read(target, body) {
     if (!saved.picks.replace("[candidates]", "").trim()) saved.picks = "";
   });
   if (job) await place(plan.keep);
+  // Layouts of a model that was replaced are no plans.
+  past.length = 0;
+  enable();
 }
 async function beat() {
   try { changes((await call("/alive")).changed); } catch (e) { if (!(e instanceof Refused)) throw e; }

@@ -26,7 +26,7 @@ pub struct Surroundings {
 }
 
 /// The two texts of a plan.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlanTexts {
     /// Text of the picked lists; blank: as the job states them.
@@ -71,8 +71,22 @@ struct SessionData {
     /// The job without its picked lists.
     job: Job,
     plan: Plan,
-    /// The last layout that was chosen.
-    best: Option<Arc<Outcome<CertifiedLayout>>>,
+    /// The last layout that was chosen, and the texts that it was chosen for.
+    best: Option<(PlanTexts, Arc<Outcome<CertifiedLayout>>)>,
+}
+
+impl SessionData {
+    /// Chooses gauges for a job with these texts, and keeps the layout.
+    fn choose(
+        &mut self,
+        texts: &PlanTexts,
+        job: &Job,
+        cx: &Context,
+    ) -> Result<Arc<Outcome<CertifiedLayout>>, Faults> {
+        let best = Arc::new(self.plan.place(job, cx)?);
+        self.best = Some((texts.clone(), Arc::clone(&best)));
+        Ok(best)
+    }
 }
 
 struct LiveProgress(Stop);
@@ -158,8 +172,7 @@ impl Session {
             let job = data
                 .job
                 .with_plan_files(&texts.picks, texts.gauges.as_deref())?;
-            let best = Arc::new(data.plan.place(&job, cx)?);
-            data.best = Some(Arc::clone(&best));
+            let best = data.choose(texts, &job, cx)?;
             let staying = gauges_that_stay(&job);
             let kept = staying.iter().map(|g| g.name.clone()).collect();
             if staying.is_empty() {
@@ -173,22 +186,38 @@ impl Session {
         })
     }
 
-    /// Evaluates a layout whose gauges were moved.
+    /// Evaluates a layout whose gauges were moved. `placed` is the table that was sent when the layout was chosen: the bound that gives the
+    /// efficiency is the bound of that choice, chosen again if another plan was placed since.
     ///
     /// # Errors
     /// Faults of the texts, gauges that cannot be laid, a call before the first layout.
     pub fn move_gauges(
         &self,
         texts: &PlanTexts,
+        placed: Option<String>,
         moved: &[MovedGauge],
     ) -> Result<ShownLayout, Faults> {
         self.compute(|data, cx| {
             let job = data
                 .job
                 .with_plan_files(&texts.picks, texts.gauges.as_deref())?;
-            let Some(best) = data.best.clone() else {
-                let remedy = "place gauges first";
-                return Err(Fault::new("plan", "gauges", "there is no layout yet", remedy).into());
+            let chosen_for = PlanTexts {
+                picks: texts.picks.clone(),
+                gauges: placed,
+            };
+            let best = match &data.best {
+                Some((of, best)) if *of == chosen_for => Arc::clone(best),
+                Some(_) => {
+                    let job = data
+                        .job
+                        .with_plan_files(&chosen_for.picks, chosen_for.gauges.as_deref())?;
+                    data.choose(&chosen_for, &job, cx)?
+                }
+                None => {
+                    let remedy = "place gauges first";
+                    let fault = Fault::new("plan", "gauges", "there is no layout yet", remedy);
+                    return Err(fault.into());
+                }
             };
             let table = job.gauges_file();
             let of_table = job.gauges.iter().filter(|g| g.file == table);

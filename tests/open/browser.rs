@@ -58,6 +58,23 @@ fn a_plan_is_made_in_a_browser_and_its_lines_outlive_the_server() {
     // A drag changes the intervals, undo of the picture takes it back.
     assert_ne!(saw["dragged"], saw["before_drag"]);
     assert_eq!(saw["drag_undone"], saw["before_drag"]);
+    // By keyboard: a visible focus on each control, a gauge that moves and returns.
+    assert_eq!(saw["focus"], json!([true, true, true]));
+    assert!(saw["chosen"].as_str().unwrap().contains("is chosen"));
+    assert!(saw["stepped"].as_str().unwrap().contains("moved to"));
+    // Marks without a layout are not saved, and a plan that is undone has its own lists.
+    assert_eq!(saw["save_while_marks_wait"], json!(false));
+    let undone = saw["picks_after_undo"].as_str().unwrap();
+    assert!(undone.contains("exclude_properties = [3]"), "{undone}");
+    assert_eq!(saw["save_of_saved"], json!(false));
+    assert_eq!(saw["cancelled"][0], json!(200));
+    assert_eq!(saw["cancelled"][2], json!(true));
+    assert!(
+        saw["cancelled"][1]
+            .as_str()
+            .unwrap()
+            .contains("the plan as it was")
+    );
     // Gauges that stay are the first of the layout.
     assert_eq!(saw["rest"][0], saw["kept"][0]);
     assert_eq!(saw["rest"][1], saw["kept"][1]);

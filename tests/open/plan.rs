@@ -180,6 +180,12 @@ fn a_moved_gauge_changes_the_loads_as_the_command_states_for_the_saved_table() {
     let answer = server.ask("/move", Some(&texts));
     assert_ne!(answer["loads"], best["loads"]);
     assert!(answer["efficiency"].as_f64() < best["efficiency"].as_f64());
+    // Another plan was placed since, and then undone: the bound is still that of this plan.
+    let other = format!("{PICKS}\n[placement]\ngauges = 9\n");
+    server.ask("/place", Some(&json!({ "picks": other })));
+    let again = server.ask("/move", Some(&texts));
+    assert_eq!(again["efficiency"], answer["efficiency"]);
+    assert_eq!(again["loads"], answer["loads"]);
     server.ask(
         "/save",
         Some(&json!({ "picks": PICKS, "gauges": answer["gauges"] })),

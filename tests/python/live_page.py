@@ -95,6 +95,59 @@ with chromium() as browser:
     until("(before) => document.querySelector('[data-live=loads]').innerText === before", out["before_drag"])
     out["drag_undone"] = loads()
 
+    # By keyboard alone: the tool, the picture, a gauge, a step, back again.
+    focused = lambda: page.evaluate("document.activeElement.className + ' ' + (document.activeElement.dataset.tool || document.activeElement.dataset.live || '')")
+    ringed = lambda: page.evaluate("getComputedStyle(document.activeElement).outlineStyle") != "none"
+
+    def tab_to(word, key="Tab"):
+        for _ in range(400):
+            page.keyboard.press(key)
+            if word in focused():
+                return ringed()
+        raise AssertionError(f"{word} is not reached by {key}")
+    page.locator("[data-tool=turn]").click()
+    page.evaluate("document.activeElement.blur()")
+    out["focus"] = [tab_to("place"), tab_to("gauge")]
+    page.keyboard.press("Enter")
+    out["focus"].append(tab_to("canvas", "Shift+Tab"))
+    said = lambda: page.locator("[data-live=page] .scene .pick").first.inner_text()
+    page.keyboard.press("Enter")
+    out["chosen"] = said()
+    for way in ("ArrowRight", "ArrowLeft", "ArrowUp", "ArrowDown"):
+        page.keyboard.press(way)
+        if "moved to" in said():
+            break
+    out["stepped"] = said()
+    until("(before) => document.querySelector('[data-live=loads]').innerText !== before", out["before_drag"])
+    page.keyboard.press("Escape")
+    until("(before) => document.querySelector('[data-live=loads]').innerText === before", out["before_drag"])
+
+    # A plan that is undone has the lists that its layout was chosen for.
+    placed_with = []
+    page.on("request", lambda r: placed_with.append((r.url.rsplit("/", 1)[1], r.post_data_json)) if r.method == "POST" else None)
+    page.locator("details.properties").evaluate("(e) => { e.open = true; }")
+    page.locator("[data-property='2']").click()
+    out["save_while_marks_wait"] = live("save").is_enabled()
+    act(live("place").click)
+    act(live("undo").click)
+    live("save").click()
+    until("() => document.querySelector('[data-live=said]').innerText.startsWith('Saved')")
+    out["picks_after_undo"] = [body["picks"] for call, body in placed_with if call == "save"][-1]
+
+    # Work that takes long: the picture is pale, and after `cancel` it is the plan as it was.
+    held = []
+    page.route("**/place", lambda route: held.append(route))
+    live("place").click()
+    until("() => document.querySelector('[data-live=page]').classList.contains('stale') && !document.querySelector('[data-live=cancel]').disabled")
+    with page.expect_response("**/cancel") as cancelled:
+        live("cancel").click()
+    held[0].fulfill(status=422, content_type="application/json", body=json.dumps({"faults": [{"wrong": "stopped", "remedy": ""}]}))
+    until("() => !document.querySelector('[data-live=page]').classList.contains('stale') && !document.querySelector('[data-live=place]').disabled")
+    out["cancelled"] = [cancelled.value.status, live("said").inner_text(), loads() == out["before_drag"]]
+    page.unroute("**/place")
+    # Chromium itself reports that status.
+    errors[:] = [e for e in errors if "status of 422" not in e]
+
     live("kept").evaluate("(e) => { e.parentElement.open = true; }")
     page.eval_on_selector_all("[data-keep]", "(all) => all.forEach((b, i) => { b.checked = i < 2; })")
     out["kept"] = names()[:2]
@@ -103,8 +156,8 @@ with chromium() as browser:
     act(live("undo").click)
     out["undone"] = names()
 
-    live("save").click()
-    until("() => document.querySelector('[data-live=said]').innerText.startsWith('Saved')")
+    # The plan is the one that was saved: nothing is left to save.
+    out["save_of_saved"] = live("save").is_enabled()
     live("report").click()
     until("() => document.querySelector('[data-live=said]').innerText.startsWith('Written')")
     page.evaluate(AXE_CORE)

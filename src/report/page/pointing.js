@@ -181,6 +181,7 @@ function planning(api) {
 
   function choose(name) {
     tool = name;
+    chosen = -1;
     api.tool = tools[name] || null;
     box.classList.toggle("planning", name !== "turn");
     colour();
@@ -192,6 +193,58 @@ function planning(api) {
     state = +b.dataset.state;
     figure.querySelectorAll("[data-state]").forEach((o) => o.setAttribute("aria-pressed", o === b));
   }));
+  // By keyboard, with "move gauges": Enter or n takes the next gauge, arrows move it to the next element that way, Escape puts it back.
+  let chosen = -1, held = null;
+  const row = (mark) => mark.name.replace(/\.[a-d]$/, "");
+  const isFree = (mark) => mark.along && !marks.some((m) => m !== mark && row(m) === row(mark));
+  const showChosen = () => {
+    const at = chosen < 0 ? null : camera.project(api.lifted(marks[chosen]));
+    svgSet(ring, at ? { cx: at[0], cy: at[1], r: 14 } : { r: 0 });
+  };
+  function chooseNext() {
+    held = null;
+    for (let k = 1; k <= marks.length; k++) {
+      const next = (chosen + k + marks.length) % marks.length;
+      if (!isFree(marks[next])) continue;
+      chosen = next;
+      api.said.textContent = marks[next].name + " is chosen: arrow keys move it, Escape puts it back.";
+      return showChosen();
+    }
+  }
+  // The nearest drawn face that way, on the side that is seen, at least as far as the face is wide.
+  function step(dx, dy) {
+    const mark = marks[chosen], here = camera.project(mark.at), view = seen(), own = view.number(here[0], here[1]);
+    let best = -1, least = Infinity;
+    for (let f = 0; f < mesh.nFaces; f++) {
+      const x = view.at[3 * f] - here[0], y = view.at[3 * f + 1] - here[1], ahead = x * dx + y * dy, aside = Math.abs(x * dy - y * dx);
+      if (f === own || !(ahead > 2) || aside > ahead || !api.shownPart(mesh.part[f]) || !view.visible(f)) continue;
+      const away = ahead + 2 * aside + 4 * Math.hypot(...V.sub(centreOf(mesh, f), mark.at)) / camera.pixel(here[2]);
+      if (away < least) { least = away; best = f; }
+    }
+    if (best < 0) { api.said.textContent = "There is no element that way."; return; }
+    const [x, y] = [view.at[3 * best], view.at[3 * best + 1]];
+    if (!held) held = { done: done.length };
+    stroke = { mark, before: Object.assign({}, mark), moved: false };
+    tools.gauge.move(x, y);
+    tools.gauge.up();
+    showChosen();
+  }
+  // Before the camera takes the arrow keys.
+  box.addEventListener("keydown", (event) => {
+    if (tool !== "gauge" || stroke || event.ctrlKey || event.metaKey || event.altKey) return;
+    const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+    if (event.key === "Enter" || event.key === "n") chooseNext();
+    else if (chosen >= 0 && way) step(...way);
+    else if (chosen >= 0 && event.key === "Escape") {
+      if (held) while (done.length > held.done) undo();
+      held = null;
+      chosen = -1;
+      showChosen();
+      api.said.textContent = "";
+    } else return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+  }, true);
   box.addEventListener("pointerleave", () => svgSet(ring, { r: 0 }));
   role("undo").addEventListener("click", undo);
   box.addEventListener("keydown", (event) => { if (event.key === "z" && (event.ctrlKey || event.metaKey)) { event.preventDefault(); undo(); } });
