@@ -169,6 +169,7 @@ function planning(api) {
         stroke.moved = true;
         api.said.textContent = stroke.mark.name + ": " + stroke.mark.note;
         api.regauge();
+        figure.dispatchEvent(new Event("moving"));
       },
       up() {
         if (stroke.moved) done.push({ mark: stroke.mark, before: Object.assign({ moved: false }, stroke.before) });
