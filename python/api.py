@@ -9,7 +9,7 @@ import strainbridge as sb
 #: Names by subject. `page` fails if a name is missing.
 SUBJECTS = {
     "Bare arrays": ["place_rows", "Placement", "relax", "Relaxation", "recover_rows", "RecoveredRows", "calibrate_rows", "CalibratedRows", "strain_along", "rainflow"],
-    "Jobs": ["Job"],
+    "Jobs": ["Job", "Plan"],
     "Commands": [
         "check", "init", "strains", "cases", "solve", "modes", "sensitivity", "place", "recover", "respond", "payload", "ballast", "study", "identify",
         "simulate", "reconcile", "calibrate", "verify", "clean", "explain", "fleet",

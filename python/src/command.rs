@@ -3,7 +3,9 @@
 use crate::fault::{argument_fault, raise};
 use crate::files::Desk;
 use crate::job::CheckedJob;
-use crate::outcome::{AnyOutcome, keep, keep_calibrated, keep_loads, keep_sensitivity};
+use crate::outcome::{
+    AnyOutcome, keep, keep_calibrated, keep_layout, keep_loads, keep_sensitivity,
+};
 use crate::work::{Asked, run};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
@@ -26,7 +28,7 @@ const ON_JOB: [(&str, OnJob); 12] = [
     ("cases", |j, cx| keep(strainbridge::cases(j, cx)?)),
     ("identify", |j, cx| keep(strainbridge::identify(j, cx)?)),
     ("payload", |j, cx| keep(strainbridge::payload(j, cx)?)),
-    ("place", |j, cx| keep(strainbridge::place(j, cx)?)),
+    ("place", |j, cx| keep_layout(strainbridge::place(j, cx)?)),
     ("reconcile", |j, cx| keep(strainbridge::reconcile(j, cx)?)),
     ("recover", |j, cx| keep_loads(strainbridge::recover(j, cx)?)),
     ("respond", |j, cx| keep(strainbridge::respond(j, cx)?)),

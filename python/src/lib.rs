@@ -10,6 +10,7 @@
 //! - [`job`]: a checked job
 //! - [`outcome`]: outcome of any command
 //! - [`placing`], [`recovering`]: layouts and loads of bare matrices
+//! - [`plan`]: a plan of gauges in memory
 //! - [`reading`]: decks and result files as arrays
 //! - [`relaxing`]: weights instead of gauges, and the upper bound
 //! - [`table`]: tables for readers of Arrow
@@ -28,6 +29,7 @@ mod files;
 mod job;
 mod outcome;
 mod placing;
+mod plan;
 mod reading;
 mod recovering;
 mod relaxing;
@@ -50,6 +52,8 @@ mod _strainbridge {
     use crate::outcome::AnyOutcome;
     #[pymodule_export]
     use crate::placing::place_rows;
+    #[pymodule_export]
+    use crate::plan::KeptPlan;
     #[pymodule_export]
     use crate::reading::{ReadDeck, ReadResults, shell_strain};
     #[pymodule_export]

@@ -9,9 +9,11 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use strainbridge::host::outcome::Answer;
 use strainbridge::report::command::{Report, result_text, save, words};
+use strainbridge::report::gauge_table::gauges_text;
 use strainbridge::report::notebook::piece;
 use strainbridge::sensitivity::Sensitivity;
 use strainbridge::workflow::calibrate::CalibratedSensitivity;
+use strainbridge::workflow::place::CertifiedLayout;
 use strainbridge::workflow::recover::RecoveredLoads;
 use strainbridge::workflow::sensitivity::ComputedSensitivity;
 use strainbridge::{Faults, Outcome};
@@ -26,6 +28,11 @@ pub(crate) trait Kept: Send {
 
     /// Returns names and values of the columns of a record's samples, if it has any.
     fn history(&self) -> Option<Vec<(String, Vec<f64>)>> {
+        None
+    }
+
+    /// Returns the layout, if the command chooses gauges.
+    fn layout(&self) -> Option<&CertifiedLayout> {
         None
     }
 
@@ -66,6 +73,23 @@ impl Kept for OfCalibration {
 
     fn sensitivity(&self) -> Option<&Sensitivity> {
         Some(&self.0.sensitivity)
+    }
+}
+
+/// Layout of gauges.
+struct OfPlacement(Outcome<CertifiedLayout>);
+
+impl Kept for OfPlacement {
+    fn save(&self, folder: &Path) -> Result<String, Faults> {
+        save(&self.0, folder)
+    }
+
+    fn piece(&self) -> String {
+        piece(&self.0)
+    }
+
+    fn layout(&self) -> Option<&CertifiedLayout> {
+        Some(&self.0)
     }
 }
 
@@ -158,6 +182,11 @@ pub(crate) fn keep_sensitivity(
     keep_as(outcome, |o| Box::new(OfModel(o)))
 }
 
+/// Keeps a layout of gauges for Python.
+pub(crate) fn keep_layout(outcome: Outcome<CertifiedLayout>) -> Result<AnyOutcome, Faults> {
+    keep_as(outcome, |o| Box::new(OfPlacement(o)))
+}
+
 fn keep_as<A: Answer>(
     outcome: Outcome<A>,
     keep: impl FnOnce(Outcome<A>) -> Box<dyn Kept>,
@@ -171,6 +200,19 @@ where
         notes: outcome.notes.clone(),
         kept: Mutex::new(keep(outcome)),
     })
+}
+
+impl AnyOutcome {
+    /// Uses the layout of the outcome, `None` if its command chooses no gauges.
+    pub(crate) fn with_layout<T>(&self, work: impl FnOnce(Option<&CertifiedLayout>) -> T) -> T {
+        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        work(kept.layout())
+    }
+
+    /// Returns the text of `gauges.csv` of the layout, `None` if the command chooses no gauges.
+    fn gauges_text(&self) -> Result<Option<String>, Faults> {
+        self.with_layout(|layout| layout.map(gauges_text).transpose())
+    }
 }
 
 /// Matrix with the names of its rows and columns.
@@ -193,6 +235,11 @@ impl AnyOutcome {
             let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
             kept.piece()
         })
+    }
+
+    /// Returns the text of `gauges.csv`, `None` if the command chooses no gauges.
+    fn gauge_table(&self, py: Python) -> PyResult<Option<String>> {
+        self.gauges_text().map_err(|f| raise(py, f))
     }
 
     /// Returns S, gauges x loads, microstrain per job unit of each load, with the names of gauges and loads. `None` if the command computes no S.

@@ -51,6 +51,7 @@ from ._job import Job
 from ._mesh import Mesh
 from ._model import Model
 from ._outcome import Finding, Outcome, Record, UnreliableWarning
+from ._plan import Plan
 from ._reading import Deck, Results, Strain, write_op2
 from ._table import Table
 
@@ -70,6 +71,7 @@ __all__ = [
     "Model",
     "Outcome",
     "Placement",
+    "Plan",
     "Record",
     "RecoveredRows",
     "Relaxation",

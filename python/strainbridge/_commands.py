@@ -40,7 +40,12 @@ def _ask(command: str, job: AnyJob | None, **more: Any) -> Outcome:
     checked = None if job is None else job_of(job)._checked()
     more["threads"] = _threads(more.get("threads"))
     with shown(more.pop("progress", None)) as told:
-        out = Outcome(_engine.ask(command, checked, progress=told, **more))
+        return outcome_of(command, _engine.ask(command, checked, progress=told, **more))
+
+
+def outcome_of(command: str, native: _engine._Outcome) -> Outcome:
+    """Returns the outcome of a command. Logs its notes, and issues a warning if a finding is an error."""
+    out = Outcome(native)
     for note in out.notes:
         _log.info("%s: %s", command, note)
     warn_if_unreliable(command, out.findings)

@@ -6,6 +6,7 @@ mod covariance;
 mod csv_cell;
 mod drawing;
 pub mod figure;
+pub mod gauge_table;
 #[cfg(feature = "open")]
 pub mod live;
 mod mode_blocks;

@@ -106,21 +106,46 @@ impl Answer for CertifiedLayout {
 impl CertifiedLayout {
     /// Returns the half width of the 95 % interval of a load, divided by its expected size. `None` if the job states no size.
     pub fn share_of_expected(&self, load: &LoadSigma) -> Option<f64> {
-        let of_job = self.job.loads.iter().find(|l| l.name == load.name)?;
+        self.share_of(&load.name, load.sigma())
+    }
+
+    fn share_of(&self, name: &str, sigma: f64) -> Option<f64> {
+        let of_job = self.job.loads.iter().find(|l| l.name == name)?;
         let factor = of_job
             .report_unit(&self.job.report_units)
             .map_or(1.0, |u| factor(self.job.units, u));
         let expected = of_job.expected? * factor;
-        Some(NORMAL_95 * load.sigma() / expected.abs())
+        Some(NORMAL_95 * sigma / expected.abs())
+    }
+
+    /// Returns the largest half width of the 95 % interval of a load, divided by its expected size, and the name of the load. `sigmas` are names and
+    /// standard deviations in report units. `None` if the job does not state the sizes of all loads. Combinations have no expected size.
+    fn largest_share_of<'a>(
+        &self,
+        sigmas: impl Iterator<Item = (&'a str, f64)>,
+    ) -> Option<(&'a str, f64)> {
+        let is_known = self.job.loads.iter().all(|l| l.expected.is_some());
+        let shares = sigmas.filter_map(|(name, sigma)| Some((name, self.share_of(name, sigma)?)));
+        let largest = shares.max_by(|a, b| a.1.total_cmp(&b.1));
+        largest.filter(|_| is_known)
+    }
+
+    /// Returns the load with the largest 95 % half width over its expected size, and this share. It uses `sigma` as recovered, like
+    /// [`CertifiedLayout::largest_share_at`]. `None` if the job does not state the sizes of all loads.
+    pub fn largest_share(&self) -> Option<(&str, f64)> {
+        self.largest_share_of(self.load_sigma.iter().map(|l| (&*l.name, l.sigma)))
+    }
+
+    /// Returns the load and share of [`CertifiedLayout::largest_share`] for a point of the curve over the number of gauges.
+    pub fn largest_share_at<'a>(&self, point: &'a CurvePoint) -> Option<(&'a str, f64)> {
+        self.largest_share_of(point.load_sigma.iter().map(|l| (&*l.name, l.sigma)))
     }
 
     /// Returns the load with the widest interval over its expected size, where the job states the sizes of all loads.
     fn least_certain(&self) -> Option<&LoadSigma> {
-        let is_known = self.job.loads.iter().all(|l| l.expected.is_some());
-        // Combinations have no expected size.
-        let all = self.load_sigma.iter().filter(|_| is_known);
-        let all = all.filter_map(|l| Some((l, self.share_of_expected(l)?)));
-        all.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(l, _)| l)
+        let sigmas = self.load_sigma.iter().map(|l| (&*l.name, l.sigma()));
+        let (name, _) = self.largest_share_of(sigmas)?;
+        self.load_sigma.iter().find(|l| l.name == name)
     }
 }
 
