@@ -804,6 +804,15 @@ fn a_plan_gives_the_layouts_of_the_command_and_new_gauges_take_no_name_that_stay
     let names: Vec<&str> = alone.gauges.iter().map(|g| &*g.name).collect();
     assert_eq!(names, ["P01", "P03", "P04"]);
 
+    // The plan has the strain of its own loads.
+    let mut other = wide.clone();
+    other.loads.reverse();
+    let said = plan.place(&other, &cx).map(|_| ()).unwrap_err();
+    assert!(
+        said.to_string().contains("loads of the job differ"),
+        "{said}"
+    );
+
     // Two texts of a layout describe it as it was placed.
     let all: Vec<_> = alone.gauges.iter().map(|g| g.to_job_gauge(0.0)).collect();
     let free = wide.with_plan_files("", None).unwrap();

@@ -23,6 +23,18 @@ def test_a_plan_chooses_the_gauges_of_the_command(strip_folder):
     assert len(sb.Plan.gauges(six)) == 6
 
 
+def test_a_job_with_other_loads_is_refused(strip_folder):
+    job = sb.Job.read("job.toml")
+    plan = sb.Plan.read(job)
+    best = plan.place(job)
+    other = sb.Job.read("job.toml")
+    other.load[0].component = "FX" if other.load[0].component != "FX" else "FY"
+    with pytest.raises(sb.Faults, match="loads of the job differ"):
+        plan.place(other)
+    with pytest.raises(sb.Faults, match="loads of the job differ"):
+        plan.evaluate(other, sb.Plan.gauges(best), best)
+
+
 def test_the_gauges_of_a_layout_have_its_values(strip_folder):
     job = sb.Job.read("job.toml")
     plan = sb.Plan.read(job)

@@ -4,13 +4,15 @@ use super::kept_candidates::KeptCandidates;
 use super::lay_out_gauges;
 use super::outcome::CertifiedLayout;
 use super::stated_layout::{describe_stated, job_with_layout};
+use crate::fe::SupportChoice;
 use crate::host::context::Context;
-use crate::host::fault::Faults;
+use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Outcome, StatedUnits};
 use crate::host::work::{Beginning, Work};
-use crate::job::{Job, JobGauge};
+use crate::job::{Job, JobGauge, JobLoad};
 use crate::strain_chain::named_results::check_tables;
 use crate::strain_chain::{Fields, WantedAt, read_fields};
+use crate::units::UnitSystem;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -38,6 +40,44 @@ pub struct Plan {
     fields: Arc<Fields>,
     candidates: KeptCandidates,
     beginning: Option<Beginning>,
+    source: PlanSource,
+}
+
+/// Keys of a job on which the strain fields of a plan depend.
+#[derive(Debug, PartialEq)]
+struct PlanSource {
+    units: UnitSystem,
+    files: Vec<PathBuf>,
+    support: Option<SupportChoice>,
+    mesh_error: Option<bool>,
+    /// The loads, with line 0.
+    loads: Vec<JobLoad>,
+}
+
+impl PlanSource {
+    fn new(job: &Job) -> Self {
+        let model = job.model.as_ref();
+        let files = model.map(|m| std::iter::once(&m.deck).chain(&m.results));
+        let load = |load: &JobLoad| {
+            let mut load = load.clone();
+            load.line = 0;
+            if let Some(result) = &mut load.result {
+                result.line = 0;
+            }
+            load
+        };
+        Self {
+            units: job.units,
+            files: files
+                .into_iter()
+                .flatten()
+                .map(|f| job.folder.join(&f.given))
+                .collect(),
+            support: model.map(|m| m.support.clone()),
+            mesh_error: model.and_then(|m| m.mesh_error),
+            loads: job.loads.iter().map(load).collect(),
+        }
+    }
 }
 
 impl Plan {
@@ -71,6 +111,7 @@ impl Plan {
             fields: Arc::new(fields),
             candidates: KeptCandidates::default(),
             beginning: None,
+            source: PlanSource::new(job),
         })
     }
 
@@ -78,8 +119,9 @@ impl Plan {
     /// may differ.
     ///
     /// # Errors
-    /// Returns candidates that allow no layout, gauges that cannot be kept, and a stop request.
+    /// Returns a job with another model or other loads, candidates that allow no layout, gauges that cannot be kept, and a stop request.
     pub fn place(&mut self, job: &Job, cx: &Context) -> Result<Outcome<CertifiedLayout>, Faults> {
+        self.check_source(job)?;
         let work = self.resume(job, cx);
         self.lay_out(work, job)
     }
@@ -88,7 +130,7 @@ impl Plan {
     /// efficiency of the gauges.
     ///
     /// # Errors
-    /// Returns gauges that cannot be laid, and gauges that do not separate the loads.
+    /// Returns a job with another model or other loads, gauges that cannot be laid, and gauges that do not separate the loads.
     pub fn evaluate(
         &self,
         job: &Job,
@@ -96,6 +138,7 @@ impl Plan {
         best: &CertifiedLayout,
         cx: &Context,
     ) -> Result<Outcome<CertifiedLayout>, Faults> {
+        self.check_source(job)?;
         let mut work = self.resume(job, cx);
         let job = job.with_property_ids(&self.fields.model().property_names)?;
         let stated = job_with_layout(&job, gauges);
@@ -115,6 +158,25 @@ impl Plan {
         let answer = lay_out_gauges(&mut work, job, &self.fields, &mut self.candidates)?;
         let answer = answer.into_placed(Arc::clone(&self.fields), job);
         Ok(work.finish(units_of(job), answer))
+    }
+
+    /// Refuses a job whose units, model or loads are not those of the plan.
+    fn check_source(&self, job: &Job) -> Result<(), Fault> {
+        let found = PlanSource::new(job);
+        if found == self.source {
+            return Ok(());
+        }
+        let (field, what) = match found.loads == self.source.loads {
+            true => ("model", "the units or the model"),
+            false => ("load", "the loads"),
+        };
+        let wrong = format!("{what} of the job differ from those of the plan");
+        Err(Fault::new(
+            &*job.file,
+            field,
+            wrong,
+            "read a plan of this job",
+        ))
     }
 
     fn resume<'a>(&self, job: &Job, cx: &Context<'a>) -> Work<'a> {
