@@ -170,7 +170,7 @@ impl Plan {
             true => ("model", "the units or the model"),
             false => ("load", "the loads"),
         };
-        let wrong = format!("{what} of the job differ from those of the plan");
+        let wrong = format!("{what} of the job differ from the plan");
         Err(Fault::new(
             &*job.file,
             field,
