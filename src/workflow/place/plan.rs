@@ -73,7 +73,7 @@ impl PlanSource {
                 .flatten()
                 .map(|f| job.folder.join(&f.given))
                 .collect(),
-            support: model.map(|m| m.support.clone()),
+            support: model.map(|m| m.support),
             mesh_error: model.and_then(|m| m.mesh_error),
             loads: job.loads.iter().map(load).collect(),
         }
