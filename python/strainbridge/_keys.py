@@ -420,7 +420,7 @@ class RecoverKeys(Section):
     """Power of the load range in pseudo-damage; default: 5."""
     turning_points: _Key[Any]
     """Share of the range of a load below which its reversals are left out. If it is stated, `turning_points.csv` contains the samples in which
-    any load of a record turns, with all loads at these times, so that their phase is kept; default: no such file."""
+    any load of a record turns. All loads are stated at these times, so that their phase is kept; default: no such file."""
 
 
 class ReportUnitsKeys(Section):

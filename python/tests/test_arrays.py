@@ -146,7 +146,7 @@ def test_gaps_are_said_alike_of_few_rows_and_of_many(rows):
     (said,) = (f for f in out.findings if f.code == "samples-with-gaps")
     assert (said.severity, said.subject, said.measured) == ("warning", "strain", 2.0)
     assert f"In 2 of {rows} samples" in said.message
-    assert "In at least 1 of them" in said.message
+    assert "At least 1 of these samples" in said.message
     assert np.isnan(out.loads).any(axis=1).nonzero()[0].tolist() == [123]
     assert out.is_reliable
     strain[:, :6] = np.nan
