@@ -22,7 +22,7 @@ pub use known_loads::KnownLoads;
 pub use motion::{
     ChannelKind, ChannelSource, ExplainedFault, MotionChannel, MotionFault, MotionRecord,
     MotionScale, channels_by_gravity, fault_of_motion, faults_by_gravity, finding_by_weight,
-    finding_of_motion, finding_of_scale, findings_by_gravity,
+    finding_of_motion, finding_of_scale, findings_by_gravity, shows,
 };
 pub use recorded_loads::{
     RecordFault, RecordedRuns, faults_of_recorded_loads, findings_of_recorded_loads,

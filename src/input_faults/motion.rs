@@ -354,7 +354,8 @@ fn units_of_one(channels: &[MotionChannel]) -> Vec<MotionFault> {
     out
 }
 
-fn shows(mean: f64, gravity: f64) -> bool {
+/// Returns whether a mean is the static value: gravity of an accelerometer, or the weight of wheel forces.
+pub fn shows(mean: f64, gravity: f64) -> bool {
     (mean / gravity - 1.0).abs() < RULES.gravity
 }
 

@@ -306,6 +306,8 @@ fn a_sign_or_a_unit_that_the_means_refute_is_an_error() {
             Some("input-sign-reversed"),
         ),
         ("f_wheel", wave(0.001 * weight, 4.0), Some("input-unit")),
+        // A constant force whose unit is stated, a tenth of the weight, is a force in N and not in kgf.
+        ("f_wheel [N]", wave(0.1 * weight, 0.0), None),
     ];
     for (channel, samples, expected) in cases {
         let data = table(&format!("time [s],{channel}"), rate, &[samples]);

@@ -68,7 +68,8 @@ pub fn findings_by_gravity(channels: &[MotionChannel], gravity: f64, file: &str)
     each.collect()
 }
 
-/// Returns an error if the sum of the mean wheel forces is minus the weight of the stated masses. The same applies to this weight in another unit.
+/// Returns an error if the sum of the mean wheel forces is minus the weight of the stated masses, or this weight in another unit.
+/// A unit that the file states is not in question.
 ///
 /// Wheels that stay on the road have a mean force above the scatter of the force. Forces without a static part have small means of any size.
 pub fn finding_by_weight(channels: &[MotionChannel], weight: f64, file: &str) -> Option<Finding> {
@@ -81,6 +82,7 @@ pub fn finding_by_weight(channels: &[MotionChannel], weight: f64, file: &str) ->
     }
     let fault = match shows(-total, weight) {
         true => MotionFault::Sign(forces),
+        false if first.is_unit_stated => return None,
         false => {
             let mut units = other_units(first).into_iter();
             let (unit, factor) = units.find(|(_, f)| shows(total.abs() * f, weight))?;

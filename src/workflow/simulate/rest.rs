@@ -1,17 +1,13 @@
 //! Position at rest: static parts of the inputs.
 
 use crate::finding::{Finding, Severity};
-use crate::input_faults::{MotionChannel, channels_by_gravity, finding_by_weight};
+use crate::input_faults::{MotionChannel, channels_by_gravity, finding_by_weight, shows};
 use crate::linalg::tall::left_inverse;
 use crate::series::Channels;
 use crate::series::detrend::mean;
 use crate::units::{number, percent};
 use crate::vehicle::layout::Vehicle;
 use crate::vehicle::response::{Inputs, PrescribedMotion};
-
-/// Relative difference from weight or gravity up to which a mean is the static part of an input. Wheel force transducers and accelerometers are
-/// more accurate, and no dynamic input has a mean of this size.
-const STATIC_TOLERANCE: f64 = 0.15;
 
 /// Share of the weight below which a mean counts as zero.
 const ZERO_SHARE: f64 = 0.05;
@@ -34,7 +30,7 @@ enum Mean {
 fn compare_mean(mean: f64, full: f64) -> Mean {
     match mean / full {
         share if share.abs() <= ZERO_SHARE => Mean::Zero,
-        share if (share - 1.0).abs() <= STATIC_TOLERANCE => Mean::Static,
+        _ if shows(mean, full) => Mean::Static,
         _ => Mean::Neither,
     }
 }
