@@ -39,7 +39,7 @@ struct Said {
 #[derive(Default)]
 struct Tally {
     /// Cases with a verdict.
-    judged: usize,
+    tested: usize,
     wrong: usize,
     unknown: usize,
     /// Cases without a verdict, which neither pass nor fail.
@@ -62,7 +62,7 @@ fn main() {
         for (case, s) in some.iter().zip(&results) {
             let found = match &s.found {
                 Ok((verdict, names)) => {
-                    tally.judged += 1;
+                    tally.tested += 1;
                     tally.wrong += usize::from(*verdict == Verdict::Named);
                     tally.unknown += usize::from(*verdict == Verdict::Unknown);
                     format!("{} {names:?}", verdict.word())
@@ -76,15 +76,15 @@ fn main() {
         }
     }
     let Tally {
-        judged,
+        tested,
         wrong,
         unknown,
         failed,
     } = tally;
-    let [low, high] = wilson(wrong, judged);
+    let [low, high] = wilson(wrong, tested);
     println!(
-        "{judged} controls tested ({from} to {to}): {wrong} false names, {:.2} % ({:.2} to {:.2} %); {unknown} unknown; {failed} more without a verdict",
-        percent(wrong, judged),
+        "{tested} controls tested ({from} to {to}): {wrong} false names, {:.2} % ({:.2} to {:.2} %); {unknown} unknown; {failed} more without a verdict",
+        percent(wrong, tested),
         100.0 * low,
         100.0 * high
     );

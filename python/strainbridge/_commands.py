@@ -39,8 +39,8 @@ _log = logging.getLogger("strainbridge")
 def _ask(command: str, job: AnyJob | None, **more: Any) -> Outcome:
     checked = None if job is None else job_of(job)._checked()
     more["threads"] = _threads(more.get("threads"))
-    with shown(more.pop("progress", None)) as told:
-        return outcome_of(command, _engine.ask(command, checked, progress=told, **more))
+    with shown(more.pop("progress", None)) as report:
+        return outcome_of(command, _engine.ask(command, checked, progress=report, **more))
 
 
 def outcome_of(command: str, native: _engine._Outcome) -> Outcome:

@@ -37,8 +37,8 @@ class Plan:
         Raises:
             Faults: every fault of the files, or a job without a model or loads.
         """
-        with shown(progress) as told:
-            return cls(_engine._Plan(job_of(job)._checked(), _threads(threads), cache, told))
+        with shown(progress) as report:
+            return cls(_engine._Plan(job_of(job)._checked(), _threads(threads), cache, report))
 
     def place(self, job: AnyJob, *, threads: int | None = None, progress: Progress = None) -> Outcome:
         """Chooses gauges like :func:`strainbridge.place`. The job must have the model and the loads of the plan.
@@ -46,8 +46,8 @@ class Plan:
         Raises:
             Faults: candidates that allow no layout, or gauges that cannot be kept.
         """
-        with shown(progress) as told:
-            return outcome_of("place", self._native.place(job_of(job)._checked(), _threads(threads), told))
+        with shown(progress) as report:
+            return outcome_of("place", self._native.place(job_of(job)._checked(), _threads(threads), report))
 
     @staticmethod
     def gauges(layout: Outcome) -> list[dict[str, str]]:
@@ -78,8 +78,8 @@ class Plan:
         """
         if not isinstance(best._native, _engine._Outcome):
             raise TypeError("`best` is a copy of an outcome: give the one that `Plan.place` returned")
-        with shown(progress) as told:
-            native = self._native.evaluate(job_of(job)._checked(), _text_of(gauges), best._native, _threads(threads), told)
+        with shown(progress) as report:
+            native = self._native.evaluate(job_of(job)._checked(), _text_of(gauges), best._native, _threads(threads), report)
         return outcome_of("place", native)
 
 

@@ -27,7 +27,7 @@ def shown(progress: Union[bool, Told]) -> Iterator[Told]:
         raise ImportError("progress=True needs tqdm: pip install tqdm, or pass a function of stage, done, total") from e
     bar: Any = tqdm(total=0, leave=False)
 
-    def told(stage: str, done: int, total: int) -> None:
+    def report(stage: str, done: int, total: int) -> None:
         if (stage, total) != (bar.desc.rstrip(": "), bar.total):
             bar.reset(total=total)
             bar.set_description(stage, refresh=False)
@@ -35,6 +35,6 @@ def shown(progress: Union[bool, Told]) -> Iterator[Told]:
         bar.refresh()
 
     try:
-        yield told
+        yield report
     finally:
         bar.close()

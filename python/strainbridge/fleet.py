@@ -348,7 +348,7 @@ class _Task:
     digests: Mapping[str, str] = field(default_factory=dict)
 
     def by_engine(self) -> Outcome:
-        with shown(self.progress) as told:
+        with shown(self.progress) as report:
             return Outcome(
                 _engine.ask(
                     "fleet",
@@ -358,7 +358,7 @@ class _Task:
                     shard=self.shard,
                     digests=self.digests,
                     threads=self.threads,
-                    progress=told,
+                    progress=report,
                 )
             )
 

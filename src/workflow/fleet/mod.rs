@@ -324,9 +324,9 @@ fn evaluate_files(
         if progress.is_cancelled() {
             return Err(cancelled_fault());
         }
-        let told = spec.digests.get(*path);
-        let told = told.and_then(|d| kept.head(path, d));
-        let done = match told.filter(|before| is_as_then(source, before)) {
+        let stated = spec.digests.get(*path);
+        let stated = stated.and_then(|d| kept.head(path, d));
+        let done = match stated.filter(|before| is_as_then(source, before)) {
             Some(before) => Ok((before, Came::Kept)),
             None => evaluate_file(kernel, kept, form, path, source),
         };
