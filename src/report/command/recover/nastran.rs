@@ -19,7 +19,7 @@ const NAME: &str = "loads.bdf";
 /// Number of the first set if no deck shows which numbers are taken.
 const FIRST_SET: u32 = 1001;
 /// Samples read at a time.
-const PIECE: usize = 16_384;
+pub(super) const PIECE: usize = 16_384;
 
 /// Load and the set that contains it with size 1.
 struct Unit {

@@ -1,5 +1,6 @@
 //! `turning_points.csv`: the samples in which a load turns, with all loads at these times.
 
+use super::nastran::PIECE;
 use super::tables::LoadsFile;
 use crate::host::fault::Faults;
 use crate::host::output::Output;
@@ -8,9 +9,6 @@ use crate::series::rainflow::{Point, TurningPointFinder};
 use crate::workflow::recover::{RecoveredRecord, Samples, rpc_targets};
 
 const NAME: &str = "turning_points.csv";
-
-/// Samples read at a time.
-const STEP: usize = 65_536;
 
 /// Writes the samples in which any load turns by at least `share` of its range, and the first and the last sample. All loads of a row are of one
 /// time, so that their phase is kept.
@@ -31,9 +29,9 @@ pub(super) fn write(
         .map(|t| TurningPointFinder::new(share * (t.max - t.min)))
         .collect();
     let mut block = Vec::new();
-    for from in (0..samples).step_by(STEP) {
+    for from in (0..samples).step_by(PIECE) {
         block.clear();
-        loads.read(from, samples.min(from + STEP), &columns, &mut block);
+        loads.read(from, samples.min(from + PIECE), &columns, &mut block);
         for (i, row) in block.chunks(columns.len().max(1)).enumerate() {
             for (finder, value) in finders.iter_mut().zip(row) {
                 let value = *value;
